@@ -10,7 +10,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.api import ARRAY, COLLECTION, GROUPS
-from kb_build.flow.facts import ELEMENT, T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, ELEMENT, OPEN_CLASSES, T
 from kb_build.flow.types import (
     Collection,
     Instance,
@@ -54,15 +54,19 @@ _GENERIC = {
     "MutableSequence": "collections.abc.MutableSequence", "Generator": "collections.abc.Generator",
 }  # fmt: skip
 # Blender's functions loop over what is documented as a list or a sequence.
-_TAKEN = {
-    name: "collections.abc.Iterable" for name in ("list", "collections.abc.Sequence", "collections.abc.MutableSequence")
+_TAKEN = dict.fromkeys(("list", "collections.abc.Sequence", "collections.abc.MutableSequence"), "collections.abc.Iterable")
+_ARITY = {
+    "dict": 2,
+    "collections.abc.Mapping": 2,
+    "collections.abc.Generator": 3,
+    "collections.abc.Callable": 2,
 }
-_ARITY = {"dict": 2, "collections.abc.Mapping": 2, "collections.abc.Generator": 3, "collections.abc.Callable": 2}
 _ROWS = frozenset({"mathutils.Vector", "mathutils.Color"})
 _ARRAY = re.compile(r"^(float|int|boolean|bool)((?:\[\d+\])+)$")
 _LIST_OF = re.compile(r"^(?:[Ll]ist|[Ss]equence|[Tt]uple) of ([\w.]+)$")
 # Enumerations of which functions take or return sets, recognized by values that only they have.
 _SETS = (frozenset({"RUNNING_MODAL", "FINISHED", "CANCELLED"}), frozenset({"INFO", "WARNING", "ERROR"}))
+_ALWAYS_GIVEN = frozenset({f"{T}Context", f"{T}Event"})
 _DEEPEST = 30
 
 
@@ -144,7 +148,7 @@ class Annotations:
             return "mathutils.Matrix"
         return ANY  # a tuple, or a class of mathutils: the records do not say which
 
-    def _read(self, node: ast.expr, scope: str, taken: bool, depth: int) -> str:  # noqa: FBT001, PLR0911 - one return a form
+    def _read(self, node: ast.expr, scope: str, taken: bool, depth: int) -> str:  # noqa: PLR0911 - one return a form
         if depth > _DEEPEST:
             return ANY
         match node:
@@ -154,9 +158,10 @@ class Annotations:
                 return self._named(ast.unparse(node), scope, taken)
             case ast.BinOp(op=ast.BitOr()):
                 sides = [self._read(side, scope, taken, depth + 1) for side in (node.left, node.right)]
-                if "None" in sides and ANY not in sides and not taken:
-                    return f"{sides[sides[0] == 'None']} | {MAYBE_NONE}"
-                return " | ".join(dict.fromkeys(sides))
+                if taken or depth:
+                    return " | ".join(dict.fromkeys(sides))
+                # One of several: which one depends on what a type checker cannot see.
+                return f"{sides[sides[0] == 'None']} | {MAYBE_NONE}" if "None" in sides else ANY
             case ast.Subscript():
                 return self._subscript(node, scope, taken, depth + 1)
             case ast.List():
@@ -166,7 +171,7 @@ class Annotations:
             case _:
                 return ANY
 
-    def _named(self, name: str, scope: str, taken: bool) -> str:  # noqa: FBT001
+    def _named(self, name: str, scope: str, taken: bool) -> str:
         last = name.rpartition(".")[2]
         if last in _PYTHON and name in {last, f"collections.abc.{last}", f"typing.{last}", f"types.{last}"}:
             return _PYTHON[last]
@@ -181,7 +186,7 @@ class Annotations:
     def _of_any(cls: str) -> str:
         return f"{cls}[{ANY}]" if "bpy._typing.T]" in GENERIC.get(cls, "") else cls
 
-    def _subscript(self, node: ast.Subscript, scope: str, taken: bool, depth: int) -> str:  # noqa: FBT001, PLR0911
+    def _subscript(self, node: ast.Subscript, scope: str, taken: bool, depth: int) -> str:  # noqa: PLR0911
         head = ast.unparse(node.value)
         last = head.rpartition(".")[2]
         inside = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
@@ -193,6 +198,8 @@ class Annotations:
             return f"{parts[0]} | {'None' if taken else MAYBE_NONE}"
         if last == "Union":
             return " | ".join(dict.fromkeys(parts))
+        if last == "type" and taken:
+            return _PYTHON["type"]  # which classes can be registered is told incompletely
         generic = _GENERIC.get(last)
         if generic is None:
             cls = self.api.class_named(head, scope)
@@ -215,13 +222,25 @@ class Annotations:
                 text = f"set[{text}]"
         else:
             text = self.text(parameter.type, scope, taken=True)
-            if text.startswith(T) and not parameter.required:
-                text += " | None"
-            elif text.startswith(T) and scope.startswith(T):
-                # RNA does not tell which of its functions take None for a pointer.
+            if self._is_callback(scope) and text.startswith(T):
+                text = self.instance(text)
+            elif self._may_be_none(parameter, text, scope):
                 text += " | None"
         is_none = parameter.default is None and not parameter.required
         return f"{text} | None" if is_none and text != ANY and not text.endswith("None") else text
+
+    @staticmethod
+    def _is_callback(scope: str) -> bool:
+        """Whether Blender calls the function itself, as the script wrote it."""
+        owner = scope.rpartition(".")[0]
+        return owner in DERIVED_BY_SCRIPTS or owner in OPEN_CLASSES
+
+    @staticmethod
+    def _may_be_none(parameter: Parameter, text: str, scope: str) -> bool:
+        """Whether None can be given for a pointer or a text: RNA does not tell for which it cannot."""
+        if text.startswith(T):
+            return not parameter.required or (scope.startswith(T) and text not in _ALWAYS_GIVEN)
+        return parameter.type == "string" and scope.startswith(T)
 
     def results(self, symbol: Symbol, absent: str) -> str:
         """What a function returns; ``absent`` where the records tell nothing."""
@@ -239,4 +258,4 @@ class Annotations:
 
 def _is_set(row: Parameter) -> bool:
     values = set(values_of(row.enum_items))
-    return any(known <= values for known in _SETS)
+    return not isinstance(row.default, str) and any(known <= values for known in _SETS)

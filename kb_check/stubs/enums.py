@@ -14,6 +14,8 @@ if TYPE_CHECKING:
 
 MODULE = "bpy._enums"
 _LONGEST_INLINE = 8
+# What RNA lists for an enumeration whose items are made while Blender runs.
+_PLACEHOLDERS = (("DEFAULT",), ("NONE",), ("NULL",))
 _RNA_NAME = re.compile(r"^rna_enum_(\w+?)(?:_items)?$")
 
 Values = tuple[str, ...]
@@ -62,8 +64,9 @@ class Enums:
 
 
 def values_of(items: Iterable[EnumItem]) -> Values:
-    """The identifiers of an enumeration, each once."""
-    return tuple(dict.fromkeys(item.identifier for item in items))
+    """The identifiers of an enumeration, each once; none where Blender puts them together while it runs."""
+    values = tuple(dict.fromkeys(item.identifier for item in items))
+    return () if values in _PLACEHOLDERS else values
 
 
 def _literal(values: Values) -> str:

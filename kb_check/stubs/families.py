@@ -60,8 +60,9 @@ class Families:
         for cls, name in sorted(self._names.items()):
             if name:
                 rows += self._family(name, cls, self.members(cls), declared)
-        data = sorted({T + cls for cls in OBJECT_DATA.values()} & set(declared))
-        rows += self._family(OBJECT_DATA_FAMILY, f"{T}ID", tuple(data), declared)
+        data = {T + cls for cls in OBJECT_DATA.values()} & set(declared)
+        data |= {member for cls in data for member in self.members(cls)}
+        rows += self._family(OBJECT_DATA_FAMILY, f"{T}ID", tuple(sorted(data)), declared)
         return rows
 
     def _family(

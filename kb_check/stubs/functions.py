@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 # Modules written in C, whose documentation leaves out only the result None.
 _DOCUMENTED = ("mathutils", "bmesh", "gpu", "blf", "bl_math")
+BMESH_OPERATORS = "bmesh.ops"
 _LONGEST_DEFAULT = 40
 _FIRST = {"method": "self", "class": "cls", "static": "", "function": ""}
 
@@ -61,7 +62,12 @@ class Signature:
         def row(arguments: list[Argument]) -> list[Argument]:
             return [Argument(a.name, annotation, "", a.star) if a.name == name else a for a in arguments]
 
-        return Signature(row(self.positional), row(self.usual), row(self.keywords))
+        usual, keywords = row(self.usual), row(self.keywords)
+        place = next((i for i, argument in enumerate(usual) if argument.name == name), len(usual))
+        if any(argument.default for argument in usual[:place]):
+            # What must be given cannot follow what need not, except by its name.
+            usual, keywords = usual[:place], usual[place:] + keywords
+        return Signature(row(self.positional), usual, keywords)
 
 
 class Functions:
@@ -82,7 +88,7 @@ class Functions:
         defaults = [None] * (len(rows) - len(arguments.defaults)) + list(arguments.defaults)
         optional = False
         for place, (row, default) in enumerate(zip(rows, defaults, strict=True)):
-            if place == 0 and row.arg in {"self", "cls"}:
+            if place == 0 and row.arg in {"self", "cls"} and row.arg not in known:
                 continue
             optional = optional or default is not None or _is_optional(known.get(row.arg))
             argument = self._argument(row.arg, known, symbol, default, optional=optional)
@@ -92,9 +98,7 @@ class Functions:
         for row, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
             if is_writable(row.arg):
                 is_optional = default is not None or _is_optional(known.get(row.arg))
-                found.keywords.append(
-                    self._argument(row.arg, known, symbol, default, optional=is_optional)
-                )
+                found.keywords.append(self._argument(row.arg, known, symbol, default, optional=is_optional))
         if arguments.kwarg:
             found.keywords.append(Argument(arguments.kwarg.arg, ANY, star="**"))
         if found.keywords and found.keywords[0].star == "**":
@@ -112,7 +116,10 @@ class Functions:
     ) -> Argument:
         parameter = known.get(name)
         annotation = self._annotations.parameter(parameter, symbol.path) if parameter else ANY
-        return Argument(name, annotation, _default(default) if optional else "")
+        written = _default(default) if optional else ""
+        if written == "None" and annotation != ANY and not annotation.endswith("None"):
+            annotation += " | None"
+        return Argument(name, annotation, written)
 
     def _from_records(self, symbol: Symbol) -> Signature:
         """What is required behind what is not can only be given by its name."""
@@ -129,11 +136,14 @@ class Functions:
 
     def result(self, symbol: Symbol, owner: str = "") -> str:
         """What a function returns."""
+        if symbol.owner == BMESH_OPERATORS and symbol.returns:
+            return f"{symbol.path}_result"
         if owner and symbol.name in SAME_CLASS and len(symbol.returns) == 1:
             if self._annotations.api.descends(owner, f"{T}{symbol.returns[0].type}"):
                 return "typing.Self"
         is_told = symbol.path.startswith(_DOCUMENTED) or any(
-            parameter.type in RNA_TYPES and parameter.type not in {"int", "float"} for parameter in symbol.parameters
+            parameter.type in RNA_TYPES and parameter.type not in {"int", "float"}
+            for parameter in symbol.parameters
         )
         text = self._annotations.results(symbol, "None" if is_told or symbol.name == "__init__" else ANY)
         makes = symbol.name in {"new", "add", "create", "load"} or symbol.name.startswith("new_")
@@ -154,7 +164,14 @@ class Functions:
         """A function's definition."""
         return self.definition(symbol, owner, self.signature(symbol), self.result(symbol, owner))
 
-    def definition(self, symbol: Symbol, owner: str, signature: Signature, result: str, *, docs: bool = True) -> str:
+    def operator_result(self, symbol: Symbol) -> str:
+        """The class of what an operator of bmesh returns, a dictionary of lists."""
+        rows = [f"    {row.name}: {self._annotations.text(row.type, symbol.path)}" for row in symbol.returns]
+        return "\n".join([f"class {symbol.name}_result(typing.TypedDict):", *rows])
+
+    def definition(
+        self, symbol: Symbol, owner: str, signature: Signature, result: str, *, docs: bool = True
+    ) -> str:
         """A definition with these parameters and this result."""
         binding = self.binding(symbol, owner)
         decorator = {"class": "@classmethod\n", "static": "@staticmethod\n"}.get(binding, "")
@@ -171,7 +188,7 @@ class Functions:
                 is_settings = "_OT_" in parameter.type or parameter.type.startswith("list of")
                 default = _default_of(parameter)
                 arguments.append(Argument(parameter.name, ANY if is_settings else annotation, default))
-        first = [Argument("context", "str", "..."), Argument("undo", "bool", "...")]
+        first = [Argument("execution_context", "str", "..."), Argument("with_undo", "bool", "...")]
         text = Signature(first, [], arguments).text()
         said = docstring(symbol.label, symbol.description) if self._with_docs else ""
         end = f"\n    {said}" if said else " ..."

@@ -14,7 +14,7 @@ from kb_check.stubs.annotations import ANY, Annotations
 from kb_check.stubs.classes import Classes, lines_of
 from kb_check.stubs.enums import Enums
 from kb_check.stubs.families import Families
-from kb_check.stubs.functions import Functions
+from kb_check.stubs.functions import BMESH_OPERATORS, Functions
 from kb_check.stubs.names import docstring, hidden_names, imports_of, is_writable, shorten
 from kb_check.stubs.overloads import Overloads
 from kb_check.stubs.properties import Properties
@@ -26,11 +26,11 @@ if TYPE_CHECKING:
 
     from kb_build.records import Symbol
 
-TYPES = "bpy.types"
-_OPS = "bpy.ops"
+TYPING_MODULE = "bpy._typing"
 # Multiple inheritance and Blender's own overriding do not keep to the rules that are made for scripts.
+MARK = "# Written by simworlds from Blender's own description of its API."
 _HEAD = (
-    "# pyright: reportIncompatibleVariableOverride=false, reportIncompatibleMethodOverride=false, "
+    f"{MARK}\n# pyright: reportIncompatibleVariableOverride=false, reportIncompatibleMethodOverride=false, "
     "reportOverlappingOverload=false, reportInconsistentOverload=false, reportPrivateUsage=false"
 )
 
@@ -65,10 +65,12 @@ class _Writer:
             self._annotations, properties, self._functions, overloads, self._sockets, symbols
         )
         self._stubs = Stubs()
+        self._modules: set[str] = set()
         self._declared: dict[str, families.Members] = {}
 
     def write(self) -> Stubs:
         modules = sorted(symbol.path for symbol in self._symbols if symbol.kind == "module")
+        self._modules = {*modules, families.MODULE, sockets.MODULE, enums.MODULE, TYPING_MODULE}
         self._stubs.packages = {module.rpartition(".")[0] for module in modules if "." in module}
         for symbol in self._symbols:
             if symbol.kind == "class":
@@ -83,7 +85,7 @@ class _Writer:
         own[families.MODULE] = self._text(families.MODULE, self._families.lines(self._declared))
         own[sockets.MODULE] = self._text(sockets.MODULE, self._sockets.lines())
         own[enums.MODULE] = self._text(enums.MODULE, self._enums.lines())
-        own["bpy._typing"] = self._text("bpy._typing", TYPING.strip("\n").splitlines())
+        own[TYPING_MODULE] = self._text(TYPING_MODULE, TYPING.strip("\n").splitlines())
         return self._stubs
 
     def _module(self, module: str) -> str:
@@ -111,6 +113,8 @@ class _Writer:
                 return self._class(symbol.path, module)
             case "function":
                 text = self._functions.define(symbol)
+                if module == BMESH_OPERATORS and symbol.returns:
+                    text = f"{self._functions.operator_result(symbol)}\n{text}"
             case "operator":
                 text = self._functions.operator(symbol)
             case _:
@@ -130,10 +134,7 @@ class _Writer:
         doc = self._classes.doc(cls, with_docs=self._with_docs)
         return lines_of(cls.rpartition(".")[2], bases, written, doc)
 
-    @staticmethod
-    def _text(module: str, rows: Iterable[str], inner: Iterable[str] = ()) -> str:
+    def _text(self, module: str, rows: Iterable[str], inner: Iterable[str] = ()) -> str:
         body = "\n".join(rows)
-        imports = imports_of(body, module)
-        if "builtins." in body:
-            imports.append("import builtins")
+        imports = imports_of(body, module, self._modules)
         return "\n".join([_HEAD, *sorted(set(imports)), *inner, "", body, ""])

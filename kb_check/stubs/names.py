@@ -12,9 +12,8 @@ if TYPE_CHECKING:
 
 _PARTS = re.compile(r"""(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')|(?<![\w.])(?P<name>[A-Za-z_][\w.]*)""")
 _BUILTINS = frozenset(name for name in dir(builtins) if name[0].islower())
-# The modules that annotations name, and every stub imports.
-_MODULE = re.compile(r"(bpy|mathutils|bmesh|gpu|idprop|imbuf|freestyle|aud|numpy|bpy_extras)\.")
-_STANDARD = re.compile(r"\b(collections\.abc|types|typing|builtins)\.")
+# Python's own, as annotations name them.
+_STANDARD = re.compile(r"(collections\.abc|typing|builtins|types(?=\.ModuleType))\.")
 
 
 def is_writable(name: str) -> bool:
@@ -51,22 +50,20 @@ def _is_definition(text: str, match: re.Match[str]) -> bool:
     return text[match.end() : match.end() + 1] == ":" and not before.endswith(("-> ", "| "))
 
 
-def imports_of(text: str, module: str) -> list[str]:
-    """The import statements that the text of a stub needs; ``module`` is its own name."""
-    found: dict[str, None] = {}
+def imports_of(text: str, module: str, modules: Collection[str]) -> list[str]:
+    """The import statements that the text of a stub needs; ``module`` is its own name, ``modules`` are all stubs'."""
+    found: set[str] = set()
     for match in _PARTS.finditer(text):
         name = match["name"]
-        if not name:
+        if not name or "." not in name:
             continue
         if standard := _STANDARD.match(name):
-            found[standard[1]] = None
-        elif _MODULE.match(name):
+            found.add(standard[1])
+        else:
             parts = name.split(".")
-            path = ".".join(parts[: max(1, next((i for i, part in enumerate(parts) if part[:1].isupper()), 1))])
-            path = "bpy.types" if path.startswith("bpy.types") else path
-            if path != module:
-                found[path] = None
-    return [f"import {name}" for name in sorted(found)]
+            paths = (".".join(parts[:count]) for count in range(len(parts) - 1, 0, -1))
+            found.add(next((path for path in paths if path in modules), module))
+    return [f"import {name}" for name in sorted(found - {module})]
 
 
 def first_sentence(text: str) -> str:

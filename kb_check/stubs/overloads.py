@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from kb_check.stubs.functions import Functions
 
 _DECIDING = ("type", "socket_type", "effect_type")
+_BY_CLASS = (f"{T}Node", f"{T}NodeTree")
 # Families whose members are called after their class unless somebody renames them.
 _LABELLED = (f"{T}Node", f"{T}Modifier", f"{T}Constraint")
 
@@ -53,10 +54,10 @@ class Overloads:
         if not base or parameter is None or not self._api.descendants(base):
             return None
         values = values_of(parameter.enum_items)
-        if not values and base == f"{T}Node":
-            values = tuple(path.removeprefix(T) for path in self._api.descendants(base))
-        elif not values and parameter.type == "string":
-            values = tuple(path.removeprefix(T) for path in self._api.descendants(f"{T}NodeSocket"))
+        if not values:
+            # The names of classes: of nodes and trees, or of sockets for what makes their interface.
+            of = base if base in _BY_CLASS else f"{T}NodeSocket"
+            values = tuple(path.removeprefix(T) for path in self._api.descendants(of))
         found: dict[str, list[str]] = {}
         for value in values:
             cls = self._api.class_of_value(base, value)

@@ -4,22 +4,29 @@ from __future__ import annotations
 
 import base64
 import hashlib
+import shutil
 import zipfile
 from dataclasses import dataclass
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from kb_build.records import Symbol, symbol_from_json
 from kb_build.schema import open_read_only, unpack
-from kb_check.stubs.modules import Stubs, write_modules
+from kb_check.stubs.modules import MARK, Stubs, write_modules
+from simworlds.errors import UserError
 from simworlds.files import staged_file, staged_folder
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
 _NAME = "simworlds_bpy_stubs"
 # Wheels hold no times of their own, so that the same base gives the same bytes.
 _TIME = (1980, 1, 1, 0, 0, 0)
+
+
+class OutputInTheWay(UserError):
+    """What is already there would be overwritten."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,19 +60,38 @@ def stub_files(stubs: Stubs) -> Iterator[tuple[PurePosixPath, str]]:
 
 
 def write_folder(base: Path, folder: Path, *, with_docs: bool = False) -> Written:
-    """Writes the stubs of a base into a folder, which is replaced as a whole."""
+    """Writes the stubs of a base into a folder, in the place of those that were written there before.
+
+    Raises OutputInTheWay where another's package has the name of one of them.
+    """
     blender, symbols = read_symbols(base)
     stubs = write_modules(symbols, with_docs=with_docs)
-    size = files = 0
-    with staged_folder(folder) as staged:
-        for path, text in stub_files(stubs):
-            target = staged / path
-            target.parent.mkdir(parents=True, exist_ok=True)
-            data = text.encode()
-            target.write_bytes(data)
-            size += len(data)
-            files += 1
-    return Written(blender, files, size, tuple(stubs.left_out))
+    packages: dict[str, dict[PurePosixPath, bytes]] = {}
+    for path, text in stub_files(stubs):
+        packages.setdefault(path.parts[0], {})[path.relative_to(path.parts[0])] = text.encode()
+    for name in packages:
+        _check_is_ours(folder / name)
+    for name, files in packages.items():
+        shutil.rmtree(folder / name, ignore_errors=True)
+        with staged_folder(folder / name) as staged:
+            for path, data in files.items():
+                (staged / path).parent.mkdir(parents=True, exist_ok=True)
+                (staged / path).write_bytes(data)
+    written = [data for files in packages.values() for data in files.values()]
+    return Written(blender, len(written), sum(map(len, written)), tuple(stubs.left_out))
+
+
+def _check_is_ours(package: Path) -> None:
+    """Raises OutputInTheWay where a package is there that was not written here."""
+    if not package.exists() and not package.is_symlink():
+        return
+    try:
+        with (package / "__init__.pyi").open(encoding="utf-8") as file:
+            is_ours = file.readline().startswith(MARK)
+    except (OSError, UnicodeDecodeError):
+        is_ours = False
+    if not is_ours or package.is_symlink():
+        raise OutputInTheWay(f"{package} is there and was not written by simworlds. Choose another folder.")
 
 
 def write_wheel(base: Path, folder: Path, *, with_docs: bool = False) -> tuple[Path, Written]:

@@ -98,7 +98,15 @@ BODIES = {
     bl_rna: typing.ClassVar[bpy.types.Struct]
     rna_type: typing.ClassVar[bpy.types.Struct]
     def __hash__(self) -> int: ...
+    @typing.overload
+    def driver_add(self, path: str, index: int, /) -> bpy.types.FCurve: ...
+    @typing.overload
+    def driver_add(self, path: str, /) -> typing.Any: ...
     """,
+    # Takes the value too, which its documentation leaves out.
+    "bpy.types.Gizmo": "def target_set_value(self, target: str, value: typing.Any, /) -> None: ...",
+    # Decorates a handler, which stays what it is.
+    "bpy.app.handlers.persistent": "def __new__(cls, function: bpy._typing.D, /) -> bpy._typing.D: ...",
     "bpy.types.bpy_prop_collection": f"""
     @typing.overload
     def __getitem__(self, key: int | {_KEY}, /) -> bpy._typing.T: ...
@@ -136,12 +144,8 @@ BODIES = {
     def __exit__(self, *error: object) -> None: ...
     """,
     "mathutils.Vector": _numbers("Vector")
-    + _arithmetic("Vector")
+    + _arithmetic("Vector", _NUMBER.format("Vector"))
     + """
-    @typing.overload
-    def __mul__(self, other: float, /) -> mathutils.Vector: ...
-    @typing.overload
-    def __mul__(self, other: mathutils.Vector, /) -> mathutils.Vector: ...
     def __truediv__(self, other: float, /) -> mathutils.Vector: ...
     @typing.overload
     def __matmul__(self, other: mathutils.Vector, /) -> float: ...
@@ -157,7 +161,9 @@ BODIES = {
     def angle(self, other: collections.abc.Iterable[float], fallback: bpy._typing.D, /) -> float | bpy._typing.D: ...
     def cross(self, other: collections.abc.Iterable[float], /) -> typing.Any: ...
     """,
-    "mathutils.Color": _numbers("Color") + _arithmetic("Color") + """
+    "mathutils.Color": _numbers("Color")
+    + _arithmetic("Color")
+    + """
     def __truediv__(self, other: float, /) -> mathutils.Color: ...
     """,
     "mathutils.Euler": _numbers("Euler"),
@@ -173,7 +179,7 @@ BODIES = {
     @typing.overload
     def __init__(self, axis: collections.abc.Iterable[float], angle: float, /) -> None: ...
     """,
-    "mathutils.Matrix": f"""
+    "mathutils.Matrix": """
     @typing.overload
     def __getitem__(self, key: int, /) -> mathutils.Vector: ...
     @typing.overload
@@ -222,7 +228,8 @@ BODIES = {
     """,
     "bmesh.types.BMElemSeq": _sequence("bpy._typing.T"),
     **{
-        f"bmesh.types.BM{kind}Seq": _sequence(f"bmesh.types.BM{kind}") for kind in ("Vert", "Edge", "Face", "Loop")
+        f"bmesh.types.BM{kind}Seq": _sequence(f"bmesh.types.BM{kind}")
+        for kind in ("Vert", "Edge", "Face", "Loop")
     },
     "bmesh.types.BMEditSelSeq": _sequence("bmesh.types.BMVert | bmesh.types.BMEdge | bmesh.types.BMFace"),
     **{f"bmesh.types.BM{kind}": _BM_ELEMENT for kind in ("Vert", "Edge", "Face", "Loop")},
@@ -309,6 +316,8 @@ TYPING = dedent("""
         '''Classes of Blender's data take the properties that add-ons register.'''
         def __setattr__(cls, name: str, value: typing.Any, /) -> None: ...
         def __delattr__(cls, name: str, /) -> None: ...
+        @property
+        def is_registered(cls) -> bool: ...
 
     OperatorResult: typing.TypeAlias = typing.Literal[
         "RUNNING_MODAL", "CANCELLED", "FINISHED", "PASS_THROUGH", "INTERFACE"

@@ -54,7 +54,10 @@ class Sockets:
         rows = [f"class {name}({T}{container}):"]
         for text, keys in sorted(by_type.items()):
             literal = ", ".join(map(repr, sorted(keys, key=str)))
-            rows += ["    @typing.overload", f"    def __getitem__(self, key: typing.Literal[{literal}], /) -> {text}: ..."]
+            rows += [
+                "    @typing.overload",
+                f"    def __getitem__(self, key: typing.Literal[{literal}], /) -> {text}: ...",
+            ]
         return [
             *rows,
             "    @typing.overload",
