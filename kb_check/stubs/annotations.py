@@ -54,7 +54,7 @@ _GENERIC = {
     "MutableSequence": "collections.abc.MutableSequence", "Generator": "collections.abc.Generator",
 }  # fmt: skip
 # Blender's functions loop over what is documented as a list or a sequence.
-_TAKEN = dict.fromkeys(("list", "collections.abc.Sequence", "collections.abc.MutableSequence"), "collections.abc.Iterable")
+_LISTS = frozenset({"list", "collections.abc.Sequence", "collections.abc.MutableSequence"})
 _ARITY = {
     "dict": 2,
     "collections.abc.Mapping": 2,
@@ -183,8 +183,8 @@ class Annotations:
         return ANY if not cls or cls == f"{T}AnyType" else self._of_any(cls)
 
     @staticmethod
-    def _of_any(cls: str) -> str:
-        return f"{cls}[{ANY}]" if "bpy._typing.T]" in GENERIC.get(cls, "") else cls
+    def _of_any(path: str) -> str:
+        return f"{path}[{ANY}]" if "bpy._typing.T]" in GENERIC.get(path, "") else path
 
     def _subscript(self, node: ast.Subscript, scope: str, taken: bool, depth: int) -> str:  # noqa: PLR0911
         head = ast.unparse(node.value)
@@ -206,11 +206,13 @@ class Annotations:
             if cls and "Generic" in GENERIC.get(cls, ""):
                 return f"{cls}[{parts[0]}]"
             return self._named(head, scope, taken)
+        if taken and generic in _LISTS:
+            generic = "collections.abc.Iterable"
         if len(parts) != _ARITY.get(generic, len(parts)):
             return _PYTHON.get(last, ANY)
         if generic == "collections.abc.Callable" and not (parts[0] == "..." or parts[0].startswith("[")):
             return _PYTHON["Callable"]
-        return f"{_TAKEN.get(generic, generic) if taken else generic}[{', '.join(parts)}]"
+        return f"{generic}[{', '.join(parts)}]"
 
     # Parameters and results.
 

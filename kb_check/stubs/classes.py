@@ -30,7 +30,7 @@ _STRUCT = f"{T}bpy_struct"
 class Classes:
     """Writes classes."""
 
-    def __init__(  # noqa: PLR0913 - one for each kind of member
+    def __init__(  # noqa: PLR0913, PLR0917 - one for each kind of member
         self,
         annotations: Annotations,
         properties: Properties,
@@ -61,9 +61,8 @@ class Classes:
             elif name not in spelled and not self._is_inherited(symbol, cls):
                 found[name] = self._declare(symbol, cls)
         found |= self._sockets.declare(cls)
-        if element := self._elements.get(cls):
-            if items := self._overloads.items(element):
-                found["__getitem__"] = items
+        if items := self._overloads.items(self._elements.get(cls, "")):
+            found["__getitem__"] = items
         symbol = self._api.symbols.symbol(cls)
         if symbol and symbol.parameters and "__init__" not in spelled and "__init__" not in found:
             text = self._functions.signature(symbol).text("self")

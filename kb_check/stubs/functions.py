@@ -138,9 +138,9 @@ class Functions:
         """What a function returns."""
         if symbol.owner == BMESH_OPERATORS and symbol.returns:
             return f"{symbol.path}_result"
-        if owner and symbol.name in SAME_CLASS and len(symbol.returns) == 1:
-            if self._annotations.api.descends(owner, f"{T}{symbol.returns[0].type}"):
-                return "typing.Self"
+        declared = f"{T}{symbol.returns[0].type}" if len(symbol.returns) == 1 else ""
+        if owner and symbol.name in SAME_CLASS and self._annotations.api.descends(owner, declared):
+            return "typing.Self"
         is_told = symbol.path.startswith(_DOCUMENTED) or any(
             parameter.type in RNA_TYPES and parameter.type not in {"int", "float"}
             for parameter in symbol.parameters

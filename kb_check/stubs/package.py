@@ -25,7 +25,7 @@ _NAME = "simworlds_bpy_stubs"
 _TIME = (1980, 1, 1, 0, 0, 0)
 
 
-class OutputInTheWay(UserError):
+class OutputInTheWay(UserError):  # noqa: N818 - reads as the state it names
     """What is already there would be overwritten."""
 
 

@@ -110,4 +110,7 @@ def open_class_body(cls: str) -> str:
     """What lets a class have whatever a script gave it; empty for the others."""
     if cls not in OPEN_CLASSES:
         return ""
-    return "def __getattr__(self, name: str, /) -> typing.Any: ...\ndef __setattr__(self, name: str, value: typing.Any, /) -> None: ..."
+    return (
+        "def __getattr__(self, name: str, /) -> typing.Any: ...\n"
+        "def __setattr__(self, name: str, value: typing.Any, /) -> None: ..."
+    )

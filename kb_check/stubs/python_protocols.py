@@ -1,8 +1,8 @@
 """What Python's own syntax does with Blender's values.
 
-Blender documents methods and properties, but not what ``[]``, ``in``, ``for``, ``+`` and ``@`` mean: those live in the
-type slots of its C code (``pyrna``, ``mathutils``, ``bmesh_py_types``). Each entry is the body of a class in full names;
-a method named here takes the place of the documented one, which cannot say that a collection holds one type.
+Blender documents methods and properties, but not what ``[]``, ``in``, ``for``, ``+`` and ``@`` mean: those live in
+the type slots of its C code (``pyrna``, ``mathutils``, ``bmesh_py_types``). Each entry is the body of a class in full
+names; a method named here takes the place of the documented one, which cannot say that a collection holds one type.
 """
 
 from __future__ import annotations

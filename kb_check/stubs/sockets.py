@@ -1,4 +1,4 @@
-"""The sockets of each node as a class of its own: ``inputs["Base Color"]`` is a NodeSocketColor, a wrong name an error."""
+"""The sockets of each node as a class of its own: ``inputs["Base Color"]`` is a NodeSocketColor, a wrong name wrong."""
 
 from __future__ import annotations
 
