@@ -19,9 +19,14 @@ _MOST_NAMED = 5
 @click.option(
     "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write into."
 )
+@click.option(
+    "--base",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="The file of a base, instead of a VERSION.",
+)
 @click.option("--docs", "with_docs", is_flag=True, help="Add a sentence about each name.")
 @click.option("--wheel", is_flag=True, help="Write a wheel, to install or to publish.")
-def stubs(*, version: str | None, out: Path, with_docs: bool, wheel: bool) -> None:
+def stubs(*, version: str | None, out: Path, base: Path | None, with_docs: bool, wheel: bool) -> None:
     """Write typed stubs of Blender's Python API, for pyright, mypy and editors.
 
     VERSION is that of a knowledge base, by default the newest. Exit code: 0, or 2 on errors.
@@ -31,11 +36,11 @@ def stubs(*, version: str | None, out: Path, with_docs: bool, wheel: bool) -> No
     from kb_serve.locate import find_base  # noqa: PLC0415 - likewise
 
     try:
-        base = find_base(version)
+        source = base or find_base(version)
         if wheel:
-            target, written = write_wheel(base, out, with_docs=with_docs)
+            target, written = write_wheel(source, out, with_docs=with_docs)
         else:
-            target, written = out, write_folder(base, out, with_docs=with_docs)
+            target, written = out, write_folder(source, out, with_docs=with_docs)
     except (UserError, OSError, NoBase) as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)

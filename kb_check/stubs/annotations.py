@@ -42,7 +42,8 @@ _PYTHON = {
     "str": "str", "int": "int", "float": "float", "bool": "bool", "bytes": "bytes", "None": "None",
     "object": "object", "complex": "complex", "type": "type[typing.Any]", "dict": "dict[typing.Any, typing.Any]",
     "list": "list[typing.Any]", "set": "set[typing.Any]", "frozenset": "frozenset[typing.Any]",
-    "tuple": "tuple[typing.Any, ...]", "slice": "slice", "ModuleType": "types.ModuleType", "Self": "typing.Self",
+    "tuple": "tuple[typing.Any, ...]", "slice": "slice", "ModuleType": "types.ModuleType",
+    "Self": "typing_extensions.Self",
     "Callable": "collections.abc.Callable[..., typing.Any]", "Sequence": "collections.abc.Sequence[typing.Any]",
     "Iterable": "collections.abc.Iterable[typing.Any]", "Iterator": "collections.abc.Iterator[typing.Any]",
 }  # fmt: skip

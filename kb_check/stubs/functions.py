@@ -140,7 +140,7 @@ class Functions:
             return f"{symbol.path}_result"
         declared = f"{T}{symbol.returns[0].type}" if len(symbol.returns) == 1 else ""
         if owner and symbol.name in SAME_CLASS and self._annotations.api.descends(owner, declared):
-            return "typing.Self"
+            return "typing_extensions.Self"
         is_told = symbol.path.startswith(_DOCUMENTED) or any(
             parameter.type in RNA_TYPES and parameter.type not in {"int", "float"}
             for parameter in symbol.parameters

@@ -80,7 +80,7 @@ class _Writer:
                 self._stubs.modules[module] = self._module(module)
             else:
                 self._stubs.left_out.append(module)
-        self._stubs.left_out += self._classes.left_out
+        self._stubs.left_out = sorted(self._stubs.left_out + self._classes.left_out)
         own = self._stubs.modules
         own[families.MODULE] = self._text(families.MODULE, self._families.lines(self._declared))
         own[sockets.MODULE] = self._text(sockets.MODULE, self._sockets.lines())

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 _PARTS = re.compile(r"""(?P<text>"(?:\\.|[^"\\])*"|'(?:\\.|[^'\\])*')|(?<![\w.])(?P<name>[A-Za-z_][\w.]*)""")
 _BUILTINS = frozenset(name for name in dir(builtins) if name[0].islower())
 # Python's own, as annotations name them.
-_STANDARD = re.compile(r"(collections\.abc|typing|builtins|types(?=\.ModuleType))\.")
+_STANDARD = re.compile(r"(collections\.abc|typing_extensions|typing|builtins|types(?=\.ModuleType))\.")
 
 
 def is_writable(name: str) -> bool:

@@ -61,7 +61,7 @@ class Sockets:
         return [
             *rows,
             "    @typing.overload",
-            "    def __getitem__(self, key: typing.LiteralString, /) -> bpy._typing.NoSuchSocket: ...",
+            "    def __getitem__(self, key: typing_extensions.LiteralString, /) -> bpy._typing.NoSuchSocket: ...",
             "    @typing.overload",
             f"    def __getitem__(self, key: int | str, /) -> {self._any}: ...",
             "    @typing.overload",
