@@ -99,9 +99,7 @@ class Annotations:
             case Instance():
                 return self.instance(kind.cls)
             case Collection():
-                element = self.value(kind.element, symbol)
-                generic = kind.container in {COLLECTION, GROUPS}
-                return f"{kind.container}[{element}]" if generic else kind.container
+                return self._collection(kind, self.value(kind.element, symbol))
             case Sequence(kind="set"):
                 return f"set[{self.enums.text(symbol.enum_items)}]"
             case Sequence(kind="array"):
@@ -120,6 +118,13 @@ class Annotations:
                 return kind.kind
             case _:
                 return ANY
+
+    def _collection(self, kind: Collection, element: str) -> str:
+        if not self.api.is_class(kind.container):
+            # Not every Blender documents the class of the collections that add-ons register.
+            return f"{COLLECTION}[{element}]"
+        is_generic = kind.container in {COLLECTION, GROUPS}
+        return f"{kind.container}[{element}]" if is_generic else kind.container
 
     # What is spelled.
 
@@ -209,7 +214,8 @@ class Annotations:
             return self._named(head, scope, taken)
         if taken and generic in _LISTS:
             generic = "collections.abc.Iterable"
-        if len(parts) != _ARITY.get(generic, len(parts)):
+        is_unclear = generic == "tuple" and "..." in parts and (len(parts) != 2 or parts[1] != "...")
+        if is_unclear or len(parts) != _ARITY.get(generic, len(parts)):
             return _PYTHON.get(last, ANY)
         if generic == "collections.abc.Callable" and not (parts[0] == "..." or parts[0].startswith("[")):
             return _PYTHON["Callable"]

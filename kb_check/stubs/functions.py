@@ -117,6 +117,8 @@ class Functions:
         parameter = known.get(name)
         annotation = self._annotations.parameter(parameter, symbol.path) if parameter else ANY
         written = _default(default) if optional else ""
+        if written in {"True", "False"} and "bool" not in annotation:
+            written = "..."  # documented as another type
         if written == "None" and annotation != ANY and not annotation.endswith("None"):
             annotation += " | None"
         return Argument(name, annotation, written)

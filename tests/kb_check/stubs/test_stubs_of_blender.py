@@ -6,11 +6,12 @@ import ast
 import base64
 import hashlib
 import json
+import shutil
 import subprocess
 import sys
 import zipfile
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import pytest
 from click.testing import CliRunner
@@ -19,29 +20,23 @@ from kb_check.stubs.modules import MARK
 from kb_check.stubs.package import OutputInTheWay, write_folder, write_wheel
 from kb_check.stubs_cli import stubs as command
 
-if TYPE_CHECKING:
-    from collections.abc import Iterable
-
 SAMPLES = Path(__file__).parent
 
 
 @pytest.fixture(scope="module")
 def folder(base: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
-    target = tmp_path_factory.mktemp("stubs")
+    target = tmp_path_factory.mktemp("project") / "typings"
     write_folder(base, target, with_docs=True)
     return target
 
 
 @pytest.fixture(scope="module")
 def found(folder: Path) -> list[dict[str, Any]]:
-    """What pyright reports of the samples and of the stubs themselves."""
-    return pyright(folder, [*SAMPLES.glob("sample_*.py"), folder])
-
-
-def pyright(folder: Path, paths: Iterable[Path]) -> list[dict[str, Any]]:
+    """What pyright reports of the samples, and of the stubs themselves."""
+    for sample in SAMPLES.glob("sample_*.py"):
+        shutil.copy(sample, folder.parent)
     settings = {
-        "include": [str(path) for path in paths],
-        "stubPath": str(folder),
+        "include": ["."],
         "typeCheckingMode": "standard",
         "reportMissingModuleSource": False,
         # The samples only mention things.
@@ -49,10 +44,9 @@ def pyright(folder: Path, paths: Iterable[Path]) -> list[dict[str, Any]]:
         # Scripts return a set of literals without saying so.
         "reportIncompatibleMethodOverride": False,
     }
-    project = folder / "pyrightconfig.json"
-    project.write_text(json.dumps(settings), encoding="utf-8")
+    (folder.parent / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
     done = subprocess.run(
-        [sys.executable, "-m", "pyright", "--project", str(project), "--outputjson"],
+        [sys.executable, "-m", "pyright", "--project", str(folder.parent), "--outputjson"],
         capture_output=True,
         text=True,
         check=False,
