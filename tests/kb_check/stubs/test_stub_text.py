@@ -64,9 +64,9 @@ def test_values_with_quotes_are_values() -> None:
 def test_a_description_cannot_end_its_docstring() -> None:
     text = types_of(prop("size", description="\"\"\"\n''' \\"), with_docs=True)
     said = [node.value for node in ast.walk(ast.parse(text)) if isinstance(node, ast.Expr)]
-    assert [ast.literal_eval(value) for value in said if isinstance(value, ast.Constant)][
-        0
-    ] == "\"\"\" ''' \\."
+    assert (
+        next(ast.literal_eval(value) for value in said if isinstance(value, ast.Constant)) == "\"\"\" ''' \\."
+    )
 
 
 def test_what_must_be_given_behind_what_need_not_goes_by_its_name() -> None:
