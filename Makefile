@@ -4,6 +4,7 @@ BLENDER ?= 5.1
 PYTHON_VERSION := 3.13
 PY := .venv/bin/python
 STAMP := .venv/.simworlds-installed
+STUBS := .venv/stubs/.written
 UV := $(or $(shell command -v uv 2>/dev/null),.tools/uv/bin/uv)
 
 # uv passes over pyenv's shims, but takes an interpreter that stands in pyenv's folder when it is on PATH.
@@ -55,10 +56,11 @@ bench: $(STAMP) ## Measure retrieval, latency and builds, beside the peers [BENC
 bench-validate: $(STAMP) ## Prove what the benchmark must prove about itself, over all scenes [VALIDATE_ARGS=]
 	@.venv/bin/simworlds bench validate --jobs 2 $(VALIDATE_ARGS)
 
-lint: $(STAMP) ## Check style, format and types
+lint: $(STAMP) $(STUBS) ## Check style, format and types
 	@.venv/bin/ruff check .
 	@.venv/bin/ruff format --check .
 	@.venv/bin/pyright
+	@.venv/bin/pyright --project pyright-inside.json
 
 docs: $(STAMP) ## Write the generated references
 	@$(PY) -m docs.generate
@@ -77,6 +79,14 @@ lock: $(UV) ## Pin the newest dependencies in requirements.lock
 clean: ## Remove what was made here (knowledge bases live elsewhere and stay)
 	rm -rf .venv .tools build dist .pytest_cache .ruff_cache .hypothesis
 	find . -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# What runs inside Blender is checked against stubs of the installed bpy.
+$(STUBS): $(STAMP) $(wildcard kb_check/stubs/*.py kb_build/flow/*.py)
+	@echo "Writing stubs of the installed bpy ..."
+	@.venv/bin/simworlds kb build --no-pages --offline --out .venv/stubs/base.sqlite >.venv/stubs.log 2>&1 \
+	  || { cat .venv/stubs.log; exit 1; }
+	@.venv/bin/simworlds stubs --base .venv/stubs/base.sqlite --out .venv/stubs
+	@touch $(STUBS)
 
 # The stamp is written last: a set-up that was interrupted is done again.
 $(STAMP): requirements.lock pyproject.toml | $(UV)

@@ -36,6 +36,7 @@ _COMMANDS = {
     "runs": _Command("agents.commands.runs", "runs", "List the runs."),
     "serve": _Command("kb_serve.cli", "serve", "Serve blender_docs and blender_check over MCP."),
     "show": _Command("agents.commands.runs", "show", "Show the state of a run."),
+    "stubs": _Command("kb_check.stubs_cli", "stubs", "Write typed stubs for type checkers and editors."),
     "verify": _Command(
         "agents.commands.verify", "verify", "Check a .blend by the scene protocol and a plan."
     ),

@@ -12,12 +12,15 @@ import ast
 import json
 import sys
 import traceback
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
 # Renders and bakes take minutes, and say nothing of the code; Blender is not to be ended.
-_LONG = ("render.render", "render.opengl", "bake", "bake_all", "bake_data", "quit_blender", "simulation_nodes_cache_bake")
-_COMPOUND = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+_LONG = (
+    *("render.render", "render.opengl", "quit_blender"),
+    *("bake", "bake_all", "bake_data", "simulation_nodes_cache_bake"),
+)
 
 
 class _Wrapped(ast.NodeTransformer):
@@ -102,18 +105,15 @@ def main(path: str) -> None:
 
     tree.body = _Wrapped().body(tree.body)
     ast.fix_missing_locations(tree)
-    names = {
-        "__name__": "__main__",
-        "__file__": path,
-        "__failed__": failed,
-        "__ran__": lambda line: say({"ran": line}),
-    }
+
+    def ran(line: int) -> None:
+        say({"ran": line})
+
+    names = {"__name__": "__main__", "__file__": path, "__failed__": failed, "__ran__": ran}
     exec(compile(tree, path, "exec"), names)  # noqa: S102 - scripts of this project's own
     say({"ended": True})
 
 
 if __name__ == "__main__":
-    import bpy
-
-    bpy.ops.wm.read_factory_settings()
+    import_module("bpy").ops.wm.read_factory_settings()
     main(sys.argv[1])

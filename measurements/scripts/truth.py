@@ -1,7 +1,7 @@
 """What Blender says to scripts: ``python -m measurements.scripts.truth`` runs all of them and writes it down.
 
-The scripts in ``corpora/scripts`` were written by a language model from memory, as it answers users. Those in ``unseen``
-are looked at by measurements alone, never by who mends the checker.
+The scripts in ``corpora/scripts`` were written by a language model from memory, as it answers users. Those in
+``unseen`` are looked at by measurements alone, never by who mends the checker.
 """
 
 from __future__ import annotations
@@ -112,7 +112,7 @@ def run(code: str, name: str) -> Truth:
     return Truth(name, tuple(ran), tuple(errors), any("ended" in row for row in rows))
 
 
-def kind_of(row: dict[str, object], statement: ast.stmt | None, names: set[str]) -> Kind:
+def kind_of(row: dict[str, object], statement: ast.stmt | None, names: set[str]) -> Kind:  # noqa: PLR0911
     """Whether an error is of the API as the code uses it, of what was there in the run, or follows from another."""
     kind, message = str(row["type"]), str(row["message"])
     if kind in {"NameError", "UnboundLocalError"}:

@@ -65,7 +65,7 @@ def existing_names(error, frame, line, span):
         return []
     _, node, owner_value = lookup
     try:
-        names = list(getattr(owner_value, node.value.attr).keys())
+        names = list(getattr(owner_value, node.value.attr).keys())  # pyright: ignore[reportAttributeAccessIssue]
         wanted = str(ast.literal_eval(node.slice)).lower()
     except Exception:
         return []
@@ -82,10 +82,10 @@ def _missing_key(frame, line, span):
     """``ShaderNodeBsdfPrincipled.inputs["Specular"]`` for a socket that a node does not have; "" for names of the
     user's own."""
     lookup = _failed_lookup(frame, line, span)
-    if lookup is None or lookup[1].value.attr not in {"inputs", "outputs"}:
+    if lookup is None or lookup[1].value.attr not in {"inputs", "outputs"}:  # pyright: ignore[reportAttributeAccessIssue]
         return ""
     path, node, _ = lookup
-    return f"{path}.{node.value.attr}[{ast.unparse(node.slice)}]"
+    return f"{path}.{node.value.attr}[{ast.unparse(node.slice)}]"  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def _failed_lookup(frame, line, span):

@@ -177,7 +177,7 @@ class InterpreterState:
             setattr(sys, name, self._streams[name])
         self.restore_names()
         for kept, content in self._lists:
-            kept[:] = content
+            kept[:] = content  # pyright: ignore[reportCallIssue, reportIndexIssue]
         sys.path, sys.meta_path, sys.path_hooks, warnings.filters = (kept for kept, _ in self._lists[:4])
         sys.excepthook, sys.unraisablehook, sys.displayhook, threading.excepthook = self._hooks
         if {**os.environ} != self._environment:
@@ -210,7 +210,7 @@ class InterpreterState:
                 function.__code__, function.__defaults__, function.__kwdefaults__ = kept
             self._recoded = False
         for name in vars(builtins).keys() - self._builtins.keys():
-            del vars(builtins)[name]
+            del vars(builtins)[name]  # pyright: ignore[reportIndexIssue]
         for name, module in self._modules.items():
             sys.modules.setdefault(name, module)
         for module, _ in self._names:

@@ -226,7 +226,7 @@ def _redirect(undo, beside, workspace):
             inside, below = _relative_to(place, workspace), os.path.relpath(place, folder.real)
             for file_name in names:
                 yield [
-                    os.path.join(inside, file_name),
+                    os.path.join(inside, file_name),  # pyright: ignore[reportCallIssue]
                     os.path.normpath(os.path.join(folder.name, below, file_name)),
                 ]
 

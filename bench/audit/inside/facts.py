@@ -145,7 +145,7 @@ def _objects(scene, watched):
     rendered = _rendered(scene)
     world = solvers.rigid_world_of(scene) or {"bodies": [], "constraints": []}
     simulated = set(world["bodies"]), set(world["constraints"])
-    objects = sorted(own | instanced, key=called)
+    objects = sorted(own | instanced, key=called)  # pyright: ignore[reportCallIssue]
     return {
         obj: {
             **_object(obj, (scene.frame_start, scene.frame_end), simulated, watched),

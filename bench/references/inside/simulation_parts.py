@@ -70,8 +70,9 @@ def body(
     scene = bpy.context.scene
     if scene.rigidbody_world is None:
         bpy.ops.rigidbody.world_add()
-        scene.rigidbody_world.point_cache.frame_end = last()
-        scene.rigidbody_world.substeps_per_frame = 20
+        world = bpy.context.scene.rigidbody_world
+        world.point_cache.frame_end = last()
+        world.substeps_per_frame = 20
     bpy.context.view_layer.objects.active = obj
     bpy.ops.rigidbody.object_add(type=kind)
     settings = obj.rigid_body

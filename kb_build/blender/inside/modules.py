@@ -175,7 +175,7 @@ class Walk:
             else:
                 self.member(name, module, path, attribute, value)
         if hasattr(module, "__path__"):
-            for info in pkgutil.iter_modules(module.__path__):
+            for info in pkgutil.iter_modules(module.__path__):  # pyright: ignore[reportAttributeAccessIssue]
                 if not info.name.startswith("_"):
                     below.append((f"{name}.{info.name}", load(f"{name}.{info.name}")))
         for path, value in below:

@@ -152,9 +152,9 @@ def modifiers():
             if kind == "FLUID":
                 yield from fluids(modifier)
             elif kind == "DATA_TRANSFER":
-                modifier.object = mesh_object()
-                modifier.use_vert_data = True
-                modifier.data_types_verts = {"VGROUP_WEIGHTS"}
+                modifier.object = mesh_object()  # pyright: ignore[reportAttributeAccessIssue]
+                modifier.use_vert_data = True  # pyright: ignore[reportAttributeAccessIssue]
+                modifier.data_types_verts = {"VGROUP_WEIGHTS"}  # pyright: ignore[reportAttributeAccessIssue]
                 yield "data transfer modifier for vertex groups", modifier
             elif kind == "DYNAMIC_PAINT":
                 yield from dynamic_paint(modifier)
@@ -273,11 +273,11 @@ def strips():
     if hasattr(workspace, "sequencer_scene"):
         # Without it, Blender crashes when a strip gets a modifier.
         workspace.sequencer_scene = scene
-    all_strips = editor.strips if hasattr(editor, "strips") else editor.sequences
+    all_strips = editor.strips if hasattr(editor, "strips") else editor.sequences  # pyright: ignore[reportAttributeAccessIssue]
     making = all_strips.bl_rna.functions["new_effect"].parameters
     end = "length" if "length" in making else "frame_end"
     first, second = (
-        all_strips.new_effect(name="new", type="COLOR", channel=channel, frame_start=1, **{end: 9})
+        all_strips.new_effect(name="new", type="COLOR", channel=channel, frame_start=1, **{end: 9})  # pyright: ignore[reportCallIssue]
         for channel in (1, 2)
     )
     yield called(first), first
@@ -286,7 +286,7 @@ def strips():
         kind = item.identifier
         for given in ({}, {inputs[0]: first}, {inputs[0]: first, inputs[1]: second}):
             try:
-                strip = all_strips.new_effect(
+                strip = all_strips.new_effect(  # pyright: ignore[reportCallIssue]
                     name="new", type=kind, channel=3 + number, frame_start=1, **{end: 9}, **given
                 )
             except Exception:

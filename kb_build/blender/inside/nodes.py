@@ -284,7 +284,7 @@ def write_all(write, structs, observer, former):
             continue
         nodes = make(trees, identifier)
         if not nodes and scene is not None:
-            nodes = make({"CompositorNodeTree": scene.node_tree}, identifier)
+            nodes = make({"CompositorNodeTree": scene.node_tree}, identifier)  # pyright: ignore[reportAttributeAccessIssue]
         if not nodes:
             continue
         owner = f"bpy.types.{identifier}"

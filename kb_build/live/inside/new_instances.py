@@ -117,9 +117,9 @@ def stacked(rows):
         for item in getattr(bpy.types, cls).bl_rna.properties["type"].enum_items:
             try:
                 thing = (
-                    stack.new(name="x", type=item.identifier)
+                    stack.new(name="x", type=item.identifier)  # pyright: ignore[reportCallIssue]
                     if cls == "Modifier"
-                    else stack.new(item.identifier)
+                    else stack.new(item.identifier)  # pyright: ignore[reportCallIssue]
                 )
             except (TypeError, RuntimeError):
                 continue

@@ -225,7 +225,7 @@ class Solids:
         if not all(are_finite(points) for points, _ in placed):
             raise NotNumbers(f"{name!r} has coordinates that are not finite")
         solid = _merged(name, placed)
-        solid.eye = self._eye
+        solid.eye = self._eye  # pyright: ignore[reportAttributeAccessIssue]
         return solid
 
     def _instanced(self, obj):

@@ -148,7 +148,7 @@ def _hidden(scene, graph, camera, samples, subject):
         if name := rays.stopped_by(start, place):
             count += 1
             by[name] = by.get(name, 0) + 1
-    return {"hidden": count / len(samples), "by": sorted(by, key=by.get, reverse=True)[:3]}
+    return {"hidden": count / len(samples), "by": sorted(by, key=by.get, reverse=True)[:3]}  # pyright: ignore[reportCallIssue]
 
 
 class _Rays:

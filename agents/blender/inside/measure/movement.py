@@ -163,7 +163,7 @@ def _next_to_each_other(a, b, tracker):
     for ours, theirs in itertools.product(a.objects, b.objects):
         surfaces = [tracker.surface(obj.name) for obj in (ours, theirs) if obj.type == "MESH"]
         if len(surfaces) == 2 and all(surface.exists for surface in surfaces):
-            gaps[ours.name, theirs.name] = surface_distance(*surfaces, _FAR)
+            gaps[ours.name, theirs.name] = surface_distance(*surfaces, _FAR)  # pyright: ignore[reportCallIssue]
     least = min(gaps.values(), default=_FAR)
     if least >= _FAR:
         return a, b

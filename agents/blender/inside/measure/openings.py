@@ -35,7 +35,7 @@ def opening(request, solids):
     widest = max(b - a for a, b in zip(turns, after, strict=True))
     gaps = [
         (
-            _gap(*rim[turn], [rim[neighbour % _DIRECTIONS][0] for neighbour in (last, following)], direction),
+            _gap(*rim[turn], [rim[neighbour % _DIRECTIONS][0] for neighbour in (last, following)], direction),  # pyright: ignore[reportCallIssue]
             rim[turn][0],
         )
         for last, turn, following in zip(before, turns, after, strict=True)

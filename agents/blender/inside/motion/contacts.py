@@ -214,7 +214,7 @@ class Contacts:
         if track.changes_by(frame) < self._blow:
             return False
         near = {other: frames[frame][0] for other, frames in self._gaps[number].items() if frame in frames}
-        return min(near, key=near.get) == name
+        return min(near, key=near.get) == name  # pyright: ignore[reportCallIssue]
 
 
 def _frame_runs(touching, measured):

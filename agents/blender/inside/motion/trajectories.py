@@ -143,7 +143,7 @@ class Track:
             "peak_frame": peak_frame,
             "final_speed": round_to(speeds[-1][0]) if speeds else None,
             "speed_of": self.speed_name,
-            "turn": round_to(sum(turns) * 57.29578, 0.01) if turns else None,
+            "turn": round_to(sum(turns) * 57.29578, 0.01) if turns else None,  # pyright: ignore[reportCallIssue]
             "start_position": [round_to(part) for part in self.centres[first]],
             "end_position": [round_to(part) for part in self.centres[last]],
         }

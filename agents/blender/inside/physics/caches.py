@@ -154,7 +154,7 @@ class PhysicsCache:
             wanted.append("mesh")
         if self.domain.domain_type == "GAS" and self.domain.use_noise:
             wanted.append("noise")
-        by_part = [_numbers(os.path.join(self.folder, name)) for name in wanted]
+        by_part = [_numbers(os.path.join(self.folder, name)) for name in wanted]  # pyright: ignore[reportCallIssue]
         return set.intersection(*by_part)
 
     def describe(self):

@@ -74,7 +74,7 @@ def _add_bodies(result, first, distances):
     result["still"] = len(still) == len(farthest)
     result["bodies"], result["bodies_moved"] = len(farthest), len(farthest) - len(still)
     if farthest:
-        result["who"] = max(farthest, key=farthest.get)
+        result["who"] = max(farthest, key=farthest.get)  # pyright: ignore[reportCallIssue]
 
 
 def _stride(count):

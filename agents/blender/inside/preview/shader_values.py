@@ -99,7 +99,7 @@ class ShaderReader:
             return _KNOWN[kind](self, node)
         if kind.startswith("Tex"):
             ends = [node.inputs.get(name) for name in ("Color1", "Color2")]
-            return interpolated(*map(self.colour, ends), 0.5) if all(ends) and out.name == "Color" else GREY
+            return interpolated(*map(self.colour, ends), 0.5) if all(ends) and out.name == "Color" else GREY  # pyright: ignore[reportCallIssue]
         # An unknown node is assumed to pass its colour on.
         through = next((entry for entry in node.inputs if entry.type == "RGBA" and entry.enabled), None)
         return self.colour(through) if through is not None else None

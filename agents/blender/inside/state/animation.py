@@ -148,7 +148,7 @@ def _action(animated, keys, detail):
     ranges = [curve.range() for curve in curves if not curve.is_empty]
     if ranges:
         entry["range"] = numbers((min(low for low, _ in ranges), max(high for _, high in ranges)))
-    entry.update(_listed("channels", groups.items(), lambda item: _channel(*item, keys, detail)))
+    entry.update(_listed("channels", groups.items(), lambda item: _channel(*item, keys, detail)))  # pyright: ignore[reportCallIssue]
     if animated.action_influence != 1.0:
         entry["influence"] = number(animated.action_influence)
     return entry

@@ -1,0 +1,55 @@
+"""The command ``simworlds stubs``."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import click
+
+from simworlds.errors import UserError
+
+_ERROR = 2
+_MEGABYTE = 1_000_000
+_MOST_NAMED = 5
+
+
+@click.command()
+@click.argument("version", required=False)
+@click.option(
+    "--out", type=click.Path(path_type=Path, file_okay=False), required=True, help="Folder to write into."
+)
+@click.option(
+    "--base",
+    type=click.Path(path_type=Path, dir_okay=False),
+    help="The file of a base, instead of a VERSION.",
+)
+@click.option("--docs", "with_docs", is_flag=True, help="Add a sentence about each name.")
+@click.option("--wheel", is_flag=True, help="Write a wheel, to install or to publish.")
+def stubs(*, version: str | None, out: Path, base: Path | None, with_docs: bool, wheel: bool) -> None:
+    """Write typed stubs of Blender's Python API, for pyright, mypy and editors.
+
+    VERSION is that of a knowledge base, by default the newest. Exit code: 0, or 2 on errors.
+    """
+    from kb_build.schema import NoBase  # noqa: PLC0415 - not for --help
+    from kb_check.stubs.package import write_folder, write_wheel  # noqa: PLC0415 - likewise
+    from kb_serve.locate import find_base  # noqa: PLC0415 - likewise
+
+    try:
+        source = base or find_base(version)
+        if wheel:
+            target, written = write_wheel(source, out, with_docs=with_docs)
+        else:
+            target, written = out, write_folder(source, out, with_docs=with_docs)
+    except (UserError, OSError, NoBase) as error:
+        click.echo(f"Error: {error}", err=True)
+        sys.exit(_ERROR)
+    click.echo(
+        f"{target}: Blender {written.blender}, {written.files} files, {written.size / _MEGABYTE:.1f} MB"
+    )
+    if written.left_out:
+        named = ", ".join(written.left_out[:_MOST_NAMED])
+        more = len(written.left_out) - _MOST_NAMED
+        click.echo(
+            f"Left out, as Python cannot spell them: {named}" + (f" and {more} more" if more > 0 else "")
+        )
