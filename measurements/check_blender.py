@@ -32,7 +32,18 @@ if TYPE_CHECKING:
     from measurements.setting import Setting
 
 BROKEN = Path(__file__).with_name("broken_in_blender.toml")
-_HEADER = ("Blender", "files", "lines", "errors", "proven", "false", "never true", "proven", "other warnings", "notes")
+_HEADER = (
+    "Blender",
+    "files",
+    "lines",
+    "errors",
+    "proven",
+    "false",
+    "never true",
+    "proven",
+    "other warnings",
+    "notes",
+)
 _ADDONS = ("addons", "addons_core")
 _MARK = "ANSWERS:"
 _SECONDS = 120
@@ -155,10 +166,16 @@ def measure(setting: Setting) -> ReportPart:
     return ReportPart("check_blender", figures if rows else (), (table,), tuple(skipped), {"false": false})
 
 
-def _judged(results: list[tuple[str, list[Finding], int]], executable: str) -> tuple[tuple[str, ...], list[str]]:
+def _judged(
+    results: list[tuple[str, list[Finding], int]], executable: str
+) -> tuple[tuple[str, ...], list[str]]:
     """A row of the table, and the findings that are not proven."""
     known = broken_rows()
-    found = [(path, finding, *proof_of(path, finding, known)) for path, findings, _ in results for finding in findings]
+    found = [
+        (path, finding, *proof_of(path, finding, known))
+        for path, findings, _ in results
+        for finding in findings
+    ]
     answers = ask_blender(executable, (code for _, _, code, _ in found if code))
     counts: Counter[str] = Counter()
     false: list[str] = []

@@ -100,7 +100,11 @@ def main(path: str) -> None:
         frames = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == path]
         inner = frames[-1] if frames else line
         # An error in a function that was not wrapped (a lambda) belongs to the line where it happens.
-        where = line if inner not in statements or line <= inner <= (statements[line].end_lineno or line) else inner
+        where = (
+            line
+            if inner not in statements or line <= inner <= (statements[line].end_lineno or line)
+            else inner
+        )
         say({"line": where, "type": type(error).__name__, "message": str(error)[:600]})
 
     tree.body = _Wrapped().body(tree.body)
