@@ -18,6 +18,13 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _RNA_TYPE = re.compile(r"(boolean|int|float|string|enum|set\[enum\])(\[\d+\])*|list of \w+|[A-Z]\w*")
+# Methods in C or Python whose reference spells the types of their parameters as RNA's.
+_NOT_RNA = frozenset(
+    {
+        "bpy.types.Context.path_resolve", "bpy.types.Gizmo.target_get_value", "bpy.types.Gizmo.target_set_value",
+        "bpy.types.Macro.define",
+    }
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -114,7 +121,12 @@ def callee_of(symbol: Symbol) -> Callee:
 def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
     """Whether a function is RNA's own: only those spell the types of their parameters so, and none has a marker."""
     owner = symbol.owner.removeprefix("bpy.types.")
-    if symbol.owner == owner or owner.startswith("bpy_") or symbol.kind != "function":
+    if (
+        symbol.owner == owner
+        or owner.startswith("bpy_")
+        or symbol.kind != "function"
+        or symbol.path in _NOT_RNA
+    ):
         return False
     marked = "*" in symbol.signature or "/" in symbol.signature
     return not marked and all(_RNA_TYPE.fullmatch(parameter.type) for parameter in parameters)

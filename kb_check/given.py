@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 _SIZES = re.compile(r"\[(\d+)\]")
 _SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 _T = "bpy.types."
+_MISDOCUMENTED = frozenset({"bpy.utils.resource_path(minor)"})  # an int, which references call a str
 _FIXED = frozenset({2, 3, 4})  # other sizes of a parameter are the most, or the least, that it takes
 _ANY = "bpy.types.AnyType"
 
@@ -129,7 +130,8 @@ def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_
     path = f"{symbol.path}({parameter.name})"
     is_operator = symbol.kind == "operator"
     if not is_rna:
-        return Taker(path, "", symbol, documented=parameter.type, is_parameter=True)
+        documented = "" if path in _MISDOCUMENTED else parameter.type
+        return Taker(path, "", symbol, documented=documented, is_parameter=True)
     kind, _, rest = parameter.type.partition("[")
     target, sizes = "", tuple(int(size) for size in _SIZES.findall(f"[{rest}")) if rest else ()
     if any(size not in _FIXED for size in sizes):
