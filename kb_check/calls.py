@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -64,8 +65,10 @@ class CallSite:
                 yield parameter, keyword.value
 
 
-def calls(script: Script) -> Iterator[CallSite]:
+@once_per_script
+def calls(script: Script) -> list[CallSite]:
     """The calls that surely are of one thing of the API, in the order in which they stand."""
+    found: list[CallSite] = []
     for row in script.resolutions("call"):
         node = row.node
         if not isinstance(node, ast.Call) or not row.sure or row.guarded:
@@ -76,7 +79,8 @@ def calls(script: Script) -> Iterator[CallSite]:
         unpacking = any(isinstance(argument, ast.Starred) for argument in node.args) or any(
             keyword.arg is None for keyword in node.keywords
         )
-        yield CallSite(node, callee_of(symbol), unpacking)
+        found.append(CallSite(node, callee_of(symbol), unpacking))
+    return found
 
 
 def _called(script: Script, kind: Type) -> Symbol | None:

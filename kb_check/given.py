@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_check.calls import calls
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -58,27 +59,32 @@ class Given:
     takers: tuple[Taker, ...]
 
 
-def given_values(script: Script) -> Iterator[Given]:
+@once_per_script
+def given_values(script: Script) -> list[Given]:
     """Every value that is surely assigned to a property that takes one, or passed to a function or an operator."""
+    return [*_assignments(script), *_arguments(script)]
+
+
+def _assignments(script: Script) -> Iterator[Given]:
     for row in script.resolutions("store"):
         paths = row.symbols or row.possible
         sure = row.sure and not row.guarded and not row.missing and is_of_instance(script, row.node)
-        if sure and paths and isinstance(row.node, ast.Attribute):
-            value = _assigned(row.statement, row.node)
-            symbols = [script.api.symbols.symbol(path) for path in paths]
-            takers = tuple(
-                property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property"
-            )
-            refused = any("readonly" in taker.symbol.flags for taker in takers)
-            if value is not None and len(takers) == len(paths) and not refused:
-                yield Given(value, takers)
-    for call in calls(script):
-        if call.callee.symbol.kind == "class":
+        if not sure or not paths or not isinstance(row.node, ast.Attribute):
             continue
-        for parameter, argument in call.arguments():
-            yield Given(
-                argument, (parameter_taker(script, call.callee.symbol, parameter, is_rna=call.callee.is_rna),)
-            )
+        value = _assigned(row.statement, row.node)
+        symbols = [script.api.symbols.symbol(path) for path in paths]
+        takers = tuple(property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property")
+        refused = any("readonly" in taker.symbol.flags for taker in takers)
+        if value is not None and len(takers) == len(paths) and not refused:
+            yield Given(value, takers)
+
+
+def _arguments(script: Script) -> Iterator[Given]:
+    for call in calls(script):
+        symbol, is_rna = call.callee.symbol, call.callee.is_rna
+        if symbol.kind != "class":
+            for parameter, argument in call.arguments():
+                yield Given(argument, (parameter_taker(script, symbol, parameter, is_rna=is_rna),))
 
 
 def is_of_instance(script: Script, node: ast.AST) -> bool:
