@@ -236,6 +236,8 @@ class Expressions(Members):
 
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
+        if isinstance(test, Plain) and test.source == VERSION and isinstance(test.value, bool):
+            return self.evaluate(node.body if test.value else node.orelse)  # the other is for other versions
         before = self.scope.state
         self.scope.state = before.copy()
         self.narrow(node.test, holds=True)
@@ -244,8 +246,6 @@ class Expressions(Members):
         self.narrow(node.test, holds=False)
         second = self.evaluate(node.orelse)
         self.scope.state = before
-        if isinstance(test, Plain) and test.source == VERSION and isinstance(test.value, bool):
-            return first if test.value else second
         return join(first, second)
 
     def _walrus(self, node: ast.NamedExpr) -> Type:
@@ -309,7 +309,8 @@ class Expressions(Members):
         source = self.source_of(kind)
         if not source:
             return
-        for constant in _constants(node):
+        # Those that were not reached are of a branch for other versions.
+        for constant in filter(self.types.__contains__, _constants(node)):
             self.resolve_value(constant, source, use=use)
 
     @staticmethod
