@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -18,6 +19,13 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _RNA_TYPE = re.compile(r"(boolean|int|float|string|enum|set\[enum\])(\[\d+\])*|list of \w+|[A-Z]\w*")
+# Methods in C or Python whose reference spells the types of their parameters as RNA's.
+_NOT_RNA = frozenset(
+    {
+        "bpy.types.Context.path_resolve", "bpy.types.Gizmo.target_get_value", "bpy.types.Gizmo.target_set_value",
+        "bpy.types.Macro.define",
+    }
+)  # fmt: skip
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,8 +65,10 @@ class CallSite:
                 yield parameter, keyword.value
 
 
-def calls(script: Script) -> Iterator[CallSite]:
+@once_per_script
+def calls(script: Script) -> list[CallSite]:
     """The calls that surely are of one thing of the API, in the order in which they stand."""
+    found: list[CallSite] = []
     for row in script.resolutions("call"):
         node = row.node
         if not isinstance(node, ast.Call) or not row.sure or row.guarded:
@@ -69,7 +79,8 @@ def calls(script: Script) -> Iterator[CallSite]:
         unpacking = any(isinstance(argument, ast.Starred) for argument in node.args) or any(
             keyword.arg is None for keyword in node.keywords
         )
-        yield CallSite(node, callee_of(symbol), unpacking)
+        found.append(CallSite(node, callee_of(symbol), unpacking))
+    return found
 
 
 def _called(script: Script, kind: Type) -> Symbol | None:
@@ -114,7 +125,12 @@ def callee_of(symbol: Symbol) -> Callee:
 def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
     """Whether a function is RNA's own: only those spell the types of their parameters so, and none has a marker."""
     owner = symbol.owner.removeprefix("bpy.types.")
-    if symbol.owner == owner or owner.startswith("bpy_") or symbol.kind != "function":
+    if (
+        symbol.owner == owner
+        or owner.startswith("bpy_")
+        or symbol.kind != "function"
+        or symbol.path in _NOT_RNA
+    ):
         return False
     marked = "*" in symbol.signature or "/" in symbol.signature
     return not marked and all(_RNA_TYPE.fullmatch(parameter.type) for parameter in parameters)

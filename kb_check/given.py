@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_check.calls import calls
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 _SIZES = re.compile(r"\[(\d+)\]")
 _SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 _T = "bpy.types."
+_MISDOCUMENTED = frozenset({"bpy.utils.resource_path(minor)"})  # an int, which references call a str
 _FIXED = frozenset({2, 3, 4})  # other sizes of a parameter are the most, or the least, that it takes
 _ANY = "bpy.types.AnyType"
 
@@ -57,27 +59,32 @@ class Given:
     takers: tuple[Taker, ...]
 
 
-def given_values(script: Script) -> Iterator[Given]:
+@once_per_script
+def given_values(script: Script) -> list[Given]:
     """Every value that is surely assigned to a property that takes one, or passed to a function or an operator."""
+    return [*_assignments(script), *_arguments(script)]
+
+
+def _assignments(script: Script) -> Iterator[Given]:
     for row in script.resolutions("store"):
         paths = row.symbols or row.possible
         sure = row.sure and not row.guarded and not row.missing and is_of_instance(script, row.node)
-        if sure and paths and isinstance(row.node, ast.Attribute):
-            value = _assigned(row.statement, row.node)
-            symbols = [script.api.symbols.symbol(path) for path in paths]
-            takers = tuple(
-                property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property"
-            )
-            refused = any("readonly" in taker.symbol.flags for taker in takers)
-            if value is not None and len(takers) == len(paths) and not refused:
-                yield Given(value, takers)
-    for call in calls(script):
-        if call.callee.symbol.kind == "class":
+        if not sure or not paths or not isinstance(row.node, ast.Attribute):
             continue
-        for parameter, argument in call.arguments():
-            yield Given(
-                argument, (parameter_taker(script, call.callee.symbol, parameter, is_rna=call.callee.is_rna),)
-            )
+        value = _assigned(row.statement, row.node)
+        symbols = [script.api.symbols.symbol(path) for path in paths]
+        takers = tuple(property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property")
+        refused = any("readonly" in taker.symbol.flags for taker in takers)
+        if value is not None and len(takers) == len(paths) and not refused:
+            yield Given(value, takers)
+
+
+def _arguments(script: Script) -> Iterator[Given]:
+    for call in calls(script):
+        symbol, is_rna = call.callee.symbol, call.callee.is_rna
+        if symbol.kind != "class":
+            for parameter, argument in call.arguments():
+                yield Given(argument, (parameter_taker(script, symbol, parameter, is_rna=is_rna),))
 
 
 def is_of_instance(script: Script, node: ast.AST) -> bool:
@@ -129,7 +136,8 @@ def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_
     path = f"{symbol.path}({parameter.name})"
     is_operator = symbol.kind == "operator"
     if not is_rna:
-        return Taker(path, "", symbol, documented=parameter.type, is_parameter=True)
+        documented = "" if path in _MISDOCUMENTED else parameter.type
+        return Taker(path, "", symbol, documented=documented, is_parameter=True)
     kind, _, rest = parameter.type.partition("[")
     target, sizes = "", tuple(int(size) for size in _SIZES.findall(f"[{rest}")) if rest else ()
     if any(size not in _FIXED for size in sizes):

@@ -5,14 +5,14 @@ from __future__ import annotations
 import ast
 from collections import Counter
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
+
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from kb_check.script import Script
 
 _DEEPEST = 4
 _LITERALS = (ast.Constant, ast.UnaryOp, ast.Tuple, ast.Name)
-_constants: WeakKeyDictionary[ast.Module, dict[str, ast.expr]] = WeakKeyDictionary()
 
 
 def written(script: Script, node: ast.expr) -> ast.expr:
@@ -20,7 +20,7 @@ def written(script: Script, node: ast.expr) -> ast.expr:
     for _ in range(_DEEPEST):
         if not isinstance(node, ast.Name):
             break
-        found = _once_bound(script.tree).get(node.id)
+        found = _once_bound(script).get(node.id)
         if found is None:
             break
         node = found
@@ -52,18 +52,16 @@ def items(script: Script, node: ast.expr) -> list[ast.expr] | None:
     return None if any(isinstance(item, ast.Starred) for item in written_out.elts) else written_out.elts
 
 
-def _once_bound(tree: ast.Module) -> dict[str, ast.expr]:
+@once_per_script
+def _once_bound(script: Script) -> dict[str, ast.expr]:
     """Name → the literal that its only assignment gives it. A list is none: it may grow."""
-    found = _constants.get(tree)
-    if found is None:
-        times: Counter[str] = Counter()
-        values: dict[str, ast.expr] = {}
-        for node in ast.walk(tree):
-            times.update(_bound(node))
-            if isinstance(node, ast.Assign) and isinstance(node.value, _LITERALS):
-                values |= {target.id: node.value for target in node.targets if isinstance(target, ast.Name)}
-        found = _constants[tree] = {name: value for name, value in values.items() if times[name] == 1}
-    return found
+    times: Counter[str] = Counter()
+    values: dict[str, ast.expr] = {}
+    for node in script.nodes:
+        times.update(_bound(node))
+        if isinstance(node, ast.Assign) and isinstance(node.value, _LITERALS):
+            values |= {target.id: node.value for target in node.targets if isinstance(target, ast.Name)}
+    return {name: value for name, value in values.items() if times[name] == 1}
 
 
 def _bound(node: ast.AST) -> list[str]:

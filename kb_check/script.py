@@ -4,20 +4,23 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field
-from functools import cached_property
-from typing import TYPE_CHECKING
+from functools import cached_property, wraps
+from typing import TYPE_CHECKING, TypeVar
+from weakref import WeakKeyDictionary
 
 from kb_check.findings import Edit, Span
 from kb_check.source import split_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
 
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.api import Api
     from kb_build.flow.types import Resolution, Type
     from kb_check.known_names import KnownNames
     from kb_check.package import Package
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -122,6 +125,19 @@ class Script:
         if line > len(self.lines) or self.lines[line - 1].isascii():
             return column
         return len(self.lines[line - 1].encode()[:column].decode(errors="replace"))
+
+
+def once_per_script(find: Callable[[Script], _T]) -> Callable[[Script], _T]:
+    """Has something found once for each script, whichever rules ask for it."""
+    kept: WeakKeyDictionary[ast.Module, _T] = WeakKeyDictionary()
+
+    @wraps(find)
+    def found(script: Script) -> _T:
+        if (known := kept.get(script.tree)) is None:
+            known = kept[script.tree] = find(script)
+        return known
+
+    return found
 
 
 def _start(node: ast.AST) -> tuple[int, int]:

@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 # Modules whose reference shows one of several signatures, and what bpy.props fills in when a class is registered.
 _SEVERAL_SIGNATURES = ("aud.", "freestyle.", "bpy.props.")
+# What a signature has that tells apart which of its parameters are needed; references of older versions do not.
+_MARKS = ("/", "*", "=")
 # Parameters that may be left out though the reference shows no default: a turn or a scale of a 2 × 2 matrix has no
 # axis, and Vector.Range counts as Python's range does.
 _MAY_BE_LEFT_OUT = {
@@ -37,7 +39,8 @@ def _check(script: Script) -> Iterator[Finding]:
     for call in calls(script):
         callee = call.callee
         path = callee.symbol.path
-        unreliable = path.startswith(_SEVERAL_SIGNATURES) or (callee.is_open and not callee.is_rna)
+        told = callee.is_rna or any(mark in callee.symbol.signature for mark in _MARKS)
+        unreliable = path.startswith(_SEVERAL_SIGNATURES) or callee.is_open or not told
         if callee.symbol.kind != "function" or call.has_unpacking or unreliable:
             continue
         given = call.given | _MAY_BE_LEFT_OUT.get(path, set())

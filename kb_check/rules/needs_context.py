@@ -10,8 +10,8 @@ with bpy.context.temp_override(window=window, area=area, region=region):
 ```
 
 Not reported: what stands inside ``temp_override`` or in a class, which Blender's interface calls; add-ons (a file with
-a function ``register``) and modules that only define; scripts that ask for ``bpy.app.background`` or for the operator's
-``poll``.
+a function ``register``), modules that only define, functions that the script does not call; scripts that ask for
+``bpy.app.background`` or for the operator's ``poll``.
 
 Which operators those are was found by asking each whether it can run, with objects of all types in all modes, in every
 area and in none (``kb_check/inside/operator_areas.py``).
@@ -55,7 +55,7 @@ def _check(script: Script) -> Iterator[Finding]:
     if not found or _is_ready(script):
         return
     asked = set(_asked(script))
-    given = list(_given_context(script))
+    given = [*_given_context(script), *_uncalled(script)]
     for call, areas in found:
         path = call.callee.symbol.path
         first = script.type_of(call.node.args[0]) if call.node.args else None
@@ -101,6 +101,18 @@ def _given_context(script: Script) -> Iterator[tuple[int, int]]:
         if isinstance(node, ast.ClassDef) or (
             isinstance(node, (ast.With, ast.AsyncWith)) and _overrides(node)
         ):
+            yield node.lineno, node.end_lineno or node.lineno
+
+
+def _uncalled(script: Script) -> Iterator[tuple[int, int]]:
+    """The lines of functions that the script does not call itself."""
+    called = {
+        node.func.id
+        for node in script.nodes
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    }
+    for node in script.nodes:
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name not in called:
             yield node.lineno, node.end_lineno or node.lineno
 
 

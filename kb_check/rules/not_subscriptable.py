@@ -88,7 +88,7 @@ def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:
     match kind:
         case Module() | Operator():
             return f"`{kind.path}` is no collection: its members are attributes."
-        case Plain(kind="int" | "float" | "bool"):
+        case Plain(kind="int" | "float" | "bool") if node.value in script.analysis.resolutions:
             return f"{_subject(script, node)} is one {kind.kind}: it has no items."
         case Collection():
             return _of_collection(script, kind, key, step)
