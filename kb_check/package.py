@@ -20,19 +20,23 @@ class Package:
         self._api = api
         self._operators: set[str] = set()  # paths below bpy.ops, and their modules
         self._types: set[str] = set()  # names below bpy.types
+        self._possible: set[str] = set()
         self._classes: dict[str, set[str]] = {}  # property → the classes that have it
 
-    def add(self, analysis: Analysis) -> None:
-        """Adds what a file registers."""
+    def add(self, analysis: Analysis, possible: Iterable[str] = ()) -> None:
+        """Adds what a file registers. ``possible`` are names that a part which cannot be read may register."""
         self._operators |= analysis.own_operators
         self._types |= analysis.own_types
+        self._possible.update(possible)
         for cls, name in analysis.registered:
             self._classes.setdefault(name, set()).add(cls)
 
     def has(self, owners: Iterable[str], name: str) -> bool:
         """Whether a file registers that name for one of the owners, for their bases, or for what derives from them."""
+        if name in self._operators or name in self._possible:
+            return True
         holders = self._classes.get(name, set()) | self._classes.get(ANY, set())
-        return name in self._operators or any(self._gives(owner, name, holders) for owner in owners)
+        return any(self._gives(owner, name, holders) for owner in owners)
 
     def _gives(self, owner: str, name: str, holders: Iterable[str]) -> bool:
         if owner.startswith("bpy.ops"):

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import ast
-import io
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Edit, Span
+from kb_check.source import split_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -22,7 +22,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Script:
-    """One script, analysed for one Blender. ``package`` is what the files beside it register."""
+    """One script, analysed for one Blender. ``package`` is what the files beside it register.
+
+    ``error`` says why Python cannot parse it; ``tree`` and ``analysis`` are then of the part that could be read.
+    """
 
     code: str
     tree: ast.Module
@@ -31,11 +34,17 @@ class Script:
     names: KnownNames
     package: Package
     version: tuple[int, ...] = field(default=())
+    error: SyntaxError | None = None
 
     @cached_property
     def lines(self) -> list[str]:
         """The lines as Python counts them, with their ends."""
-        return io.StringIO(self.code, newline="").readlines() or [""]
+        return split_lines(self.code) or [""]
+
+    @cached_property
+    def nodes(self) -> list[ast.AST]:
+        """Every node of the tree."""
+        return list(ast.walk(self.tree))
 
     def resolutions(self, *kinds: str) -> Iterator[Resolution]:
         """What parts of the script stand for, of some kinds (see :class:`flow.types.Resolution`), in order."""
@@ -46,8 +55,22 @@ class Script:
         """The parts that surely stand for nothing that this Blender, or the package, has."""
         for row in self.resolutions(*kinds):
             lacking = row.missing and not row.symbols and not row.possible
+            if row.kind == "value" and row.value in self._own_identifiers:
+                continue
             if lacking and row.sure and not row.guarded and not self.package.has(row.missing, row.value):
                 yield row
+
+    @cached_property
+    def _own_identifiers(self) -> frozenset[str]:
+        """What the script's classes call themselves: values of the enumerations that list such classes."""
+        return frozenset(
+            node.value.value
+            for node in ast.walk(self.tree)
+            if isinstance(node, ast.Assign)
+            and any(isinstance(target, ast.Name) and target.id == "bl_idname" for target in node.targets)
+            and isinstance(node.value, ast.Constant)
+            and isinstance(node.value.value, str)
+        )
 
     def type_of(self, node: ast.expr) -> Type | None:
         """The type of an expression; None if it was not reached."""
@@ -81,8 +104,10 @@ class Script:
     def renamed(self, node: ast.AST, name: str) -> Edit | None:
         """The edit that writes another name in the place of a node's; a literal keeps its quotes.
 
-        None where the text is not as plain as it should be.
+        Of an item its key is written. None where the text is not as plain as it should be.
         """
+        if isinstance(node, ast.Subscript):
+            node = node.slice
         span = self.name_span(node)
         text = self.text(span)
         if isinstance(node, ast.Constant):

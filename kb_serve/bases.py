@@ -52,7 +52,7 @@ class Bases:
         Raises BaseMissing, with a list of those built, and BaseUnreadable.
         """
         with self._lock:
-            return self._open(self._file(version or self._default))
+            return self._open(self.file(version))
 
     def built(self) -> dict[str, Path]:
         """Minor version → file, oldest Blender first; read from disk at most once a second."""
@@ -75,7 +75,9 @@ class Bases:
                 opened.base.close()
             self._opened.clear()
 
-    def _file(self, version: str | None) -> Path:
+    def file(self, version: str | None = None) -> Path:
+        """The file of that base, chosen as ``pick`` does. Raises BaseMissing."""
+        version = version or self._default
         built = self.built()
         if version is None and len(built) > 1 and self.in_use is not None:
             version = minor(self.in_use) if minor(self.in_use) in built else None

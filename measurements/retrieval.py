@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 LIMIT = 8
 NAMED = frozenset({"exact", "member", "expression"})
 TASK = "task"
+FURTHER = ("check", "blind")
 PARAPHRASES = "paraphrases"  # of the set that is judged
 KINDS = (
     "exact",
@@ -226,6 +227,7 @@ def measure(setting: Setting) -> ReportPart:
         "retrieval",
         (
             *_figures(ours[judged], judged),
+            *_further(ours),
             *_paraphrased(ours, judged),
             *_promises(setting.base, sets[judged]),
         ),
@@ -247,6 +249,18 @@ def _figures(outcomes: Sequence[Outcome], title: str) -> Iterator[TargetFigure]:
             yield TargetFigure(
                 key, share(group, first), f"{title}: {sum(o.hit(first) for o in group)} of {len(group)}"
             )
+
+
+def _further(ours: dict[str, list[Outcome]]) -> Iterator[TargetFigure]:
+    """The sets that nothing was fitted on."""
+    for title in FURTHER:
+        if outcomes := [o for o in ours.get(title, ()) if o.query.kind != TASK]:
+            for first in (1, 5):
+                yield TargetFigure(
+                    f"hit{first}_{title}",
+                    share(outcomes, first),
+                    f"{sum(o.hit(first) for o in outcomes)} of {len(outcomes)}",
+                )
 
 
 def _paraphrased(ours: dict[str, list[Outcome]], judged: str) -> Iterator[TargetFigure]:

@@ -71,6 +71,9 @@ def _over_stdio(setting: Setting) -> ReportPart:
             "mcp_p50", percentile(ours.calls, 0.5), f"echo here {percentile(echo.calls, 0.5):.1f} ms"
         ),
         TargetFigure(
+            "mcp_times", percentile(ours.calls, 0.5) / percentile(echo.calls, 0.5), "in the same run"
+        ),
+        TargetFigure(
             "start", percentile(ours.starts, 0.5), f"echo here {percentile(echo.starts, 0.5):.2f} s"
         ),
     )

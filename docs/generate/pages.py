@@ -5,6 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from docs.generate.benchmark_pages import predicates_page, relations_page
+from docs.generate.check_pages import FOLDER as CHECK_FOLDER
+from docs.generate.check_pages import check_pages
 from docs.generate.command_page import command_page
 from docs.generate.rule_pages import FOLDER as RULE_FOLDER
 from docs.generate.rule_pages import rule_pages
@@ -23,6 +25,7 @@ def pages() -> dict[str, str]:
         "relations.md": relations_page(),
         "tools.md": docs_tool_page(),
         **rule_pages(),
+        **check_pages(),
     }
 
 
@@ -44,7 +47,11 @@ def write(folder: Path) -> None:
 
 
 def _left_over(folder: Path, wanted: dict[str, str]) -> list[str]:
-    names = sorted(path.relative_to(folder).as_posix() for path in folder.glob(f"{RULE_FOLDER}/*.md"))
+    names = sorted(
+        path.relative_to(folder).as_posix()
+        for below in (RULE_FOLDER, CHECK_FOLDER)
+        for path in folder.glob(f"{below}/*.md")
+    )
     return [name for name in names if name not in wanted]
 
 

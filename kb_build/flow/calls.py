@@ -333,7 +333,9 @@ class Calls(Narrowing):
         values = arguments if callee.receiver is None else [callee.receiver, *arguments]
         self._pass(callee.number, values, {keyword.arg or "": kind for keyword, kind in keywords})
         self._run_now(callee.number)
-        return UNKNOWN if function.returned is None else function.returned
+        # What it returns is not known where it was not read with what this call passes.
+        is_read = function.running or not function.stale
+        return function.returned if is_read and function.returned is not None else UNKNOWN
 
     def _run_now(self, number: int) -> None:
         """Reads a function for what it returns, or for what it binds, unless it is known or too far inside."""
@@ -411,8 +413,14 @@ class Calls(Narrowing):
             case "min" | "max":
                 self._key(keywords, first)
                 return self.iterated(first) if len(arguments) == 1 else union(arguments)
-            case "abs" | "round" | "sum":
-                return first if isinstance(first, Plain) and name != "sum" else FLOAT
+            case "abs":
+                return Plain(first.kind) if isinstance(first, Plain) else UNKNOWN
+            case "round":
+                whole = len(arguments) == 1 and not keywords and isinstance(first, Plain)
+                return INT if whole else first
+            case "sum":
+                element = self.iterated(first)
+                return Plain(element.kind) if isinstance(element, Plain) and len(arguments) == 1 else UNKNOWN
             case "super":
                 return self._super()
             case "type" if len(arguments) == 3:

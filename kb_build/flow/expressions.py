@@ -48,6 +48,7 @@ _MATH = frozenset(
     {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
 )
 _VECTOR = "mathutils.Vector"
+_NUMBERS = frozenset({"bool", "int", "float"})
 _LONGEST_LITERAL = 64
 _FEWEST_VALUES = 2  # of an enumeration that can be judged
 
@@ -235,6 +236,8 @@ class Expressions(Members):
 
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
+        if isinstance(test, Plain) and test.source == VERSION and isinstance(test.value, bool):
+            return self.evaluate(node.body if test.value else node.orelse)  # the other is for other versions
         before = self.scope.state
         self.scope.state = before.copy()
         self.narrow(node.test, holds=True)
@@ -243,8 +246,6 @@ class Expressions(Members):
         self.narrow(node.test, holds=False)
         second = self.evaluate(node.orelse)
         self.scope.state = before
-        if isinstance(test, Plain) and test.source == VERSION and isinstance(test.value, bool):
-            return first if test.value else second
         return join(first, second)
 
     def _walrus(self, node: ast.NamedExpr) -> Type:
@@ -308,7 +309,8 @@ class Expressions(Members):
         source = self.source_of(kind)
         if not source:
             return
-        for constant in _constants(node):
+        # Those that were not reached are of a branch for other versions.
+        for constant in filter(self.types.__contains__, _constants(node)):
             self.resolve_value(constant, source, use=use)
 
     @staticmethod
@@ -439,8 +441,15 @@ def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa
     if isinstance(right, Instance) and right.cls in _MATH and isinstance(left, Plain):
         return right
     if isinstance(left, Plain) and isinstance(right, Plain):
+        if not {left.kind, right.kind} <= _NUMBERS:
+            return STR if right.kind == "str" and isinstance(operator, ast.Mult) else UNKNOWN
         if isinstance(operator, ast.Div):
             return FLOAT
+        if isinstance(operator, ast.Pow) and FLOAT.kind not in {left.kind, right.kind}:
+            exponent = literal(right)
+            return INT if isinstance(exponent, int) and exponent >= 0 else UNKNOWN
+        if isinstance(operator, (ast.BitAnd, ast.BitOr, ast.BitXor)) and left.kind == right.kind:
+            return Plain(left.kind)
         return FLOAT if "float" in {left.kind, right.kind} else INT
     if isinstance(operator, ast.Add):
         if isinstance(left, Tuple) and isinstance(right, Tuple):

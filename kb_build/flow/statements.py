@@ -254,7 +254,11 @@ class Statements(Calls):
             kind = self.evaluate(item.context_expr)
             if item.optional_vars is not None:
                 self.bind_target(item.optional_vars, kind)
-        return self.read_body(node.body)
+        forgiving = any(_suppresses(item.context_expr) for item in node.items)
+        self.tolerant += forgiving
+        reached = self.read_body(node.body)
+        self.tolerant -= forgiving
+        return reached or forgiving
 
     def _try(self, node: ast.Try) -> bool:
         forgiving = any(_forgives(handler) for handler in node.handlers)
@@ -678,4 +682,17 @@ def _forgives(handler: ast.ExceptHandler) -> bool:
     if handler.type is None:
         return True
     names = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-    return any(isinstance(name, ast.Name) and name.id in _FORGIVING for name in names)
+    return any(map(_is_forgiving, names))
+
+
+def _suppresses(manager: ast.expr) -> bool:
+    """Whether a context manager is ready for a name that does not exist: ``contextlib.suppress(AttributeError)``."""
+    if not isinstance(manager, ast.Call):
+        return False
+    function = manager.func
+    name = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+    return name == "suppress" and any(map(_is_forgiving, manager.args))
+
+
+def _is_forgiving(error: ast.expr) -> bool:
+    return isinstance(error, ast.Name) and error.id in _FORGIVING

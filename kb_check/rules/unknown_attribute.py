@@ -38,9 +38,9 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _class_of(script: Script, owner: str) -> str:
-    """The class of a collection that is given by its property; any other owner itself."""
+    """The class of a collection that is given by its property; any other owner as it is."""
     symbol = script.api.symbols.symbol(owner)
-    if symbol is None or symbol.type != "collection":
+    if symbol is None or symbol.kind != "property" or symbol.type != "collection":
         return owner
     return f"bpy.types.{symbol.collection or 'bpy_prop_collection'}"
 

@@ -27,6 +27,7 @@ _SETTINGS = 8
 _HOLDERS = 4  # pointers of a thing whose settings are shown
 _FUNCTIONS = 3
 _RUNS = 4
+_ARGUMENTS = 3  # of an operator's call
 _MAKES = ("add", "new", "create", "insert")
 _REMOVES = (
     "remove",
@@ -330,9 +331,15 @@ class Steps:
         yield from map(self._operator, operators[:_RUNS])
 
     def _operator(self, path: str) -> str:
+        """An operator's call with its first arguments, and what it does."""
+        symbol = self._reader.symbol(path)
+        given = [p for p in symbol.parameters if p.default is not None] if symbol else []
+        arguments = [f"{p.name}={p.default!r}" for p in given[:_ARGUMENTS]]
+        left = len(symbol.parameters) - len(arguments) if symbol else 0
         entry = self._reader.entry(path)
         said = entry.line.partition(" — ")[2].removeprefix("(undocumented operator)") if entry else ""
-        return f"`{path}()`" + (f" — {said}" if said else "")
+        more = f" and {left} more" if left else ""
+        return f"`{path}({', '.join(arguments)})`{more}" + (f" — {said}" if said else "")
 
     def _bakes(self) -> Iterator[str]:
         """The heaviest operator of the page that explains the cache."""

@@ -18,6 +18,7 @@ from agents.blender.tool_catalogue import TOOLS
 from agents.protocol.rules.catalogue import RULES
 from agents.protocol.tolerances import TOLERANCES
 from docs.generate.pages import outdated, pages, write
+from kb_check.rule import all_rules
 from kb_serve.tool import DESCRIPTION, tool
 
 
@@ -48,7 +49,11 @@ def test_changed_and_missing_pages_are_named(tmp_path: Path) -> None:
         "tools.md",
         "rules.md",
     ]
-    assert absent[6:] == [f"rules/{rule.id}.md" for rule in RULES]
+    assert absent[6:] == [
+        *(f"rules/{rule.id}.md" for rule in RULES),
+        "check-rules.md",
+        *(f"check/{rule}.md" for rule in all_rules()),
+    ]
     write(tmp_path)
     with (tmp_path / "cli.md").open("a") as file:
         file.write("edited by hand\n")

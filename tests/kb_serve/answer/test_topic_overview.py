@@ -52,10 +52,17 @@ def test_an_overview_tells_the_page_its_classes_operators_and_pages_below(kb: Kn
 @pytest.mark.parametrize(
     ("query", "steps"),
     [
-        ("cloth", ("obj.modifiers.new(\"Cloth\", 'CLOTH')", "on `modifier.settings`", "ptcache.bake_all()")),
+        (
+            "cloth",
+            (
+                "obj.modifiers.new(\"Cloth\", 'CLOTH')",
+                "on `modifier.settings`",
+                "ptcache.bake_all(bake=True)",
+            ),
+        ),
         (
             "rigid body",
-            ("bpy.ops.rigidbody.object_add()", "on `bpy.context.object.rigid_body`", "bake_all()"),
+            ("bpy.ops.rigidbody.object_add()", "on `bpy.context.object.rigid_body`", "bake_all(bake=True)"),
         ),
     ],
 )

@@ -1,0 +1,130 @@
+"""The calls of a script: what is called, and which parameter each argument goes to."""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import dataclass
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.flow.types import Type
+    from kb_build.records import Parameter, Symbol
+    from kb_check.script import Script
+
+_RNA_TYPE = re.compile(r"(boolean|int|float|string|enum|set\[enum\])(\[\d+\])*|list of \w+|[A-Z]\w*")
+
+
+@dataclass(frozen=True, slots=True)
+class Callee:
+    """What a call can give. ``positional`` are the names that take a place, ``keyword_only`` those that do not."""
+
+    symbol: Symbol
+    parameters: tuple[Parameter, ...]
+    positional: tuple[str, ...]
+    keyword_only: tuple[str, ...]
+    is_open: bool
+    is_rna: bool
+
+
+@dataclass(frozen=True, slots=True)
+class CallSite:
+    """One call of one of the API's operators, functions or classes."""
+
+    node: ast.Call
+    callee: Callee
+    has_unpacking: bool
+
+    @property
+    def given(self) -> set[str]:
+        """The names of the parameters that are given."""
+        return {parameter.name for parameter, _ in self.arguments()}
+
+    def arguments(self) -> Iterator[tuple[Parameter, ast.expr]]:
+        """The arguments whose parameter is known."""
+        by_name = {parameter.name: parameter for parameter in self.callee.parameters}
+        for name, argument in zip(self.callee.positional, self.node.args, strict=False):
+            if isinstance(argument, ast.Starred):
+                break
+            yield by_name[name], argument
+        for keyword in self.node.keywords:
+            if keyword.arg and (parameter := by_name.get(keyword.arg)):
+                yield parameter, keyword.value
+
+
+def calls(script: Script) -> Iterator[CallSite]:
+    """The calls that surely are of one thing of the API, in the order in which they stand."""
+    for row in script.resolutions("call"):
+        node = row.node
+        if not isinstance(node, ast.Call) or not row.sure or row.guarded:
+            continue
+        kinds = [kind for kind in members(script.type_of(node.func) or NoneValue()) if kind != NoneValue()]
+        if len(kinds) != 1 or (symbol := _called(script, kinds[0])) is None:
+            continue
+        unpacking = any(isinstance(argument, ast.Starred) for argument in node.args) or any(
+            keyword.arg is None for keyword in node.keywords
+        )
+        yield CallSite(node, callee_of(symbol), unpacking)
+
+
+def _called(script: Script, kind: Type) -> Symbol | None:
+    """The symbol that is called; None where a method is called by its class, which takes the instance first."""
+    match kind:
+        case Operator():
+            return script.api.symbols.symbol(kind.path)
+        case Function():
+            symbol = script.api.symbols.symbol(kind.path)
+            bound = not isinstance(kind.receiver, ClassObject)
+            return symbol if symbol and (bound or {"classmethod", "static"} & set(symbol.flags)) else None
+        case ClassObject():
+            return script.api.symbols.symbol(kind.cls)
+        case _:
+            return None
+
+
+def callee_of(symbol: Symbol) -> Callee:
+    """What calls of an operator, a function or a class can give."""
+    parameters = tuple(p for p in symbol.parameters if p.name not in {"self", "cls"})
+    names = tuple(parameter.name for parameter in parameters)
+    if symbol.kind == "operator":
+        return Callee(symbol, parameters, (), names, is_open=False, is_rna=True)
+    arguments = _signature(symbol.signature)
+    is_open = (
+        arguments is None
+        or arguments.vararg is not None
+        or arguments.kwarg is not None
+        or any(name.startswith("*") for name in names)
+    )
+    if _is_rna(symbol, parameters):
+        # Since 2.80, what has a default is given by keyword.
+        positional = tuple(parameter.name for parameter in parameters if parameter.required)
+        rest = tuple(name for name in names if name not in positional)
+        return Callee(symbol, parameters, positional, rest, is_open=False, is_rna=True)
+    only = tuple(argument.arg for argument in arguments.kwonlyargs) if arguments else ()
+    placed = (argument.arg for argument in (*arguments.posonlyargs, *arguments.args)) if arguments else names
+    positional = tuple(name for name in placed if name in names)
+    return Callee(symbol, parameters, positional, only, is_open=is_open, is_rna=False)
+
+
+def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
+    """Whether a function is RNA's own: only those spell the types of their parameters so, and none has a marker."""
+    owner = symbol.owner.removeprefix("bpy.types.")
+    if symbol.owner == owner or owner.startswith("bpy_") or symbol.kind != "function":
+        return False
+    marked = "*" in symbol.signature or "/" in symbol.signature
+    return not marked and all(_RNA_TYPE.fullmatch(parameter.type) for parameter in parameters)
+
+
+@lru_cache(maxsize=4096)
+def _signature(text: str) -> ast.arguments | None:
+    try:
+        tree = ast.parse(f"def {text.rpartition('.')[2] if '(' not in text else text}: pass")
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+    node = tree.body[0]
+    return node.args if isinstance(node, ast.FunctionDef) else None

@@ -1,0 +1,215 @@
+"""What Blender makes of a Python value that is given to one of its properties, as tried in Blender.
+
+======================  ==================================================================================
+what takes it           what it takes
+======================  ==================================================================================
+boolean                 bool, and the integers 0 and 1
+int                     int, bool
+float                   float, int, bool
+string                  str; None only where it may have none
+enum                    str
+enum of flags           a set of str
+pointer                 an instance of its class; None unless it must have one
+array                   a sequence of its length (not an iterator), each item as above; a boolean's items are
+                        bool, an int's int, a float's any number
+======================  ==================================================================================
+"""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import (
+    NONE,
+    Collection,
+    Instance,
+    Mapping,
+    Module,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    members,
+)
+from kb_check.literals import items, number, written
+
+if TYPE_CHECKING:
+    from kb_check.given import Taker
+    from kb_check.script import Script
+
+_LENGTHS = {"mathutils.Color": 3, "mathutils.Euler": 3, "mathutils.Quaternion": 4}
+_NUMBERS = frozenset({"bool", "int", "float"})
+_TAKES = {
+    "boolean": frozenset({"bool", "int"}), "int": frozenset({"int", "bool"}), "float": _NUMBERS,
+    "string": frozenset({"str"}), "enum": frozenset({"str"}), "enum or set": frozenset({"str"}),
+}  # fmt: skip
+_ITEM_TAKES = {"boolean": frozenset({"bool"}), "int": frozenset({"int", "bool"}), "float": _NUMBERS}
+_WORDS = {
+    "boolean": "True or False", "int": "an int", "float": "a number", "string": "a str", "enum": "a str",
+    "enum or set": "a str", "set": "a set of str",
+}  # fmt: skip
+_ITEM_WORDS = {"boolean": "bool", "int": "int", "float": "float"}
+# Documented types that surely refuse others: what each takes. ``bool`` takes anything, as Python does.
+_DOCUMENTED = {"str": frozenset({"str"}), "string": frozenset({"str"}), "float": _NUMBERS, "int": _NUMBERS}
+# Arrays whose size is not the one that RNA declares.
+_CHANGING = frozenset({"bpy.types.FModifierGenerator.coefficients", "bpy.types.MeshPolygon.vertices"})
+
+
+@dataclass(frozen=True, slots=True)
+class Misfit:
+    """A value that Blender refuses: what it takes, and what is given, in words. ``length`` is a wrong one."""
+
+    takes: str
+    given: str
+    length: int = 0
+
+
+def misfit(script: Script, taker: Taker, node: ast.expr) -> Misfit | None:
+    """Why a property or parameter surely refuses a value; None where it takes it, or may."""
+    if taker.sizes:
+        return _array_misfit(script, taker, node, taker.sizes)
+    kind = script.type_of(node)
+    if kind is None:
+        return None
+    if isinstance(written(script, node), ast.Constant) and kind == NONE:
+        may_be_none = not taker.kind or (
+            taker.takes_none and taker.kind in {"string", "pointer", "enum or set"}
+        )
+        return None if may_be_none else Misfit(_takes(taker), "None")
+    found = [_scalar_misfit(script, taker, node, member) for member in members(kind)]
+    return found[0] if all(found) else None
+
+
+def _scalar_misfit(  # noqa: PLR0911 - one return a type
+    script: Script, taker: Taker, node: ast.expr, kind: Type
+) -> Misfit | None:
+    if kind == NONE:
+        return None  # what holds None here may hold a value by then
+    if not taker.kind:
+        return _documented_misfit(taker, kind)
+    given = describe(kind)
+    if not given:
+        return None
+    if taker.kind == "pointer":
+        return _pointer_misfit(script, taker, kind, given)
+    if isinstance(kind, Plain):
+        if taker.kind == "set":
+            return Misfit(_takes(taker), given)
+        value = number(script, node)
+        if taker.kind == "boolean" and kind.kind == "int" and value not in {None, 0, 1}:
+            return Misfit(_takes(taker), f"{value}")
+        fits = kind.kind in _TAKES[taker.kind] or (kind.kind == "bytes" and taker.subtype == "BYTE_STRING")
+        return None if fits else Misfit(_takes(taker), _shown(script, node, given))
+    if isinstance(kind, Sequence) and kind.kind == "set" and taker.kind in {"set", "enum or set"}:
+        return None
+    return Misfit(_takes(taker), given)
+
+
+def _pointer_misfit(script: Script, taker: Taker, kind: Type, given: str) -> Misfit | None:
+    api = script.api
+    if not api.is_class(taker.target) or api.descends(taker.target, "bpy.types.PropertyGroup"):
+        return None
+    if isinstance(kind, Instance):
+        related = api.descends(kind.cls, taker.target) or api.descends(taker.target, kind.cls)
+        if related or not kind.sure or not api.is_class(kind.cls):
+            return None
+    if isinstance(kind, Collection):
+        return None
+    return Misfit(_takes(taker), given)
+
+
+def _array_misfit(script: Script, taker: Taker, node: ast.expr, sizes: tuple[int, ...]) -> Misfit | None:
+    changing = not all(sizes) or taker.path in _CHANGING
+    many = "a sequence of" if changing else " × ".join(map(str, sizes))
+    takes = f"{many} {_ITEM_WORDS.get(taker.kind, taker.kind)}s"
+    if (parts := items(script, node)) is not None:
+        if not changing and len(parts) != sizes[0]:
+            return Misfit(takes, f"{len(parts)} items", len(parts))
+        if len(sizes) > 1:
+            inner = (_array_misfit(script, taker, part, sizes[1:]) for part in parts)
+            return next((Misfit(takes, f"items that are {one.given}") for one in inner if one), None)
+        return next((found for part in parts if (found := _item_misfit(script, taker, part, takes))), None)
+    kind = script.type_of(node)
+    if kind is None:
+        return None
+    length = 0 if changing else sizes[0] if len(sizes) == 1 else -1
+    found = [_whole_misfit(script, node, member, length, takes) for member in members(kind)]
+    return found[0] if all(found) else None
+
+
+def _item_misfit(script: Script, taker: Taker, node: ast.expr, takes: str) -> Misfit | None:
+    kind = script.type_of(node)
+    kinds = list(members(kind)) if kind is not None else []
+    fits = _ITEM_TAKES.get(taker.kind, frozenset())
+    wrong = [
+        isinstance(one, (Tuple, Sequence, Mapping, Instance, Collection))
+        or (one == NONE and isinstance(written(script, node), ast.Constant))
+        or (isinstance(one, Plain) and one.kind not in fits)
+        for one in kinds
+    ]  # fmt: skip
+    if kind is None or not fits or not all(wrong):
+        return None
+    return Misfit(takes, f"an item that is {_shown(script, node, describe(members(kind)[0]) or 'None')}")
+
+
+def _whole_misfit(script: Script, node: ast.expr, kind: Type, length: int, takes: str) -> Misfit | None:
+    """Why an array of a length refuses a value that is not written out; 0 is a length that changes, -1 an array of
+    arrays.
+    """
+    if kind == NONE:
+        return Misfit(takes, "None") if isinstance(written(script, node), ast.Constant) else None
+    given = describe(kind)
+    if isinstance(kind, Mapping) or (isinstance(kind, Plain) and kind.kind != "bytes"):
+        return Misfit(takes, _shown(script, node, given))
+    if isinstance(kind, Instance):
+        has = _LENGTHS.get(kind.cls, 0)
+        if has and length and length != has:
+            return Misfit(takes, f"{given}, which has {has}", has)
+        if kind.sure and kind.cls.startswith("bpy.types.") and not kind.cls.startswith("bpy.types.bpy_"):
+            return Misfit(takes, given)
+    return None
+
+
+def _documented_misfit(taker: Taker, kind: Type) -> Misfit | None:
+    """A value that no reading of the reference allows: text for a number, a number for text."""
+    fits = _DOCUMENTED.get(taker.documented)
+    if fits is None or not isinstance(kind, Plain) or kind.kind in fits:
+        return None
+    return Misfit("a str" if "str" in fits else "a number", describe(kind))
+
+
+def _takes(taker: Taker) -> str:
+    if taker.kind == "pointer":
+        return f"an instance of `{taker.target}`"
+    return _WORDS[taker.kind]
+
+
+def _shown(script: Script, node: ast.expr, otherwise: str) -> str:
+    value = written(script, node)
+    if isinstance(value, ast.Constant) or number(script, value) is not None:
+        text = ast.unparse(value)
+        return text if len(text) <= 40 else otherwise
+    return otherwise
+
+
+def describe(kind: Type) -> str:  # noqa: PLR0911 - one return a type
+    """A type in words: ``a float``; empty for what may be anything."""
+    match kind:
+        case Plain():
+            return f"{'an' if kind.kind == 'int' else 'a'} {kind.kind}"
+        case Instance():
+            return f"an instance of `{kind.cls}`"
+        case Collection():
+            return "a collection"
+        case Tuple():
+            return "a sequence"
+        case Sequence():
+            return {"set": "a set"}.get(kind.kind, "a sequence")
+        case Mapping():
+            return "a dict"
+        case Module():
+            return "a module"
+        case _:
+            return ""

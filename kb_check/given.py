@@ -1,0 +1,149 @@
+"""The values that a script gives to properties and parameters, and what each of those takes."""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
+from kb_check.calls import calls
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Parameter, Symbol
+    from kb_check.script import Script
+
+_SIZES = re.compile(r"\[(\d+)\]")
+_SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
+_T = "bpy.types."
+_FIXED = frozenset({2, 3, 4})  # other sizes of a parameter are the most, or the least, that it takes
+_ANY = "bpy.types.AnyType"
+
+
+@dataclass(frozen=True, slots=True)
+class Taker:
+    """A property or a parameter. ``path`` names it for people.
+
+    ``kind`` is boolean, int, float, string, enum, set (an enumeration of flags), enum or set (one of both), pointer
+    (to ``target``, a class's path), or empty where only the reference tells what it takes, with the text of
+    ``documented``.
+    ``sizes`` are an array's, outermost first; 0 is a size that changes. ``is_operator`` is True for an operator's
+    property, which is converted and clamped as those of data are.
+    """
+
+    path: str
+    kind: str
+    symbol: Symbol
+    target: str = ""
+    sizes: tuple[int, ...] = ()
+    documented: str = ""
+    subtype: str = ""
+    unit: str = ""
+    takes_none: bool = True
+    hard_min: float | None = None
+    hard_max: float | None = None
+    is_parameter: bool = False
+    is_operator: bool = False
+
+
+@dataclass(frozen=True, slots=True)
+class Given:
+    """A value that is given; ``takers`` are the properties that it can be given to, by the types of their owner."""
+
+    node: ast.expr
+    takers: tuple[Taker, ...]
+
+
+def given_values(script: Script) -> Iterator[Given]:
+    """Every value that is surely assigned to a property that takes one, or passed to a function or an operator."""
+    for row in script.resolutions("store"):
+        paths = row.symbols or row.possible
+        sure = row.sure and not row.guarded and not row.missing and is_of_instance(script, row.node)
+        if sure and paths and isinstance(row.node, ast.Attribute):
+            value = _assigned(row.statement, row.node)
+            symbols = [script.api.symbols.symbol(path) for path in paths]
+            takers = tuple(
+                property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property"
+            )
+            refused = any("readonly" in taker.symbol.flags for taker in takers)
+            if value is not None and len(takers) == len(paths) and not refused:
+                yield Given(value, takers)
+    for call in calls(script):
+        if call.callee.symbol.kind == "class":
+            continue
+        for parameter, argument in call.arguments():
+            yield Given(
+                argument, (parameter_taker(script, call.callee.symbol, parameter, is_rna=call.callee.is_rna),)
+            )
+
+
+def is_of_instance(script: Script, node: ast.AST) -> bool:
+    """Whether an attribute's owner is an instance, not a class: those take new properties."""
+    owner = script.type_of(node.value) if isinstance(node, ast.Attribute) else None
+    kinds = [kind for kind in members(owner or UNKNOWN) if kind != NONE]
+    return bool(kinds) and all(isinstance(kind, (Instance, Collection)) for kind in kinds)
+
+
+def _assigned(statement: ast.stmt | None, target: ast.expr) -> ast.expr | None:
+    """What a statement assigns to a target; None where the value has no expression of its own."""
+    if isinstance(statement, ast.AnnAssign):
+        return statement.value if statement.target is target else None
+    if not isinstance(statement, ast.Assign):
+        return None
+    for whole in statement.targets:
+        if whole is target:
+            return statement.value
+        pair = whole, statement.value
+        if isinstance(pair[0], (ast.Tuple, ast.List)) and isinstance(pair[1], (ast.Tuple, ast.List)):
+            parts = pair[0].elts, pair[1].elts
+            starred = any(isinstance(part, ast.Starred) for part in (*parts[0], *parts[1]))
+            if not starred and len(parts[0]) == len(parts[1]):
+                found = next((value for part, value in zip(*parts, strict=True) if part is target), None)
+                if found is not None:
+                    return found
+    return None
+
+
+def property_taker(symbol: Symbol) -> Taker:
+    """What a property takes."""
+    kind, target = symbol.type, ""
+    if not symbol.owner.startswith(_T):
+        return Taker(symbol.path, "", symbol, documented=symbol.type)
+    if kind == "enum" and "enum-flag" in symbol.flags:
+        kind = "set"
+    elif kind == "pointer":
+        target = f"{_T}{symbol.target}"
+    elif kind not in _SCALARS:
+        return Taker(symbol.path, "", symbol)
+    return Taker(
+        symbol.path, kind, symbol, target, symbol.array, "", symbol.subtype, symbol.unit,
+        "never-none" not in symbol.flags, symbol.hard_min, symbol.hard_max,
+    )  # fmt: skip
+
+
+def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_rna: bool) -> Taker:
+    """What a parameter of a function or an operator takes."""
+    path = f"{symbol.path}({parameter.name})"
+    is_operator = symbol.kind == "operator"
+    if not is_rna:
+        return Taker(path, "", symbol, documented=parameter.type, is_parameter=True)
+    kind, _, rest = parameter.type.partition("[")
+    target, sizes = "", tuple(int(size) for size in _SIZES.findall(f"[{rest}")) if rest else ()
+    if any(size not in _FIXED for size in sizes):
+        sizes = tuple(0 for _ in sizes)
+    if parameter.type == "set[enum]" or (kind == "enum" and isinstance(parameter.default, list)):
+        kind, sizes = "set", ()
+    elif kind == "enum" and not isinstance(parameter.default, str):
+        kind = "enum or set"  # what is required has no default to tell
+    elif kind not in _SCALARS:
+        target = f"{_T}{parameter.type}"
+        known = not is_operator and target != _ANY and script.api.is_class(target)
+        kind = "pointer" if known else ""
+    none = kind == "string" and not is_operator  # which of them may be without, nothing tells
+    return Taker(
+        path, kind, symbol, target, sizes, "", "", parameter.unit, none or kind == "pointer",
+        parameter.hard_min, parameter.hard_max, is_parameter=True, is_operator=is_operator,
+    )  # fmt: skip

@@ -1,0 +1,82 @@
+"""What is written out in a script: literals, and the names that hold one and nothing else."""
+
+from __future__ import annotations
+
+import ast
+from collections import Counter
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+if TYPE_CHECKING:
+    from kb_check.script import Script
+
+_DEEPEST = 4
+_LITERALS = (ast.Constant, ast.UnaryOp, ast.Tuple, ast.Name)
+_constants: WeakKeyDictionary[ast.Module, dict[str, ast.expr]] = WeakKeyDictionary()
+
+
+def written(script: Script, node: ast.expr) -> ast.expr:
+    """The expression that stands for a value: a name that is bound once in the whole script leads to what it holds."""
+    for _ in range(_DEEPEST):
+        if not isinstance(node, ast.Name):
+            break
+        found = _once_bound(script.tree).get(node.id)
+        if found is None:
+            break
+        node = found
+    return node
+
+
+def number(script: Script, node: ast.expr) -> float | int | None:
+    """The number that an expression is written as; None for what is computed, and for truth values."""
+    node = written(script, node)
+    sign = 1
+    while isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
+        sign = -sign if isinstance(node.op, ast.USub) else sign
+        node = node.operand
+    if (
+        isinstance(node, ast.Constant)
+        and isinstance(node.value, (int, float))
+        and not isinstance(node.value, bool)
+    ):
+        return sign * node.value
+    return None
+
+
+def items(script: Script, node: ast.expr) -> list[ast.expr] | None:
+    """The items of a tuple or a list that is written out; None for anything else."""
+    written_out = written(script, node)
+    display = isinstance(written_out, ast.Tuple) or (written_out is node and isinstance(node, ast.List))
+    if not display or not isinstance(written_out, (ast.Tuple, ast.List)):
+        return None
+    return None if any(isinstance(item, ast.Starred) for item in written_out.elts) else written_out.elts
+
+
+def _once_bound(tree: ast.Module) -> dict[str, ast.expr]:
+    """Name → the literal that its only assignment gives it. A list is none: it may grow."""
+    found = _constants.get(tree)
+    if found is None:
+        times: Counter[str] = Counter()
+        values: dict[str, ast.expr] = {}
+        for node in ast.walk(tree):
+            times.update(_bound(node))
+            if isinstance(node, ast.Assign) and isinstance(node.value, _LITERALS):
+                values |= {target.id: node.value for target in node.targets if isinstance(target, ast.Name)}
+        found = _constants[tree] = {name: value for name, value in values.items() if times[name] == 1}
+    return found
+
+
+def _bound(node: ast.AST) -> list[str]:
+    """The names that a node binds, or makes another scope's."""
+    match node:
+        case ast.Name(ctx=ast.Store() | ast.Del()):
+            return [node.id]
+        case ast.arg():
+            return [node.arg]
+        case ast.alias():
+            return [(node.asname or node.name).partition(".")[0]]
+        case ast.Global() | ast.Nonlocal():
+            return node.names
+        case _:
+            name = getattr(node, "rest" if isinstance(node, ast.MatchMapping) else "name", None)
+            return [name] if isinstance(name, str) else []

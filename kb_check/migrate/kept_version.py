@@ -1,0 +1,51 @@
+"""Older Blenders in which the migrated script must still run: what of the new form they have."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kb_check.migrate.place import version_of
+
+if TYPE_CHECKING:
+    from kb_check.checker import Checker
+    from kb_check.migrate.change import Change, Version
+    from kb_serve.reader import BaseReader
+
+
+@dataclass(frozen=True, slots=True)
+class KeptVersion:
+    """A Blender that the script must keep working in; ``checker`` is of its base, None where there is none."""
+
+    version: Version
+    checker: Checker | None = None
+
+    def takes(self, change: Change, target: BaseReader) -> bool:
+        """Whether this Blender takes a change's new form; ``target`` knows since when its symbols are there."""
+        if self.version >= change.since:
+            return True
+        return bool(change.targets) and all(self._has(path, target) for path in change.targets)
+
+    def _has(self, path: str, target: BaseReader) -> bool:
+        if self.checker is not None:
+            return _known(self.checker, path)
+        # Without a base, what the history tells: of arguments, values and sockets it tells too little.
+        if any(mark in path for mark in '([:"'):
+            return False
+        since = target.since(path)
+        return not since or version_of(since) <= self.version
+
+
+def _known(checker: Checker, path: str) -> bool:
+    """Whether a Blender has a symbol, an argument ``f(x)``, a value ``p:X`` or a socket."""
+    reader, symbols = checker.names.reader, checker.api.symbols
+    if '["' in path:
+        return symbols.symbol(path) is not None or bool(reader.still_works(path))
+    owner, colon, value = path.partition(":")
+    if colon:
+        return value in checker.api.values_of(owner)
+    function, _, parameter = path.removesuffix(")").partition("(")
+    symbol = symbols.symbol(function)
+    if symbol is None:
+        return False
+    return not parameter or any(known.name == parameter for known in symbol.parameters)

@@ -1,0 +1,298 @@
+"""Migrates the files of an add-on: what is certain is changed, round by round, and the rest is listed."""
+
+from __future__ import annotations
+
+import ast
+import os
+import warnings
+from dataclasses import dataclass, field, replace
+from pathlib import PurePath
+from typing import TYPE_CHECKING
+
+from kb_check.findings import Span
+from kb_check.migrate.change import Change, Decision, Done
+from kb_check.migrate.guards import can_be_guarded, guarded_edits, innermost, plain_edits
+from kb_check.migrate.place import Place, version_of
+from kb_check.migrate.rewrite import all_rewrites
+from kb_check.migrate.text import Text, overlap
+from kb_check.migrate.version_tests import reaches
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from kb_check.checker import Checker, Read
+    from kb_check.findings import Edit, Finding
+    from kb_check.migrate.change import Version
+    from kb_check.migrate.kept_version import KeptVersion
+    from kb_check.package import Package
+
+_ROUNDS = 40
+_TOLD = 160
+
+
+@dataclass
+class FileMigration:
+    """What happened to one file. ``new`` is ``old`` where nothing could be changed; ``kept`` are errors that the new
+    text has in a Blender that is to be kept, and the old one did not.
+    """
+
+    name: str
+    old: str
+    new: str = ""
+    changes: list[Done] = field(default_factory=list[Done])
+    decisions: list[Decision] = field(default_factory=list[Decision])
+    kept: list[tuple[str, Finding]] = field(default_factory=list[tuple[str, "Finding"]])
+
+
+class Migrator:
+    """Migrates to the Blender of ``target``; ``keep`` are older ones in which the scripts must still run.
+
+    ``written_for`` is the Blender that they were written for; without it, it is told from what they use.
+    """
+
+    def __init__(
+        self, target: Checker, keep: Sequence[KeptVersion] = (), written_for: Version | None = None
+    ) -> None:
+        self._target = target
+        self._keep = keep
+        self._written_for = written_for
+
+    def migrate(
+        self, files: Mapping[str, str], beside: Mapping[str, str] | None = None
+    ) -> list[FileMigration]:
+        """Migrates the files of one add-on: path → text. ``beside`` are its other files, which stay as they are."""
+        states = {name: _State(FileMigration(name, code)) for name, code in files.items()}
+        written_for = self._written_for
+        for _ in range(_ROUNDS):
+            package = self._read(states.values(), beside or {})
+            for state in states.values():
+                state.findings = self._target.check(state.reading, package)
+            if written_for is None:
+                written_for = self._oldest(states.values())
+            changed = [self._round(state, package, written_for) for state in states.values()]
+            if not any(changed):
+                break
+        for state in states.values():
+            self._finish(state)
+        self._check_kept(states.values())
+        return [state.file for state in states.values()]
+
+    def _read(self, states: Iterable[_State], beside: Mapping[str, str]) -> Package:
+        """Reads all files anew: what one says about types holds in the others, too."""
+        states = list(states)
+        texts = {**beside, **{state.file.name: state.text.code for state in states}}
+        paths = _paths_in_package(texts)
+        if len(texts) == 1:
+            reads = {path: self._target.read(texts[name]) for name, path in paths.items()}
+        else:
+            reads = self._target.read_files({path: texts[name] for name, path in paths.items()})
+        package = self._target.package()
+        for read in reads.values():
+            package.add(read.analysis, read.may_register)
+        for state in states:
+            state.read = reads[paths[state.file.name]]
+        return package
+
+    def _oldest(self, states: Iterable[_State]) -> Version:
+        """The oldest Blender that had something which the files use and the target lacks."""
+        reader = self._target.names.reader
+        spans = (reader.removed(one.symbol) for state in states for one in state.findings if one.symbol)
+        return min((version_of(span[1]) for span in spans if span), default=_version(self._target))
+
+    # One round.
+
+    def _round(self, state: _State, package: Package, written_for: Version) -> bool:
+        """Makes all the changes that are known now; whether there were any."""
+        if state.reading.error is not None or not state.reading.analysis.complete:
+            return False
+        place = Place(self._target.script(state.reading, package), state.findings, written_for)
+        chosen = [change for change in _apart(self._proposals(place)) if change.since <= place.target]
+        plain = [change for change in chosen if not self._needs_guard(place, change)]
+        guarded = [change for change in chosen if change not in plain]
+        guarded = [change for change in guarded if can_be_guarded(place, change)]
+        for tried in ([(plain, guarded)], *_alone(plain, guarded)):
+            for some_plain, some_guarded in tried:
+                if self._apply(state, place, some_plain, some_guarded):
+                    return True
+        return False
+
+    def _apply(self, state: _State, place: Place, plain: Sequence[Change], guarded: Sequence[Change]) -> bool:
+        """Makes some changes if the text can still be read afterwards."""
+        if not plain and not guarded:
+            return False
+        # What needs no guard goes first, within the statements that get one too: a round for each.
+        edits = [edit for change in plain for edit in plain_edits(place, change)]
+        if plain:
+            made, with_guard = plain, False
+        else:
+            edits, made, with_guard = guarded_edits(place, state.text, guarded), guarded, True
+        edits += {edit: None for change in made for edit in change.additions}
+        new = state.text.edited(edits)
+        if new.code == state.text.code or not _parses(new.code):
+            return False
+        state.file.changes += [
+            _told(state.text, change, guarded=with_guard)
+            for change in sorted(made, key=lambda one: one.edits[0].span.line)
+        ]
+        state.text = new
+        return True
+
+    def _proposals(self, place: Place) -> Iterator[Change]:
+        for rewrite in all_rewrites():
+            yield from rewrite.propose(place)
+        for finding in place.findings:
+            if finding.fix is not None and finding.fix.sure and finding.severity != "note":
+                yield place.change(
+                    finding.rule, finding.symbol, finding.fix.edits, reason=finding.message,
+                    targets=finding.instead[:1],
+                )  # fmt: skip
+
+    def _needs_guard(self, place: Place, change: Change) -> bool:
+        reader = self._target.names.reader
+        nodes = [innermost(place, edit.span) for edit in change.edits]
+        return any(
+            not kept.takes(change, reader)
+            and any(node is None or reaches(node, place.parents, kept.version) for node in nodes)
+            for kept in self._keep
+        )
+
+    # What is left.
+
+    def _finish(self, state: _State) -> None:
+        file = state.file
+        file.new = state.result()
+        file.changes.sort(key=lambda change: change.line)
+        reader = self._target.names.reader
+        for finding in state.findings:
+            if finding.severity == "note":
+                continue
+            successors = reader.successors(finding.symbol) if finding.symbol else []
+            how = "; ".join(dict.fromkeys(row.how for row in successors if row.how))
+            if not how and finding.fix is not None:
+                how = finding.fix.title
+            source = successors[0].source if successors else ""
+            file.decisions.append(
+                Decision(
+                    state.text.origin(finding.span.line), finding.span.line, finding.rule, finding.severity,
+                    finding.message, how, source,
+                )
+            )  # fmt: skip
+        file.decisions.sort(key=lambda decision: decision.line)
+
+    def _check_kept(self, states: Iterable[_State]) -> None:
+        """Looks at the new text as the older Blenders see it: what is wrong there now and was not before."""
+        states = [state for state in states if state.file.changes]
+        for kept in self._keep:
+            if kept.checker is None:
+                continue
+            for state, before, after in zip(
+                states, _errors(kept.checker, [state.file.old for state in states]),
+                _errors(kept.checker, [state.file.new for state in states]), strict=True,
+            ):  # fmt: skip
+                known = {(one.rule, one.symbol) for one in before}
+                name = ".".join(map(str, kept.version))
+                state.file.kept += [(name, one) for one in after if (one.rule, one.symbol) not in known]
+
+
+@dataclass
+class _State:
+    """A file while it is migrated."""
+
+    file: FileMigration
+    text: Text = field(init=False)
+    read: Read | None = None
+    findings: list[Finding] = field(default_factory=list["Finding"])
+
+    def __post_init__(self) -> None:
+        self.text = Text.original(self.file.old.replace("\r\n", "\n") if self._windows else self.file.old)
+
+    @property
+    def _windows(self) -> bool:
+        """Whether all lines end as they do on Windows. Otherwise the ends are kept as they are."""
+        ends = self.file.old.count("\r\n")
+        return 0 < ends == self.file.old.count("\n")
+
+    def result(self) -> str:
+        """The text as it is to be written."""
+        return self.text.code.replace("\n", "\r\n") if self._windows else self.text.code
+
+    @property
+    def reading(self) -> Read:
+        """The file as it was read last."""
+        assert self.read is not None
+        return self.read
+
+
+def _paths_in_package(names: Iterable[str]) -> dict[str, str]:
+    """Name of a file → its path from the folder of its package on, with slashes."""
+    whole = {name: PurePath(os.path.abspath(name)) for name in names}
+    top = PurePath(os.path.commonpath([path.parent for path in whole.values()])).parent
+    return {name: path.relative_to(top).as_posix() for name, path in whole.items()}
+
+
+def _version(checker: Checker) -> Version:
+    return checker.version[0], checker.version[1]
+
+
+def _errors(checker: Checker, codes: Sequence[str]) -> list[list[Finding]]:
+    reads = [checker.read(code) for code in codes]
+    package = checker.package()
+    for read in reads:
+        package.add(read.analysis, read.may_register)
+    return [[one for one in checker.check(read, package) if one.severity == "error"] for read in reads]
+
+
+def _apart(changes: Iterable[Change]) -> Iterator[Change]:
+    """The changes that share no text: the first ones win."""
+    taken: list[Span] = []
+    for change in changes:
+        spans = [edit.span for edit in change.edits]
+        if spans and not any(overlap(span, other) for span in spans for other in taken):
+            taken += spans
+            yield change
+
+
+def _alone(
+    plain: Sequence[Change], guarded: Sequence[Change]
+) -> Iterator[list[tuple[list[Change], list[Change]]]]:
+    """Each change by itself: where all of them together leave a text that Python cannot read."""
+    yield [([change], []) for change in plain]
+    yield [([], list(guarded))]
+    yield [([], [change]) for change in guarded]
+
+
+def _parses(code: str) -> bool:
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            ast.parse(code)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return False
+    return True
+
+
+def _told(text: Text, change: Change, *, guarded: bool) -> Done:
+    first = min(edit.span.line for edit in change.edits)
+    last = max(edit.span.end_line for edit in change.edits)
+    before = text.lines(first, last)
+    whole = Text.original(before).edited(_moved(change.edits, first))
+    return Done(
+        text.origin(first), change.rule, _short(before), _short(whole.code), change.reason, change.source, guarded
+    )  # fmt: skip
+
+
+def _moved(edits: Sequence[Edit], first: int) -> list[Edit]:
+    return [
+        replace(
+            edit,
+            span=Span(edit.span.line - first + 1, edit.span.column, edit.span.end_line - first + 1,
+                      edit.span.end_column),
+        )
+        for edit in edits
+    ]  # fmt: skip
+
+
+def _short(text: str) -> str:
+    lines = [line.strip() for line in text.split("\n")]
+    line = " ⏎ ".join(line for line in lines if line)
+    return line if len(line) <= _TOLD else f"{line[:_TOLD]} …"

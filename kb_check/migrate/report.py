@@ -1,0 +1,134 @@
+"""A migration written down: for people in MIGRATION.md and on the terminal, for programs as JSON."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import asdict
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_check.migrate.change import Done
+    from kb_check.migrate.plan import FileMigration
+    from kb_check.migrate.trial import Trial
+
+
+_TABLE = ("| line | from | to | reason | source |", "| --- | --- | --- | --- | --- |")
+
+
+def markdown(
+    target: str, keep: Sequence[str], files: Sequence[FileMigration], trials: Sequence[Trial]
+) -> str:
+    """The whole report: every change with its reason and source, and what a person must decide."""
+    kept = f" (and still {', '.join(keep)})" if keep else ""
+    lines = [f"# Migration to Blender {target}{kept}", "", summary(files), ""]
+    if trials:
+        lines += ["## Runs", "", *_runs(trials), ""]
+    decided = [file for file in files if file.decisions or file.kept]
+    if decided:
+        lines += ["## To decide", ""]
+        for file in decided:
+            lines += [f"### {file.name}", "", *_decisions(file), ""]
+    changed = [file for file in files if file.changes]
+    if changed:
+        lines += ["## Changed", "", "Lines are those of the file as it was.", ""]
+        for file in changed:
+            lines += [f"### {file.name}", "", *_TABLE, *map(_row, file.changes), ""]
+    return "\n".join(lines)
+
+
+def _runs(trials: Sequence[Trial]) -> Iterator[str]:
+    for trial in trials:
+        yield f"- `{trial.name}`: {_plain(trial.verdict)}"
+        yield from (f"  - {_plain(difference)}" for difference in trial.differences)
+
+
+def _decisions(file: FileMigration) -> Iterator[str]:
+    for one in file.decisions:
+        how = f" {_plain(one.how)}" if one.how and one.how not in one.message else ""
+        source = f" *({_plain(one.source)})*" if one.source else ""
+        yield f"- line {one.line} (now {one.now}), {one.severity}: {_plain(one.message)}{how}{source}"
+    for version, finding in file.kept:
+        yield f"- now in line {finding.span.line}, in Blender {version}: {_plain(finding.message)}"
+
+
+def _row(change: Done) -> str:
+    guard = " (with a guard for older versions)" if change.guarded else ""
+    reason = f"{_plain(change.reason)}{guard}"
+    cells = (str(change.line), _code(change.before), _code(change.after), reason, _plain(change.source))
+    return f"| {' | '.join(cells)} |"
+
+
+def summary(files: Sequence[FileMigration]) -> str:
+    """One sentence about all files."""
+    changes = sum(len(file.changes) for file in files)
+    changed = sum(bool(file.changes) for file in files)
+    kinds = Counter(decision.severity for file in files for decision in file.decisions)
+    left = kinds["error"]
+    parts = [f"{_many(changes, 'change')} in {_many(changed, 'file')}"]
+    parts.append(f"{_many(left, 'place')} to decide" if left else "nothing is left to decide")
+    if kinds["warning"]:
+        parts.append(_many(kinds["warning"], "warning"))
+    return f"{'; '.join(parts)}."
+
+
+def decision_lines(files: Sequence[FileMigration]) -> Iterator[str]:
+    """What a person must decide, a line each, with the place in the new text."""
+    for file in files:
+        for one in file.decisions:
+            how = f" {one.how}" if one.how and one.how not in one.message else ""
+            source = f" [{one.source}]" if one.source else ""
+            yield f"{file.name}:{one.now}: {one.severity}[{one.rule}] {' '.join(one.message.split())}{how}{source}"
+        for version, finding in file.kept:
+            yield f"{file.name}:{finding.span.line}: in Blender {version}: {' '.join(finding.message.split())}"
+
+
+def as_json(target: str, files: Sequence[FileMigration], trials: Sequence[Trial]) -> dict[str, Any]:
+    """The same for programs. Lines count from 1: ``line`` in the original, ``now`` in the new text."""
+    return {
+        "format": 1,
+        "to": target,
+        "files": [
+            {
+                "path": file.name,
+                "changed": file.new != file.old,
+                "changes": [asdict(change) for change in file.changes],
+                "decisions": [asdict(decision) for decision in file.decisions],
+                "kept": [
+                    {"blender": version, "line": one.span.line, "rule": one.rule, "message": one.message}
+                    for version, one in file.kept
+                ],
+            }
+            for file in files
+        ],
+        "runs": [
+            {
+                "path": trial.name,
+                "verdict": trial.verdict,
+                "before": {"blender": trial.before.version, "error": trial.before.error}
+                if trial.before
+                else None,
+                "after": {"blender": trial.after.version, "error": trial.after.error},
+                "differences": list(trial.differences),
+            }
+            for trial in trials
+        ],
+    }
+
+
+def _many(count: int, noun: str) -> str:
+    return f"{count:,} {noun}{'' if count == 1 else 's'}"
+
+
+def _plain(text: str) -> str:
+    """Text within a line of a table."""
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def _code(text: str) -> str:
+    text = _plain(text)
+    if not text:
+        return "(nothing)"
+    fence = "``" if "`" in text else "`"
+    return f"{fence} {text} {fence}" if "`" in text else f"`{text}`"

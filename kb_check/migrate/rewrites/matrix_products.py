@@ -1,0 +1,51 @@
+"""Matrices and quaternions are multiplied by ``@``; ``*`` multiplies item by item."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_check.findings import Edit
+from kb_check.migrate.change import Change
+from kb_check.migrate.rewrite import Rewrite
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.migrate.place import Place
+
+_SINCE = (2, 80)
+_SOURCE = "release notes 2.80: Python API"
+_REASON = "Matrices, quaternions and vectors are multiplied with @ since 2.80; * is item by item."
+_MATRIX, _QUATERNION, _VECTOR = "mathutils.Matrix", "mathutils.Quaternion", "mathutils.Vector"
+# Pairs for which Blender refuses ``*``.
+_REFUSED = {(_MATRIX, _VECTOR), (_VECTOR, _MATRIX), (_QUATERNION, _VECTOR)}
+# Pairs for which both work, with another meaning: only old code can mean a product.
+_CHANGED = {(_MATRIX, _MATRIX), (_QUATERNION, _QUATERNION), (_VECTOR, _VECTOR)}
+
+
+def _propose(place: Place) -> Iterator[Change]:
+    if place.target < _SINCE:
+        return
+    for node in ast.walk(place.script.tree):
+        if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
+            left, right = node.left, node.right
+        elif isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Mult):
+            left, right = node.target, node.value
+        else:
+            continue
+        if not _is_product(place, left, right):
+            continue
+        span, text = place.between(left, right)
+        if text.count("*") == 1 and "#" not in text:
+            yield Change(REWRITE.id, (Edit(span, text.replace("*", "@")),), _REASON, _SOURCE, _SINCE)
+
+
+def _is_product(place: Place, left: ast.expr, right: ast.expr) -> bool:
+    for one, other in _REFUSED | _CHANGED:
+        if place.is_a(left, one) and place.is_a(right, other):
+            return (one, other) in _REFUSED or place.written_for < _SINCE
+    return False
+
+
+REWRITE = Rewrite("matrix-product", _propose)

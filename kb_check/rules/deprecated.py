@@ -1,0 +1,73 @@
+"""A property that Blender is about to drop.
+
+Blender itself says so, since when, and what to use. The script still runs in this version.
+
+```python
+strip.frame_final_start  # reported in 5.1: left_handle
+```
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_check.findings import Finding, Fix
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.flow.types import Resolution
+    from kb_build.records import Symbol
+    from kb_check.script import Script
+
+_REPLACED = re.compile(r"[Rr]eplaced by '\.(?P<name>\w+)'")
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for row in script.resolutions("attribute", "store", "text", "button", "keyword", "name"):
+        if not row.symbols or not row.sure or row.guarded:
+            continue
+        symbols = [script.api.symbols.symbol(path) for path in row.symbols]
+        first = symbols[0]
+        if first is None or not all(symbol and symbol.deprecation for symbol in symbols):
+            continue
+        successor = _successor(script, first)
+        yield Finding(
+            RULE.id, "warning", script.name_span(row.node), _told(first), first.path,
+            (successor.path,) if successor else (),
+            _fix(script, row, first, successor) if successor and len(symbols) == 1 else None,
+        )  # fmt: skip
+
+
+def _successor(script: Script, symbol: Symbol) -> Symbol | None:
+    """The property that takes its place, where Blender names one of the same class."""
+    assert symbol.deprecation is not None
+    found = _REPLACED.search(symbol.deprecation.note)
+    member = script.api.member(symbol.owner, found["name"]) if found else None
+    return member.symbol if member else None
+
+
+def _fix(script: Script, row: Resolution, symbol: Symbol, successor: Symbol) -> Fix | None:
+    edit = script.renamed(row.node, successor.name)
+    same = (symbol.type, symbol.array, symbol.unit) == (successor.type, successor.array, successor.unit)
+    return Fix(f"Write {successor.name}", (edit,), sure=same) if edit else None
+
+
+def _version(text: str) -> str:
+    """A version as people write it; RNA's numbers make ``5.10`` of 5.1."""
+    major, _, minor = text.partition(".")
+    return f"{major}.{minor[0]}" if major.isdigit() and int(major) >= 3 and minor[1:] == "0" else text
+
+
+def _told(symbol: Symbol) -> str:
+    deprecation = symbol.deprecation
+    assert deprecation is not None
+    since = f" since Blender {_version(deprecation.since)}" if deprecation.since else ""
+    removal = f" and goes in {_version(deprecation.removal)}" if deprecation.removal else ""
+    note = f" {deprecation.note.strip().rstrip('.')}." if deprecation.note else ""
+    return f"`{symbol.path}` is deprecated{since}{removal}.{note}"
+
+
+RULE = Rule("deprecated", "warning", "A property that Blender is about to drop", _check)

@@ -1,0 +1,27 @@
+"""A script that is too large to be checked to its end.
+
+Scripts of up to 2,000,000 characters are read, and each gets a share of work by its length. What was read is checked;
+of the rest nothing is said.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_check.findings import Finding, Span
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.script import Script
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    if not script.analysis.complete:
+        read = "a part" if script.tree.body else "nothing"
+        message = f"The script is too large ({len(script.code):,} characters): {read} of it was checked."
+        yield Finding(RULE.id, "warning", Span(1, 0, 1, 0), message)
+
+
+RULE = Rule("incomplete", "warning", "A script that was not checked to its end", _check)

@@ -1,0 +1,54 @@
+"""An argument that a call needs and does not have.
+
+Blender refuses the call with a TypeError before anything is done.
+
+```python
+bpy.data.meshes.new()  # reported: name
+bpy.data.meshes.new("Table")
+```
+
+Not reported: calls that unpack (``f(*args)``, ``f(**options)``), and modules whose reference shows one of several
+signatures of a function.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_check.calls import calls
+from kb_check.findings import Finding
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.script import Script
+
+# Modules whose reference shows one of several signatures, and what bpy.props fills in when a class is registered.
+_SEVERAL_SIGNATURES = ("aud.", "freestyle.", "bpy.props.")
+# Parameters that may be left out though the reference shows no default: a turn or a scale of a 2 × 2 matrix has no
+# axis, and Vector.Range counts as Python's range does.
+_MAY_BE_LEFT_OUT = {
+    "mathutils.Matrix.Rotation": {"axis"}, "mathutils.Matrix.Scale": {"axis"}, "mathutils.Vector.Range": {"stop"},
+}  # fmt: skip
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for call in calls(script):
+        callee = call.callee
+        path = callee.symbol.path
+        unreliable = path.startswith(_SEVERAL_SIGNATURES) or (callee.is_open and not callee.is_rna)
+        if callee.symbol.kind != "function" or call.has_unpacking or unreliable:
+            continue
+        given = call.given | _MAY_BE_LEFT_OUT.get(path, set())
+        missing = [p.name for p in callee.parameters if p.required and p.name not in given]
+        if missing:
+            names = ", ".join(f"`{name}`" for name in missing)
+            yield Finding(
+                RULE.id, "error", script.span(call.node),
+                f"`{path}` also needs {names}: `{callee.symbol.signature}`.",
+                f"{path}({missing[0]})",
+            )  # fmt: skip
+
+
+RULE = Rule("missing-argument", "error", "An argument that a call needs and does not have", _check)

@@ -1,0 +1,117 @@
+"""An operator that runs only in an area of a window, in a script that gives it none.
+
+Run with ``--background``, from a terminal or by an agent, a script has no area: the operator's poll fails, a
+RuntimeError. The same script may run from Blender's text editor.
+
+```python
+bpy.ops.view3d.view_selected()  # reported
+with bpy.context.temp_override(window=window, area=area, region=region):
+    bpy.ops.view3d.view_selected()
+```
+
+Not reported: what stands inside ``temp_override`` or in a class, which Blender's interface calls; add-ons (a file with
+a function ``register``) and modules that only define; scripts that ask for ``bpy.app.background`` or for the operator's
+``poll``.
+
+Which operators those are was found by asking each whether it can run, with objects of all types in all modes, in every
+area and in none (``kb_check/inside/operator_areas.py``).
+"""
+
+from __future__ import annotations
+
+import ast
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import Builtin, Mapping, Operator
+from kb_check.calls import calls
+from kb_check.findings import Finding
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+    from collections.abc import Mapping as Table
+
+    from kb_check.script import Script
+
+TABLE = Path(__file__).parent.parent / "operator_areas.txt"
+_BACKGROUND = "bpy.app.background"
+
+
+@cache
+def operator_areas() -> Table[str, str]:
+    """Operator (``mesh.loopcut``) → the types of areas in which it runs, or ``any``."""
+    lines = (line.partition(": ") for line in TABLE.read_text(encoding="utf-8").splitlines())
+    return {name: areas for areas, _, names in lines for name in names.split()}
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    table = operator_areas()
+    found = [
+        (call, areas) for call in calls(script)
+        if (areas := table.get(call.callee.symbol.path.removeprefix("bpy.ops.")))
+    ]  # fmt: skip
+    if not found or _is_ready(script):
+        return
+    asked = set(_asked(script))
+    given = list(_given_context(script))
+    for call, areas in found:
+        path = call.callee.symbol.path
+        first = script.type_of(call.node.args[0]) if call.node.args else None
+        line = call.node.lineno
+        if path in asked or isinstance(first, Mapping) or any(start <= line <= end for start, end in given):
+            continue
+        where = "an area" if areas == "any" else f"an area of type {areas.replace(' ', ' or ')}"
+        yield Finding(
+            RULE.id, "note", script.span(call.node),
+            f"`{path}` runs in {where}, which a Blender without a window (`--background`) does not have: give it one "
+            "with `bpy.context.temp_override(window=…, area=…, region=…)`.",
+            path, ("bpy.types.Context.temp_override",),
+        )  # fmt: skip
+
+
+def _is_ready(script: Script) -> bool:
+    """Whether a script is an add-on or a module, which others call, or knows that there may be no window."""
+    body = script.tree.body
+    if any(isinstance(node, ast.FunctionDef) and node.name == "register" for node in body) or not _runs(body):
+        return True
+    return any(_BACKGROUND in row.symbols for row in script.resolutions("attribute", "name"))
+
+
+def _runs(body: Sequence[ast.stmt]) -> bool:
+    """Whether a module calls anything when it is run."""
+    return any(
+        isinstance(getattr(node, "value", None), ast.Call)
+        or (isinstance(node, (ast.If, ast.For, ast.With, ast.Try, ast.While)) and _runs(node.body))
+        for node in body
+    )
+
+
+def _asked(script: Script) -> Iterator[str]:
+    """The operators whose poll a script asks for."""
+    for kind in script.analysis.types.values():
+        if isinstance(kind, Builtin) and kind.name == "operator.poll" and isinstance(kind.receiver, Operator):
+            yield kind.receiver.path
+
+
+def _given_context(script: Script) -> Iterator[tuple[int, int]]:
+    """The lines that have a context of their own: classes, and what stands inside ``temp_override``."""
+    for node in script.nodes:
+        if isinstance(node, ast.ClassDef) or (
+            isinstance(node, (ast.With, ast.AsyncWith)) and _overrides(node)
+        ):
+            yield node.lineno, node.end_lineno or node.lineno
+
+
+def _overrides(node: ast.With | ast.AsyncWith) -> bool:
+    calls_made = (item.context_expr for item in node.items)
+    return any(
+        isinstance(call, ast.Call)
+        and isinstance(call.func, ast.Attribute)
+        and call.func.attr == "temp_override"
+        for call in calls_made
+    )
+
+
+RULE = Rule("needs-context", "note", "An operator that runs only in an area of a window", _check)

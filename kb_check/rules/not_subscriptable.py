@@ -1,0 +1,219 @@
+"""Items of what cannot be asked for them so.
+
+Brackets on one of Blender's structures mean its custom properties, so the key is a text; on a collection they take an
+index, a slice without a step, or a name if its items have names.
+
+```python
+scene[0]  # reported
+mesh.vertices["Corner"]  # reported: vertices have no names
+bpy.data.objects[::2]  # reported: bpy.data.objects[:][::2]
+bpy.types["Object"]  # reported: getattr(bpy.types, "Object")
+```
+
+Reported too: an index beyond a vector, or beyond the sockets of a node whose sockets are always the same. Not reported:
+names that may be there or not.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.api import ARRAY, GROUPS
+from kb_build.flow.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN
+from kb_build.flow.types import (
+    NONE,
+    Collection,
+    Instance,
+    Module,
+    NoneValue,
+    Operator,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    members,
+)
+from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.literals import number
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.script import Script
+
+_LENGTHS = {"mathutils.Color": 3, "mathutils.Euler": 3, "mathutils.Quaternion": 4}
+_VECTORS = frozenset({*_LENGTHS, "mathutils.Vector", "mathutils.Matrix"})
+_NO_STEPS = frozenset({"bmesh.types.BMVertSeq", "bmesh.types.BMEdgeSeq", "bmesh.types.BMFaceSeq",
+                       "bmesh.types.BMLoopSeq", "bmesh.types.BMElemSeq"})  # fmt: skip
+# Classes whose instances are found by another property than ``name``.
+_NAMED_OTHERWISE = (
+    "Operator", "Macro", "WorkSpaceTool", "KeyMapItem", "EnumPropertyItem", "ActionSlot", "KeyingSet", "Addon",
+    "PathCompare",
+)  # fmt: skip
+# Structures that refuse custom properties of any name, as tried.
+_NO_CUSTOM_PROPERTIES = frozenset(
+    {"bpy.types.Context", "bpy.types.BlendData", "bpy.types.RenderSettings", "bpy.types.MeshVertex"}
+)
+_T = "bpy.types."
+# What the classes of collections have, which annotations name: ``nodes: bpy.types.Nodes``.
+_OF_COLLECTIONS = frozenset(
+    {"active", "add", "append", "clear", "create", "get", "link", "load", "new", "remove"}
+)
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for node in script.nodes:
+        if not isinstance(node, ast.Subscript) or (kind := script.type_of(node.value)) is None:
+            continue
+        told = {_refusal(script, node, member) for member in members(kind) if member != NONE}
+        if len(told) == 1 and (message := told.pop()) and not _is_guarded(script, node):
+            yield Finding(RULE.id, "error", script.span(node), message, "", (), _fix(script, node))
+
+
+def _is_guarded(script: Script, node: ast.Subscript) -> bool:
+    """Whether the script is ready for a refusal, or the type of the owner is a guess."""
+    for part in ast.walk(node):
+        row = script.analysis.resolutions.get(part)
+        if row is not None and (row.guarded or not row.sure or (row.possible and not row.symbols)):
+            return True
+    return False
+
+
+def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:
+    """What is wrong with asking a value of one type for these items; empty if nothing surely is."""
+    key = None if isinstance(node.slice, ast.Slice) else script.type_of(node.slice)
+    step = node.slice.step if isinstance(node.slice, ast.Slice) else None
+    match kind:
+        case Module() | Operator():
+            return f"`{kind.path}` is no collection: its members are attributes."
+        case Plain(kind="int" | "float" | "bool"):
+            return f"{_subject(script, node)} is one {kind.kind}: it has no items."
+        case Collection():
+            return _of_collection(script, kind, key, step)
+        case Instance() if kind.sure:
+            return _of_instance(script, node, kind, key, step)
+        case Sequence(kind="list") if (
+            _is_text(key) and script.analysis.resolutions.get(node.value) is not None
+        ):
+            return f"{_subject(script, node)} is a list: its items are found by index, not by name."
+        case _:
+            return ""
+
+
+def _of_collection(script: Script, kind: Collection, key: Type | None, step: ast.expr | None) -> str:
+    path = kind.path or kind.container
+    if step is not None and kind.container != GROUPS:
+        return f"A slice of `{path}` takes no step: slice the list that `[:]` makes of it."
+    if isinstance(key, (NoneValue, Instance)) or (isinstance(key, Plain) and key.kind == "float"):
+        return f"`{path}` is asked by index or by name, not by {_described(key)}."
+    element = kind.element
+    if (
+        _is_text(key)
+        and isinstance(element, Instance)
+        and kind.container != GROUPS
+        and _is_nameless(script, element)
+    ):
+        return f"The items of `{path}` have no names: they are found by index."
+    side = path.rpartition(".")[2]
+    if side in {"inputs", "outputs"} and isinstance(kind.owner, Instance) and kind.owner.sure:
+        return _beyond_sockets(script, kind.owner, side, key)
+    return ""
+
+
+def _beyond_sockets(script: Script, owner: Instance, side: str, key: Type | None) -> str:
+    index = key.value if isinstance(key, Plain) and key.kind == "int" else None
+    count = len(list(script.api.sockets(owner.cls, side)))
+    fixed = owner.cls.rpartition("Node")[2] not in NODES_WITH_SOCKETS_OF_THEIR_OWN
+    if not isinstance(index, int) or not count or not fixed or -count <= index < count:
+        return ""
+    return f"`{owner.cls}` has {count} {side}: there is no `{side}[{index}]`."
+
+
+def _is_nameless(script: Script, element: Instance) -> bool:
+    api = script.api
+    if not api.is_class(element.cls) or not element.cls.startswith(_T) or api.member(element.cls, "name"):
+        return False
+    return not any(api.descends(element.cls, f"{_T}{cls}") for cls in (*_NAMED_OTHERWISE, "PropertyGroup"))
+
+
+def _of_instance(  # noqa: PLR0911 - one return a class
+    script: Script, node: ast.Subscript, kind: Instance, key: Type | None, step: ast.expr | None
+) -> str:
+    cls = kind.cls
+    if cls in _VECTORS or cls in _NO_STEPS or cls == ARRAY:
+        if step is not None:
+            return f"A slice of {_subject(script, node)} takes no step."
+        if (
+            _is_text(key)
+            or isinstance(key, (NoneValue, Tuple))
+            or (isinstance(key, Plain) and key.kind == "float")
+        ):
+            return f"The items of {_subject(script, node)} are found by index, not by {_described(key)}."
+        index = number(script, node.slice)
+        length = _length(script, node, cls)
+        if isinstance(index, int) and length and not -length <= index < length:
+            return f"{_subject(script, node)} has {length} items: there is no item {index}."
+        return ""
+    if not cls.startswith(_T) or cls.startswith(f"{_T}bpy_") or not script.api.is_class(cls):
+        return ""
+    if _is_open(script, cls):
+        return ""
+    if isinstance(node.slice, ast.Slice) or isinstance(key, NoneValue) or (
+        isinstance(key, Plain) and key.kind in {"int", "float", "bool"}
+    ):  # fmt: skip
+        return f"Brackets on an instance of `{cls}` mean its custom properties, which have names."
+    if cls in _NO_CUSTOM_PROPERTIES and _is_text(key):
+        return f"An instance of `{cls}` has no custom properties: its members are attributes."
+    return ""
+
+
+def _is_open(script: Script, cls: str) -> bool:
+    """Whether a value that is declared so may be a collection."""
+    return cls in {f"{_T}bpy_struct", f"{_T}AnyType"} or not _OF_COLLECTIONS.isdisjoint(script.api.own(cls))
+
+
+def _length(script: Script, node: ast.Subscript, cls: str) -> int:
+    """How many items a vector or an array has; 0 if that is not known."""
+    if cls in _LENGTHS:
+        return _LENGTHS[cls]
+    row = script.analysis.resolutions.get(node.value)
+    symbol = script.api.symbols.symbol(row.symbols[0]) if row is not None and len(row.symbols) == 1 else None
+    return symbol.array[0] if symbol and symbol.array and cls != "mathutils.Matrix" else 0
+
+
+def _is_text(key: Type | None) -> bool:
+    return isinstance(key, Plain) and key.kind == "str"
+
+
+def _described(key: Type | None) -> str:
+    match key:
+        case Plain(kind="str"):
+            return "name"
+        case Plain():
+            return f"a {key.kind}"
+        case Instance():
+            return f"an instance of `{key.cls}`"
+        case Tuple():
+            return "several at once"
+        case _:
+            return "None"
+
+
+def _subject(script: Script, node: ast.Subscript) -> str:
+    row = script.analysis.resolutions.get(node.value)
+    return f"`{row.symbols[0]}`" if row is not None and row.symbols else f"`{ast.unparse(node.value)[:60]}`"
+
+
+def _fix(script: Script, node: ast.Subscript) -> Fix | None:
+    """``collection[::2]`` → ``collection[:][::2]``."""
+    kind = script.type_of(node.value)
+    if isinstance(kind, Collection) and isinstance(node.slice, ast.Slice) and isinstance(node.ctx, ast.Load):
+        end = script.span(node.value)
+        where = Span(end.end_line, end.end_column, end.end_line, end.end_column)
+        return Fix("Make a list of it first", (Edit(where, "[:]"),), sure=True)
+    return None
+
+
+RULE = Rule("not-subscriptable", "error", "Items of what cannot be asked for them so", _check)

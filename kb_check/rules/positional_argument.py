@@ -1,0 +1,142 @@
+"""An argument without its name where Blender takes none.
+
+Functions of Blender's classes take by place only what they need; since 2.80 the rest is given by name. Operators take
+by place nothing but an execution context and whether to push an undo step; until 3.6 a dictionary before them set the
+context, since 4.0 that is ``with bpy.context.temp_override(...)``.
+
+```python
+ob.shape_key_add("Smile")  # reported
+ob.shape_key_add(name="Smile")
+bpy.ops.object.select_all("SELECT")  # reported
+bpy.ops.object.select_all(action="SELECT")
+```
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import Mapping, NoneValue, Plain, Sequence, Tuple, literal_text
+from kb_check.calls import calls
+from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Parameter
+    from kb_check.calls import CallSite
+    from kb_check.script import Script
+
+_EXECUTION_CONTEXTS = frozenset(
+    f"{how}_{where}"
+    for how in ("INVOKE", "EXEC")
+    for where in ("DEFAULT", "REGION_WIN", "REGION_CHANNELS", "REGION_PREVIEW", "AREA", "SCREEN")
+)
+_NO_DICTIONARY_SINCE = (4, 0)
+# Where the reference shows one of several signatures, or leaves an argument out.
+_UNRELIABLE = ("aud.", "freestyle.", "bpy.types.Gizmo.target_set_value")
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for call in calls(script):
+        if call.callee.symbol.kind == "operator":
+            yield from _of_operator(script, call)
+        elif call.callee.symbol.kind == "function":
+            yield from _of_function(script, call)
+
+
+def _of_operator(script: Script, call: CallSite) -> Iterator[Finding]:
+    path = call.callee.symbol.path
+    arguments = call.node.args
+    if not arguments or any(isinstance(argument, ast.Starred) for argument in arguments):
+        return
+    dictionary = isinstance(script.type_of(arguments[0]), Mapping)
+    if dictionary and script.version < _NO_DICTIONARY_SINCE:
+        arguments = arguments[1:]
+        dictionary = False
+    if dictionary:
+        yield Finding(
+            RULE.id, "error", script.span(arguments[0]),
+            f"`{path}` takes no dictionary with a context since Blender 4.0: call it inside "
+            "`with bpy.context.temp_override(...)`.",
+            path, ("bpy.types.Context.temp_override",),
+        )  # fmt: skip
+        return
+    for place, argument in enumerate(arguments):
+        if place < 2 and not _is_wrong(script, argument):
+            continue
+        parameter = _meant(call, script, argument) if len(arguments) == 1 else None
+        yield Finding(
+            RULE.id, "error", script.span(argument),
+            f"`{path}` takes no properties by place, only an execution context (`'INVOKE_DEFAULT'`, "
+            f"`'EXEC_DEFAULT'` …) and whether to push an undo step: {_advice(parameter)}",
+            path, (f"{path}({parameter.name})",) if parameter else (),
+            _naming(script, argument, parameter, sure=True) if parameter else None,
+        )  # fmt: skip
+        return
+
+
+def _is_wrong(script: Script, argument: ast.expr) -> bool:
+    """Whether an argument is surely neither an execution context nor a truth value."""
+    kind = script.type_of(argument)
+    text = literal_text(kind) if kind is not None else None
+    if text is not None:
+        return text not in _EXECUTION_CONTEXTS
+    return isinstance(kind, (NoneValue, Tuple, Sequence)) or (
+        isinstance(kind, Plain) and kind.kind == "float"
+    )
+
+
+def _meant(call: CallSite, script: Script, argument: ast.expr) -> Parameter | None:
+    """The one parameter that a text can be a value of."""
+    kind = script.type_of(argument)
+    text = literal_text(kind) if kind is not None else None
+    taking = [p for p in call.callee.parameters if any(item.identifier == text for item in p.enum_items)]
+    free = [parameter for parameter in taking if parameter.name not in call.given]
+    return free[0] if len(free) == 1 else None
+
+
+def _advice(parameter: Parameter | None) -> str:
+    return f"write `{parameter.name}=`." if parameter else "give them by name."
+
+
+def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
+    callee = call.callee
+    path = callee.symbol.path
+    arguments = call.node.args
+    starred = any(isinstance(argument, ast.Starred) for argument in arguments)
+    if starred or callee.is_open or path.startswith(_UNRELIABLE) or len(arguments) <= len(callee.positional):
+        return
+    if not callee.parameters and callee.symbol.signature != f"{callee.symbol.name}()":
+        return
+    extra = arguments[len(callee.positional)]
+    by_name = {parameter.name: parameter for parameter in callee.parameters}
+    rest = [name for name in callee.keyword_only if name not in call.given]
+    if not rest:
+        count = len(callee.positional)
+        takes = "no arguments" if not callee.parameters else f"{count} argument{'s' * (count != 1)} by place"
+        yield Finding(
+            RULE.id, "error", script.span(extra),
+            f"`{path}` takes {takes}: `{callee.symbol.signature}`.", path,
+        )  # fmt: skip
+        return
+    # RNA's functions took all by place once: the order is that of the parameters.
+    parameter = by_name[rest[0]] if callee.is_rna and len(arguments) == len(callee.positional) + 1 else None
+    yield Finding(
+        RULE.id, "error", script.span(extra),
+        f"`{path}` takes {', '.join(f'`{name}`' for name in rest[:8])} by name only: "
+        + (f"write `{parameter.name}=`." if parameter else f"`{callee.symbol.signature}`."),
+        path, (f"{path}({rest[0]})",),
+        _naming(script, extra, parameter, sure=True) if parameter else None,
+    )  # fmt: skip
+
+
+def _naming(script: Script, argument: ast.expr, parameter: Parameter, *, sure: bool) -> Fix:
+    start = script.span(argument)
+    where = Span(start.line, start.column, start.line, start.column)
+    return Fix(f"Write {parameter.name}=", (Edit(where, f"{parameter.name}="),), sure=sure)
+
+
+RULE = Rule("positional-argument", "error", "An argument without its name where Blender takes none", _check)

@@ -1,0 +1,141 @@
+"""An assignment to what cannot be assigned.
+
+Blender refuses it with an AttributeError. What a read-only property leads to can often be changed all the same:
+``ob.location[0] = 1``, ``mesh.vertices[0].co = (0, 0, 1)``.
+
+```python
+ob.type = "MESH"  # reported
+ob.data.vertices = []  # reported: mesh.from_pydata(...)
+bpy.context.object = ob  # reported: bpy.context.view_layer.objects.active = ob
+```
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import TYPE_CHECKING
+
+from kb_check.findings import Edit, Finding, Fix
+from kb_check.given import is_of_instance
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.flow.types import Resolution
+    from kb_build.records import Symbol
+    from kb_check.script import Script
+
+_CONTEXT = "bpy.types.Context"
+_ACTIVE = "bpy.types.LayerObjects.active"
+# What to do instead: property → (paths, advice).
+_INSTEAD = {
+    f"{_CONTEXT}.object": ((_ACTIVE,), "Assign to `bpy.context.view_layer.objects.active`."),
+    f"{_CONTEXT}.active_object": ((_ACTIVE,), "Assign to `bpy.context.view_layer.objects.active`."),
+    f"{_CONTEXT}.selected_objects": (
+        ("bpy.types.Object.select_set",), "Call `select_set(True)` on each object.",
+    ),
+    f"{_CONTEXT}.scene": (("bpy.types.Window.scene",), "Assign to `bpy.context.window.scene`."),
+    f"{_CONTEXT}.view_layer": (("bpy.types.Window.view_layer",), "Assign to `bpy.context.window.view_layer`."),
+    f"{_CONTEXT}.mode": (("bpy.ops.object.mode_set",), "Call `bpy.ops.object.mode_set(mode=...)`."),
+    "bpy.types.Object.mode": (("bpy.ops.object.mode_set",), "Call `bpy.ops.object.mode_set(mode=...)`."),
+    "bpy.types.Scene.objects": (
+        ("bpy.types.CollectionObjects.link",), "Call `scene.collection.objects.link(...)`.",
+    ),
+    "bpy.types.Mesh.vertices": (("bpy.types.Mesh.from_pydata",), "Fill a mesh with `from_pydata(...)`."),
+    "bpy.types.Mesh.polygons": (("bpy.types.Mesh.from_pydata",), "Fill a mesh with `from_pydata(...)`."),
+    "bpy.types.Mesh.edges": (("bpy.types.Mesh.from_pydata",), "Fill a mesh with `from_pydata(...)`."),
+}  # fmt: skip
+
+
+# Members that cannot be assigned to, of classes whose reference does not say so: tried one by one on instances.
+_REFUSED = {
+    "mathutils.": frozenset({
+        "col", "is_frozen", "is_identity", "is_negative", "is_orthogonal", "is_orthogonal_axis_vectors", "is_valid",
+        "is_wrapped", "length_squared", "median_scale", "owner", "row",
+    }),
+    "bmesh.types.": frozenset({
+        "edges", "faces", "is_boundary", "is_contiguous", "is_convex", "is_manifold", "is_singleton", "is_valid",
+        "is_wire", "is_wrapped", "layers", "link_edges", "link_faces", "link_loop_next", "link_loop_prev",
+        "link_loop_radial_next", "link_loop_radial_prev", "link_loops", "loops", "verts",
+    }),
+}  # fmt: skip
+_LAYERS = "bmesh.types.BMLayerAccess"
+_SWIZZLE = re.compile(r"[xyzw]{2,4}")
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for row in script.resolutions("store", "attribute"):
+        if row.kind == "attribute" and not _is_deleted(row):
+            continue
+        paths = row.symbols or row.possible
+        if not paths or not row.sure or row.guarded or (row.missing and not row.possible):
+            continue
+        symbols = [script.api.symbols.symbol(path) for path in paths]
+        if not is_of_instance(script, row.node):
+            continue
+        if row.kind == "store" and script.package.has(_owners(symbols), row.value):
+            continue
+        if all(symbol is not None and _is_refused(row, symbol) for symbol in symbols):
+            first = symbols[0]
+            assert first is not None
+            yield _finding(script, row, first)
+
+
+def _owners(symbols: list[Symbol | None]) -> list[str]:
+    return [symbol.owner for symbol in symbols if symbol]
+
+
+def _is_deleted(row: Resolution) -> bool:
+    return isinstance(row.statement, ast.Delete) and row.node in row.statement.targets
+
+
+def _is_refused(row: Resolution, symbol: Symbol) -> bool:
+    """Whether an instance refuses another value for a member."""
+    if symbol.owner.startswith("bpy.types."):
+        return symbol.kind == "function" or "readonly" in symbol.flags or row.kind == "attribute"
+    refused = next(
+        (names for module, names in _REFUSED.items() if symbol.owner.startswith(module)), frozenset()
+    )
+    repeated = _SWIZZLE.fullmatch(symbol.name) and len(set(symbol.name)) < len(symbol.name)
+    return symbol.name in refused or bool(repeated) or symbol.owner.startswith(_LAYERS)
+
+
+def _finding(script: Script, row: Resolution, symbol: Symbol) -> Finding:
+    span = script.name_span(row.node)
+    if row.kind == "attribute" and symbol.kind != "function":
+        return Finding(RULE.id, "error", span, f"`{symbol.path}` cannot be deleted.", symbol.path)
+    if symbol.kind == "function":
+        return Finding(
+            RULE.id, "error", span,
+            f"`{symbol.path}` is a function: it is called, not assigned to.", symbol.path,
+            (symbol.path,), _calling(script, row, symbol),
+        )  # fmt: skip
+    instead, advice = _INSTEAD.get(symbol.path, ((), ""))
+    told = f"`{symbol.path}` is read-only. {advice}".rstrip()
+    if not advice and symbol.type == "collection" and symbol.collection:
+        functions = [name for name in ("new", "add", "link", "remove", "clear")
+                     if script.api.member(f"bpy.types.{symbol.collection}", name)]  # fmt: skip
+        if functions:
+            told += f" It has {', '.join(f'`{name}()`' for name in functions)}."
+    return Finding(RULE.id, "error", span, told, symbol.path, instead)
+
+
+def _calling(script: Script, row: Resolution, symbol: Symbol) -> Fix | None:
+    """``ob.select_set = True`` → ``ob.select_set(True)``."""
+    statement = row.statement
+    if (
+        not isinstance(statement, ast.Assign)
+        or len(statement.targets) != 1
+        or row.node is not statement.targets[0]
+    ):
+        return None
+    required = [parameter for parameter in symbol.parameters if parameter.required]
+    if len(required) != 1 or not symbol.name.endswith("_set"):
+        return None
+    target, value = script.text(script.span(row.node)), script.text(script.span(statement.value))
+    return Fix("Call it", (Edit(script.span(statement), f"{target}({value})"),), sure=True)
+
+
+RULE = Rule("read-only", "error", "An assignment to what cannot be assigned", _check)

@@ -1,0 +1,112 @@
+"""A value of a type that a property or a parameter does not take.
+
+Blender refuses it with a TypeError, or with a ValueError for a sequence of the wrong length. It makes floats of ints
+and takes any sequence of numbers for a vector; it takes no float for an int, no number for a name and no text for a
+pointer, and a colour has as many parts as its property says.
+
+```python
+scene.frame_end = 250.0  # reported
+material.diffuse_color = (1, 0, 0)  # reported: 4 floats
+scene.camera = bpy.data.cameras.new("Camera")  # reported: an Object that has it
+```
+
+Not reported: values whose type is not sure, and what may be None only at times.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.flow.types import Instance, Plain
+from kb_check.conversions import misfit
+from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.given import given_values
+from kb_check.literals import items
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.conversions import Misfit
+    from kb_check.given import Taker
+    from kb_check.script import Script
+
+_COLORS = frozenset({"COLOR", "COLOR_GAMMA"})
+_OBJECT = f"{T}Object"
+_DATA = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
+_LONGEST_INT = 2**31
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for given in given_values(script):
+        found = [misfit(script, taker, given.node) for taker in given.takers]
+        if not found or not all(found):
+            continue
+        wrong, taker = found[0], given.takers[0]
+        assert wrong is not None
+        yield Finding(
+            RULE.id, "error", script.span(given.node),
+            f"`{taker.path}` takes {wrong.takes}, not {wrong.given}.{_advice(script, taker, given.node)}",
+            taker.path, (), _fix(script, taker, wrong, given.node) if len(given.takers) == 1 else None,
+        )  # fmt: skip
+
+
+def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
+    """What may be meant where an object's data, or a node, stand in the place of the object or of a socket."""
+    kind = script.type_of(node)
+    if not isinstance(kind, Instance):
+        return ""
+    if taker.target == _OBJECT and any(script.api.descends(kind.cls, cls) for cls in _DATA):
+        return " Give the object that has it: `bpy.data.objects.new(name, data)` makes one."
+    if taker.target == f"{T}NodeSocket" and script.api.descends(kind.cls, f"{T}Node"):
+        return " Give one of its sockets: `node.outputs[...]`, `node.inputs[...]`."
+    return ""
+
+
+def _fix(script: Script, taker: Taker, wrong: Misfit, node: ast.expr) -> Fix | None:
+    """The edit that leaves no doubt: a whole number without its point, a colour with or without alpha, a set of one."""
+    if isinstance(node, ast.Constant):
+        return _literal_fix(script, taker, node)
+    parts = items(script, node)
+    if parts is None or not isinstance(node, (ast.Tuple, ast.List)):
+        return None
+    if taker.kind == "boolean" and not wrong.length:
+        bits = [part for part in parts if isinstance(part, ast.Constant) and part.value in {0, 1}]
+        edits = tuple(Edit(script.span(part), str(bool(part.value))) for part in bits)
+        return Fix("Write truth values", edits, sure=True) if len(bits) == len(parts) else None
+    return _color_fix(script, taker, wrong, parts) if taker.subtype in _COLORS else None
+
+
+def _literal_fix(script: Script, taker: Taker, node: ast.Constant) -> Fix | None:
+    span, value = script.span(node), node.value
+    if taker.kind == "int" and isinstance(value, float) and value.is_integer() and abs(value) < _LONGEST_INT:
+        return Fix("Write an int", (Edit(span, str(int(value))),), sure=True)
+    if taker.kind == "set" and isinstance(value, str):
+        return Fix("Write a set", (Edit(span, f"{{{script.text(span)}}}"),), sure=True)
+    return None
+
+
+def _color_fix(script: Script, taker: Taker, wrong: Misfit, parts: list[ast.expr]) -> Fix | None:
+    if not all(_is_number(script, part) for part in parts):
+        return None
+    before = script.span(parts[2]) if len(parts) > 2 else None
+    if before is None:
+        return None
+    if (wrong.length, taker.sizes) == (3, (4,)):
+        end = Span(before.end_line, before.end_column, before.end_line, before.end_column)
+        return Fix("Add alpha", (Edit(end, ", 1.0"),), sure=True)
+    if (wrong.length, taker.sizes) == (4, (3,)):
+        last = script.span(parts[3])
+        cut = Span(before.end_line, before.end_column, last.end_line, last.end_column)
+        return Fix("Leave out alpha", (Edit(cut, ""),), sure=True)
+    return None
+
+
+def _is_number(script: Script, node: ast.expr) -> bool:
+    kind = script.type_of(node)
+    return isinstance(kind, Plain) and kind.kind in {"int", "float"}
+
+
+RULE = Rule("wrong-type", "error", "A value of a type that is not taken", _check)

@@ -1,0 +1,220 @@
+"""What a script or an add-on needs of several Blenders: what breaks where, and the range that it runs in."""
+
+from __future__ import annotations
+
+from collections import Counter
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from kb_check.configuration import Configuration
+from kb_check.project import Project
+from kb_check.run import Run
+from kb_serve.bases import Bases
+from kb_serve.reader import BaseReader
+from simworlds.errors import UserError
+from simworlds.releases import minor_of
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator, Sequence
+    from pathlib import Path
+
+    from kb_check.cache import ResultCache
+    from kb_check.findings import Finding
+    from kb_check.project import Group
+    from kb_check.report import Report
+
+_NARROWEST = 6  # columns of a version in the table
+
+
+@dataclass(frozen=True, slots=True)
+class Break:
+    """Something that some Blenders refuse: the finding of the first of them, in a file."""
+
+    path: str
+    finding: Finding
+    versions: tuple[str, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class VersionsReport:
+    """The reports of one set of files for several Blenders, oldest first."""
+
+    reports: tuple[Report, ...]
+
+    @property
+    def versions(self) -> list[str]:
+        """The Blenders that were asked about: ``4.2``."""
+        return [report.blender for report in self.reports]
+
+    @property
+    def faults(self) -> list[str]:
+        """Sentences about what could not be checked."""
+        return list(dict.fromkeys(fault for report in self.reports for fault in report.faults))
+
+    def errors(self) -> dict[str, dict[str, int]]:
+        """File → version → number of errors."""
+        found: dict[str, dict[str, int]] = {}
+        for report in self.reports:
+            for file in report.files:
+                count = sum(finding.severity == "error" for finding in file.findings)
+                found.setdefault(file.name, {})[report.blender] = count
+        return found
+
+    def breaks(self) -> list[Break]:
+        """Everything that is an error in one version at least, by file and line."""
+        first: dict[tuple[Any, ...], tuple[str, Finding]] = {}
+        where: dict[tuple[Any, ...], list[str]] = {}
+        for report in self.reports:
+            for file, finding in report.findings:
+                if finding.severity == "error":
+                    key = file.name, finding.span, finding.rule
+                    first.setdefault(key, (file.name, finding))
+                    where.setdefault(key, []).append(report.blender)
+        rows = [Break(name, finding, tuple(where[key])) for key, (name, finding) in first.items()]
+        return sorted(rows, key=lambda row: (row.path, row.finding.span.line, row.finding.span.column))
+
+    def totals(self) -> dict[str, int]:
+        """Version → number of errors in all files."""
+        found = Counter(dict.fromkeys(self.versions, 0))
+        for row in self.breaks():
+            found.update(row.versions)
+        return dict(found)
+
+    def runs_in(self) -> list[str]:
+        """The versions in which nothing is wrong."""
+        return [version for version, count in self.totals().items() if not count]
+
+    def verdict(self) -> str:
+        """One sentence: the versions that it runs in, and where it breaks in the others."""
+        good = self.runs_in()
+        if len(good) == len(self.versions):
+            return f"Nothing found that breaks in {_listed(good)}."
+        parts = [
+            f"Nothing found that breaks in {_ranges(good, self.versions)}" if good else "Breaks everywhere"
+        ]
+        parts += [
+            f"breaks in {version}: {count} error{'' if count == 1 else 's'}, first at {self._first(version)}"
+            for version, count in self.totals().items()
+            if count
+        ]
+        return "; ".join(parts) + "."
+
+    def _first(self, version: str) -> str:
+        row = next(row for row in self.breaks() if version in row.versions)
+        return f"{row.path}:{row.finding.span.line}"
+
+    # Ways to write it.
+
+    def text_lines(self) -> Iterator[str]:
+        """A table of files and versions, what breaks where, and the verdict."""
+        errors = self.errors()
+        affected = {name: counts for name, counts in errors.items() if any(counts.values())}
+        width = max((len(name) for name in affected), default=4)
+        columns = {version: max(_NARROWEST, len(version) + 1) for version in self.versions}
+        if affected:
+            heads = "".join(version.rjust(columns[version]) for version in self.versions)
+            yield f"{'file'.ljust(width)}{heads}"
+            for name, counts in sorted(affected.items()):
+                cells = "".join(
+                    str(counts.get(version, "?") or "–").rjust(columns[version]) for version in self.versions
+                )
+                yield f"{name.ljust(width)}{cells}"
+            yield ""
+            for row in self.breaks():
+                span = row.finding.span
+                where = _ranges(row.versions, self.versions)
+                place = f"{row.path}:{span.line}:{span.column + 1}"
+                yield f"{place}: in {where}: [{row.finding.rule}] {' '.join(row.finding.message.split())}"
+            yield ""
+        clean = len(errors) - len(affected)
+        if affected and clean:
+            yield f"{clean:,} more file{'' if clean == 1 else 's'} without errors."
+        yield self.verdict()
+
+    def as_json(self) -> dict[str, Any]:
+        """The same for programs. Lines and columns count from 1."""
+        return {
+            "format": 1,
+            "versions": self.versions,
+            "runs_in": self.runs_in(),
+            "errors": self.totals(),
+            "files": [{"path": name, "errors": counts} for name, counts in sorted(self.errors().items())],
+            "unchecked": self.faults,
+            "breaks": [
+                {
+                    "path": row.path,
+                    "line": row.finding.span.line,
+                    "column": row.finding.span.column + 1,
+                    "rule": row.finding.rule,
+                    "symbol": row.finding.symbol,
+                    "instead": list(row.finding.instead),
+                    "message": row.finding.message,
+                    "versions": list(row.versions),
+                }
+                for row in self.breaks()
+            ],
+        }
+
+
+def check_versions(  # noqa: PLR0913 - what is checked, and how
+    groups: Sequence[Group],
+    versions: Iterable[str],
+    home: Path,
+    *,
+    configuration: Configuration | None = None,
+    faults: Sequence[str] = (),
+    cache: ResultCache | None = None,
+    jobs: int = 1,
+    progress: Callable[[int, int], None] = lambda _done, _total: None,
+) -> VersionsReport:
+    """Checks files for several Blenders, whose bases are in ``home``.
+
+    ``progress`` gets the number of files that are done and that there are, for each version anew. Raises UserError
+    for what is no version and where there is no base.
+    """
+    bases = base_files(versions, home)
+    reports: list[Report] = []
+    for version, file in bases.items():
+        reader = BaseReader(file)
+        fingerprint = reader.meta["fingerprint"]
+        reader.close()
+        project = Project(file, fingerprint, cache, jobs)
+        run = Run(project, configuration or Configuration(), list(groups), list(faults))
+        reports.append(run.check(version, progress))
+    return VersionsReport(tuple(reports))
+
+
+def base_files(versions: Iterable[str], home: Path) -> dict[str, Path]:
+    """Version → base, oldest first. Raises UserError where there is none."""
+    wanted = {minor_of(version) for version in versions if version.strip()}
+    if not wanted:
+        raise UserError("Give at least one version of Blender, as 4.2,5.1.")
+    bases = Bases(home)
+    try:
+        return {version: bases.file(version) for version in sorted(wanted, key=_numbers)}
+    finally:
+        bases.close()
+
+
+def _numbers(version: str) -> tuple[int, ...]:
+    return tuple(int(part) for part in version.split("."))
+
+
+def _ranges(chosen: Sequence[str], known: Sequence[str]) -> str:
+    """``4.2 to 4.5 and 5.2`` for some of the known versions."""
+    runs: list[list[str]] = []
+    for version in known:
+        if version not in chosen:
+            runs.append([])
+        elif runs and runs[-1]:
+            runs[-1].append(version)
+        else:
+            runs.append([version])
+    texts: list[str] = []
+    for run in filter(None, runs):
+        texts += [f"{run[0]} to {run[-1]}"] if len(run) > 2 else run
+    return _listed(texts)
+
+
+def _listed(texts: Sequence[str]) -> str:
+    return texts[0] if len(texts) == 1 else f"{', '.join(texts[:-1])} and {texts[-1]}"

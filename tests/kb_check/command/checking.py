@@ -1,0 +1,71 @@
+"""``simworlds check`` as a process of its own."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any
+
+from places import REPO
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+SIMWORLDS = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')", "check"]
+WRONG = 'import bpy\nbpy.context.object.draw_type = "WIRE"\n'
+RIGHT = 'import bpy\nbpy.context.object.display_type = "WIRE"\n'
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """What a command printed, and how it ended."""
+
+    code: int
+    out: str
+    err: str
+
+    @property
+    def json(self) -> Any:
+        return json.loads(self.out)
+
+    @property
+    def places(self) -> list[tuple[str, int, str]]:
+        """(path, line, rule) of each finding, of a run with --json."""
+        return [(row["path"], row["line"], row["rule"]) for row in self.json["findings"]]
+
+
+@dataclass(frozen=True)
+class Command:
+    """Runs in ``folder``, with the knowledge bases of ``home``."""
+
+    home: Path
+    folder: Path
+
+    def write(self, name: str, content: str | bytes) -> Path:
+        path = self.folder / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.write_bytes(content.encode() if isinstance(content, str) else content)
+        return path
+
+    def read(self, name: str) -> bytes:
+        return (self.folder / name).read_bytes()
+
+    @property
+    def environment(self) -> dict[str, str]:
+        kept = {name: value for name, value in os.environ.items() if not name.startswith("SIMWORLDS_")}
+        more = {"SIMWORLDS_HOME": str(self.home), "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error"}
+        return {**kept, **more}
+
+    def __call__(self, *arguments: str, given: bytes = b"", folder: Path | None = None) -> Outcome:
+        done = subprocess.run(
+            [*SIMWORLDS, *arguments],
+            input=given,
+            capture_output=True,
+            cwd=folder or self.folder,
+            env=self.environment,
+            check=False,
+        )
+        return Outcome(done.returncode, done.stdout.decode(), done.stderr.decode())

@@ -1,0 +1,98 @@
+"""Which files are checked, and which of them belong together."""
+
+from __future__ import annotations
+
+import os
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_check.files import find_files
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+
+@pytest.fixture
+def tree(tmp_path: Path) -> Path:
+    for name in (
+        "pyproject.toml", "loose.py", "note.ipynb", "text.txt", ".hidden.py", ".git/a.py", "env/pyvenv.cfg", "env/a.py",
+        "node_modules/a.py", "__pycache__/a.py", "addon/__init__.py", "addon/a.py", "addon/sub/b.py", "addon/c.ipynb",
+        "extension/blender_manifest.toml", "extension/d.py", "scripts/e.py", "scripts/f.py",
+    ):  # fmt: skip
+        path = tmp_path / name
+        path.parent.mkdir(parents=True, exist_ok=True)
+        path.touch()
+    return tmp_path
+
+
+def groups(top: Path, *paths: str, exclude: tuple[str, ...] = ()) -> list[list[str]]:
+    """The groups as sorted names; those that are only read stand in brackets."""
+    found = find_files([top / path for path in paths or (".",)], exclude, top)
+    return sorted(
+        sorted(
+            name if file.wanted else f"({name})"
+            for file in group.files
+            for name in [os.path.relpath(file.path, top)]
+        )
+        for group in found.groups
+    )
+
+
+def test_packages_are_groups_and_loose_files_stand_alone(tree: Path) -> None:
+    assert groups(tree) == [
+        ["addon/__init__.py", "addon/a.py", "addon/sub/b.py"],
+        ["addon/c.ipynb"],
+        ["extension/d.py"],
+        ["loose.py"],
+        ["note.ipynb"],
+        ["scripts/e.py"],
+        ["scripts/f.py"],
+    ]
+
+
+def test_of_one_file_of_a_package_the_others_are_read_too(tree: Path) -> None:
+    assert groups(tree, "addon/sub/b.py") == [["(addon/__init__.py)", "(addon/a.py)", "addon/sub/b.py"]]
+
+
+def test_what_is_named_twice_is_checked_once(tree: Path) -> None:
+    (tree / "link.py").symlink_to("loose.py")
+    assert groups(tree, "loose.py", "./loose.py", "link.py") == [["loose.py"]]
+
+
+def test_links_to_folders_are_not_followed(tree: Path) -> None:
+    (tree / "scripts" / "up").symlink_to("..")
+    (tree / "self").symlink_to("self")
+    assert len(groups(tree)) == 7
+    assert find_files([tree / "self"]).faults == [f"There is no file or folder {tree / 'self'}."]
+
+
+def test_links_that_are_named_are_followed(tree: Path) -> None:
+    (tree / "there").symlink_to("scripts")
+    assert groups(tree, "there") == [["there/e.py"], ["there/f.py"]]
+
+
+@pytest.mark.parametrize("pattern", ["scripts", "scripts/", "scripts/*", "*/?.py", "[ef].py"])
+def test_patterns_leave_files_out(tree: Path, pattern: str) -> None:
+    assert not [group for group in groups(tree, exclude=(pattern,)) if "scripts/e.py" in group]
+    assert groups(tree, "scripts/e.py", exclude=(pattern,)) == []
+
+
+def test_a_package_does_not_reach_beyond_its_project(tree: Path) -> None:
+    (tree.parent / "__init__.py").touch()
+    assert ["loose.py"] in groups(tree)
+
+
+def test_what_has_nothing_to_check_is_said(tree: Path) -> None:
+    (tree / "empty").mkdir()
+    found = find_files([tree / "empty", tree / "nothing", tree / "loose.py"])
+    assert found.faults == [
+        f"There are no Python files in {tree / 'empty'}.",
+        f"There is no file or folder {tree / 'nothing'}.",
+    ]
+    assert len(found.groups) == 1
+
+
+def test_pipes_are_not_read(tree: Path) -> None:
+    os.mkfifo(tree / "scripts" / "pipe.py")
+    assert groups(tree, "scripts") == [["scripts/e.py"], ["scripts/f.py"]]

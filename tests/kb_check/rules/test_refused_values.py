@@ -1,0 +1,284 @@
+"""Rules about values and arguments report what Blender refuses, and nothing that it takes."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+    from kb_check.findings import Finding
+
+SETTING = """\
+import bpy, bmesh, mathutils, math
+from mathutils import Vector, Color, Euler, Quaternion, Matrix
+scene = bpy.context.scene
+mesh = bpy.data.meshes.new("mesh")
+mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+ob = bpy.data.objects.new("object", mesh)
+scene.collection.objects.link(ob)
+material = bpy.data.materials.new("material")
+light = bpy.data.lights.new("light", 'AREA')
+camera = bpy.data.cameras.new("camera")
+tree = bpy.data.node_groups.new("tree", 'ShaderNodeTree')
+principled = tree.nodes.new('ShaderNodeBsdfPrincipled')
+mapping = tree.nodes.new('ShaderNodeMapping')
+bm = bmesh.new()
+bm.from_mesh(mesh)
+bm.verts.ensure_lookup_table()
+image = bpy.data.images.new("image", 2, 2)
+cloth = ob.modifiers.new("Cloth", 'CLOTH')
+group = ob.vertex_groups.new(name="group")
+""".splitlines()
+
+REFUSED = {
+    "wrong-type": """\
+scene.frame_end = 250.0
+scene.render.fps = 60 / 2
+scene.render.filepath = None
+scene.camera = camera
+scene.camera = "Camera"
+scene.world = material
+scene.gravity = 9.81
+light.energy = "100"
+light.energy = None
+light.color = (1, 1, 1, 1)
+light.color = "#ff0000"
+material.diffuse_color = (1, 0, 0)
+material.diffuse_color = Color((1, 0, 0))
+ob.location = (1, 2)
+ob.location = 5
+ob.location = (1, 2, "3")
+ob.location = (1, None, 3)
+ob.rotation_quaternion = Euler((0, 0, 0))
+ob.rotation_euler = Quaternion()
+ob.matrix_world = (1, 2, 3)
+ob.matrix_world = Euler()
+ob.hide_render = "yes"
+ob.hide_render = 2
+ob.hide_render = 0.5
+ob.pass_index = "1"
+ob.name = 5
+ob.display_type = 3
+ob.rotation_mode = None
+ob.active_material = "material"
+ob.parent = scene
+ob.data.name = 5
+ob.location.x = "1"
+ob.lock_location = (1, 0, 1)
+scene.tool_settings.snap_elements = 'VERTEX'
+scene.tool_settings.snap_elements = ['VERTEX']
+scene.tool_settings.mesh_select_mode = (0, 1, 0)
+principled.inputs["Base Color"].default_value = (1, 0, 0)
+principled.inputs["Base Color"].default_value = 1
+principled.inputs["Roughness"].default_value = (1, 0, 0)
+principled.inputs["Roughness"].default_value = "0.5"
+mapping.inputs["Location"].default_value = (1, 2)
+cloth.settings.quality = 5.5
+scene.collection.objects.link(mesh)
+scene.collection.objects.link("object")
+bpy.data.objects.new("name", "mesh")
+bpy.data.objects.new(5, None)
+bpy.data.meshes.remove(ob)
+bpy.data.images.new("name", 512.0, 512)
+tree.links.new(principled, mapping)
+tree.nodes.active = 1
+ob.modifiers.new("Cloth", 1)
+ob.keyframe_insert(5)
+ob.keyframe_insert("location", frame="5")
+ob.select_set('SELECT')
+ob.ray_cast((0, 0), (0, 0, 1))
+group.add([0], "1", 'ADD')
+scene.frame_set(1.5)
+bpy.ops.mesh.primitive_cube_add(size="1")
+bpy.ops.mesh.primitive_cube_add(size=None)
+bpy.ops.mesh.primitive_cube_add(location=(1, 2))
+bpy.ops.mesh.primitive_cube_add(align=1)
+bpy.ops.mesh.primitive_circle_add(vertices=8.0)
+""",
+    "read-only": """\
+ob.type = 'MESH'
+ob.users = 5
+ob.bound_box = None
+ob.vertex_groups = None
+mesh.vertices = []
+mesh.vertices[0].index = 5
+bpy.data.objects = []
+bpy.context.object = ob
+bpy.context.active_object = ob
+bpy.context.selected_objects = []
+bpy.context.mode = 'EDIT'
+ob.select_set = True
+ob.location.length_squared = 1
+ob.location.xx = (1, 1)
+ob.matrix_world.is_negative = True
+bm.verts = []
+bm.verts[0].link_edges = []
+del ob.name
+scene.render.image_settings = None
+""",
+    "missing-argument": """\
+bpy.data.meshes.new()
+bpy.data.objects.new("object")
+bpy.data.images.new("image", width=5)
+ob.modifiers.new("Cloth")
+ob.select_set()
+ob.keyframe_insert()
+tree.links.new(principled.outputs[0])
+tree.nodes.new()
+scene.frame_set()
+mesh.from_pydata([], [])
+mathutils.geometry.intersect_line_line((0, 0, 0), (1, 0, 0))
+ob.location.lerp((0, 0, 0))
+""",
+    "positional-argument": """\
+ob.shape_key_add("Smile")
+ob.select_set(True, None)
+ob.copy(1)
+ob.modifiers.new("Cloth", 'CLOTH', 3)
+ob.keyframe_insert("location", 0, 5)
+mesh.from_pydata([], [], [], True, 3)
+bpy.data.images.new("image", 2, 2, True)
+bpy.ops.object.select_all('SELECT')
+bpy.ops.mesh.primitive_cube_add((1, 2, 3))
+bpy.ops.mesh.primitive_cube_add(2.0)
+bpy.ops.mesh.primitive_cube_add('EXEC_DEFAULT', True, 1)
+bpy.ops.mesh.primitive_cube_add({"active_object": ob})
+""",
+    "not-subscriptable": """\
+scene[0]
+ob[None]
+mesh.vertices["a"]
+mesh.vertices[1.5]
+bpy.data.objects[::2]
+bpy.data.objects[None]
+bpy.data.objects[ob]
+bpy.types["Object"]
+bpy.ops["mesh"]
+bpy.context["object"]
+scene.render["engine"]
+scene.frame_current[0]
+bpy.context.selected_objects["Cube"]
+bpy.context.window_manager.windows["a"]
+tree.links["a"]
+principled.inputs[99]
+ob.location["x"]
+ob.location[3]
+ob.location[::2]
+ob.rotation_euler[3]
+ob.color[4]
+ob.color["r"]
+ob.matrix_world[0, 1]
+bm.verts["a"]
+bm.verts[::2]
+""",
+}
+TAKEN = """\
+scene.frame_end = 250
+scene.render.fps = int(60 / 2)
+scene.render.fps = round(23.976)
+scene.render.fps = sum([12, 12])
+scene.render.fps = 60 // 2
+scene.render.fps = 2 ** 4
+scene.camera = None
+scene.gravity = [0, 0, -9]
+light.energy = 100
+light.energy = True
+light.color = Vector((1, 1, 1))
+light.color = {0.1, 0.2, 0.3}
+material.diffuse_color = [1, 0, 0, 1]
+material.diffuse_color = Quaternion()
+ob.location = range(3)
+ob.location = Color((1, 0, 0))
+ob.location.x = True
+ob.location[0] = 1
+ob.location[-1] = 1
+ob.location[0:2] = (1, 2)
+ob.matrix_world = Matrix()
+ob.matrix_world = ((1, 0, 0, 0), (0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
+ob.matrix_world.translation.x = 1
+ob.hide_render = 1
+ob.pass_index = True
+ob.parent = None
+ob.data = bpy.data.meshes.new("other")
+ob.data.vertices
+ob.lock_location = (True, False, True)
+ob.lock_location[0] = 1
+ob.name = "5" * 3
+ob.name = 3 * "5"
+scene.tool_settings.snap_elements = {'VERTEX'}
+image.pixels = [0] * 16
+image.pixels = (0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0)
+principled.inputs["Base Color"].default_value = (1, 0, 0, 1)
+principled.inputs["Roughness"].default_value = 1
+principled.inputs[5]
+tree.links.new(principled.outputs[0], mapping.inputs[0])
+bpy.data.objects.new("name", None)
+bpy.data.objects[-1]
+bpy.data.objects[:][::2]
+bpy.data.objects[True]
+scene["property"] = 5
+scene["property"]
+mesh.vertices
+bm.verts[-1]
+bm.verts[0].co = (0, 0, 1)
+bm.verts[0].co.x = 1
+ob.vertex_groups.new(name="other")
+group.add(range(0), 1, 'ADD')
+ob.select_set(1)
+ob.select_set(True, view_layer=None)
+ob.shape_key_add(name="Smile", from_mix=1)
+ob.keyframe_insert("location", index=0, frame=5)
+scene.frame_set(5, subframe=0.5)
+bpy.ops.mesh.primitive_cube_add(size=2, location=(0, 0, 1))
+bpy.ops.mesh.primitive_cube_add('EXEC_DEFAULT', True)
+bpy.ops.mesh.primitive_circle_add('EXEC_DEFAULT', vertices=8)
+Matrix.Rotation(1, 2)
+Matrix.Rotation(math.pi, 4, 'X')
+Vector.Range(4)
+bmesh.ops.translate(bm, vec=(0, 0, 1), verts=bm.verts)
+""".splitlines()
+
+
+def found_at(checker: Checker, lines: list[str], first: int) -> dict[int, list[Finding]]:
+    """Place of a statement → the errors that are found in it; the setting, which is right, comes before."""
+    found: dict[int, list[Finding]] = {}
+    for finding in checker.check("\n".join(lines), rules=list(REFUSED)):
+        found.setdefault(finding.span.line - 1 - first, []).append(finding)
+    return found
+
+
+def test_what_blender_takes_is_no_finding(rule_checker: Checker, tmp_path: Path) -> None:
+    answers = run_statements(tmp_path, [*SETTING, *TAKEN])
+    assert [line for line, (error, *_) in zip([*SETTING, *TAKEN], answers, strict=True) if error] == []
+    assert found_at(rule_checker, [*SETTING, *TAKEN], len(SETTING)) == {}
+
+
+@pytest.mark.parametrize("rule", REFUSED)
+def test_what_blender_refuses_is_found(rule_checker: Checker, tmp_path: Path, rule: str) -> None:
+    lines = REFUSED[rule].splitlines()
+    answers = run_statements(tmp_path, [*SETTING, *lines])[len(SETTING) :]
+    assert [line for line, (error, *_) in zip(lines, answers, strict=True) if not error] == []
+    found = found_at(rule_checker, [*SETTING, *lines], len(SETTING))
+    assert [line for place, line in enumerate(lines) if place not in found] == []
+    assert {finding.rule for findings in found.values() for finding in findings} == {rule}
+
+
+@pytest.mark.parametrize("rule", REFUSED)
+def test_sure_fixes_run(rule_checker: Checker, tmp_path: Path, rule: str) -> None:
+    lines = REFUSED[rule].splitlines()
+    fixed: list[str] = []
+    for place, findings in found_at(rule_checker, [*SETTING, *lines], len(SETTING)).items():
+        fixes = [finding.fix for finding in findings if finding.fix and finding.fix.sure]
+        text = lines[place]
+        edits = [edit for fix in fixes for edit in fix.edits]
+        for edit in sorted(edits, key=lambda edit: edit.span.column, reverse=True):
+            text = text[: edit.span.column] + edit.text + text[edit.span.end_column :]
+        if edits:
+            fixed.append(text)
+    answers = run_statements(tmp_path, [*SETTING, *fixed])[len(SETTING) :]
+    assert [(line, error) for line, (error, *_) in zip(fixed, answers, strict=True) if error] == []
