@@ -3,7 +3,8 @@
 ``python -m measurements --only check_blender`` checks every script that the base's Blender brings, and those of each
 other version from 4.2 on whose base lies beside it. A finding is true if ``broken_in_blender.toml`` has a row for it
 and Blender, when it runs the row's code, says what the row says; a comparison that never holds if Blender's own
-enumeration lacks the value. Every other error is counted as false. Warnings of other rules, and notes, are counted alone.
+enumeration lacks the value. Every other error is counted as false. Warnings of
+other rules, and notes, are counted alone.
 """
 
 from __future__ import annotations
@@ -100,9 +101,13 @@ def check_all(checker: Checker, folder: Path) -> Iterator[tuple[str, list[Findin
     """(path below the folder, findings, number of lines) of every script below Blender's folder of scripts."""
     for files in packages(folder):
         codes = {name: read_script(path) for name, path in files.items()}
-        for name, findings in checker.check_files(codes).items():
+        reads = checker.read_files(codes)
+        package = checker.package()
+        for read in reads.values():
+            package.add(read.analysis, read.may_register)
+        for name, read in reads.items():
             path = files[name].relative_to(folder).as_posix()
-            yield path, findings, codes[name].count("\n")
+            yield path, checker.check(read, package), codes[name].count("\n")
 
 
 def ask_blender(executable: str, codes: Iterable[str]) -> dict[str, str]:

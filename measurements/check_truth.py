@@ -146,9 +146,13 @@ def measure(setting: Setting) -> ReportPart:
     figures: list[TargetFigure] = []
     for name, each in found.items():
         suffix = "" if name == "unseen" else f"_{name}"
-        figures.append(TargetFigure(f"check_found{suffix}", each.found / max(1, each.errors), f"{each.errors} errors"))
         figures.append(
-            TargetFigure(f"check_right{suffix}", each.right / max(1, each.findings), f"{each.findings} findings")
+            TargetFigure(f"check_found{suffix}", each.found / max(1, each.errors), f"{each.errors} errors")
+        )
+        figures.append(
+            TargetFigure(
+                f"check_right{suffix}", each.right / max(1, each.findings), f"{each.findings} findings"
+            )
         )
     fixes = sum(each.fixes for each in found.values())
     if fixes:
@@ -157,5 +161,9 @@ def measure(setting: Setting) -> ReportPart:
     seen = found["seen"]
     data = {"missed": seen.missed, "wrong": seen.wrong}
     return ReportPart(
-        "check_truth", tuple(figures), (Table("Scripts from memory, and what Blender says to them", _HEADER, rows),), (), data
+        "check_truth",
+        tuple(figures),
+        (Table("Scripts from memory, and what Blender says to them", _HEADER, rows),),
+        (),
+        data,
     )

@@ -16,7 +16,15 @@ from pathlib import Path
 from typing import Any
 
 # Renders and bakes take minutes, and say nothing of the code; Blender is not to be ended.
-_LONG = ("render.render", "render.opengl", "bake", "bake_all", "bake_data", "quit_blender", "simulation_nodes_cache_bake")
+_LONG = (
+    "render.render",
+    "render.opengl",
+    "bake",
+    "bake_all",
+    "bake_data",
+    "quit_blender",
+    "simulation_nodes_cache_bake",
+)
 _COMPOUND = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
 
 
@@ -97,7 +105,11 @@ def main(path: str) -> None:
         frames = [f.lineno for f in traceback.extract_tb(error.__traceback__) if f.filename == path]
         inner = frames[-1] if frames else line
         # An error in a function that was not wrapped (a lambda) belongs to the line where it happens.
-        where = line if inner not in statements or line <= inner <= (statements[line].end_lineno or line) else inner
+        where = (
+            line
+            if inner not in statements or line <= inner <= (statements[line].end_lineno or line)
+            else inner
+        )
         say({"line": where, "type": type(error).__name__, "message": str(error)[:600]})
 
     tree.body = _Wrapped().body(tree.body)

@@ -104,7 +104,9 @@ def run(code: str, name: str) -> Truth:
     statements = {node.lineno: node for node in ast.walk(ast.parse(code)) if isinstance(node, ast.stmt)}
     bound = {node.id for node in ast.walk(ast.parse(code)) if isinstance(node, ast.Name)}
     errors = [
-        ScriptError(row["line"], row["type"], row["message"], kind_of(row, statements.get(row["line"]), bound))
+        ScriptError(
+            row["line"], row["type"], row["message"], kind_of(row, statements.get(row["line"]), bound)
+        )
         for row in rows
         if "type" in row
     ]
