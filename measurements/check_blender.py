@@ -1,9 +1,10 @@
 """Checks all scripts of Blender itself, which are right as a rule, and has Blender judge what is found there.
 
 ``python -m measurements --only check_blender`` checks every script that the base's Blender brings, and those of each
-other version whose base lies beside it. A finding is true if ``broken_in_blender.toml`` has a row for it and Blender,
-when it runs the row's code, says what the row says; a comparison that never holds if Blender's own enumeration lacks
-the value. Every other error is counted as false. Warnings of other rules, and notes, are counted alone.
+other version from 4.2 on whose base lies beside it. A finding is true if ``broken_in_blender.toml`` has a row for it
+and Blender, when it runs the row's code, says what the row says; a comparison that never holds if Blender's own
+enumeration lacks the value. Every other error is counted as false. Warnings of
+other rules, and notes, are counted alone.
 """
 
 from __future__ import annotations
@@ -32,6 +33,7 @@ if TYPE_CHECKING:
     from measurements.setting import Setting
 
 BROKEN = Path(__file__).with_name("broken_in_blender.toml")
+OLDEST = (4, 2)  # older Blenders bring hundreds of add-ons that nobody kept up
 _HEADER = (
     "Blender",
     "files",
@@ -76,7 +78,9 @@ class Broken:
 def broken_rows() -> list[Broken]:
     """The rows of ``broken_in_blender.toml``."""
     rows = tomllib.loads(BROKEN.read_text(encoding="utf-8"))["broken"]
-    return [Broken(**{**row, "scripts": tuple(row["scripts"])}) for row in rows]
+    return [
+        Broken(tuple(row["scripts"]), row["symbol"], row["code"], row["says"], row["why"]) for row in rows
+    ]
 
 
 def packages(folder: Path) -> Iterator[dict[str, Path]]:
@@ -97,9 +101,13 @@ def check_all(checker: Checker, folder: Path) -> Iterator[tuple[str, list[Findin
     """(path below the folder, findings, number of lines) of every script below Blender's folder of scripts."""
     for files in packages(folder):
         codes = {name: read_script(path) for name, path in files.items()}
-        for name, findings in checker.check_files(codes).items():
+        reads = checker.read_files(codes)
+        package = checker.package()
+        for read in reads.values():
+            package.add(read.analysis, read.may_register)
+        for name, read in reads.items():
             path = files[name].relative_to(folder).as_posix()
-            yield path, findings, codes[name].count("\n")
+            yield path, checker.check(read, package), codes[name].count("\n")
 
 
 def ask_blender(executable: str, codes: Iterable[str]) -> dict[str, str]:
@@ -109,7 +117,7 @@ def ask_blender(executable: str, codes: Iterable[str]) -> dict[str, str]:
     is_python = Path(executable).name.startswith("python")
     options = ["-c"] if is_python else ["--background", "--factory-startup", "--python-expr"]
     try:
-        done = subprocess.run(  # noqa: S603 - the base's own Blender
+        done = subprocess.run(
             [executable, *options, program], capture_output=True, text=True, timeout=_SECONDS, check=False
         )
     except (OSError, subprocess.TimeoutExpired):
@@ -135,7 +143,10 @@ def measure(setting: Setting) -> ReportPart:
     """Checks the base's Blender, and unless ``quick`` each other one in the same home."""
     bases = [setting.base]
     if not setting.quick:
-        bases += sorted(path for path in setting.base.parent.glob("blender-*.sqlite") if path != setting.base)
+        others = (
+            path for path in sorted(setting.base.parent.glob("blender-*.sqlite")) if path != setting.base
+        )
+        bases += [path for path in others if _minor(path) >= OLDEST]
     rows: list[tuple[str, ...]] = []
     skipped: list[str] = []
     false: list[str] = []
@@ -164,6 +175,10 @@ def measure(setting: Setting) -> ReportPart:
     )
     table = Table("Findings in Blender's own scripts", _HEADER, tuple(rows))
     return ReportPart("check_blender", figures if rows else (), (table,), tuple(skipped), {"false": false})
+
+
+def _minor(base: Path) -> tuple[int, ...]:
+    return tuple(int(part) for part in base.stem.removeprefix("blender-").split("."))
 
 
 def _judged(

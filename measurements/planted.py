@@ -182,7 +182,8 @@ class _Planter:
 
     def _keyword(self, place: Place) -> _Change | None:
         node = place.node
-        assert isinstance(node, ast.keyword) and node.arg
+        assert isinstance(node, ast.keyword)
+        assert node.arg
         names = {parameter.name for parameter in place.symbol.parameters}
         if any(name.startswith("*") for name in names):
             return None
@@ -248,7 +249,7 @@ class _Planter:
         text = f"{indent}{owner}.{symbol.name} = {value}\n"
         return _Change(at, at, text, statement.lineno)
 
-    def _argument(self, place: Place) -> _Change | None:
+    def _argument(self, place: Place) -> _Change | None:  # noqa: PLR0911 - one return a mistake
         if place.parameter is not None:
             return self._wrong_type(place, place.parameter)
         call = place.node

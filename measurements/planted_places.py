@@ -218,8 +218,8 @@ class Places:
                     if symbol:
                         yield Place("attribute", node, owner.path, symbol, statement)
                         if isinstance(node.ctx, ast.Store) and symbol.type == "enum":
-                            assigned = getattr(statement, "value", None)
-                            if isinstance(statement, ast.Assign) and _is_text(assigned):
+                            assigned = statement.value if isinstance(statement, ast.Assign) else None
+                            if isinstance(assigned, ast.Constant) and isinstance(assigned.value, str):
                                 yield Place("value", assigned, symbol.path, symbol, statement)
             case ast.Call(func=ast.Attribute(value=value, attr=name)):
                 owner = self._known(value, names)
@@ -293,11 +293,8 @@ def _bindings(body: list[ast.stmt]) -> dict[str, int]:
     found: dict[str, int] = {}
     for statement in body:
         for node in ast.walk(statement):
-            name = (
-                node.id
-                if isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)
-                else getattr(node, "name", None)
-            )
+            bound = isinstance(node, ast.Name) and not isinstance(node.ctx, ast.Load)
+            name = getattr(node, "id" if bound else "name", None)
             if isinstance(name, str):
                 found[name] = found.get(name, 0) + 1
     return found

@@ -236,7 +236,7 @@ class Expressions(Members):
 
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
-        if isinstance(test, Plain) and test.source == VERSION and isinstance(test.value, bool):
+        if isinstance(test, Plain) and isinstance(test.value, bool):
             return self.evaluate(node.body if test.value else node.orelse)  # the other is for other versions
         before = self.scope.state
         self.scope.state = before.copy()

@@ -13,8 +13,8 @@ OBJECT_DATA = {
     "POINTCLOUD": "PointCloud", "VOLUME": "Volume",
 }  # fmt: skip
 
-# A class that some versions call otherwise: name → (other name, the class that tells that it still means another thing).
-# Grease Pencil's data is GreasePencilv3 from 4.3 to 4.5; before, GreasePencil is the older kind, whose layers are GPencilLayer.
+# A class that some versions call otherwise: name → (other name, a class that tells that it means another thing yet).
+# Grease Pencil's data is GreasePencilv3 from 4.3 to 4.5; before, GreasePencil is the older kind, with GPencilLayers.
 RENAMED = {"GreasePencilv3": ("GreasePencil", "GPencilLayer")}
 
 # Classes whose name is not spelled like the value that makes them: base class → value → class.
@@ -42,7 +42,8 @@ DISCRIMINANTS = ("type", "bl_idname", "data_type", "effector_type")
 OPEN_CLASSES = (
     "bpy.types.PropertyGroup", "bpy.types.OperatorProperties", "bpy.types.AddonPreferences",
     "bpy.types.GizmoGroupProperties", "bpy.types.KeyConfigPreferences", "bpy.types.IDPropertyWrapPtr",
-    "bpy.types.AnyType", "bpy.types.UnknownType", "bpy.types.NodesModifierProperties", "bpy.types.Gizmo", "bpy.utils.previews.ImagePreviewCollection",
+    "bpy.types.AnyType", "bpy.types.UnknownType", "bpy.types.NodesModifierProperties",
+    "bpy.types.Gizmo", "bpy.utils.previews.ImagePreviewCollection",
 )  # fmt: skip
 # Classes that scripts derive their own from, which a value declared so may be.
 DERIVED_BY_SCRIPTS = frozenset(
@@ -71,13 +72,18 @@ SOMETIMES = {
     "bpy.ops.wm": ("console_toggle",),
     "bpy.types.Context": (
         "animated_id", "asset_shelf", "button_operator", "button_pointer", "button_prop", "collection", "constraint",
-        "exporter", "extension_repo", "freestyle_module", "gpencil_modifier", "grease_pencil", "id", "keyconfig", "keymap",
-        "material_slot", "modifier", "nla_strip", "point_cache", "pointcloud", "shaderfx", "socket", "state", "tool", "viewer_path",
+        "exporter", "extension_repo", "freestyle_module", "gpencil_modifier", "grease_pencil", "id", "keyconfig",
+        "keymap", "material_slot", "modifier", "nla_strip", "point_cache", "pointcloud", "shaderfx", "socket", "state",
+        "tool", "viewer_path",
     ),
 }  # fmt: skip
 
-# Values that work and are left out of a docstring: this function hands them on to gpu.types.GPUBatch, which has them.
-MORE_VALUES = {"gpu_extras.batch.batch_for_shader(type)": ("LINE_LOOP", "TRI_FAN")}
+# Values that work and are not listed: batch_for_shader hands its type on to gpu.types.GPUBatch, which has two more; the
+# display without a colour configuration is called NONE.
+MORE_VALUES = {
+    "gpu_extras.batch.batch_for_shader(type)": ("LINE_LOOP", "TRI_FAN"),
+    "bpy.types.ColorManagedDisplaySettings.display_device": ("NONE",),
+}
 
 # Functions that take keywords which their signatures do not list.
 OPEN_CALLS = frozenset({"bpy.types.Context.temp_override"})

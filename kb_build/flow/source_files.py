@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 class SourceFile:
     """One file: its module's dotted name, its text as a tree (None with an ``error``), and what was found in it.
 
-    ``keeps_annotations``: Python leaves its annotations unread. ``steps_left`` is what may still be spent on reading it, ``complete`` whether that was enough.
+    ``keeps_annotations``: Python leaves its annotations unread. ``steps_left`` is what may still be spent on reading
+    it, ``complete`` whether that was enough.
     """
 
     name: str

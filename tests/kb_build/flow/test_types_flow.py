@@ -214,7 +214,7 @@ def test_a_script_may_register_what_it_uses(api: Api) -> None:
         bpy.context.object.mine = 3
         bpy.ops.my.run('INVOKE_DEFAULT')
         bpy.types.VIEW3D_MT_object.append(lambda self, context: self.layout.operator("my.run"))
-        bpy.context.button_that_a_layout_set
+        bpy.context.button_operator
         bpy.data.node_groups["x"].nodes[0].inputs.new("MySocket", "x").value
     """
     assert not unknown(api, code)
@@ -302,3 +302,34 @@ def test_conventions_are_not_sure(api: Api) -> None:
     assert rows["hide_render"].symbols == ("bpy.types.Object.hide_render",)
     # A parameter that is used as an Object never is, is none.
     assert not resolved(api, "def f(ob):\n    ob.something_else\n    ob.location")
+
+
+def test_what_a_collection_lacks_is_told(api: Api) -> None:
+    assert unknown(
+        api, "import bpy\nbpy.context.scene.objects.no_such()\nbpy.context.scene.objects.keys()"
+    ) == {("Scene.objects", "no_such")}
+
+
+def test_a_node_that_is_found_by_its_name_has_its_sockets(api: Api) -> None:
+    code = "def f(tree):\n    tree.nodes.new('ShaderNodeMath').inputs['No']\n"
+    code += "import bpy\nbpy.data.materials[0].node_tree.nodes['Principled BSDF'].inputs['Nor']"
+    assert unknown(api, code) == {("ShaderNodeMath", "No"), ("ShaderNodeBsdfPrincipled", "Nor")}
+
+
+def test_the_context_has_what_layouts_give_it(api: Api) -> None:
+    code = "import bpy\nbpy.context.constraint\nbpy.context.no_such\nbpy.context.mine\n"
+    assert unknown(api, code) == {("Context", "no_such"), ("Context", "mine")}
+    code += "def f(layout):\n    layout.context_pointer_set('mine', bpy.context.object)"
+    assert ("bpy.types.Context", "mine") in read(api, code).registered
+
+
+def test_only_branches_for_other_versions_are_left_out(api: Api) -> None:
+    code = "import bpy\non = False\nif on:\n    bpy.context.scene.one\nif not bpy.app.version < (4, 0):\n    pass\n"
+    code += "else:\n    bpy.context.scene.two"
+    assert unknown(api, code) == {("Scene", "one")}
+
+
+def test_a_wrong_annotation_is_an_error_where_python_reads_it(api: Api) -> None:
+    code = "def f(x: bpy.types.NoSuch): pass"
+    assert unknown(api, f"import bpy\n{code}") == {("bpy.types", "NoSuch")}
+    assert not unknown(api, f"from __future__ import annotations\nimport bpy\n{code}")

@@ -1,0 +1,86 @@
+"""Rules about names that do not exist: what they report, what they must not, and the fixes."""
+
+from __future__ import annotations
+
+from textwrap import dedent
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_check.checker import Checker
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+
+@pytest.fixture(scope="module")
+def checker(base: Path) -> Iterator[Checker]:
+    with Checker(base) as opened:
+        yield opened
+
+
+def errors(checker: Checker, code: str) -> list[tuple[int, str]]:
+    return [(one.span.line, one.rule) for one in checker.check(dedent(code)) if one.severity == "error"]
+
+
+def test_a_comparison_that_never_holds_is_a_warning(checker: Checker) -> None:
+    code = (
+        "import bpy\nif bpy.context.mode == 'WEIGHT_PAINT':\n    pass\nif bpy.context.mode == '':\n    pass"
+    )
+    (finding,) = checker.check(code)
+    assert (finding.rule, finding.severity, finding.span.line) == ("never-true", "warning", 2)
+    assert "never matches" in finding.message
+    (finding,) = checker.check("import bpy\nbpy.context.scene.render.engine = 'CYCLE'")
+    assert (finding.rule, finding.severity) == ("unknown-value", "error")
+
+
+def test_a_socket_by_a_former_name_that_still_works_is_no_finding(checker: Checker) -> None:
+    code = """
+        import bpy
+        mix = bpy.data.materials[0].node_tree.nodes.new("ShaderNodeMixShader")
+        mix.inputs["Fac"].default_value = 1
+        mix.inputs["Facts"].default_value = 1
+    """
+    assert errors(checker, code) == [(5, "unknown-socket")]
+
+
+def test_a_renamed_socket_is_fixed_in_its_literal(checker: Checker) -> None:
+    code = "import bpy\nbpy.data.materials[0].node_tree.nodes['Principled BSDF'].inputs['Specular']"
+    (finding,) = (one for one in checker.check(code) if one.rule == "unknown-socket")
+    assert finding.fix is not None
+    assert finding.fix.edits[0].text == "'Specular IOR Level'"
+
+
+def test_old_code_about_collections_is_told_with_what_took_its_place(checker: Checker) -> None:
+    code = "import bpy\nbpy.context.scene.objects.link(bpy.context.object)\nbpy.context.object.data.use_auto_smooth"
+    first, second = (one for one in checker.check(code) if one.rule == "unknown-attribute")
+    assert first.symbol == "bpy.types.SceneObjects.link"
+    assert "bpy.types.CollectionObjects.link" in first.instead
+    assert second.symbol == "bpy.types.Mesh.use_auto_smooth"
+
+
+def test_operators_and_names_that_other_builds_have_are_no_finding(checker: Checker) -> None:
+    code = """
+        import bpy
+        class P(bpy.types.Panel):
+            def draw(self, context):
+                self.layout.operator("WM.save_mainfile")
+                self.layout.operator("wm.console_toggle")
+                self.layout.prop(context.preferences.inputs, "ndof_deadzone")
+                self.layout.operator("wm.no_such")
+    """
+    assert errors(checker, code) == [(8, "unknown-operator")]
+
+
+def test_files_of_a_package_know_what_the_others_register(checker: Checker) -> None:
+    files = {
+        "addon/__init__.py": "import bpy\nbpy.types.Scene.mine = bpy.props.IntProperty()",
+        "addon/ui.py": "import bpy\nbpy.context.scene.mine\nbpy.context.scene.yours",
+    }
+    reads = checker.read_files(files)
+    package = checker.package()
+    for read in reads.values():
+        package.add(read.analysis)
+    found = checker.check(reads["addon/ui.py"], package)
+    assert [one.symbol for one in found if one.severity == "error"] == ["bpy.types.Scene.yours"]
