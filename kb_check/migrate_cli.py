@@ -119,7 +119,7 @@ def _migrated(work: _Work, groups: Sequence[Group], choices: dict[str, Any]) -> 
     from kb_check.checker import Checker  # noqa: PLC0415 - not for --help
     from kb_check.migrate.place import version_of  # noqa: PLC0415
     from kb_check.migrate.plan import Migrator  # noqa: PLC0415
-    from kb_check.source import read_source  # noqa: PLC0415
+    from kb_check.reading import read_source  # noqa: PLC0415
     from kb_check.versions import base_files  # noqa: PLC0415
     from kb_serve.bases import Bases  # noqa: PLC0415
     from simworlds.releases import minor_of  # noqa: PLC0415
@@ -144,7 +144,9 @@ def _migrated(work: _Work, groups: Sequence[Group], choices: dict[str, Any]) -> 
                 elif sources[name].fault:
                     work.faults.append(f"{name} cannot be read: {sources[name].fault}.")
             can = {name for name in wanted if not sources[name].cells and not sources[name].fault}
-            beside = [source.text for name, source in sources.items() if name not in can and not source.cells]
+            beside = {
+                name: source.text for name, source in sources.items() if name not in can and not source.cells
+            }
             texts = {name: sources[name].text for name in sorted(can)}
             work.loaded.update({file.name: file for file in group if file.name in can})
             work.sources.update({name: sources[name] for name in can})

@@ -51,13 +51,13 @@ class Script:
         found = (row for row in self.analysis.resolutions.values() if not kinds or row.kind in kinds)
         yield from sorted(found, key=lambda row: (_start(row.node), row.kind))
 
-    def missing(self, *kinds: str, unsure: bool = False) -> Iterator[Resolution]:
-        """The parts that surely stand for nothing that this Blender, or the package, has; ``unsure`` ones on demand."""
+    def missing(self, *kinds: str) -> Iterator[Resolution]:
+        """The parts that surely stand for nothing that this Blender, or the package, has."""
         for row in self.resolutions(*kinds):
-            lacking = row.missing and not row.symbols and not row.possible and (row.sure or unsure)
+            lacking = row.missing and not row.symbols and not row.possible
             if row.kind == "value" and row.value in self._own_identifiers:
                 continue
-            if lacking and not row.guarded and not self.package.has(row.missing, row.value):
+            if lacking and row.sure and not row.guarded and not self.package.has(row.missing, row.value):
                 yield row
 
     @cached_property

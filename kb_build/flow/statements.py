@@ -157,7 +157,7 @@ class Statements(Calls):
         if isinstance(node.annotation, ast.Call):  # ``size: FloatProperty(...)``
             declared = self.evaluate(node.annotation)
         else:
-            declared = annotated(node.annotation, self.evaluate)
+            declared = self._annotated(node.annotation)
         if kind is UNKNOWN or kind is NONE or (isinstance(kind, Sequence) and kind.element is UNKNOWN):
             kind = declared
         self.bind_target(node.target, kind, node.value)
@@ -503,7 +503,7 @@ class Statements(Calls):
             function.returned = join(function.returned, NONE)
         if not isinstance(function.node, ast.Lambda) and function.node.returns is not None:
             self.statement = None
-            declared = annotated(function.node.returns, self.evaluate)
+            declared = self._annotated(function.node.returns)
             if declared is not UNKNOWN and function.returned in {UNKNOWN, None}:
                 function.returned = declared
 
@@ -537,7 +537,7 @@ class Statements(Calls):
     ) -> Type:
         """A parameter's type: annotated, declared by the API, seen in calls, its default's, or by its name."""
         if argument.annotation is not None:
-            kind = annotated(argument.annotation, self.evaluate)
+            kind = self._annotated(argument.annotation)
             if kind is not UNKNOWN:
                 received = function.received.get(argument.arg, UNKNOWN)
                 return join(kind, received) if self._contradicts(received, kind) else kind
@@ -554,6 +554,14 @@ class Statements(Calls):
         if fallback is not UNKNOWN and fallback is not NONE:
             return _general(fallback)
         return self._by_convention(function, argument.arg)
+
+    def _annotated(self, node: ast.expr) -> Type:
+        """What an annotation means; a wrong name in it is no error where Python does not read it."""
+        unread = self.file.keeps_annotations
+        self.tolerant += unread
+        kind = annotated(node, self.evaluate)
+        self.tolerant -= unread
+        return kind
 
     def _contradicts(self, received: Type, declared: Type) -> bool:
         """Whether calls pass an instance of another class than the annotation says, which nobody checks."""

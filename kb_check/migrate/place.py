@@ -20,9 +20,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _NEWEST = (99, 0)
-_KINDS = (
-    "attribute", "store", "text", "button", "name", "keyword", "value", "item", "call",
-)  # fmt: skip
 _ATOMS = (ast.Name, ast.Constant, ast.Attribute, ast.Call, ast.Subscript, ast.Tuple, ast.List, ast.Dict)
 
 
@@ -43,9 +40,7 @@ class Place:
     @cached_property
     def _gone(self) -> dict[str, list[Resolution]]:
         """Symbol that a finding is about → the parts of the script that name it."""
-        rows = {
-            self.script.name_span(row.node): row for row in self.script.resolutions(*_KINDS) if row.missing
-        }
+        rows = {self.script.name_span(row.node): row for row in self.script.resolutions() if row.missing}
         found: dict[str, list[Resolution]] = defaultdict(list)
         for finding in self.findings:
             if finding.symbol and (row := rows.get(finding.span)):

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import ast
+import os
 import warnings
 from dataclasses import dataclass, field, replace
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Span
@@ -55,12 +57,14 @@ class Migrator:
         self._keep = keep
         self._written_for = written_for
 
-    def migrate(self, files: Mapping[str, str], beside: Sequence[str] = ()) -> list[FileMigration]:
-        """Migrates the files of one add-on: name → text. ``beside`` are texts of its other files."""
+    def migrate(
+        self, files: Mapping[str, str], beside: Mapping[str, str] | None = None
+    ) -> list[FileMigration]:
+        """Migrates the files of one add-on: path → text. ``beside`` are its other files, which stay as they are."""
         states = {name: _State(FileMigration(name, code)) for name, code in files.items()}
         written_for = self._written_for
         for _ in range(_ROUNDS):
-            package = self._read(states.values(), beside)
+            package = self._read(states.values(), beside or {})
             for state in states.values():
                 state.findings = self._target.check(state.reading, package)
             if written_for is None:
@@ -73,14 +77,20 @@ class Migrator:
         self._check_kept(states.values())
         return [state.file for state in states.values()]
 
-    def _read(self, states: Iterable[_State], beside: Sequence[str]) -> Package:
+    def _read(self, states: Iterable[_State], beside: Mapping[str, str]) -> Package:
+        """Reads all files anew: what one says about types holds in the others, too."""
+        states = list(states)
+        texts = {**beside, **{state.file.name: state.text.code for state in states}}
+        paths = _paths_in_package(texts)
+        if len(texts) == 1:
+            reads = {path: self._target.read(texts[name]) for name, path in paths.items()}
+        else:
+            reads = self._target.read_files({path: texts[name] for name, path in paths.items()})
         package = self._target.package()
+        for read in reads.values():
+            package.add(read.analysis, read.may_register)
         for state in states:
-            if state.read is None:
-                state.read = self._target.read(state.text.code)
-            package.add(state.read.analysis, state.read.may_register)
-        for code in beside:
-            package.add(self._target.read(code).analysis)
+            state.read = reads[paths[state.file.name]]
         return package
 
     def _oldest(self, states: Iterable[_State]) -> Version:
@@ -124,7 +134,7 @@ class Migrator:
             _told(state.text, change, guarded=with_guard)
             for change in sorted(made, key=lambda one: one.edits[0].span.line)
         ]
-        state.text, state.read = new, None
+        state.text = new
         return True
 
     def _proposals(self, place: Place) -> Iterator[Change]:
@@ -186,7 +196,7 @@ class Migrator:
 
 @dataclass
 class _State:
-    """A file while it is migrated; ``read`` is None after a change."""
+    """A file while it is migrated."""
 
     file: FileMigration
     text: Text = field(init=False)
@@ -211,6 +221,13 @@ class _State:
         """The file as it was read last."""
         assert self.read is not None
         return self.read
+
+
+def _paths_in_package(names: Iterable[str]) -> dict[str, str]:
+    """Name of a file → its path from the folder of its package on, with slashes."""
+    whole = {name: PurePath(os.path.abspath(name)) for name in names}
+    top = PurePath(os.path.commonpath([path.parent for path in whole.values()])).parent
+    return {name: path.relative_to(top).as_posix() for name, path in whole.items()}
 
 
 def _version(checker: Checker) -> Version:

@@ -30,6 +30,7 @@ from kb_build.flow.types import (
     Operator,
     Plain,
     Sequence,
+    Tuple,
     Type,
     members,
 )
@@ -144,7 +145,11 @@ def _of_instance(  # noqa: PLR0911 - one return a class
     if cls in _VECTORS or cls in _NO_STEPS or cls == ARRAY:
         if step is not None:
             return f"A slice of {_subject(script, node)} takes no step."
-        if _is_text(key) or isinstance(key, NoneValue) or (isinstance(key, Plain) and key.kind == "float"):
+        if (
+            _is_text(key)
+            or isinstance(key, (NoneValue, Tuple))
+            or (isinstance(key, Plain) and key.kind == "float")
+        ):
             return f"The items of {_subject(script, node)} are found by index, not by {_described(key)}."
         index = number(script, node.slice)
         length = _length(script, node, cls)
@@ -190,6 +195,8 @@ def _described(key: Type | None) -> str:
             return f"a {key.kind}"
         case Instance():
             return f"an instance of `{key.cls}`"
+        case Tuple():
+            return "several at once"
         case _:
             return "None"
 

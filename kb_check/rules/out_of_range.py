@@ -82,7 +82,7 @@ def _is_clamped(script: Script, taker: Taker) -> bool:
     if taker.is_parameter:
         return taker.is_operator
     symbol = taker.symbol
-    return "readonly" not in symbol.flags and not any(
+    return not any(
         symbol.name in names and script.api.descends(symbol.owner, f"bpy.types.{cls}")
         for cls, names in _BOUND_OTHERWISE.items()
     )

@@ -1,7 +1,7 @@
 """A member of ``bpy.context`` that no editor gives.
 
 The context has what every editor has, and what some editors add to it (``selected_nodes`` in the node editor). A name
-that none of them gives is reported; so is one that older Blenders had, whatever editor it may be.
+that none of them gives is reported.
 
 ```python
 bpy.context.selected_meshes  # reported
@@ -26,11 +26,9 @@ _CONTEXT = "bpy.types.Context"
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for row in script.missing("attribute", "store", unsure=True):
+    for row in script.missing("attribute", "store"):
         if row.missing[0] == _CONTEXT:
-            lacking = script.names.member(_CONTEXT, row.value)
-            if row.sure or lacking.removed:
-                yield lacking_finding(script, RULE.id, row, lacking)
+            yield lacking_finding(script, RULE.id, row, script.names.member(_CONTEXT, row.value))
 
 
 RULE = Rule("unknown-context-member", "error", "A member that the context does not have", _check)

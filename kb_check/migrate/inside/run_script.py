@@ -91,7 +91,6 @@ def _object_facts(obj):
         "type": obj.type,
         "data": obj.data.name if obj.data else "",
         "place": [_rounded(row) for row in obj.matrix_world],
-        "size": _rounded(obj.dimensions),
         "parent": obj.parent.name if obj.parent else "",
         "selected": obj.select_get() if obj.name in bpy.context.view_layer.objects else False,
         "modifiers": [[modifier.name, modifier.type] for modifier in obj.modifiers],
@@ -102,6 +101,9 @@ def _object_facts(obj):
     if obj.type == "MESH":
         mesh = obj.data
         facts["mesh"] = [len(mesh.vertices), len(mesh.edges), len(mesh.polygons), len(mesh.uv_layers)]
+        # Not the object's dimensions: versions measure what a modifier makes differently.
+        corners = [[vertex.co[axis] for vertex in mesh.vertices] or [0.0] for axis in range(3)]
+        facts["size"] = _rounded([max(places) - min(places) for places in corners])
     elif obj.type == "LIGHT":
         facts["light"] = [obj.data.type, _rounded([obj.data.energy])[0]]
     elif obj.type == "CAMERA":

@@ -1,0 +1,197 @@
+"""Old code, and what becomes of it: one case or more for every rewrite."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from textwrap import dedent
+
+
+@dataclass(frozen=True)
+class Case:
+    """``old`` runs in the Blender ``written_for`` and not in this one; ``new`` is what a migration makes of it."""
+
+    rewrite: str
+    written_for: str
+    old: str
+    new: str
+
+    @property
+    def name(self) -> str:
+        return f"{self.rewrite}: {self.old.strip().splitlines()[-1].strip()}"
+
+
+HEAD = """\
+import bpy
+import math
+from mathutils import Matrix, Quaternion, Vector
+ob = bpy.context.object
+scene = bpy.context.scene
+"""
+
+
+def case(rewrite: str, written_for: str, old: str, new: str) -> Case:
+    return Case(rewrite, written_for, HEAD + dedent(old).lstrip("\n"), HEAD + dedent(new).lstrip("\n"))
+
+
+CASES = (
+    case("object-state", "2.79", "ob.select = True\n", "ob.select_set(True)\n"),
+    case("object-state", "2.79", "ob.hide = not ob.select\n", "ob.hide_set(not ob.select_get())\n"),
+    case("object-state", "2.79", "seen = [o for o in scene.objects if o.select]\n",
+         "seen = [o for o in scene.objects if o.select_get()]\n"),
+    case("view-layer", "2.79", "scene.objects.active = ob\n", "bpy.context.view_layer.objects.active = ob\n"),
+    case("view-layer", "2.79", "other = bpy.data.scenes.new('B')\nother.update()\n",
+         "other = bpy.data.scenes.new('B')\nother.view_layers[0].update()\n"),
+    case("scene-objects", "2.79", "new = bpy.data.objects.new('E', None)\nscene.objects.link(new)\n",
+         "new = bpy.data.objects.new('E', None)\nscene.collection.objects.link(new)\n"),
+    case("scene-objects", "2.79", "scene.objects.unlink(ob)\n",
+         """
+         for collection in tuple(ob.users_collection):
+             collection.objects.unlink(ob)
+         """),
+    case("moved-member", "2.79", "scene.cursor_location = (1, 2, 3)\n", "scene.cursor.location = (1, 2, 3)\n"),
+    case("moved-member", "2.79", "bpy.data.cameras[0].dof_distance = 3\n",
+         "bpy.data.cameras[0].dof.focus_distance = 3\n"),
+    case("moved-member", "2.79", "layer = scene.render.layers[0]\n", "layer = scene.view_layers[0]\n"),
+    case("keyword-value", "2.79", "bpy.ops.mesh.primitive_cube_add(radius=1.5, view_align=False)\n",
+         'bpy.ops.mesh.primitive_cube_add(size=3.0, align="WORLD")\n'),
+    case("keyword-value", "2.79", "r = 2\nbpy.ops.mesh.primitive_plane_add(radius=r + 1, layers=[True] * 20)\n",
+         "r = 2\nbpy.ops.mesh.primitive_plane_add(size=2 * (r + 1))\n"),
+    case("keyword-value", "2.79", "bpy.ops.transform.resize(value=(2, 2, 2), proportional='DISABLED')\n",
+         "bpy.ops.transform.resize(value=(2, 2, 2), use_proportional_edit=False)\n"),
+    case("matrix-product", "2.79", "place = ob.matrix_world * Vector((1, 2, 3))\n",
+         "place = ob.matrix_world @ Vector((1, 2, 3))\n"),
+    case("matrix-product", "2.79", "ob.select = True\nob.matrix_world *= Matrix.Rotation(1.0, 4, 'X')\n",
+         "ob.select_set(True)\nob.matrix_world @= Matrix.Rotation(1.0, 4, 'X')\n"),
+    case("opaque-color", "2.79", "m = bpy.data.materials.new('M')\nm.diffuse_color = (1, 0, 0)\n",
+         "m = bpy.data.materials.new('M')\nm.diffuse_color = (1, 0, 0, 1.0)\n"),
+    case("annotated-property", "2.79",
+         """
+         class Tool(bpy.types.Operator):
+             bl_idname = "object.tool"
+             bl_label = "Tool"
+             size = bpy.props.FloatProperty(default=1)
+         bpy.utils.register_class(Tool)
+         assert "size" in bpy.ops.object.tool.get_rna_type().properties
+         """,
+         """
+         class Tool(bpy.types.Operator):
+             bl_idname = "object.tool"
+             bl_label = "Tool"
+             size: bpy.props.FloatProperty(default=1)
+         bpy.utils.register_class(Tool)
+         assert "size" in bpy.ops.object.tool.get_rna_type().properties
+         """),
+    case("registered-module", "2.79",
+         """
+         class First(bpy.types.Operator):
+             bl_idname = "object.first"
+             bl_label = "First"
+         def register():
+             bpy.utils.register_module(__name__)
+         register()
+         """,
+         """
+         class First(bpy.types.Operator):
+             bl_idname = "object.first"
+             bl_label = "First"
+         def register():
+             for cls in (First,):
+                 bpy.utils.register_class(cls)
+         register()
+         """),
+    case("auto-smooth", "3.4", "ob.data.use_auto_smooth = True\nob.data.auto_smooth_angle = math.radians(40)\n",
+         "ob.data.set_sharp_from_angle(angle=math.radians(40))\n"),
+    case("auto-smooth", "3.4", "mesh = bpy.data.meshes.new('M')\nmesh.use_auto_smooth = True\n",
+         "mesh = bpy.data.meshes.new('M')\nmesh.set_sharp_from_angle(angle=0.523599)\n"),
+    case("needless-call", "3.4", "mesh = bpy.data.meshes.new('M')\nmesh.calc_normals()\nmesh.update()\n",
+         "mesh = bpy.data.meshes.new('M')\nmesh.update()\n"),
+    case("interface-socket", "3.4",
+         """
+         group = bpy.data.node_groups.new("G", "GeometryNodeTree")
+         group.inputs.new("NodeSocketFloat", "Height")
+         group.outputs.new(name="Mesh", type="NodeSocketGeometry")
+         """,
+         """
+         group = bpy.data.node_groups.new("G", "GeometryNodeTree")
+         group.interface.new_socket(name="Height", in_out="INPUT", socket_type="NodeSocketFloat")
+         group.interface.new_socket(name="Mesh", in_out="OUTPUT", socket_type="NodeSocketGeometry")
+         """),
+    case("context-override", "3.4", "bpy.ops.object.shade_smooth({'object': ob, 'selected_objects': [ob]})\n",
+         """
+         with bpy.context.temp_override(object=ob, selected_objects=[ob]):
+             bpy.ops.object.shade_smooth()
+         """),
+    case("context-override", "3.4",
+         """
+         if ob:
+             members = bpy.context.copy()
+             done = bpy.ops.object.modifier_add(members, 'EXEC_DEFAULT', type='BEVEL')
+         """,
+         """
+         if ob:
+             members = bpy.context.copy()
+             with bpy.context.temp_override(**members):
+                 done = bpy.ops.object.modifier_add('EXEC_DEFAULT', type='BEVEL')
+         """),
+    case("action-channels", "3.4",
+         """
+         ob.keyframe_insert("location", frame=1)
+         moved = ob.animation_data
+         for curve in moved.action.fcurves:
+             curve.extrapolation = "LINEAR"
+         """,
+         """
+         ob.keyframe_insert("location", frame=1)
+         moved = ob.animation_data
+         for curve in anim_utils.action_ensure_channelbag_for_slot(moved.action, moved.action_slot).fcurves:
+             curve.extrapolation = "LINEAR"
+         """),
+    case("action-channels", "3.4",
+         """
+         ob.keyframe_insert("location", frame=1)
+         action = ob.animation_data.action
+         count = len(action.fcurves)
+         """,
+         """
+         ob.keyframe_insert("location", frame=1)
+         action = ob.animation_data.action
+         count = len(anim_utils.action_ensure_channelbag_for_slot(action, action.slots[0]).fcurves)
+         """),
+    case("renamed-value", "4.2", "scene.render.engine = 'BLENDER_EEVEE_NEXT'\n",
+         "scene.render.engine = 'BLENDER_EEVEE'\n"),
+    case("layout-argument", "2.79",
+         """
+         class Side(bpy.types.Panel):
+             bl_label = "Side"
+             bl_space_type = "VIEW_3D"
+             bl_region_type = "UI"
+             def draw(self, context):
+                 self.layout.label("Text", icon='NONE')
+                 self.layout.prop(context.object, "name", "Title")
+                 self.layout.split(percentage=0.3)
+         bpy.utils.register_class(Side)
+         parameters = bpy.types.UILayout.bl_rna.functions["label"].parameters
+         assert not parameters["text"].is_required
+         """,
+         """
+         class Side(bpy.types.Panel):
+             bl_label = "Side"
+             bl_space_type = "VIEW_3D"
+             bl_region_type = "UI"
+             def draw(self, context):
+                 self.layout.label(text="Text", icon='NONE')
+                 self.layout.prop(context.object, "name", text="Title")
+                 self.layout.split(factor=0.3)
+         bpy.utils.register_class(Side)
+         parameters = bpy.types.UILayout.bl_rna.functions["label"].parameters
+         assert not parameters["text"].is_required
+         """),
+    case("moved-operator", "3.4",
+         "import os\nbpy.ops.export_scene.obj(filepath=os.devnull, use_selection=True)\n",
+         "import os\nbpy.ops.wm.obj_export(filepath=os.devnull, export_selected_objects=True)\n"),
+    case("unknown-socket", "3.4",
+         "m = bpy.data.materials.new('M')\nm.use_nodes = True\n"
+         "m.node_tree.nodes['Principled BSDF'].inputs['Specular'].default_value = 0.2\n",
+         "m = bpy.data.materials.new('M')\nm.use_nodes = True\n"
+         "m.node_tree.nodes['Principled BSDF'].inputs['Specular IOR Level'].default_value = 0.2\n"),
+)  # fmt: skip

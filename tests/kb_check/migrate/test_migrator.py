@@ -1,0 +1,171 @@
+"""What a migration does beyond single rewrites: guards, rounds, what is left, lines, hostile input."""
+
+from __future__ import annotations
+
+import ast
+from textwrap import dedent
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_check.migrate.kept_version import KeptVersion
+from kb_check.migrate.plan import FileMigration, Migrator
+
+if TYPE_CHECKING:
+    from kb_check.checker import Checker
+
+
+def migrated(checker: Checker, code: str, *keep: tuple[int, int]) -> FileMigration:
+    versions = [KeptVersion(version) for version in keep]
+    (file,) = Migrator(checker, versions).migrate({"script.py": dedent(code)})
+    return file
+
+
+def test_types_that_a_missing_name_hid_are_known_in_the_next_round(checker: Checker) -> None:
+    code = """\
+    import bpy
+    lamp = bpy.data.lamps.new("L", 'SUN')
+    lamp.shadow_method = 'RAY'
+    """
+    file = migrated(checker, code)
+    assert "bpy.data.lights.new(\"L\", 'SUN')" in file.new
+    assert [one.line for one in file.decisions] == [3]
+
+
+def test_an_older_version_keeps_the_old_form(checker: Checker) -> None:
+    code = """\
+    import bpy
+    def f(scene: bpy.types.Scene):
+        scene.render.engine = 'BLENDER_EEVEE_NEXT'  # the quick one
+    """
+    file = migrated(checker, code, (4, 2))
+    assert file.new == dedent("""\
+    import bpy
+    def f(scene: bpy.types.Scene):
+        if bpy.app.version >= (5, 0, 0):
+            scene.render.engine = 'BLENDER_EEVEE'
+        else:
+            scene.render.engine = 'BLENDER_EEVEE_NEXT'  # the quick one
+    """)
+    assert [change.guarded for change in file.changes] == [True]
+
+
+def test_no_guard_where_the_older_version_has_the_new_form(checker: Checker) -> None:
+    code = 'import bpy\nbpy.context.object.draw_type = "WIRE"\n'
+    assert migrated(checker, code, (4, 2)).new == 'import bpy\nbpy.context.object.display_type = "WIRE"\n'
+
+
+def test_neighbours_share_a_guard(checker: Checker) -> None:
+    code = """\
+    import bpy
+    p = bpy.data.materials[0].node_tree.nodes.new("ShaderNodeBsdfPrincipled")
+    p.inputs["Specular"].default_value = 1
+    p.inputs["Subsurface"].default_value = 1
+    """
+    new = migrated(checker, code, (3, 6)).new
+    assert new.count("bpy.app.version") == 1
+    assert new.count("else:") == 1
+
+
+def test_a_condition_gets_a_conditional_expression(checker: Checker) -> None:
+    code = """\
+    import bpy as B
+    if B.context.scene.render.engine == 'BLENDER_EEVEE_NEXT':
+        pass
+    """
+    new = migrated(checker, code, (4, 2)).new
+    assert "== ('BLENDER_EEVEE' if B.app.version >= (5, 0, 0) else 'BLENDER_EEVEE_NEXT'):" in new
+
+
+def test_no_second_guard_within_a_guard(checker: Checker) -> None:
+    code = """\
+    import bpy
+    if bpy.app.version >= (5, 0, 0):
+        bpy.context.scene.render.engine = 'BLENDER_EEVEE_NEXT'
+    """
+    assert migrated(checker, code, (4, 2)).new.count("bpy.app.version") == 1
+
+
+def test_a_guard_that_cannot_be_written_is_left_to_a_person(checker: Checker) -> None:
+    code = "from bpy import context\ncontext.scene.render.engine = 'BLENDER_EEVEE_NEXT'\n"
+    file = migrated(checker, code, (4, 2))
+    assert file.new == file.old
+    assert [one.line for one in file.decisions] == [2]
+
+
+def test_a_migrated_file_is_not_changed_again(checker: Checker) -> None:
+    code = """\
+    import bpy
+    o = bpy.context.object
+    for c in o.animation_data.action.fcurves:
+        c.mute = o.select
+    bpy.ops.object.shade_smooth({"object": o})
+    """
+    once = migrated(checker, code, (3, 6))
+    assert once.changes
+    again = migrated(checker, once.new, (3, 6))
+    assert again.new == once.new
+
+
+def test_lines_are_those_of_the_original(checker: Checker) -> None:
+    code = """\
+    import bpy
+    o = bpy.context.object
+    bpy.ops.object.shade_smooth({"object": o})
+    for c in o.animation_data.action.fcurves: pass
+    o.select = True
+    o.layers[0] = True
+    """
+    file = migrated(checker, code)
+    assert [change.line for change in file.changes] == [3, 4, 5]
+    (decision,) = file.decisions
+    assert decision.line == 6
+    assert file.new.splitlines()[decision.now - 1] == "o.layers[0] = True"
+
+
+def test_ends_of_lines_stay(checker: Checker) -> None:
+    code = 'import bpy\r\nbpy.ops.object.shade_smooth({"object": bpy.context.object})\r\n'
+    (file,) = Migrator(checker).migrate({"a.py": code})
+    assert file.new.count("\r\n") == file.new.count("\n") == 3
+
+
+def test_columns_count_letters_not_bytes(checker: Checker) -> None:
+    code = 'import bpy\nname = "Größe 🎈"; bpy.context.object.draw_type = "WIRE"\n'
+    assert migrated(checker, code).new.endswith('"Größe 🎈"; bpy.context.object.display_type = "WIRE"\n')
+
+
+def test_types_flow_between_the_files_of_a_package(checker: Checker) -> None:
+    files = {
+        "addon/__init__.py": "from .tools import mark\nimport bpy\nmark(bpy.context.object)\n",
+        "addon/tools.py": "def mark(ob):\n    ob.select = True\n",
+    }
+    first, second = Migrator(checker).migrate(files)
+    assert not first.changes
+    assert second.new == "def mark(ob):\n    ob.select_set(True)\n"
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import bpy\nprint 'old'\nbpy.context.object.select = True\n",
+        "import bpy\nbpy.context.object.select = \n",
+        "\0",
+        "",
+        "import bpy\n" + "(" * 3000 + "bpy.context.object.select" + ")" * 3000 + "\n",
+        "import bpy\nx = " + " * ".join(["bpy.context.object.matrix_world"] * 300) + "\n",
+        "import bpy\nx = f'{bpy.context.object.select} {bpy.context.scene.cursor_location}'\n",
+        "import bpy\nwith bpy.context.object as bpy.context.object.select: pass\n",
+        "import bpy\nbpy.context.object.select: bool = True\ndel bpy.context.object.select\n",
+        "import bpy\nbpy.ops.object.shade_smooth({**{}, 'object': 1}, *[], **{})\n",
+        "import bpy; bpy.data.meshes[0].calc_normals(); x = 1\n",
+        "import bpy\nif 1: bpy.data.meshes[0].calc_normals()\nelse: bpy.data.meshes[0].calc_normals()\n",
+        "import bpy\n\x0cbpy.context.object.draw_type = '\\\nWIRE'\r",
+    ],
+)
+@pytest.mark.parametrize("keep", [(), ((2, 79), (3, 6))])
+def test_any_input_ends_in_text_that_python_reads(
+    code: str, keep: tuple[tuple[int, int], ...], checker: Checker
+) -> None:
+    (file,) = Migrator(checker, [KeptVersion(version) for version in keep]).migrate({"a.py": code})
+    if file.new != code:
+        ast.parse(file.new)
