@@ -6,6 +6,7 @@ from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from places import REPO
 
 from agents.blender.preflight import _answers  # pyright: ignore[reportPrivateUsage] - what hostile code can answer
 from agents.blender.tools.base import Call, NotChecked, ToolContext, parse, perform
@@ -14,6 +15,8 @@ from kb_check import tool as check_tool
 from kb_serve.bases import Bases
 from kb_serve.rebuild import Upkeep
 from kb_serve.service import Service
+from simworlds.llm.messages import ToolUse
+from simworlds.llm.transcript import read_folder
 from simworlds.sandbox.replies import Malformed, parse_value, unread
 
 if TYPE_CHECKING:
@@ -187,6 +190,31 @@ def test_without_an_answer_code_runs_and_the_reason_is_said_once(session: LiveSe
     assert "There is no knowledge base here." in first.text
     assert "There is no knowledge base here." not in second.text
     assert first.data["value"] == second.data["value"] == "'Scene'"
+
+
+def shipped_code() -> Iterator[tuple[str, str]]:
+    """What runs in a live Blender as it is shipped: the transcripts' calls, and what builds scenes."""
+    transcripts = REPO / "agents" / "transcripts"
+    for folder in sorted(path for path in transcripts.iterdir() if path.is_dir()):
+        for turn in read_folder(folder):
+            for use in turn.turn.content:
+                if isinstance(use, ToolUse) and use.name == "blender_execute":
+                    yield f"{folder.name}/{turn.name}", use.input["code"]
+    for scripts in (transcripts, REPO / "bench" / "references" / "inside"):
+        for path in sorted(scripts.rglob("*.py")):
+            yield path.name, path.read_text("utf-8")
+
+
+def test_no_shipped_code_would_be_refused(check: Check) -> None:
+    codes = list(shipped_code())
+    assert len(codes) > 40
+    errors = {
+        name: finding["message"]
+        for name, code in codes
+        for finding in check(code)["findings"]
+        if finding["severity"] == "error"
+    }
+    assert errors == {}
 
 
 def test_the_live_blender_tells_what_it_has(session: LiveSession) -> None:

@@ -69,7 +69,7 @@ def post(url: str, content: object = ASK, **headers: str) -> httpx2.Response:
 @pytest.mark.parametrize("mode", ["auto", "legacy"])
 async def test_a_client_gets_answers_and_resources(server: HttpServer, mode: Any) -> None:
     async with Client(server.url, mode=mode) as client:
-        assert [tool.name for tool in (await client.list_tools()).tools] == ["blender_docs"]
+        assert [tool.name for tool in (await client.list_tools()).tools] == ["blender_docs", "blender_check"]
         result = await client.call_tool("blender_docs", {"query": "ClothSettings.quality"})
         page = await client.read_resource("blender://5.1/page/physics/cloth/introduction")
     assert result.structured_content is not None
