@@ -7,6 +7,7 @@ import os
 import sys
 import time
 from contextlib import closing, contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,6 +19,7 @@ from simworlds.settings import cache_folder, home_folder
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator
 
+    from kb_check.cache import ResultCache
     from kb_check.configuration import Configuration
     from kb_check.project import Group
     from kb_check.report import Report
@@ -48,6 +50,8 @@ def check(paths: tuple[Path, ...], form: str | None, **choices: Any) -> None:
     PATHS are files and folders (default: this folder); - reads standard input. Options that hold for a project stand
     in its pyproject.toml, under [tool.simworlds.check].
 
+    For several versions a table says what breaks where, and which of them the code runs in.
+
     Exit code 0: nothing found. 1: errors were found. 2: something could not be checked.
     """
     if choices["unsafe_fixes"] and not (choices["fix"] or choices["diff"]):
@@ -68,30 +72,92 @@ def check(paths: tuple[Path, ...], form: str | None, **choices: Any) -> None:
 
 
 def _check(paths: tuple[Path, ...], form: str | None, choices: dict[str, Any]) -> int:
-    from kb_check.run import Run  # noqa: PLC0415 - not for --help
-
     configuration = _configuration(paths, choices)
-    versions = choices["blender"].split(",") if choices["blender"] else list(configuration.blender)
-    base = _base(versions[0] if versions else None)
+    written = choices["blender"].split(",") if choices["blender"] else configuration.blender
+    versions = list(dict.fromkeys(version.strip() for version in written if version.strip()))
+    several = len(versions) > 1
+    if several and (choices["fix"] or choices["diff"] or form not in {None, "json"}):
+        names = ", ".join(versions)
+        raise click.UsageError(f"For several versions ({names}) there are only the table and --json.")
+    base = None if several else _base(versions[0] if versions else None)
     faults: list[str] = []
-    groups = _groups(paths, configuration, faults, choices)
-    with _project(base, choices) as (project, blender), _progress() as progress:
-        run = Run(project, configuration, groups, faults)
-        if choices["fix"]:
-            run.fix(unsafe=choices["unsafe_fixes"])
+    run = _Inputs(configuration, _groups(paths, configuration, faults, choices), faults, choices)
+    with _cache(choices) as cache:
+        reports = (
+            _one_version(run, base, cache, form) if base else _several_versions(run, versions, cache, form)
+        )
+    told = dict.fromkeys(fault for report in reports for fault in report.faults)
+    for fault in told:
+        click.echo(f"Error: {fault}", err=True)
+    if told:
+        return _UNCHECKED
+    fails = any(configuration.fails(finding) for report in reports for _, finding in report.findings)
+    return _FOUND if fails else 0
+
+
+@dataclass(frozen=True, slots=True)
+class _Inputs:
+    """What is checked, and how; ``faults`` are about what could not be read."""
+
+    configuration: Configuration
+    groups: list[Group]
+    faults: list[str]
+    choices: dict[str, Any]
+
+    @property
+    def jobs(self) -> int:
+        return self.choices["jobs"] or len(os.sched_getaffinity(0))
+
+
+def _one_version(inputs: _Inputs, base: Path, cache: ResultCache | None, form: str | None) -> list[Report]:
+    """Checks for one Blender, with fixes, and prints the report."""
+    from kb_check.project import Project  # noqa: PLC0415 - not for --help
+    from kb_check.run import Run  # noqa: PLC0415
+    from kb_serve.reader import BaseReader  # noqa: PLC0415
+
+    with closing(BaseReader(base)) as reader:
+        meta = reader.meta
+    project = Project(base, meta["fingerprint"], cache, inputs.jobs)
+    run = Run(project, inputs.configuration, inputs.groups, inputs.faults)
+    unsafe = inputs.choices["unsafe_fixes"]
+    with _progress() as progress:
+        if inputs.choices["fix"]:
+            run.fix(unsafe=unsafe)
             run.write()
-        report = run.check(blender, progress)
-        if choices["diff"]:
-            run.fix(unsafe=choices["unsafe_fixes"])
-    if choices["diff"]:
+        report = run.check(meta["minor"], progress)
+        if inputs.choices["diff"]:
+            run.fix(unsafe=unsafe)
+    if inputs.choices["diff"]:
         click.echo(run.diff(), nl=False)
     else:
         _print(report, form)
-    for fault in report.faults:
-        click.echo(f"Error: {fault}", err=True)
-    if report.faults:
-        return _UNCHECKED
-    return _FOUND if any(configuration.fails(finding) for _, finding in report.findings) else 0
+    return [report]
+
+
+def _several_versions(
+    inputs: _Inputs, versions: list[str], cache: ResultCache | None, form: str | None
+) -> list[Report]:
+    """Checks for several Blenders, and prints what breaks where."""
+    from kb_check.formats.json_format import dump  # noqa: PLC0415 - for several versions alone
+    from kb_check.versions import check_versions  # noqa: PLC0415
+
+    with _progress() as progress:
+        report = check_versions(
+            inputs.groups,
+            versions,
+            home_folder(),
+            configuration=inputs.configuration,
+            faults=inputs.faults,
+            cache=cache,
+            jobs=inputs.jobs,
+            progress=progress,
+        )
+    if form == "json":
+        click.echo(dump(report.as_json()))
+    else:
+        for line in report.text_lines():
+            click.echo(line)
+    return list(report.reports)
 
 
 def _configuration(paths: tuple[Path, ...], choices: dict[str, Any]) -> Configuration:
@@ -140,22 +206,15 @@ def _groups(
 
 
 @contextmanager
-def _project(base: Path, choices: dict[str, Any]) -> Generator[tuple[Any, str]]:
-    """The checker of many files, and the name of the Blender of its base."""
+def _cache(choices: dict[str, Any]) -> Generator[ResultCache | None]:
+    """The results of earlier runs, unless they are not wanted."""
     from kb_check.cache import ResultCache  # noqa: PLC0415 - not for --help
-    from kb_check.project import Project  # noqa: PLC0415
-    from kb_serve.reader import BaseReader  # noqa: PLC0415
 
-    with closing(BaseReader(base)) as reader:
-        meta = reader.meta
-    jobs = choices["jobs"] or len(os.sched_getaffinity(0))
-    cache = None if choices["no_cache"] else ResultCache(cache_folder(home_folder()) / "check.sqlite")
-    project = Project(base, meta["fingerprint"], cache, jobs)
-    try:
-        yield project, meta["minor"]
-    finally:
-        if cache is not None:
-            cache.close()
+    if choices["no_cache"]:
+        yield None
+        return
+    with ResultCache(cache_folder(home_folder()) / "check.sqlite") as cache:
+        yield cache
 
 
 @contextmanager

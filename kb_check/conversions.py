@@ -74,13 +74,17 @@ def misfit(script: Script, taker: Taker, node: ast.expr) -> Misfit | None:
     if kind is None:
         return None
     if isinstance(written(script, node), ast.Constant) and kind == NONE:
-        may_be_none = not taker.kind or (taker.takes_none and taker.kind in {"string", "pointer", "enum or set"})
+        may_be_none = not taker.kind or (
+            taker.takes_none and taker.kind in {"string", "pointer", "enum or set"}
+        )
         return None if may_be_none else Misfit(_takes(taker), "None")
     found = [_scalar_misfit(script, taker, node, member) for member in members(kind)]
     return found[0] if all(found) else None
 
 
-def _scalar_misfit(script: Script, taker: Taker, node: ast.expr, kind: Type) -> Misfit | None:
+def _scalar_misfit(  # noqa: PLR0911 - one return a type
+    script: Script, taker: Taker, node: ast.expr, kind: Type
+) -> Misfit | None:
     if kind == NONE:
         return None  # what holds None here may hold a value by then
     if not taker.kind:
@@ -117,12 +121,9 @@ def _pointer_misfit(script: Script, taker: Taker, kind: Type, given: str) -> Mis
 
 
 def _array_misfit(script: Script, taker: Taker, node: ast.expr, sizes: tuple[int, ...]) -> Misfit | None:
-    takes = f"{sizes[0]} {_ITEM_WORDS.get(taker.kind, taker.kind)}s" if len(sizes) == 1 else (
-        f"{' × '.join(map(str, sizes))} {_ITEM_WORDS.get(taker.kind, taker.kind)}s"
-    )  # fmt: skip
     changing = not all(sizes) or taker.path in _CHANGING
-    if changing:
-        takes = f"a sequence of {_ITEM_WORDS.get(taker.kind, taker.kind)}s"
+    many = "a sequence of" if changing else " × ".join(map(str, sizes))
+    takes = f"{many} {_ITEM_WORDS.get(taker.kind, taker.kind)}s"
     if (parts := items(script, node)) is not None:
         if not changing and len(parts) != sizes[0]:
             return Misfit(takes, f"{len(parts)} items", len(parts))
@@ -133,38 +134,39 @@ def _array_misfit(script: Script, taker: Taker, node: ast.expr, sizes: tuple[int
     kind = script.type_of(node)
     if kind is None:
         return None
-    found = [_whole_misfit(script, node, member, sizes, takes, changing=changing) for member in members(kind)]
+    length = 0 if changing else sizes[0] if len(sizes) == 1 else -1
+    found = [_whole_misfit(script, node, member, length, takes) for member in members(kind)]
     return found[0] if all(found) else None
 
 
 def _item_misfit(script: Script, taker: Taker, node: ast.expr, takes: str) -> Misfit | None:
     kind = script.type_of(node)
-    kinds = members(kind) if kind is not None else ()
+    kinds = list(members(kind)) if kind is not None else []
     fits = _ITEM_TAKES.get(taker.kind, frozenset())
     wrong = [
-        isinstance(one, (Tuple, Sequence, Mapping, Instance, Collection)) or one == NONE
+        isinstance(one, (Tuple, Sequence, Mapping, Instance, Collection))
+        or (one == NONE and isinstance(written(script, node), ast.Constant))
         or (isinstance(one, Plain) and one.kind not in fits)
         for one in kinds
     ]  # fmt: skip
-    if not fits or not kinds or not all(wrong):
+    if kind is None or not fits or not all(wrong):
         return None
-    return Misfit(takes, f"an item that is {_shown(script, node, describe(kinds[0]) or 'None')}")
+    return Misfit(takes, f"an item that is {_shown(script, node, describe(members(kind)[0]) or 'None')}")
 
 
-def _whole_misfit(
-    script: Script, node: ast.expr, kind: Type, sizes: tuple[int, ...], takes: str, *, changing: bool
-) -> Misfit | None:
+def _whole_misfit(script: Script, node: ast.expr, kind: Type, length: int, takes: str) -> Misfit | None:
+    """Why an array of a length refuses a value that is not written out; 0 is a length that changes, -1 an array of
+    arrays.
+    """
     if kind == NONE:
         return Misfit(takes, "None") if isinstance(written(script, node), ast.Constant) else None
     given = describe(kind)
-    if isinstance(kind, Plain) and kind.kind != "bytes":
+    if isinstance(kind, Mapping) or (isinstance(kind, Plain) and kind.kind != "bytes"):
         return Misfit(takes, _shown(script, node, given))
-    if isinstance(kind, Mapping):
-        return Misfit(takes, given)
     if isinstance(kind, Instance):
-        length = _LENGTHS.get(kind.cls, 0)
-        if length and not changing and (len(sizes) > 1 or length != sizes[0]):
-            return Misfit(takes, f"{given}, which has {length}", length)
+        has = _LENGTHS.get(kind.cls, 0)
+        if has and length and length != has:
+            return Misfit(takes, f"{given}, which has {has}", has)
         if kind.sure and kind.cls.startswith("bpy.types.") and not kind.cls.startswith("bpy.types.bpy_"):
             return Misfit(takes, given)
     return None

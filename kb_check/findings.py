@@ -40,7 +40,8 @@ class Finding:
     """Something wrong in a script.
 
     ``rule`` is the rule's id, ``symbol`` the path of what the finding is about (a removed symbol's own path, or the
-    owner's path and the name that it lacks), ``instead`` the paths that take its place.
+    owner's path and the name that it lacks), ``instead`` the paths that take its place. ``absent`` are the paths that
+    the finding says do not exist: in a Blender that has one of them, by an add-on say, it does not hold.
     """
 
     rule: str
@@ -50,3 +51,4 @@ class Finding:
     symbol: str = ""
     instead: tuple[str, ...] = ()
     fix: Fix | None = None
+    absent: tuple[str, ...] = ()

@@ -28,7 +28,8 @@ class Taker:
     """A property or a parameter. ``path`` names it for people.
 
     ``kind`` is boolean, int, float, string, enum, set (an enumeration of flags), enum or set (one of both), pointer
-    (to ``target``, a class's path), or empty where only the reference tells what it takes: ``documented`` is then its text.
+    (to ``target``, a class's path), or empty where only the reference tells what it takes, with the text of
+    ``documented``.
     ``sizes`` are an array's, outermost first; 0 is a size that changes. ``is_operator`` is True for an operator's
     property, which is converted and clamped as those of data are.
     """
@@ -57,15 +58,18 @@ class Given:
 
 
 def given_values(script: Script) -> Iterator[Given]:
-    """Every value that is surely assigned to a property, or passed to a function or an operator."""
+    """Every value that is surely assigned to a property that takes one, or passed to a function or an operator."""
     for row in script.resolutions("store"):
         paths = row.symbols or row.possible
         sure = row.sure and not row.guarded and not row.missing and is_of_instance(script, row.node)
         if sure and paths and isinstance(row.node, ast.Attribute):
             value = _assigned(row.statement, row.node)
             symbols = [script.api.symbols.symbol(path) for path in paths]
-            takers = tuple(property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property")
-            if value is not None and len(takers) == len(paths):
+            takers = tuple(
+                property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property"
+            )
+            refused = any("readonly" in taker.symbol.flags for taker in takers)
+            if value is not None and len(takers) == len(paths) and not refused:
                 yield Given(value, takers)
     for call in calls(script):
         if call.callee.symbol.kind == "class":

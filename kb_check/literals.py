@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from collections import defaultdict
+from collections import Counter
 from typing import TYPE_CHECKING
 from weakref import WeakKeyDictionary
 
@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _DEEPEST = 4
+_LITERALS = (ast.Constant, ast.UnaryOp, ast.Tuple, ast.Name)
 _constants: WeakKeyDictionary[ast.Module, dict[str, ast.expr]] = WeakKeyDictionary()
 
 
@@ -33,7 +34,11 @@ def number(script: Script, node: ast.expr) -> float | int | None:
     while isinstance(node, ast.UnaryOp) and isinstance(node.op, (ast.USub, ast.UAdd)):
         sign = -sign if isinstance(node.op, ast.USub) else sign
         node = node.operand
-    if isinstance(node, ast.Constant) and isinstance(node.value, (int, float)) and not isinstance(node.value, bool):
+    if (
+        isinstance(node, ast.Constant)
+        and isinstance(node.value, (int, float))
+        and not isinstance(node.value, bool)
+    ):
         return sign * node.value
     return None
 
@@ -51,31 +56,27 @@ def _once_bound(tree: ast.Module) -> dict[str, ast.expr]:
     """Name → the literal that its only assignment gives it. A list is none: it may grow."""
     found = _constants.get(tree)
     if found is None:
-        times: dict[str, int] = defaultdict(int)
+        times: Counter[str] = Counter()
         values: dict[str, ast.expr] = {}
         for node in ast.walk(tree):
-            match node:
-                case ast.Name(ctx=ast.Store() | ast.Del()):
-                    times[node.id] += 1
-                case ast.arg():
-                    times[node.arg] += 1
-                case ast.alias():
-                    times[(node.asname or node.name).partition(".")[0]] += 1
-                case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
-                    times[node.name] += 1
-                case ast.ExceptHandler() | ast.MatchAs() | ast.MatchStar() if node.name:
-                    times[node.name] += 1
-                case ast.MatchMapping() if node.rest:
-                    times[node.rest] += 1
-                case ast.Global() | ast.Nonlocal():
-                    for name in node.names:
-                        times[name] += 1
-                case ast.Assign(targets=[ast.Name(id=name)], value=value):
-                    if isinstance(value, (ast.Constant, ast.UnaryOp, ast.Tuple, ast.Name)):
-                        values[name] = value
-                case ast.AugAssign(target=ast.Name(id=name)):
-                    times[name] += 1
-                case _:
-                    pass
+            times.update(_bound(node))
+            if isinstance(node, ast.Assign) and isinstance(node.value, _LITERALS):
+                values |= {target.id: node.value for target in node.targets if isinstance(target, ast.Name)}
         found = _constants[tree] = {name: value for name, value in values.items() if times[name] == 1}
     return found
+
+
+def _bound(node: ast.AST) -> list[str]:
+    """The names that a node binds, or makes another scope's."""
+    match node:
+        case ast.Name(ctx=ast.Store() | ast.Del()):
+            return [node.id]
+        case ast.arg():
+            return [node.arg]
+        case ast.alias():
+            return [(node.asname or node.name).partition(".")[0]]
+        case ast.Global() | ast.Nonlocal():
+            return node.names
+        case _:
+            name = getattr(node, "rest" if isinstance(node, ast.MatchMapping) else "name", None)
+            return [name] if isinstance(name, str) else []

@@ -119,7 +119,7 @@ def _migrated(work: _Work, groups: Sequence[Group], choices: dict[str, Any]) -> 
     from kb_check.checker import Checker  # noqa: PLC0415 - not for --help
     from kb_check.migrate.place import version_of  # noqa: PLC0415
     from kb_check.migrate.plan import Migrator  # noqa: PLC0415
-    from kb_check.source import read_source  # noqa: PLC0415
+    from kb_check.reading import read_source  # noqa: PLC0415
     from kb_check.versions import base_files  # noqa: PLC0415
     from kb_serve.bases import Bases  # noqa: PLC0415
     from simworlds.releases import minor_of  # noqa: PLC0415

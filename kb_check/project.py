@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, cast
 
 from kb_check.cache import result_key
 from kb_check.findings import Finding, Span
-from kb_check.source import read_source
+from kb_check.reading import read_source
 from simworlds.forked import can_fork, forked
 
 if TYPE_CHECKING:

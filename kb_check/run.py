@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from kb_check.fixes import apply_fixes, unified_diff, write_fixed
 from kb_check.project import LoadedFile
+from kb_check.reading import read_source
 from kb_check.report import FileReport, Report
-from kb_check.source import MOST_BYTES, read_source
+from kb_check.source import MOST_BYTES
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator

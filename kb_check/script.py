@@ -55,8 +55,22 @@ class Script:
         """The parts that surely stand for nothing that this Blender, or the package, has."""
         for row in self.resolutions(*kinds):
             lacking = row.missing and not row.symbols and not row.possible
+            if row.kind == "value" and row.value in self._own_identifiers:
+                continue
             if lacking and row.sure and not row.guarded and not self.package.has(row.missing, row.value):
                 yield row
+
+    @cached_property
+    def _own_identifiers(self) -> frozenset[str]:
+        """What the script's classes call themselves: values of the enumerations that list such classes."""
+        return frozenset(
+            node.value.value
+            for node in ast.walk(self.tree)
+            if isinstance(node, ast.Assign)
+            and any(isinstance(target, ast.Name) and target.id == "bl_idname" for target in node.targets)
+            and isinstance(node.value, ast.Constant)
+            and isinstance(node.value.value, str)
+        )
 
     def type_of(self, node: ast.expr) -> Type | None:
         """The type of an expression; None if it was not reached."""

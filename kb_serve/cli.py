@@ -135,7 +135,7 @@ def serve(  # noqa: PLR0913 - one for each option
     blender_exe: Path | None,
     no_rebuild: bool,
 ) -> None:
-    """Serve the tool blender_docs over MCP, on stdio or HTTP.
+    """Serve the tools blender_docs and blender_check over MCP, on stdio or HTTP.
 
     When the Blender in use is newer than its knowledge base, the base is rebuilt in the background. Unless the
     address is loopback, clients must send a token: Authorization: Bearer …

@@ -1,13 +1,12 @@
-"""The MCP server: the tool ``blender_docs``, and resources for symbols and pages."""
+"""The MCP server: the tools that answer from knowledge bases, and resources for symbols and pages."""
 
 from __future__ import annotations
 
 import json
 import logging
 from contextlib import asynccontextmanager
-from dataclasses import asdict
 from importlib import metadata
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import anyio
 import anyio.to_thread
@@ -19,7 +18,7 @@ from starlette.responses import Response
 
 from kb_build.records import to_json
 from kb_serve.errors import KBServeError
-from kb_serve.tool import NAME, parse, tool
+from kb_serve.served_tools import TOOL_NAMES, answer, listing
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator
@@ -40,12 +39,13 @@ PAGE = UriTemplate.parse("blender://{version}/page/{+slug}")
 INSTRUCTIONS = (
     "blender_docs answers from the schemas and the manual of the Blender version in use. Query it before you "
     "use a name of Blender's Python API that you have not looked up for that version, at the start of each "
-    "stage of work (with its topic: cloth, materials, compositor), and with every error message from Blender."
+    "stage of work (with its topic: cloth, materials, compositor), and with every error message from Blender. "
+    "blender_check finds what that version lacks in code that you have written: check it before it runs."
 )
 
 _LOG = logging.getLogger(__name__)
 _JSON, _MARKDOWN = "application/json", "text/markdown"
-_LARGEST_REQUEST = 256 * 1024  # the longest query, however JSON writes its characters
+_LARGEST_REQUEST = 640 * 1024  # the longest script that is checked, if JSON escapes all of it
 _LONGEST_URI = 2_000
 _FOR_ERRORS = 500
 
@@ -75,19 +75,20 @@ def make_server(service: Service) -> Server[None]:
                 tasks.cancel_scope.cancel()
 
     async def call_tool(_context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
-        if params.name != NAME:
+        name = params.name
+        if name not in TOOL_NAMES:
             raise MCPError(
-                types.INVALID_PARAMS, f"There is no tool {params.name[:80]!r}. The only tool is {NAME}."
+                types.INVALID_PARAMS, f"There is no tool {name[:80]!r}. Available: {', '.join(TOOL_NAMES)}."
             )
         await ready.wait()
         try:
-            return await anyio.to_thread.run_sync(_answered, service, params.arguments, limiter=thread)
+            return await anyio.to_thread.run_sync(answer, name, service, params.arguments, limiter=thread)
         except KBServeError as error:
             return _failed(str(error))
         except Exception as error:
-            _LOG.exception("%s failed on %.300r", NAME, params.arguments)
+            _LOG.exception("%s failed on %.300r", name, params.arguments)
             return _failed(
-                f"{NAME} failed on this query ({type(error).__name__}). Rephrase it, or report it with the query."
+                f"{name} failed on this call ({type(error).__name__}). Change the call, or report it."
             )
 
     async def read_resource(
@@ -104,7 +105,7 @@ def make_server(service: Service) -> Server[None]:
         )
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
-        return types.ListToolsResult(tools=[tool()])
+        return types.ListToolsResult(tools=listing())
 
     async def list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
         return types.ListResourcesResult(resources=[BASE_LIST])
@@ -118,7 +119,7 @@ def make_server(service: Service) -> Server[None]:
         title="SimWorlds: Blender documentation",
         instructions=INSTRUCTIONS,
         lifespan=lifespan,
-        get_tool_input_schema=lambda name: tool().input_schema if name == NAME else None,
+        get_tool_input_schema=lambda name: next((t.input_schema for t in listing() if t.name == name), None),
         on_list_tools=list_tools,
         on_call_tool=call_tool,
         on_list_resources=list_resources,
@@ -159,17 +160,6 @@ def _own_version() -> str:
         return metadata.version("simworlds")
     except metadata.PackageNotFoundError:  # run from its source
         return ""
-
-
-def _answered(service: Service, arguments: dict[str, Any] | None) -> types.CallToolResult:
-    query = parse(arguments)
-    answer, version = service.ask(
-        query.query, blender=query.blender, limit=query.limit, max_tokens=query.max_tokens, part=query.part
-    )
-    return types.CallToolResult(
-        content=[types.TextContent(text=answer.text)],
-        structured_content={**asdict(answer), "blender": version},
-    )
 
 
 def _failed(message: str) -> types.CallToolResult:

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from kb_build.records import Page, Symbol
     from kb_serve.answer.composer import DocsAnswer
     from kb_serve.bases import Bases
+    from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.rebuild import Upkeep
 
 LONGEST_QUERY = 20_000
@@ -46,8 +47,7 @@ class Service:
                 f"The query has {len(query):,} characters, more than the limit of {LONGEST_QUERY:,}. Shorten it."
             )
         query = readable(query)
-        base = self._base(blender)
-        note = self.upkeep.note(base.meta, blender)
+        base, note = self.base(blender)
         version = base.meta.get("blender", "")
         if not note:
             return base.query(query, limit=limit, max_tokens=max_tokens, part=part), version
@@ -63,11 +63,11 @@ class Service:
 
     def symbol(self, blender: str, path: str) -> Symbol | None:
         """The raw record of an identifier. Raises KBServeError."""
-        return self._base(blender).symbol(path)
+        return self.base(blender)[0].symbol(path)
 
     def page(self, blender: str, slug: str) -> Page | None:
         """A page, whole. Raises KBServeError."""
-        return self._base(blender).page(slug)
+        return self.base(blender)[0].page(slug)
 
     def built(self) -> list[dict[str, Any]]:
         """The bases: for each its versions and when it was built, or why it cannot be read."""
@@ -80,12 +80,14 @@ class Service:
             return {"version": version, "error": str(error)}
         return {"version": version, "blender": meta.get("blender", ""), "built_at": meta.get("built_at", "")}
 
-    def _base(self, blender: str | None) -> Any:
+    def base(self, blender: str | None) -> tuple[KnowledgeBase, str]:
+        """The base of a version, and a note if the Blender in use is newer. Raises KBServeError."""
         try:
-            return self.bases.pick(blender)
+            base = self.bases.pick(blender)
         except BaseMissing as error:
             if self.upkeep.building(blender):
                 raise BaseMissing(
                     f"{error} It is being built in the background: try again in a minute."
                 ) from error
             raise
+        return base, self.upkeep.note(base.meta, blender)

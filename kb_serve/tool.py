@@ -1,17 +1,22 @@
-"""The tool ``blender_docs`` as a client sees it: description, arguments, and the shape of what it returns."""
+"""The tool ``blender_docs`` as a client sees it: description, arguments, the shape of what it returns, and a call."""
 
 from __future__ import annotations
 
+from dataclasses import asdict
 from functools import cache
-from typing import Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from mcp_types import Tool, ToolAnnotations
+from mcp_types import CallToolResult, TextContent, Tool, ToolAnnotations
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kb_serve.errors import BadQuery
 from simworlds.schemas.json_schema import schema_of
 
+if TYPE_CHECKING:
+    from kb_serve.service import Service
+
 NAME = "blender_docs"
+_Arguments = TypeVar("_Arguments", bound=BaseModel)
 
 DESCRIPTION = """\
 Look up Blender's Python API and manual: exact schemas (types, defaults, ranges, enum values, units, what \
@@ -99,13 +104,24 @@ def tool() -> Tool:
     )
 
 
-def parse(arguments: dict[str, Any] | None) -> DocsArguments:
-    """The arguments of a call, checked. Raises BadQuery, which names each wrong one."""
+def parsed(model: type[_Arguments], name: str, arguments: dict[str, Any] | None) -> _Arguments:
+    """The arguments of a call of a tool, checked. Raises BadQuery, which names each wrong one."""
     try:
-        return DocsArguments.model_validate(arguments or {})
+        return model.model_validate(arguments or {})
     except ValidationError as error:
         wrong = "; ".join(
             f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']}"
             for fault in error.errors(include_url=False, include_context=False)
         )
-        raise BadQuery(f"The arguments do not fit {NAME}: {wrong[:500]}") from error
+        raise BadQuery(f"The arguments do not fit {name}: {wrong[:500]}") from error
+
+
+def answer(service: Service, arguments: dict[str, Any] | None) -> CallToolResult:
+    """The result of a call. Raises KBServeError."""
+    query = parsed(DocsArguments, NAME, arguments)
+    found, version = service.ask(
+        query.query, blender=query.blender, limit=query.limit, max_tokens=query.max_tokens, part=query.part
+    )
+    return CallToolResult(
+        content=[TextContent(text=found.text)], structured_content={**asdict(found), "blender": version}
+    )

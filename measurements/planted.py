@@ -74,7 +74,7 @@ class _Change:
 def plant(base: Path, folder: Path, count: int, seed: int = _SEED) -> Iterator[Planted]:
     """Plants mistakes in the scripts below a folder, the same number of each kind as far as there are places."""
     with closing(BaseSymbols(base)) as symbols:
-        planter = _Planter(Places(symbols), random.Random(seed))  # noqa: S311 - nothing secret
+        planter = _Planter(Places(symbols), random.Random(seed))
         scripts: dict[str, str] = {}
         places: defaultdict[str, list[tuple[str, Place]]] = defaultdict(list)
         for script in blender_scripts(folder):

@@ -27,14 +27,14 @@ _COMMANDS = {
     ),
     "kb": _Command("kb_build.cli", "kb", "Build, inspect, check and compare knowledge bases."),
     "make": _Command("agents.commands.runs", "make", "Make a scene from a sentence."),
-    "mcp": _Command("agents.commands.mcp", "mcp", "Serve a live Blender and blender_docs over MCP."),
+    "mcp": _Command("agents.commands.mcp", "mcp", "Serve a live Blender and its documentation over MCP."),
     "replay": _Command("agents.commands.runs", "replay", "Replay a run's recorded answers as a new run."),
     "migrate": _Command(
         "kb_check.migrate_cli", "migrate", "Rewrite scripts and add-ons for another Blender."
     ),
     "resume": _Command("agents.commands.runs", "resume", "Continue a run."),
     "runs": _Command("agents.commands.runs", "runs", "List the runs."),
-    "serve": _Command("kb_serve.cli", "serve", "Serve blender_docs over MCP."),
+    "serve": _Command("kb_serve.cli", "serve", "Serve blender_docs and blender_check over MCP."),
     "show": _Command("agents.commands.runs", "show", "Show the state of a run."),
     "verify": _Command(
         "agents.commands.verify", "verify", "Check a .blend by the scene protocol and a plan."

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
-    from agents.blender.tools.base import BlenderTool, Call, Docs, Result
+    from agents.blender.tools.base import BlenderTool, Call, Knowledge, Result
     from simworlds.sandbox.confined_command import Sandbox
 
 CLOSE_SECONDS = 5.0
@@ -84,9 +84,13 @@ class BlenderSession:
         self._thread.submit(self._started)
 
     async def use(
-        self, tool: BlenderTool, arguments: dict[str, Any] | None, call: Call, about: Callable[[str], Docs]
+        self,
+        tool: BlenderTool,
+        arguments: dict[str, Any] | None,
+        call: Call,
+        about: Callable[[str], Knowledge],
     ) -> Result:
-        """Calls a tool; ``about`` makes a look-up in the documentation of a Blender version.
+        """Calls a tool; ``about`` gives the knowledge base of a Blender version.
 
         If this is cancelled, so is the call: Blender is killed and restarted. Raises BlenderError.
         """
@@ -138,14 +142,19 @@ class BlenderSession:
             _LOG.exception("Blender could not be started")
 
     def _use(
-        self, tool: BlenderTool, arguments: dict[str, Any] | None, call: Call, about: Callable[[str], Docs]
+        self,
+        tool: BlenderTool,
+        arguments: dict[str, Any] | None,
+        call: Call,
+        about: Callable[[str], Knowledge],
     ) -> Result:
         parsed = parse(tool, arguments)
         blender = self._running()
         if call.cancelled.is_set():
             raise Refusal(f"{tool.name} was cancelled before it began.")
         self._unused = False
-        return perform(tool, ToolContext(blender, about(blender.launch.runtime.version)), parsed, call)
+        known = about(blender.launch.runtime.version)
+        return perform(tool, ToolContext(blender, known.docs, known.check), parsed, call)
 
     def _running(self) -> Supervisor:
         if self._ended:

@@ -16,21 +16,39 @@ from mcp.client import Client
 from mcp.client.stdio import StdioServerParameters, stdio_client
 from mcp.shared.exceptions import MCPError
 
+from agents.blender.tools.base import Knowledge, NotChecked
+
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Awaitable, Callable, Sequence
 
     from anyio.abc import TaskGroup, TaskStatus
 
-    from agents.blender.tools.base import Docs
 
 NAME = "blender_docs"
+CHECK = "blender_check"
+NAMES = (NAME, CHECK)
 HINT_SECONDS = 2.0
+CHECK_SECONDS = 3.0  # as long as the longest code takes
 _ANSWER_SECONDS = 60.0
+_LEAST_TOKENS = 150
+_LONGEST_REASON = 400
+# Loads what the first check needs, while Blender starts.
+_WARM_UP = """\
+bpy.ops.mesh.primitive_cube_add()
+bpy.context.object.data.materials.append(bpy.data.materials.new(""))
+bpy.context.scene.warm_up
+"""
 _SOURCE = Path(__file__).resolve().parent.parent.parent
 _COMMAND = "from simworlds.cli import main; main(prog_name='simworlds')"
 
 _LOG = logging.getLogger(__name__)
 _T = TypeVar("_T")
+
+
+def _words(result: types.CallToolResult) -> str:
+    return " ".join(block.text for block in result.content if isinstance(block, types.TextContent))[
+        :_LONGEST_REASON
+    ]
 
 
 class DocsGone(Exception):  # noqa: N818 - reads as the state it names
@@ -73,9 +91,9 @@ class DocsClient:
         """The server's tools."""
         return (await self._request(lambda client: client.list_tools())).tools
 
-    async def call(self, arguments: dict[str, Any] | None) -> types.CallToolResult:
-        """The server's answer to a call of ``blender_docs``."""
-        result = await self._request(lambda client: client.call_tool(NAME, arguments or {}))
+    async def call(self, name: str, arguments: dict[str, Any] | None) -> types.CallToolResult:
+        """The server's answer to a call of one of its tools, ``NAMES``."""
+        result = await self._request(lambda client: client.call_tool(name, arguments or {}))
         return types.CallToolResult(
             content=result.content, structured_content=result.structured_content, is_error=result.is_error
         )
@@ -93,28 +111,45 @@ class DocsClient:
         result = await self._request(lambda client: client.read_resource(uri))
         return types.ReadResourceResult(contents=result.contents)
 
-    def about(self, version: str) -> Docs:
-        """A look-up for a Blender version, for any other thread; it returns "" after ``HINT_SECONDS``."""
+    def about(self, version: str) -> Knowledge:
+        """What is known of a Blender version, for any other thread.
+
+        Look-ups return "" after ``HINT_SECONDS``, checks raise NotChecked after ``CHECK_SECONDS``.
+        """
 
         def docs(query: str, *, max_tokens: int = 400) -> str:
-            if self._loop is None or self._tasks is None:
-                return ""
             arguments = {"query": query, "blender": version, "max_tokens": max_tokens}
-            future = asyncio.run_coroutine_threadsafe(self._hint(arguments), self._loop)
             try:
-                return future.result(HINT_SECONDS)
-            except TimeoutError:
-                future.cancel()
-            except Exception:
-                _LOG.debug("no hint on %.100r", query, exc_info=True)
-            return ""
+                result = self._awaited(NAME, arguments, HINT_SECONDS)
+            except NotChecked as error:
+                _LOG.debug("no hint on %.100r: %s", query, error)
+                return ""
+            answer = result.structured_content or {}
+            return "" if result.is_error or answer.get("kind") == "none" else str(answer.get("text", ""))
 
-        return docs
+        def check(code: str) -> dict[str, Any]:
+            # Lone surrogates cannot be sent; the code's places stay what they are.
+            readable = code.encode(errors="replace").decode()
+            arguments = {"code": readable, "blender": version, "max_tokens": _LEAST_TOKENS}
+            result = self._awaited(CHECK, arguments, CHECK_SECONDS)
+            if result.is_error or result.structured_content is None:
+                raise NotChecked(_words(result))
+            return result.structured_content
 
-    async def _hint(self, arguments: dict[str, Any]) -> str:
-        result = await self.call(arguments)
-        answer = result.structured_content or {}
-        return "" if result.is_error or answer.get("kind") == "none" else str(answer.get("text", ""))
+        return Knowledge(docs, check)
+
+    def _awaited(self, name: str, arguments: dict[str, Any], seconds: float) -> types.CallToolResult:
+        """The server's answer, waited for in another thread. Raises NotChecked."""
+        if self._loop is None or self._tasks is None:
+            raise NotChecked("The knowledge base's server does not run.")
+        future = asyncio.run_coroutine_threadsafe(self.call(name, arguments), self._loop)
+        try:
+            return future.result(seconds)
+        except TimeoutError:
+            future.cancel()
+            raise NotChecked(f"The knowledge base did not answer within {seconds:g} s.") from None
+        except Exception as error:
+            raise NotChecked(f"The knowledge base does not answer ({type(error).__name__}).") from error
 
     # The connection
 
@@ -134,8 +169,11 @@ class DocsClient:
     async def _connect_early(self) -> None:
         try:
             await self._connected()
+            await self.call(CHECK, {"code": _WARM_UP})
         except DocsGone as error:
             _LOG.error("%s", error)
+        except MCPError as error:
+            _LOG.debug("the first check failed: %s", error)
 
     async def _connected(self) -> Client:
         async with self._lock:

@@ -46,6 +46,7 @@ _HABITS = (
     ("blender_docs", "before you use an API name that you have not looked up for this version, when you begin "
      "a topic (cloth, materials), and on any error that is still unclear"),
     ("blender_execute", "to build in small steps: one object or idea per call, with meaningful names"),
+    ("blender_check", "for scripts and add-ons that you write to files; blender_execute checks its code by itself"),
     ("blender_scene_state", "for numbers: positions, sizes, modifiers, caches"),
     ("blender_single_mesh_preview", "to see one mesh from all sides before it is used"),
     ("blender_scene_layout_preview", "to see the scene; use it after every step that changes what is seen"),
@@ -63,7 +64,7 @@ _LOG = logging.getLogger(__name__)
 
 def instructions(more: Iterable[str] = ()) -> str:
     """The server's instructions for models: how to work with the tools, including ``more`` of the server's own."""
-    known = {*BY_NAME, *more, docs_client.NAME}
+    known = {*BY_NAME, *more, *docs_client.NAMES}
     habits = [f"- {name}: {when}." for name, when in _HABITS if name in known]
     return "\n".join(
         [
@@ -96,13 +97,13 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
                 await anyio.to_thread.run_sync(sessions.close)
 
     async def call_tool(context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
-        if params.name == docs_client.NAME:
-            return await _look_up(docs, params.arguments)
+        if params.name in docs_client.NAMES:
+            return await _look_up(docs, params.name, params.arguments)
         if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
             return answer
         tool = BY_NAME.get(params.name)
         if tool is None:
-            names = ", ".join([*BY_NAME, *(team.names if team is not None else ()), docs_client.NAME])
+            names = ", ".join([*BY_NAME, *(team.names if team is not None else ()), *docs_client.NAMES])
             raise MCPError(
                 types.INVALID_PARAMS, f"There is no tool {params.name[:80]!r}. Available: {names}."
             )
@@ -119,7 +120,7 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
             with anyio.fail_after(_LIST_SECONDS):
                 listed += await docs.tools()
         except (DocsGone, MCPError, TimeoutError) as error:
-            _LOG.error("%s cannot be listed: %s", docs_client.NAME, error or "no reply")
+            _LOG.error("%s cannot be listed: %s", " and ".join(docs_client.NAMES), error or "no reply")
         return types.ListToolsResult(tools=listed)
 
     async def list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
@@ -289,9 +290,9 @@ def _text(text: str) -> types.TextContent:
 # The knowledge base
 
 
-async def _look_up(docs: DocsClient, arguments: dict[str, Any] | None) -> types.CallToolResult:
+async def _look_up(docs: DocsClient, name: str, arguments: dict[str, Any] | None) -> types.CallToolResult:
     try:
-        return await docs.call(arguments)
+        return await docs.call(name, arguments)
     except DocsGone as error:
         return _failed(str(error))
 

@@ -58,6 +58,7 @@ class Supervisor:
         self._process: BlenderProcess | None = None
         self._current: Checkpoint | None = None
         self._note = ""
+        self._noted: set[str] = set()
         self._ending = threading.Event()
         self._lock = threading.RLock()
 
@@ -177,6 +178,13 @@ class Supervisor:
         with self._lock:
             note, self._note = self._note, ""
             return note
+
+    def note_once(self, note: str) -> None:
+        """Puts a note before the next reply, unless it stood before an earlier one."""
+        with self._lock:
+            if note not in self._noted:
+                self._noted.add(note)
+                self._add_note(note)
 
     @contextmanager
     def alone(self) -> Generator[None]:

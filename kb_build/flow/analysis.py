@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import StepsExhausted
-from kb_build.flow.source_files import SourceFile, module_name
+from kb_build.flow.source_files import SourceFile, keeps_annotations, module_name
 from kb_build.flow.statements import Statements
 
 if TYPE_CHECKING:
@@ -158,4 +158,5 @@ def _parsed(path: str, code: str) -> SourceFile:
         except (ValueError, RecursionError, MemoryError) as found:
             error = SyntaxError(f"the script cannot be parsed: {found or type(found).__name__}")
     steps = min(MOST_STEPS, 20_000 + _STEPS_PER_CHARACTER * len(code))
-    return SourceFile(name, is_package, tree, steps, error)
+    lazy = tree is not None and keeps_annotations(tree)
+    return SourceFile(name, is_package, tree, steps, error, keeps_annotations=lazy)

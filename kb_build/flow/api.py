@@ -16,6 +16,8 @@ from kb_build.flow.facts import (
     LAYERS,
     MATH_OF_SUBTYPE,
     NARROWER,
+    OBJECT_DATA,
+    RENAMED,
     SAME_CLASS,
     T,
 )
@@ -260,6 +262,14 @@ class Api:
     def read_type(self, text: str, scope: str) -> Type:
         """The type that a text spells, seen from a symbol."""
         return read_type(text, lambda name: self.class_named(name, scope)) if text else UNKNOWN
+
+    def object_data(self, value: str) -> Type:
+        """The data of an object of a type: ``MESH`` → Mesh."""
+        name = OBJECT_DATA.get(value, "")
+        other, unless = RENAMED.get(name, ("", ""))
+        if other and not self.is_class(T + name) and not self.is_class(T + unless):
+            name = other
+        return self.instance(T + name)
 
     # Calls.
 

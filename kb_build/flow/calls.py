@@ -333,7 +333,9 @@ class Calls(Narrowing):
         values = arguments if callee.receiver is None else [callee.receiver, *arguments]
         self._pass(callee.number, values, {keyword.arg or "": kind for keyword, kind in keywords})
         self._run_now(callee.number)
-        return UNKNOWN if function.returned is None else function.returned
+        # What it returns is not known where it was not read with what this call passes.
+        is_read = function.running or not function.stale
+        return function.returned if is_read and function.returned is not None else UNKNOWN
 
     def _run_now(self, number: int) -> None:
         """Reads a function for what it returns, or for what it binds, unless it is known or too far inside."""

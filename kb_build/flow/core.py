@@ -13,6 +13,7 @@ from kb_build.flow.types import (
     LocalClass,
     LocalFunction,
     LocalInstance,
+    Module,
     Resolution,
     Type,
     members,
@@ -52,6 +53,9 @@ class Core:
         }
         self.file = files[0]
         self.scope = self.file.module
+        for file in files:
+            # Blender's console, and what runs code for others, bring it: their scripts do not import it.
+            file.module.bind("bpy", Module("bpy"))
         self.functions: list[FunctionDefinition] = []
         self.classes: list[ClassDefinition] = []
         self.derived: dict[int, list[int]] = {}

@@ -9,9 +9,13 @@ VERSION = "bpy.app.version"
 OBJECT_DATA = {
     "MESH": "Mesh", "CURVE": "Curve", "SURFACE": "SurfaceCurve", "FONT": "TextCurve", "META": "MetaBall",
     "ARMATURE": "Armature", "LATTICE": "Lattice", "LIGHT": "Light", "LIGHT_PROBE": "LightProbe", "CAMERA": "Camera",
-    "SPEAKER": "Speaker", "GPENCIL": "GreasePencil", "GREASEPENCIL": "GreasePencil", "CURVES": "Curves",
+    "SPEAKER": "Speaker", "GPENCIL": "GreasePencil", "GREASEPENCIL": "GreasePencilv3", "CURVES": "Curves",
     "POINTCLOUD": "PointCloud", "VOLUME": "Volume",
 }  # fmt: skip
+
+# A class that some versions call otherwise: name → (other name, the class that tells that it still means another thing).
+# Grease Pencil's data is GreasePencilv3 from 4.3 to 4.5; before, GreasePencil is the older kind, whose layers are GPencilLayer.
+RENAMED = {"GreasePencilv3": ("GreasePencil", "GPencilLayer")}
 
 # Classes whose name is not spelled like the value that makes them: base class → value → class.
 CLASS_OF_VALUE = {
@@ -38,7 +42,7 @@ DISCRIMINANTS = ("type", "bl_idname", "data_type", "effector_type")
 OPEN_CLASSES = (
     "bpy.types.PropertyGroup", "bpy.types.OperatorProperties", "bpy.types.AddonPreferences",
     "bpy.types.GizmoGroupProperties", "bpy.types.KeyConfigPreferences", "bpy.types.IDPropertyWrapPtr",
-    "bpy.types.AnyType", "bpy.types.UnknownType", "bpy.types.Gizmo", "bpy.utils.previews.ImagePreviewCollection",
+    "bpy.types.AnyType", "bpy.types.UnknownType", "bpy.types.NodesModifierProperties", "bpy.types.Gizmo", "bpy.utils.previews.ImagePreviewCollection",
 )  # fmt: skip
 # Classes that scripts derive their own from, which a value declared so may be.
 DERIVED_BY_SCRIPTS = frozenset(
@@ -67,8 +71,8 @@ SOMETIMES = {
     "bpy.ops.wm": ("console_toggle",),
     "bpy.types.Context": (
         "animated_id", "asset_shelf", "button_operator", "button_pointer", "button_prop", "collection", "constraint",
-        "exporter", "extension_repo", "freestyle_module", "gpencil_modifier", "id", "keyconfig", "keymap",
-        "material_slot", "modifier", "nla_strip", "point_cache", "shaderfx", "socket", "state", "tool", "viewer_path",
+        "exporter", "extension_repo", "freestyle_module", "gpencil_modifier", "grease_pencil", "id", "keyconfig", "keymap",
+        "material_slot", "modifier", "nla_strip", "point_cache", "pointcloud", "shaderfx", "socket", "state", "tool", "viewer_path",
     ),
 }  # fmt: skip
 
@@ -90,6 +94,7 @@ NARROWER = {
     "bpy.types.Context.space_data": "Space",
     "bpy.types.Context.edit_bone": "EditBone",
     "bpy.types.BoidSettings.active_boid_state": "BoidState",
+    "bpy.types.Context.grease_pencil": "GreasePencilv3",
 }
 
 # Parameters of a script's own functions that are called so by everyone. Only a name that hardly means another thing

@@ -49,6 +49,8 @@ if TYPE_CHECKING:
     import ast
     from collections.abc import Callable
 
+    from kb_build.flow.types import Resolution
+
 _GROUP_METHODS = frozenset({"add", "remove", "clear", "move"})
 _PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
 _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion"})
@@ -254,11 +256,27 @@ class Members(Core):
 
     def item(self, kind: Type, key: Type, node: ast.AST) -> Type:
         """What an index or a key gives; ``node`` is where a socket is recorded."""
-        if isinstance(kind, Union):
-            return union(
-                self._item(member, key, node) for member in kind.members if not isinstance(member, NoneValue)
+        if not isinstance(kind, Union):
+            return self._item(kind, key, node)
+        found: list[Type] = []
+        rows: list[Resolution | None] = []
+        for member in kind.members:
+            if not isinstance(member, NoneValue):
+                self.resolutions.pop(node, None)
+                found.append(self._item(member, key, node))
+                rows.append(self.resolutions.pop(node, None))
+        known = [row for row in rows if row is not None]
+        if known:
+            self.resolutions[node] = replace(
+                known[0],
+                symbols=tuple(dict.fromkeys(path for row in known for path in row.symbols)),
+                # It is missing if no member can have it.
+                missing=tuple(path for row in known for path in row.missing)
+                if len(known) == len(rows)
+                else (),
+                sure=all(row.sure for row in known),
             )
-        return self._item(kind, key, node)
+        return union(found)
 
     def _item(self, kind: Type, key: Type, node: ast.AST) -> Type:  # noqa: PLR0911 - one return a type
         if isinstance(kind, Collection):

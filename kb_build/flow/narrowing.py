@@ -6,7 +6,7 @@ import ast
 from dataclasses import replace
 
 from kb_build.flow.expressions import Expressions
-from kb_build.flow.facts import DISCRIMINANTS, OBJECT_DATA, T
+from kb_build.flow.facts import DISCRIMINANTS, T
 from kb_build.flow.scopes import chain_text
 from kb_build.flow.types import (
     NONE,
@@ -118,7 +118,7 @@ class Narrowing(Expressions):
                 return
             for value in values:
                 if member.cls == _OBJECT:
-                    data = self.api.instance(T + OBJECT_DATA.get(value, ""))
+                    data = self.api.object_data(value)
                     found.append(replace(member, traits=(("data", data),)) if data is not UNKNOWN else member)
                 elif cls := self.api.class_of_value(member.cls, value):
                     found.append(Instance(cls))

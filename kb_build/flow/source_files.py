@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from dataclasses import dataclass, field
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
@@ -9,8 +10,6 @@ from typing import TYPE_CHECKING
 from kb_build.flow.scopes import Scope
 
 if TYPE_CHECKING:
-    import ast
-
     from kb_build.flow.types import Resolution, Type
 
 
@@ -18,7 +17,7 @@ if TYPE_CHECKING:
 class SourceFile:
     """One file: its module's dotted name, its text as a tree (None with an ``error``), and what was found in it.
 
-    ``steps_left`` is what may still be spent on reading it, ``complete`` whether that was enough.
+    ``keeps_annotations``: Python leaves its annotations unread. ``steps_left`` is what may still be spent on reading it, ``complete`` whether that was enough.
     """
 
     name: str
@@ -26,6 +25,7 @@ class SourceFile:
     tree: ast.Module | None
     steps_left: int
     error: SyntaxError | None = None
+    keeps_annotations: bool = False
     module: Scope = field(default_factory=Scope)
     types: dict[ast.expr, Type] = field(default_factory=dict["ast.expr", "Type"])
     resolutions: dict[ast.AST, Resolution] = field(default_factory=dict["ast.AST", "Resolution"])
@@ -39,6 +39,16 @@ class SourceFile:
         parts = self.name.split(".")
         parts = parts[: len(parts) - level + self.is_package]
         return ".".join([*parts, module] if module else parts) if parts else ""
+
+
+def keeps_annotations(tree: ast.Module) -> bool:
+    """Whether a file begins with ``from __future__ import annotations``."""
+    return any(
+        isinstance(statement, ast.ImportFrom)
+        and statement.module == "__future__"
+        and any(alias.name == "annotations" for alias in statement.names)
+        for statement in tree.body
+    )
 
 
 def module_name(path: str) -> tuple[str, bool]:

@@ -157,7 +157,7 @@ class Statements(Calls):
         if isinstance(node.annotation, ast.Call):  # ``size: FloatProperty(...)``
             declared = self.evaluate(node.annotation)
         else:
-            declared = annotated(node.annotation, self.evaluate)
+            declared = self._annotated(node.annotation)
         if kind is UNKNOWN or kind is NONE or (isinstance(kind, Sequence) and kind.element is UNKNOWN):
             kind = declared
         self.bind_target(node.target, kind, node.value)
@@ -254,7 +254,11 @@ class Statements(Calls):
             kind = self.evaluate(item.context_expr)
             if item.optional_vars is not None:
                 self.bind_target(item.optional_vars, kind)
-        return self.read_body(node.body)
+        forgiving = any(_suppresses(item.context_expr) for item in node.items)
+        self.tolerant += forgiving
+        reached = self.read_body(node.body)
+        self.tolerant -= forgiving
+        return reached or forgiving
 
     def _try(self, node: ast.Try) -> bool:
         forgiving = any(_forgives(handler) for handler in node.handlers)
@@ -499,7 +503,7 @@ class Statements(Calls):
             function.returned = join(function.returned, NONE)
         if not isinstance(function.node, ast.Lambda) and function.node.returns is not None:
             self.statement = None
-            declared = annotated(function.node.returns, self.evaluate)
+            declared = self._annotated(function.node.returns)
             if declared is not UNKNOWN and function.returned in {UNKNOWN, None}:
                 function.returned = declared
 
@@ -533,7 +537,7 @@ class Statements(Calls):
     ) -> Type:
         """A parameter's type: annotated, declared by the API, seen in calls, its default's, or by its name."""
         if argument.annotation is not None:
-            kind = annotated(argument.annotation, self.evaluate)
+            kind = self._annotated(argument.annotation)
             if kind is not UNKNOWN:
                 received = function.received.get(argument.arg, UNKNOWN)
                 return join(kind, received) if self._contradicts(received, kind) else kind
@@ -550,6 +554,14 @@ class Statements(Calls):
         if fallback is not UNKNOWN and fallback is not NONE:
             return _general(fallback)
         return self._by_convention(function, argument.arg)
+
+    def _annotated(self, node: ast.expr) -> Type:
+        """What an annotation means; a wrong name in it is no error where Python does not read it."""
+        unread = self.file.keeps_annotations
+        self.tolerant += unread
+        kind = annotated(node, self.evaluate)
+        self.tolerant -= unread
+        return kind
 
     def _contradicts(self, received: Type, declared: Type) -> bool:
         """Whether calls pass an instance of another class than the annotation says, which nobody checks."""
@@ -670,4 +682,17 @@ def _forgives(handler: ast.ExceptHandler) -> bool:
     if handler.type is None:
         return True
     names = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-    return any(isinstance(name, ast.Name) and name.id in _FORGIVING for name in names)
+    return any(map(_is_forgiving, names))
+
+
+def _suppresses(manager: ast.expr) -> bool:
+    """Whether a context manager is ready for a name that does not exist: ``contextlib.suppress(AttributeError)``."""
+    if not isinstance(manager, ast.Call):
+        return False
+    function = manager.func
+    name = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
+    return name == "suppress" and any(map(_is_forgiving, manager.args))
+
+
+def _is_forgiving(error: ast.expr) -> bool:
+    return isinstance(error, ast.Name) and error.id in _FORGIVING

@@ -60,10 +60,13 @@ class SymbolList:
 
 
 class BaseSymbols:
-    """The symbols of a knowledge base. Raises FileNotFoundError and schema.NoBase when it cannot be opened."""
+    """The symbols of a knowledge base, for one thread at a time.
+
+    Raises FileNotFoundError and schema.NoBase when it cannot be opened.
+    """
 
     def __init__(self, path: Path) -> None:
-        self._connection = open_read_only(path)
+        self._connection = open_read_only(path, threads=True)
         self.symbol = lru_cache(maxsize=_MOST_KEPT)(self._symbol)
         self.members = lru_cache(maxsize=_MOST_KEPT)(self._owned)
         self.subclasses = lru_cache(maxsize=_MOST_KEPT)(self._below)

@@ -20,7 +20,7 @@ def lacking_finding(
     """The finding for a name that does not exist, with the edit that writes the right one where there is one."""
     return Finding(
         rule, severity, script.name_span(row.node), lacking.message, lacking.symbol, lacking.instead,
-        renaming(script, row, lacking),
+        renaming(script, row, lacking), absent_paths(row),
     )  # fmt: skip
 
 
@@ -36,6 +36,14 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     if not same_owner or not name or (edit := script.renamed(node, name)) is None:
         return None
     return Fix(f"Write {name}", (edit,), sure=lacking.sure)
+
+
+def absent_paths(row: Resolution) -> tuple[str, ...]:
+    """The paths that would have to exist for a name to be right; none where that cannot be said by a path."""
+    if row.kind == "button" and row.value.startswith("bpy.ops."):
+        return (row.value,)
+    form = {"keyword": "{}({})", "value": "{}:{}", "item": ""}.get(row.kind, "{}.{}")
+    return tuple(form.format(owner, row.value) for owner in row.missing) if form else ()
 
 
 def _split(path: str) -> tuple[str, str]:

@@ -9,8 +9,9 @@ with bpy.context.temp_override(window=window, area=area, region=region):
     bpy.ops.view3d.view_selected()
 ```
 
-Not reported: what stands inside ``temp_override`` or in a class, which Blender's interface calls; add-ons (a file with a
-function ``register``) and modules that only define; scripts that ask for ``bpy.app.background`` or for the operator's ``poll``.
+Not reported: what stands inside ``temp_override`` or in a class, which Blender's interface calls; add-ons (a file with
+a function ``register``) and modules that only define; scripts that ask for ``bpy.app.background`` or for the operator's
+``poll``.
 
 Which operators those are was found by asking each whether it can run, with objects of all types in all modes, in every
 area and in none (``kb_check/inside/operator_areas.py``).
@@ -34,14 +35,14 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_AREAS = Path(__file__).parent.parent / "operator_areas.txt"
+TABLE = Path(__file__).parent.parent / "operator_areas.txt"
 _BACKGROUND = "bpy.app.background"
 
 
 @cache
 def operator_areas() -> Table[str, str]:
     """Operator (``mesh.loopcut``) → the types of areas in which it runs, or ``any``."""
-    lines = (line.partition(": ") for line in _AREAS.read_text(encoding="utf-8").splitlines())
+    lines = (line.partition(": ") for line in TABLE.read_text(encoding="utf-8").splitlines())
     return {name: areas for areas, _, names in lines for name in names.split()}
 
 
@@ -97,14 +98,20 @@ def _asked(script: Script) -> Iterator[str]:
 def _given_context(script: Script) -> Iterator[tuple[int, int]]:
     """The lines that have a context of their own: classes, and what stands inside ``temp_override``."""
     for node in script.nodes:
-        overrides = isinstance(node, (ast.With, ast.AsyncWith)) and any(
-            isinstance(call := item.context_expr, ast.Call)
-            and isinstance(call.func, ast.Attribute)
-            and call.func.attr == "temp_override"
-            for item in node.items
-        )
-        if overrides or isinstance(node, ast.ClassDef):
+        if isinstance(node, ast.ClassDef) or (
+            isinstance(node, (ast.With, ast.AsyncWith)) and _overrides(node)
+        ):
             yield node.lineno, node.end_lineno or node.lineno
+
+
+def _overrides(node: ast.With | ast.AsyncWith) -> bool:
+    calls_made = (item.context_expr for item in node.items)
+    return any(
+        isinstance(call, ast.Call)
+        and isinstance(call.func, ast.Attribute)
+        and call.func.attr == "temp_override"
+        for call in calls_made
+    )
 
 
 RULE = Rule("needs-context", "note", "An operator that runs only in an area of a window", _check)

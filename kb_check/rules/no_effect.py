@@ -30,7 +30,9 @@ if TYPE_CHECKING:
 
 _MATH = "mathutils."
 _SWIZZLE = re.compile(r"[xyzw]{2,4}")
-_RETURNS_ITSELF = frozenset({"freeze"})  # of what returns something in mathutils, all else leaves its owner as it is
+_RETURNS_ITSELF = frozenset(
+    {"freeze"}
+)  # of what returns something in mathutils, all else leaves its owner as it is
 _CHANGING = frozenset(
     {"add", "append", "clear", "discard", "extend", "insert", "pop", "remove", "reverse", "sort", "update"}
 )
@@ -99,7 +101,13 @@ def _pure(script: Script, call: ast.Call, symbol: Symbol) -> Finding:
     path = f"{symbol.owner}.{in_place}"
     fix = Fix(f"Write {in_place}", (Edit(script.name_span(call.func), in_place),))
     return Finding(
-        RULE.id, "warning", script.span(call), f"{told} `{in_place}` works in place.", symbol.path, (path,), fix
+        RULE.id,
+        "warning",
+        script.span(call),
+        f"{told} `{in_place}` works in place.",
+        symbol.path,
+        (path,),
+        fix,
     )
 
 

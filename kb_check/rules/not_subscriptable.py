@@ -30,6 +30,7 @@ from kb_build.flow.types import (
     Operator,
     Plain,
     Sequence,
+    Tuple,
     Type,
     members,
 )
@@ -57,7 +58,9 @@ _NO_CUSTOM_PROPERTIES = frozenset(
 )
 _T = "bpy.types."
 # What the classes of collections have, which annotations name: ``nodes: bpy.types.Nodes``.
-_OF_COLLECTIONS = frozenset({"active", "add", "append", "clear", "create", "get", "link", "load", "new", "remove"})
+_OF_COLLECTIONS = frozenset(
+    {"active", "add", "append", "clear", "create", "get", "link", "load", "new", "remove"}
+)
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -78,7 +81,7 @@ def _is_guarded(script: Script, node: ast.Subscript) -> bool:
     return False
 
 
-def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:  # noqa: PLR0911 - one return a type
+def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:
     """What is wrong with asking a value of one type for these items; empty if nothing surely is."""
     key = None if isinstance(node.slice, ast.Slice) else script.type_of(node.slice)
     step = node.slice.step if isinstance(node.slice, ast.Slice) else None
@@ -91,7 +94,9 @@ def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:  # noqa: P
             return _of_collection(script, kind, key, step)
         case Instance() if kind.sure:
             return _of_instance(script, node, kind, key, step)
-        case Sequence(kind="list") if _is_text(key) and script.analysis.resolutions.get(node.value) is not None:
+        case Sequence(kind="list") if (
+            _is_text(key) and script.analysis.resolutions.get(node.value) is not None
+        ):
             return f"{_subject(script, node)} is a list: its items are found by index, not by name."
         case _:
             return ""
@@ -104,7 +109,12 @@ def _of_collection(script: Script, kind: Collection, key: Type | None, step: ast
     if isinstance(key, (NoneValue, Instance)) or (isinstance(key, Plain) and key.kind == "float"):
         return f"`{path}` is asked by index or by name, not by {_described(key)}."
     element = kind.element
-    if _is_text(key) and isinstance(element, Instance) and kind.container != GROUPS and _is_nameless(script, element):
+    if (
+        _is_text(key)
+        and isinstance(element, Instance)
+        and kind.container != GROUPS
+        and _is_nameless(script, element)
+    ):
         return f"The items of `{path}` have no names: they are found by index."
     side = path.rpartition(".")[2]
     if side in {"inputs", "outputs"} and isinstance(kind.owner, Instance) and kind.owner.sure:
@@ -135,7 +145,11 @@ def _of_instance(  # noqa: PLR0911 - one return a class
     if cls in _VECTORS or cls in _NO_STEPS or cls == ARRAY:
         if step is not None:
             return f"A slice of {_subject(script, node)} takes no step."
-        if _is_text(key) or isinstance(key, NoneValue) or (isinstance(key, Plain) and key.kind == "float"):
+        if (
+            _is_text(key)
+            or isinstance(key, (NoneValue, Tuple))
+            or (isinstance(key, Plain) and key.kind == "float")
+        ):
             return f"The items of {_subject(script, node)} are found by index, not by {_described(key)}."
         index = number(script, node.slice)
         length = _length(script, node, cls)
@@ -181,6 +195,8 @@ def _described(key: Type | None) -> str:
             return f"a {key.kind}"
         case Instance():
             return f"an instance of `{key.cls}`"
+        case Tuple():
+            return "several at once"
         case _:
             return "None"
 

@@ -82,7 +82,7 @@ def _is_clamped(script: Script, taker: Taker) -> bool:
     if taker.is_parameter:
         return taker.is_operator
     symbol = taker.symbol
-    return "readonly" not in symbol.flags and not any(
+    return not any(
         symbol.name in names and script.api.descends(symbol.owner, f"bpy.types.{cls}")
         for cls, names in _BOUND_OTHERWISE.items()
     )
@@ -112,8 +112,14 @@ def _judged(script: Script, taker: Taker, node: ast.expr) -> Iterator[Finding]:
 def _advice(taker: Taker, value: float) -> str:
     low, high = taker.hard_min, taker.hard_max
     angle = math.radians(value)
-    in_degrees = (low is None or angle >= low - _slack(low)) and (high is None or angle <= high + _slack(high))
-    return f" It is an angle in radians: `math.radians({value:g})`?" if taker.unit == "ROTATION" and in_degrees else ""
+    in_degrees = (low is None or angle >= low - _slack(low)) and (
+        high is None or angle <= high + _slack(high)
+    )
+    return (
+        f" It is an angle in radians: `math.radians({value:g})`?"
+        if taker.unit == "ROTATION" and in_degrees
+        else ""
+    )
 
 
 def _slack(limit: float) -> float:

@@ -84,7 +84,9 @@ def _is_wrong(script: Script, argument: ast.expr) -> bool:
     text = literal_text(kind) if kind is not None else None
     if text is not None:
         return text not in _EXECUTION_CONTEXTS
-    return isinstance(kind, (NoneValue, Tuple, Sequence)) or (isinstance(kind, Plain) and kind.kind == "float")
+    return isinstance(kind, (NoneValue, Tuple, Sequence)) or (
+        isinstance(kind, Plain) and kind.kind == "float"
+    )
 
 
 def _meant(call: CallSite, script: Script, argument: ast.expr) -> Parameter | None:

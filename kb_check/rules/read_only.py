@@ -95,7 +95,9 @@ def _is_refused(row: Resolution, symbol: Symbol) -> bool:
     """Whether an instance refuses another value for a member."""
     if symbol.owner.startswith("bpy.types."):
         return symbol.kind == "function" or "readonly" in symbol.flags or row.kind == "attribute"
-    refused = next((names for module, names in _REFUSED.items() if symbol.owner.startswith(module)), frozenset())
+    refused = next(
+        (names for module, names in _REFUSED.items() if symbol.owner.startswith(module)), frozenset()
+    )
     repeated = _SWIZZLE.fullmatch(symbol.name) and len(set(symbol.name)) < len(symbol.name)
     return symbol.name in refused or bool(repeated) or symbol.owner.startswith(_LAYERS)
 
@@ -123,7 +125,11 @@ def _finding(script: Script, row: Resolution, symbol: Symbol) -> Finding:
 def _calling(script: Script, row: Resolution, symbol: Symbol) -> Fix | None:
     """``ob.select_set = True`` → ``ob.select_set(True)``."""
     statement = row.statement
-    if not isinstance(statement, ast.Assign) or len(statement.targets) != 1 or row.node is not statement.targets[0]:
+    if (
+        not isinstance(statement, ast.Assign)
+        or len(statement.targets) != 1
+        or row.node is not statement.targets[0]
+    ):
         return None
     required = [parameter for parameter in symbol.parameters if parameter.required]
     if len(required) != 1 or not symbol.name.endswith("_set"):

@@ -42,7 +42,9 @@ def _check(script: Script) -> Iterator[Finding]:
     for call, path in added:
         if mentions[path] > uses[path]:
             continue
-        what = "is called once more per frame or event" if path.startswith(_HANDLERS) else "is drawn once more"
+        what = (
+            "is called once more per frame or event" if path.startswith(_HANDLERS) else "is drawn once more"
+        )
         yield Finding(
             RULE.id, "note", script.span(call),
             f"Run again in the same Blender, this adds to `{path}` once more, and what it adds {what}: remove the "

@@ -18,9 +18,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance
+from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.flow.types import Instance, Plain
 from kb_check.conversions import misfit
-from kb_check.findings import Edit, Finding, Fix
+from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.given import given_values
 from kb_check.literals import items
 from kb_check.rule import Rule
@@ -33,7 +34,9 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _COLORS = frozenset({"COLOR", "COLOR_GAMMA"})
-_OBJECT = "bpy.types.Object"
+_OBJECT = f"{T}Object"
+_DATA = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
+_LONGEST_INT = 2**31
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -51,48 +54,59 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
-    """What may be meant where data are given in the place of an object, or a name in the place of what it names."""
+    """What may be meant where an object's data, or a node, stand in the place of the object or of a socket."""
     kind = script.type_of(node)
-    if taker.target == _OBJECT and isinstance(kind, Instance) and script.api.descends(kind.cls, "bpy.types.ID"):
-        data = script.api.member(_OBJECT, "data")
-        if data is not None and kind.cls.rpartition(".")[2] in {"Mesh", "Camera", "Armature", "Light", "PointLight",
-                                                                "SunLight", "SpotLight", "AreaLight", "Curve"}:  # fmt: skip
-            return " Give the object that has it: `bpy.data.objects.new(name, data)` makes one."
+    if not isinstance(kind, Instance):
+        return ""
+    if taker.target == _OBJECT and any(script.api.descends(kind.cls, cls) for cls in _DATA):
+        return " Give the object that has it: `bpy.data.objects.new(name, data)` makes one."
+    if taker.target == f"{T}NodeSocket" and script.api.descends(kind.cls, f"{T}Node"):
+        return " Give one of its sockets: `node.outputs[...]`, `node.inputs[...]`."
     return ""
 
 
 def _fix(script: Script, taker: Taker, wrong: Misfit, node: ast.expr) -> Fix | None:
     """The edit that leaves no doubt: a whole number without its point, a colour with or without alpha, a set of one."""
-    span = script.span(node)
-    text = script.text(span)
+    if isinstance(node, ast.Constant):
+        return _literal_fix(script, taker, node)
     parts = items(script, node)
-    if taker.kind == "int" and isinstance(node, ast.Constant) and isinstance(node.value, float):
-        whole = node.value.is_integer() and abs(node.value) < 2**31
-        return Fix("Write an int", (Edit(span, str(int(node.value))),), sure=True) if whole else None
-    if taker.kind == "set" and isinstance(node, ast.Constant) and isinstance(node.value, str):
-        return Fix("Write a set", (Edit(span, f"{{{text}}}"),), sure=True)
     if parts is None or not isinstance(node, (ast.Tuple, ast.List)):
         return None
     if taker.kind == "boolean" and not wrong.length:
-        if all(isinstance(part, ast.Constant) and part.value in {0, 1} for part in parts):
-            edits = tuple(Edit(script.span(part), str(bool(part.value))) for part in parts
-                          if isinstance(part, ast.Constant))  # fmt: skip
-            return Fix("Write truth values", edits, sure=True)
-        return None
-    if taker.subtype in _COLORS and taker.kind == "float" and _is_color(script, parts):
-        if (wrong.length, taker.sizes) == (3, (4,)):
-            end = script.span(parts[-1])
-            where = type(end)(end.end_line, end.end_column, end.end_line, end.end_column)
-            return Fix("Add alpha", (Edit(where, ", 1.0"),), sure=True)
-        if (wrong.length, taker.sizes) == (4, (3,)):
-            before, last = script.span(parts[2]), script.span(parts[3])
-            cut = type(last)(before.end_line, before.end_column, last.end_line, last.end_column)
-            return Fix("Leave out alpha", (Edit(cut, ""),), sure=True)
+        bits = [part for part in parts if isinstance(part, ast.Constant) and part.value in {0, 1}]
+        edits = tuple(Edit(script.span(part), str(bool(part.value))) for part in bits)
+        return Fix("Write truth values", edits, sure=True) if len(bits) == len(parts) else None
+    return _color_fix(script, taker, wrong, parts) if taker.subtype in _COLORS else None
+
+
+def _literal_fix(script: Script, taker: Taker, node: ast.Constant) -> Fix | None:
+    span, value = script.span(node), node.value
+    if taker.kind == "int" and isinstance(value, float) and value.is_integer() and abs(value) < _LONGEST_INT:
+        return Fix("Write an int", (Edit(span, str(int(value))),), sure=True)
+    if taker.kind == "set" and isinstance(value, str):
+        return Fix("Write a set", (Edit(span, f"{{{script.text(span)}}}"),), sure=True)
     return None
 
 
-def _is_color(script: Script, parts: list[ast.expr]) -> bool:
-    return all(script.type_of(part) is not None and not isinstance(part, (ast.Tuple, ast.List)) for part in parts)
+def _color_fix(script: Script, taker: Taker, wrong: Misfit, parts: list[ast.expr]) -> Fix | None:
+    if not all(_is_number(script, part) for part in parts):
+        return None
+    before = script.span(parts[2]) if len(parts) > 2 else None
+    if before is None:
+        return None
+    if (wrong.length, taker.sizes) == (3, (4,)):
+        end = Span(before.end_line, before.end_column, before.end_line, before.end_column)
+        return Fix("Add alpha", (Edit(end, ", 1.0"),), sure=True)
+    if (wrong.length, taker.sizes) == (4, (3,)):
+        last = script.span(parts[3])
+        cut = Span(before.end_line, before.end_column, last.end_line, last.end_column)
+        return Fix("Leave out alpha", (Edit(cut, ""),), sure=True)
+    return None
+
+
+def _is_number(script: Script, node: ast.expr) -> bool:
+    kind = script.type_of(node)
+    return isinstance(kind, Plain) and kind.kind in {"int", "float"}
 
 
 RULE = Rule("wrong-type", "error", "A value of a type that is not taken", _check)

@@ -32,6 +32,26 @@ class Docs(Protocol):
         ...
 
 
+class NotChecked(Exception):  # noqa: N818 - reads as the state it names
+    """Code was not checked; the message says why."""
+
+
+class Check(Protocol):
+    """A check of code against the knowledge base."""
+
+    def __call__(self, code: str) -> dict[str, Any]:
+        """What ``blender_check`` returns as JSON. Raises NotChecked."""
+        ...
+
+
+@dataclass(frozen=True, slots=True)
+class Knowledge:
+    """The knowledge base of one Blender version."""
+
+    docs: Docs
+    check: Check | None = None
+
+
 @dataclass(frozen=True, slots=True)
 class SavedImage:
     """A PNG, and its path in the run's folder."""
@@ -55,10 +75,11 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class ToolContext:
-    """What a tool works with: a run's Blender and the knowledge base."""
+    """What a tool works with: a run's Blender and the knowledge base. Without ``check``, code is not checked."""
 
     blender: Supervisor
     docs: Docs
+    check: Check | None = None
 
 
 @dataclass(frozen=True, slots=True)

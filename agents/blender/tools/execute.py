@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from agents.blender.formatting import format_count
+from agents.blender.preflight import PreFlight, check_before_running
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.sandbox.replies import Claim, Text
 
@@ -26,6 +27,10 @@ class ExecuteArguments(Arguments):
     timeout: float = Field(
         default=60.0, ge=0.1, le=3600, description="Seconds after which Blender is stopped and put back."
     )
+    preflight: Literal["on", "off"] = Field(
+        default="on",
+        description="off: run the code without checking it first.",
+    )
     on_error: Literal["keep", "restore"] = Field(
         default="keep",
         description="When the code fails half-way: keep the scene as it is, or restore it as it was before.",
@@ -33,8 +38,9 @@ class ExecuteArguments(Arguments):
 
 
 DESCRIPTION = """\
-Run Python in the live Blender. Each call has a fresh namespace; `bpy.data` stays from call to call. The \
-reply has the printed output, the value of a final expression, what changed in the scene, and for an \
+Run Python in the live Blender. Each call has a fresh namespace; `bpy.data` stays from call to call. Code \
+with names, keywords or values that this Blender lacks is not run: the reply says what to write instead. \
+Else the reply has the printed output, the value of a final expression, what changed in the scene, and for an \
 error the line that failed, with what the documentation of this Blender version says about the wrong \
 name. Physics: step frames one by one or bake; never jump. No network, no other processes; write files \
 below the current folder. Code that runs past `timeout` (seconds) or ends Blender is undone: Blender is \
@@ -64,8 +70,14 @@ class _Outcome(Claim):
 
 
 def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result:
-    """Runs the code."""
+    """Checks the code, and runs it unless it is sure to fail."""
     blender = context.blender
+    checked = (
+        PreFlight() if arguments.preflight == "off" else check_before_running(context, arguments.code, call)
+    )
+    if checked.errors:
+        data = {"executed": False, "preflight": checked.data, "blender": checked.blender}
+        return Result(checked.refusal(), data, failed=True)
     if arguments.on_error == "restore":
         blender.keep("before code that may be undone")
     before, unkept = blender.checkpoints.last, blender.checkpoints.unkept
@@ -82,16 +94,18 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
         cancelled=call.cancelled,
     )
     data = reply.value.model_dump()
+    if checked.warnings:
+        data["preflight"] = checked.data
     data.update(stdout=reply.stdout, stderr=reply.stderr, seconds=round(reply.seconds, 4))
     error = data["error"]
     if error is None:
-        return Result(_text(data, reply), data)
+        return Result(_text(data, reply, checked), data)
     error["documentation"] = context.docs(error["ask"]) if error["ask"] else ""
     if arguments.on_error == "restore":
         data["scene"] = f"The scene was restored from {blender.restore()}."
     else:
         data["scene"] = f"The scene is as the code left it.{_how_to_undo(before, unkept)}"
-    return Result(_text(data, reply), data, failed=True)
+    return Result(_text(data, reply, checked), data, failed=True)
 
 
 def _title(code: str) -> str:
@@ -108,7 +122,7 @@ def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     return f" To undo it{calls}: blender_load(checkpoint={before.number})."
 
 
-def _text(data: dict[str, Any], reply: WorkerReply[_Outcome]) -> str:
+def _text(data: dict[str, Any], reply: WorkerReply[_Outcome], checked: PreFlight) -> str:
     parts: list[str] = []
     if error := data["error"]:
         parts.append(f"**{error['type']}**: {error['message']}")
@@ -136,6 +150,8 @@ def _text(data: dict[str, Any], reply: WorkerReply[_Outcome]) -> str:
     if data["mode"] != "OBJECT":
         parts.append(f"Blender is in {data['mode']} mode.")
     parts.append(f"{reply.seconds:.2f} s" + ("" if parts else "; nothing was printed or changed"))
+    if remarks := checked.remarks():
+        parts.append("\n".join(remarks))
     return "\n\n".join(parts)
 
 

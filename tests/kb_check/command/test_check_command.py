@@ -10,6 +10,8 @@ from checking import RIGHT, SIMWORLDS, WRONG
 from hostile_text import HOSTILE, on_terminal, steering
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from checking import Command
 
 # Places and words
@@ -137,7 +139,16 @@ def test_without_a_base_the_way_to_one_is_said(command: Command) -> None:
 
 @pytest.mark.parametrize(
     "arguments",
-    [["--fix", "--diff"], ["--unsafe-fixes"], ["--rules", "nothing"], ["--jobs", "0"], ["-", "--fix"]],
+    [
+        ["--fix", "--diff"],
+        ["--unsafe-fixes"],
+        ["--rules", "nothing"],
+        ["--jobs", "0"],
+        ["-", "--fix"],
+        ["--blender", "4.5,5.1", "--fix"],
+        ["--blender", "4.5,5.1", "--sarif"],
+        ["--blender", "x,y"],
+    ],
 )
 def test_wrong_options_are_told(command: Command, arguments: list[str]) -> None:
     done = command(*arguments)
@@ -158,6 +169,18 @@ def test_severities_decide_how_it_ends(command: Command) -> None:
 def test_rules_can_be_chosen(command: Command) -> None:
     command.write("a.py", f"{WRONG}bpy.ops.mesh.nothing()\n")
     assert command("--json", "--rules", "unknown-operator").places == [("a.py", 3, "unknown-operator")]
+
+
+def test_several_versions_are_a_table(command: Command, base: Path) -> None:
+    (command.home / "kb" / "blender-2.90.sqlite").symlink_to(base)
+    versions = f"2.90,{base.stem.removeprefix('blender-')}"
+    command.write("a.py", WRONG)
+    done = command("--blender", versions)
+    assert done.out.splitlines()[1].split() == ["a.py", "1", "1"]
+    assert done.code == 1
+    assert command("--blender", versions, "--json").json["runs_in"] == []
+    command.write("a.py", RIGHT)
+    assert command("--blender", versions).code == 0
 
 
 # Input

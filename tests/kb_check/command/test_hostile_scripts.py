@@ -12,7 +12,7 @@ from places import REPO
 
 from kb_check.fixes import apply_fixes
 from kb_check.project import LoadedFile, check_group
-from kb_check.source import read_source
+from kb_check.reading import read_source
 
 if TYPE_CHECKING:
     from kb_check.checker import Checker

@@ -3,11 +3,14 @@
 from __future__ import annotations
 
 import json
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from kb_check.source import Source, read_source
+from kb_check.reading import read_source
+
+if TYPE_CHECKING:
+    from kb_check.source import Source
 
 
 @pytest.mark.parametrize(

@@ -39,6 +39,10 @@ def run_statements(folder: Path, lines: list[str], watched: dict[int, str] | Non
     file = folder / "statements.json"
     file.write_text(json.dumps([lines, watched or {}]))
     subprocess.run(
-        [sys.executable, "-P", "-c", _RUN, str(file)], check=True, timeout=240, capture_output=True, cwd=folder
+        [sys.executable, "-P", "-c", _RUN, str(file)],
+        check=True,
+        timeout=240,
+        capture_output=True,
+        cwd=folder,
     )
     return json.loads(file.read_text())

@@ -26,7 +26,7 @@ def command(home: Path, *arguments: str) -> StdioServerParameters:
 @pytest.mark.parametrize("mode", ["auto", "legacy"])
 async def test_a_client_gets_answers_from_the_process_it_starts(home: Path, mode: Any) -> None:
     async with Client(command(home), mode=mode) as client:
-        assert [tool.name for tool in (await client.list_tools()).tools] == ["blender_docs"]
+        assert "blender_docs" in [tool.name for tool in (await client.list_tools()).tools]
         result = await client.call_tool("blender_docs", {"query": "ClothSettings.quality"})
     assert result.structured_content is not None
     assert result.structured_content["hits"][0]["id"] == QUALITY

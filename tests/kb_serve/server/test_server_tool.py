@@ -46,7 +46,7 @@ def said(result: CallToolResult) -> str:
 async def test_the_tool_says_that_it_only_reads_and_may_be_asked_again(service: Service) -> None:
     async with Client(make_server(service)) as client:
         listed = (await client.list_tools()).tools
-    assert [one.name for one in listed] == ["blender_docs"]
+    assert [one.name for one in listed] == ["blender_docs", "blender_check"]
     hints = listed[0].annotations
     assert hints is not None
     assert (hints.read_only_hint, hints.idempotent_hint) == (True, True)
@@ -219,7 +219,7 @@ async def test_others_are_served_while_a_query_is_answered(
 
 async def test_another_tool_is_refused_by_name(service: Service) -> None:
     async with Client(make_server(service)) as client:
-        with pytest.raises(MCPError, match="The only tool is blender_docs"):
+        with pytest.raises(MCPError, match="Available: blender_docs, blender_check"):
             await client.call_tool("blender_execute", {})
 
 

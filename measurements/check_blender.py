@@ -1,0 +1,179 @@
+"""Checks all scripts of Blender itself, which are right as a rule, and has Blender judge what is found there.
+
+``python -m measurements --only check_blender`` checks every script that the base's Blender brings, and those of each
+other version whose base lies beside it. A finding is true if ``broken_in_blender.toml`` has a row for it and Blender,
+when it runs the row's code, says what the row says; a comparison that never holds if Blender's own enumeration lacks
+the value. Every other error is counted as false. Warnings of other rules, and notes, are counted alone.
+"""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import time
+import tomllib
+from collections import Counter, defaultdict
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench.markdown_tables import Table
+from kb_build.base_file import read_meta
+from kb_build.usage.scripts import read_script
+from kb_check.checker import Checker
+from measurements.report import ReportPart, TargetFigure
+from measurements.setting import say
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from kb_check.findings import Finding
+    from measurements.setting import Setting
+
+BROKEN = Path(__file__).with_name("broken_in_blender.toml")
+_HEADER = ("Blender", "files", "lines", "errors", "proven", "false", "never true", "proven", "other warnings", "notes")
+_ADDONS = ("addons", "addons_core")
+_MARK = "ANSWERS:"
+_SECONDS = 120
+# Runs in Blender: each text of code, from one state, and what it ends in.
+_RUN = """
+import json, sys
+import bpy
+answers = []
+for code in json.loads({codes!r}):
+    try:
+        exec(code, {{"bpy": bpy}})
+        answers.append("")
+    except Exception as error:
+        answers.append(f"{{type(error).__name__}}: {{error}}")
+print({mark!r} + json.dumps(answers))
+"""
+
+
+@dataclass(frozen=True, slots=True)
+class Broken:
+    """What a script of Blender's gets wrong, and the code that proves it."""
+
+    scripts: tuple[str, ...]
+    symbol: str
+    code: str
+    says: str
+    why: str
+
+
+def broken_rows() -> list[Broken]:
+    """The rows of ``broken_in_blender.toml``."""
+    rows = tomllib.loads(BROKEN.read_text(encoding="utf-8"))["broken"]
+    return [Broken(**{**row, "scripts": tuple(row["scripts"])}) for row in rows]
+
+
+def packages(folder: Path) -> Iterator[dict[str, Path]]:
+    """The scripts below Blender's folder of scripts, grouped as they belong together: module path → file.
+
+    An add-on is a package; so is each folder right below the others (``startup/bl_ui``).
+    """
+    groups: defaultdict[Path, dict[str, Path]] = defaultdict(dict)
+    for path in sorted(folder.rglob("*.py")):
+        parts = path.relative_to(folder).parts
+        if "__pycache__" not in parts and len(parts) > 1:
+            root = folder / parts[0]
+            groups[root / parts[1] if len(parts) > 2 else root][path.relative_to(root).as_posix()] = path
+    yield from groups.values()
+
+
+def check_all(checker: Checker, folder: Path) -> Iterator[tuple[str, list[Finding], int]]:
+    """(path below the folder, findings, number of lines) of every script below Blender's folder of scripts."""
+    for files in packages(folder):
+        codes = {name: read_script(path) for name, path in files.items()}
+        for name, findings in checker.check_files(codes).items():
+            path = files[name].relative_to(folder).as_posix()
+            yield path, findings, codes[name].count("\n")
+
+
+def ask_blender(executable: str, codes: Iterable[str]) -> dict[str, str]:
+    """What Blender says to pieces of code, the error that each ends in ("" for none); {} if it cannot be run."""
+    wanted = list(dict.fromkeys(codes))
+    program = _RUN.format(codes=json.dumps(wanted), mark=_MARK)
+    is_python = Path(executable).name.startswith("python")
+    options = ["-c"] if is_python else ["--background", "--factory-startup", "--python-expr"]
+    try:
+        done = subprocess.run(  # noqa: S603 - the base's own Blender
+            [executable, *options, program], capture_output=True, text=True, timeout=_SECONDS, check=False
+        )
+    except (OSError, subprocess.TimeoutExpired):
+        return {}
+    line = next((line for line in done.stdout.splitlines() if line.startswith(_MARK)), "")
+    return dict(zip(wanted, json.loads(line.removeprefix(_MARK)), strict=True)) if line else {}
+
+
+def proof_of(path: str, finding: Finding, rows: list[Broken]) -> tuple[str, str]:
+    """The code that proves a finding, and what it must say; empty for none."""
+    if finding.rule == "never-true":
+        owner, _, value = finding.symbol.rpartition(":")
+        cls, _, name = owner.rpartition(".")
+        code = f"{cls}.bl_rna.properties[{name!r}].enum_items[{value!r}]"
+        return code, f"KeyError: 'bpy_prop_collection[key]: key \"{value}\" not found'"
+    for row in rows:
+        if finding.symbol == row.symbol and path in row.scripts:
+            return row.code, row.says
+    return "", ""
+
+
+def measure(setting: Setting) -> ReportPart:
+    """Checks the base's Blender, and unless ``quick`` each other one in the same home."""
+    bases = [setting.base]
+    if not setting.quick:
+        bases += sorted(path for path in setting.base.parent.glob("blender-*.sqlite") if path != setting.base)
+    rows: list[tuple[str, ...]] = []
+    skipped: list[str] = []
+    false: list[str] = []
+    seconds, lines = 0.0, 0
+    for base in bases:
+        meta = read_meta(base)
+        runtime: Mapping[str, str] = json.loads(meta["runtime"])
+        folder = Path(runtime.get("scripts", ""))
+        if not runtime.get("scripts") or not folder.is_dir():
+            skipped.append(f"Blender {meta['minor']}: its scripts are not there")
+            continue
+        say(f"check_blender: checking the scripts of Blender {meta['blender']}")
+        began = time.process_time()
+        with Checker(base) as checker:
+            results = list(check_all(checker, folder))
+        if base == setting.base:
+            seconds, lines = time.process_time() - began, sum(count for _, _, count in results)
+        executable = runtime.get("executable") or sys.executable
+        row, wrong = _judged(results, executable if Path(executable).exists() else sys.executable)
+        rows.append((meta["minor"], *row))
+        false += [f"{meta['minor']}: {text}" for text in wrong]
+    figures = (
+        TargetFigure("check_false", len(false), "errors and comparisons not proven, all versions"),
+        TargetFigure("check_all", seconds, f"{lines:,} lines, one process"),
+        TargetFigure("check_speed", 1e6 * seconds / max(1, lines), "the same, a thousand lines"),
+    )
+    table = Table("Findings in Blender's own scripts", _HEADER, tuple(rows))
+    return ReportPart("check_blender", figures if rows else (), (table,), tuple(skipped), {"false": false})
+
+
+def _judged(results: list[tuple[str, list[Finding], int]], executable: str) -> tuple[tuple[str, ...], list[str]]:
+    """A row of the table, and the findings that are not proven."""
+    known = broken_rows()
+    found = [(path, finding, *proof_of(path, finding, known)) for path, findings, _ in results for finding in findings]
+    answers = ask_blender(executable, (code for _, _, code, _ in found if code))
+    counts: Counter[str] = Counter()
+    false: list[str] = []
+    for path, finding, code, says in found:
+        kind = "never" if finding.rule == "never-true" else finding.severity
+        counts[kind] += 1
+        if kind in {"never", "error"}:
+            if code and answers.get(code) == says:
+                counts[f"{kind} proven"] += 1
+            else:
+                told = f" ({answers.get(code)})" if code else ""
+                false.append(f"{path}:{finding.span.line}: {finding.rule}: {finding.message}{told}")
+    lines = sum(count for _, _, count in results)
+    numbers = (
+        len(results), lines, counts["error"], counts["error proven"], counts["error"] - counts["error proven"],
+        counts["never"], counts["never proven"], counts["warning"], counts["note"],
+    )  # fmt: skip
+    return tuple(f"{number:,}" for number in numbers), false

@@ -1,0 +1,224 @@
+"""Rules about what Blender lets pass: clamped numbers, statements that do nothing, what runs in no window."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+from kb_check.rules.needs_context import operator_areas
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import Check
+
+    from kb_check.checker import Checker
+
+SETTING = """\
+import bpy, mathutils
+scene = bpy.context.scene
+mesh = bpy.data.meshes.new("mesh")
+ob = bpy.data.objects.new("object", mesh)
+scene.collection.objects.link(ob)
+material = bpy.data.materials.new("material")
+light = bpy.data.lights.new("light", 'SPOT')
+ob.location = (3, 4, 5)
+ob.rotation_euler = (1, 0, 0)
+tree = bpy.data.node_groups.new("tree", 'ShaderNodeTree')
+principled = tree.nodes.new('ShaderNodeBsdfPrincipled')
+""".splitlines()
+
+CLAMPED = {
+    "material.roughness = 5": "material.roughness",
+    "material.roughness = -5": "material.roughness",
+    "light.spot_size = 45": "light.spot_size",
+    "scene.render.resolution_percentage = 0": "scene.render.resolution_percentage",
+    "scene.frame_step = -1": "scene.frame_step",
+    "light.color = (2, -1, 0)": "light.color[1]",
+    "bpy.ops.mesh.primitive_circle_add(vertices=1)": "len(bpy.context.object.data.vertices)",
+}
+KEPT = {
+    "material.roughness = 0.5": "material.roughness",
+    "material.roughness = 1": "material.roughness",
+    "light.color = (2, 1, 0)": "light.color[0]",
+    "principled.inputs['Metallic'].default_value = 5": "principled.inputs['Metallic'].default_value",
+    "principled.inputs['IOR'].default_value = -5": "principled.inputs['IOR'].default_value",
+}
+IDLE = {
+    "ob.location.normalized()": "ob.location",
+    "ob.matrix_world.inverted()": "ob.matrix_world",
+    "ob.location.copy()": "ob.location",
+    "ob.name.replace('o', 'a')": "ob.name",
+    "ob.location.xy.x = 9": "ob.location",
+    "ob.location.copy().x += 9": "ob.location",
+    "ob.rotation_euler.to_matrix()[0][0] = 9": "ob.rotation_euler",
+    "ob.matrix_world.to_translation().x = 9": "ob.matrix_world",
+    "bpy.context.selected_objects.append(ob)": "bpy.context.selected_objects",
+    "scene.tool_settings.snap_elements.add('VERTEX')": "scene.tool_settings.snap_elements",
+    "scene.render.resolution_x == 5": "scene.render.resolution_x",
+    "bpy.context.view_layer.objects.active == ob": "bpy.context.view_layer.objects.active",
+}
+WORKING = {
+    "ob.location.normalize()": "ob.location",
+    "ob.matrix_world.invert()": "ob.matrix_world",
+    "ob.location.x = 9": "ob.location",
+    "ob.location.xy = (8, 9)": "ob.location",
+    "ob.location[0] = 7": "ob.location",
+    "ob.matrix_world.translation.x = 9": "ob.matrix_world",
+    "ob.matrix_world.col[3].y = 9": "ob.matrix_world",
+    "ob.matrix_world[0][3] = 5": "ob.matrix_world",
+    "ob.scale *= 2": "ob.scale",
+    "ob.name = ob.name.replace('o', 'a')": "ob.name",
+    "scene.tool_settings.snap_elements = {'VERTEX'}": "scene.tool_settings.snap_elements",
+}
+
+
+def lines_of(checker: Checker, rule: str, lines: list[str]) -> list[str]:
+    findings = checker.check("\n".join([*SETTING, *lines]), rules=[rule])
+    return [lines[finding.span.line - 1 - len(SETTING)] for finding in findings]
+
+
+def test_clamped_numbers_are_what_blender_makes_of_them(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = list(CLAMPED)
+    watched = {place + len(SETTING): value for place, value in enumerate(CLAMPED.values())}
+    answers = run_statements(tmp_path, [*SETTING, *lines], watched)[len(SETTING) :]
+    findings = rule_checker.check("\n".join([*SETTING, *lines]), rules=["out-of-range"])
+    assert [finding.span.line - 1 - len(SETTING) for finding in findings] == list(range(len(lines)))
+    for finding, (error, _, after) in zip(findings, answers, strict=True):
+        assert not error
+        kept = finding.message.partition("becomes ")[2].partition(" ")[0].rstrip(".")
+        assert float(kept) == pytest.approx(float(after), rel=1e-4)
+    assert "math.radians(45)" in findings[2].message
+
+
+def test_numbers_that_are_kept_are_no_finding(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = list(KEPT)
+    watched = {place + len(SETTING): value for place, value in enumerate(KEPT.values())}
+    answers = run_statements(tmp_path, [*SETTING, *lines], watched)[len(SETTING) :]
+    for line, (error, _, after) in zip(lines, answers, strict=True):
+        given = ast.literal_eval(line.partition(" = ")[2])
+        assert not error
+        assert float(after) == (given[0] if isinstance(given, tuple) else given)
+    assert lines_of(rule_checker, "out-of-range", lines) == []
+
+
+@pytest.mark.parametrize("statements", [IDLE, WORKING])
+def test_what_does_nothing_in_blender_is_found(
+    rule_checker: Checker, tmp_path: Path, statements: dict[str, str]
+) -> None:
+    lines = list(statements)
+    watched = {place + len(SETTING): value for place, value in enumerate(statements.values())}
+    answers = run_statements(tmp_path, [*SETTING, *lines], watched)[len(SETTING) :]
+    assert [line for line, (error, *_) in zip(lines, answers, strict=True) if error] == []
+    idle = [line for line, (_, before, after) in zip(lines, answers, strict=True) if before == after]
+    assert idle == (lines if statements is IDLE else [])
+    assert lines_of(rule_checker, "no-effect", lines) == idle
+
+
+def test_in_place_twin_is_offered(check: Check) -> None:
+    [finding] = check("no-effect", "import mathutils\nv = mathutils.Vector()\nv.normalized()\n")
+    assert finding.instead == ("mathutils.Vector.normalize",)
+    assert finding.fix is not None
+    assert not finding.fix.sure
+
+
+def test_deprecated_property_names_its_successor(check: Check, rule_checker: Checker) -> None:
+    code = "import bpy\nfor strip in bpy.context.scene.sequence_editor.strips:\n    print(strip.frame_final_start)\n"
+    symbol = rule_checker.api.symbols.symbol("bpy.types.Strip.frame_final_start")
+    if symbol is None or symbol.deprecation is None:
+        pytest.skip("this Blender does not mark it")
+    [finding] = check("deprecated", code)
+    assert finding.severity == "warning"
+    assert finding.instead == ("bpy.types.Strip.left_handle",)
+    assert finding.fix is not None
+    assert finding.fix.edits[0].text == "left_handle"
+    assert check("deprecated", code.replace("frame_final_start", "name")) == []
+
+
+HEADLESS = [
+    "bpy.ops.view3d.view_selected()",
+    "bpy.ops.text.new()",
+    "bpy.ops.outliner.orphans_purge()",
+    "bpy.ops.node.add_node(type='ShaderNodeMath')",
+    "bpy.ops.mesh.primitive_cube_add()",
+    "bpy.ops.console.clear()",
+    "bpy.ops.screen.screen_full_area()",
+]
+
+
+def test_contexts_are_those_that_a_blender_without_window_lacks(
+    rule_checker: Checker, tmp_path: Path
+) -> None:
+    answers = run_statements(tmp_path, ["import bpy", *HEADLESS])[1:]
+    refused = [line for line, (error, *_) in zip(HEADLESS, answers, strict=True) if ".poll()" in error]
+    assert len(refused) > 3
+    found = rule_checker.check("\n".join(["import bpy", *HEADLESS]), rules=["needs-context"])
+    assert [HEADLESS[finding.span.line - 2] for finding in found] == refused
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "with bpy.context.temp_override(area=area):\n    bpy.ops.view3d.view_selected()",
+        "if not bpy.app.background:\n    bpy.ops.view3d.view_selected()",
+        "if bpy.ops.view3d.view_selected.poll():\n    bpy.ops.view3d.view_selected()",
+        "def register():\n    bpy.ops.view3d.view_selected()",
+        "class A(bpy.types.Operator):\n    def execute(self, _):\n        bpy.ops.view3d.view_all()\nprint(A)",
+        "def show():\n    bpy.ops.view3d.view_selected()",
+    ],
+)
+def test_given_contexts_are_no_finding(check: Check, code: str) -> None:
+    assert check("needs-context", f"import bpy\n{code}\n") == []
+
+
+def test_table_of_areas_is_what_this_blender_answers(tmp_path: Path) -> None:
+    """The whole table is made again, by the program that made it."""
+    from kb_check.rules import needs_context
+
+    table = tmp_path / "areas.txt"
+    program = needs_context.TABLE.parent / "inside" / "operator_areas.py"
+    subprocess.run(
+        [sys.executable, "-P", str(program), str(table)], check=True, timeout=280, capture_output=True
+    )
+    assert table.read_text(encoding="utf-8") == needs_context.TABLE.read_text(encoding="utf-8")
+    assert operator_areas()["view3d.view_selected"] == "VIEW_3D"
+
+
+def test_handlers_that_add_up_are_found(check: Check) -> None:
+    code = "import bpy\ndef follow(scene):\n    pass\nbpy.app.handlers.frame_change_pre.append(follow)\n"
+    [finding] = check("runs-twice", code)
+    assert (finding.severity, finding.span.line) == ("note", 4)
+    assert len(check("runs-twice", "import bpy\nbpy.types.VIEW3D_MT_add.append(print)\n")) == 1
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "bpy.app.handlers.load_post.clear()\nbpy.app.handlers.load_post.append(print)",
+        "if print not in bpy.app.handlers.load_post:\n    bpy.app.handlers.load_post.append(print)",
+        "def register():\n    bpy.app.handlers.load_post.append(print)",
+        "rows = []\nrows.append(print)",
+    ],
+)
+def test_lists_that_are_looked_after_are_no_finding(check: Check, code: str) -> None:
+    assert check("runs-twice", f"import bpy\n{code}\n") == []
+
+
+@pytest.mark.parametrize("rule", ["out-of-range", "no-effect", "deprecated", "needs-context", "runs-twice"])
+def test_values_that_are_not_sure_are_no_finding(check: Check, rule: str) -> None:
+    code = """
+    import bpy
+    def f(thing, x):
+        thing.roughness = 5
+        thing.normalized()
+        thing.xy.x = 1
+        thing.frame_final_start
+        thing.append(x)
+        thing == x
+    """
+    assert check(rule, code) == []
