@@ -124,6 +124,7 @@ _ROWS = (
     Target("check_all", "checking all of them", "s", 25),
     Target("check_speed", "checking 1,000 of their lines", "ms", 150),
     Target("planted", "mistakes planted in Blender's own scripts: found", "share", 0.92, True),
+    Target("check_drift", "names in an older Blender's scripts that are gone: found", "share", 0.95, True),
     Target("worker_start", "Blender's start to its first reply", "s", 2),
     Target("mcp_start", "simworlds mcp: start to first blender_execute", "s", 2),
     Target("preflight", "pre-flight of 100 lines, beside execution: p50", "ms", 30),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from bisect import bisect_right
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -40,22 +41,39 @@ def innermost(place: Place, span: Span) -> ast.stmt | None:
     found: ast.stmt | None = None
     level: Sequence[ast.AST] = place.script.tree.body
     while level:
-        holder = next((node for node in level if _covers(place, node, span)), None)
+        holder = _holder(place, level, span)
         if isinstance(holder, ast.stmt):
             found = holder
         level = _inner(holder) if holder is not None else ()
     return found
 
 
+def _holder(place: Place, level: Sequence[ast.AST], span: Span) -> ast.AST | None:
+    """The one of some nodes, in the order of the text, that a span lies in."""
+    at = bisect_right(level, span.line, key=lambda node: getattr(node, "lineno", 0))
+    while (
+        at > 0
+        and getattr(level[at - 1], "lineno", 0) == span.line
+        and not _covers(place, level[at - 1], span)
+    ):
+        at -= 1  # several on a line
+    candidate = level[at - 1] if at else None
+    return candidate if candidate is not None and _covers(place, candidate, span) else None
+
+
 def _inner(node: ast.AST) -> list[ast.AST]:
-    return [
-        child for name in _BLOCKS for child in getattr(node, name, None) or () if isinstance(child, ast.AST)
-    ]
+    """The statements, handlers and cases within a node, in the order of the text."""
+    found: list[ast.AST] = []
+    for name in _BLOCKS:
+        for child in getattr(node, name, None) or ():
+            if isinstance(child, ast.match_case):
+                found += child.body
+            elif isinstance(child, ast.AST):
+                found.append(child)
+    return sorted(found, key=lambda child: getattr(child, "lineno", 0))
 
 
 def _covers(place: Place, node: ast.AST, span: Span) -> bool:
-    if not hasattr(node, "lineno"):  # a match case
-        return any(_covers(place, child, span) for child in _inner(node))
     own = place.script.span(node)
     start, end = (own.line, own.column), (own.end_line, own.end_column)
     return start <= (span.line, span.column) and (span.end_line, span.end_column) <= end

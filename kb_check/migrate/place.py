@@ -211,7 +211,7 @@ class Place:
         removed = reader.removed(symbol)
         told = reason or next((row.how for row in successors if row.how), "") or f"{symbol} is gone."
         source = successors[0].source if successors else ""
-        since = version_of(successors[0].version if successors else removed[1] if removed else "")
+        since = version_of(successors[0].version if successors else removed[2]) if removed else (0, 0)
         uses = tuple(targets) or tuple(row.target for row in successors if row.target)[:1]
         return Change(rule, tuple(edits), told, source, since, uses, tuple(additions))
 

@@ -6,7 +6,7 @@ import ast
 import os
 import warnings
 from dataclasses import dataclass, field, replace
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Span
@@ -14,11 +14,11 @@ from kb_check.migrate.change import Change, Decision, Done
 from kb_check.migrate.guards import can_be_guarded, guarded_edits, innermost, plain_edits
 from kb_check.migrate.place import Place, version_of
 from kb_check.migrate.rewrite import all_rewrites
-from kb_check.migrate.text import Text, overlap
+from kb_check.migrate.text import Taken, Text
 from kb_check.migrate.version_tests import reaches
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from kb_check.checker import Checker, Read
     from kb_check.findings import Edit, Finding
@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
 _ROUNDS = 40
 _TOLD = 160
+_MOST_TRIALS = 60  # to find the changes that leave a text which cannot be read
 
 
 @dataclass
@@ -106,34 +107,36 @@ class Migrator:
         if state.reading.error is not None or not state.reading.analysis.complete:
             return False
         place = Place(self._target.script(state.reading, package), state.findings, written_for)
-        chosen = [change for change in _apart(self._proposals(place)) if change.since <= place.target]
-        plain = [change for change in chosen if not self._needs_guard(place, change)]
-        guarded = [change for change in chosen if change not in plain]
-        guarded = [change for change in guarded if can_be_guarded(place, change)]
-        for tried in ([(plain, guarded)], *_alone(plain, guarded)):
-            for some_plain, some_guarded in tried:
-                if self._apply(state, place, some_plain, some_guarded):
-                    return True
-        return False
-
-    def _apply(self, state: _State, place: Place, plain: Sequence[Change], guarded: Sequence[Change]) -> bool:
-        """Makes some changes if the text can still be read afterwards."""
-        if not plain and not guarded:
-            return False
-        # What needs no guard goes first, within the statements that get one too: a round for each.
-        edits = [edit for change in plain for edit in plain_edits(place, change)]
-        if plain:
-            made, with_guard = plain, False
-        else:
-            edits, made, with_guard = guarded_edits(place, state.text, guarded), guarded, True
-        edits += {edit: None for change in made for edit in change.additions}
-        new = state.text.edited(edits)
-        if new.code == state.text.code or not _parses(new.code):
-            return False
-        state.file.changes += [
-            _told(state.text, change, guarded=with_guard)
-            for change in sorted(made, key=lambda one: one.edits[0].span.line)
+        chosen = [
+            change for change in _apart(state.text, self._proposals(place)) if change.since <= place.target
         ]
+        guarded: list[Change] = []
+        plain: list[Change] = []
+        for change in chosen:
+            (guarded if self._needs_guard(place, change) else plain).append(change)
+        # What needs no guard goes first, within the statements that get one too: a round for each.
+        return self._make(state, place, plain, with_guard=False) or self._make(
+            state, place, [change for change in guarded if can_be_guarded(place, change)], with_guard=True
+        )
+
+    def _make(self, state: _State, place: Place, changes: Sequence[Change], *, with_guard: bool) -> bool:
+        """Makes as many of some changes as leave a text that Python can read; whether there were any."""
+
+        def made(chosen: Sequence[Change]) -> Text:
+            if with_guard:
+                edits = guarded_edits(place, state.text, chosen)
+            else:
+                edits = [edit for change in chosen for edit in plain_edits(place, change)]
+            return state.text.edited(
+                [*edits, *{edit: None for change in chosen for edit in change.additions}]
+            )
+
+        chosen = _largest(changes, lambda some: _parses(made(some).code))
+        new = made(chosen)
+        if new.code == state.text.code:
+            return False
+        told = (_told(state.text, change, guarded=with_guard) for change in chosen)
+        state.file.changes += sorted(told, key=lambda done: done.line)
         state.text = new
         return True
 
@@ -225,7 +228,7 @@ class _State:
 
 def _paths_in_package(names: Iterable[str]) -> dict[str, str]:
     """Name of a file → its path from the folder of its package on, with slashes."""
-    whole = {name: PurePath(os.path.abspath(name)) for name in names}
+    whole = {name: PurePath(Path(name).absolute()) for name in names}
     top = PurePath(os.path.commonpath([path.parent for path in whole.values()])).parent
     return {name: path.relative_to(top).as_posix() for name, path in whole.items()}
 
@@ -242,23 +245,34 @@ def _errors(checker: Checker, codes: Sequence[str]) -> list[list[Finding]]:
     return [[one for one in checker.check(read, package) if one.severity == "error"] for read in reads]
 
 
-def _apart(changes: Iterable[Change]) -> Iterator[Change]:
+def _apart(text: Text, changes: Iterable[Change]) -> Iterator[Change]:
     """The changes that share no text: the first ones win."""
-    taken: list[Span] = []
+    taken = Taken()
     for change in changes:
-        spans = [edit.span for edit in change.edits]
-        if spans and not any(overlap(span, other) for span in spans for other in taken):
-            taken += spans
+        spans = [text.offsets(edit.span) for edit in change.edits]
+        if spans and all(map(taken.is_free, spans)):
+            for span in spans:
+                taken.add(span)
             yield change
 
 
-def _alone(
-    plain: Sequence[Change], guarded: Sequence[Change]
-) -> Iterator[list[tuple[list[Change], list[Change]]]]:
-    """Each change by itself: where all of them together leave a text that Python cannot read."""
-    yield [([change], []) for change in plain]
-    yield [([], list(guarded))]
-    yield [([], [change]) for change in guarded]
+def _largest(changes: Sequence[Change], holds: Callable[[Sequence[Change]], bool]) -> list[Change]:
+    """Changes for which a condition holds together: all of them, or without those that break it."""
+    trials = _MOST_TRIALS
+
+    def among(some: Sequence[Change]) -> list[Change]:
+        nonlocal trials
+        trials -= 1
+        if trials < 0 or not some:
+            return []
+        if holds(some):
+            return list(some)
+        if len(some) == 1:
+            return []
+        halves = [*among(some[: len(some) // 2]), *among(some[len(some) // 2 :])]
+        return halves if holds(halves) else []
+
+    return among(changes)
 
 
 def _parses(code: str) -> bool:

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left, insort
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import accumulate
 from typing import TYPE_CHECKING
 
 from kb_check.source import split_lines
@@ -27,16 +29,16 @@ class Text:
         return cls(code, tuple(range(1, len(split_lines(code)) + 2)))
 
     @cached_property
+    def _lines(self) -> list[str]:
+        return split_lines(self.code)
+
+    @cached_property
     def _starts(self) -> list[int]:
-        starts, at = [0], 0
-        for line in split_lines(self.code):
-            at += len(line)
-            starts.append(at)
-        return starts
+        return [0, *accumulate(map(len, self._lines))]
 
     def lines(self, first: int, last: int) -> str:
         """The text of some lines, by their numbers."""
-        return "".join(split_lines(self.code)[first - 1 : last])
+        return "".join(self._lines[first - 1 : last])
 
     def origin(self, line: int) -> int:
         """The line of the original that a line came from."""
@@ -55,19 +57,34 @@ class Text:
 
     def edited(self, edits: Iterable[Edit]) -> Text:
         """The text after edits that do not overlap."""
-        code, origins = self.code, list(self.origins)
-        for edit in sorted(edits, key=lambda one: (one.span.line, one.span.column), reverse=True):
+        parts: list[str] = []
+        origins: list[int] = []
+        at, line = 0, 0  # what of the old text, and of its lines, is in the new one
+        for edit in sorted(edits, key=lambda one: self.offsets(one.span)):
             start, end = self.offsets(edit.span)
-            code = code[:start] + edit.text + code[end:]
-            first, before = edit.span.line - 1, edit.span.end_line - edit.span.line
-            old = origins[first : first + before + 1]
-            added = edit.text.count("\n")
-            origins[first : first + before + 1] = [old[min(line, before)] for line in range(added + 1)]
-        return Text(code, tuple(origins))
+            parts += (self.code[at:start], edit.text)
+            first, last = edit.span.line - 1, edit.span.end_line - 1
+            origins += self.origins[line:first]
+            # Its first line is still to come: another edit may follow on the last line.
+            origins += (self.origins[min(first + number, last)] for number in range(edit.text.count("\n")))
+            at, line = end, max(last, line)
+        return Text("".join([*parts, self.code[at:]]), (*origins, *self.origins[line:]))
 
 
-def overlap(first: Span, second: Span) -> bool:
-    """Whether two spans share text; equal places without length count as shared."""
-    one = (first.line, first.column), (first.end_line, first.end_column)
-    two = (second.line, second.column), (second.end_line, second.end_column)
-    return one == two or (one[0] < two[1] and two[0] < one[1])
+class Taken:
+    """The parts of a text that edits have taken. Two that begin at one place collide, whatever their length."""
+
+    def __init__(self) -> None:
+        self._spans: list[tuple[int, int]] = []
+
+    def is_free(self, span: tuple[int, int]) -> bool:
+        """Whether nothing of a span, given by its offsets, is taken."""
+        at = bisect_left(self._spans, span)
+        return not any(
+            span[0] == other[0] or (span[0] < other[1] and other[0] < span[1])
+            for other in self._spans[max(at - 1, 0) : at + 1]
+        )
+
+    def add(self, span: tuple[int, int]) -> None:
+        """Takes a span."""
+        insort(self._spans, span)

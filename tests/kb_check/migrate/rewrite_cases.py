@@ -159,7 +159,7 @@ CASES = (
          """),
     case("renamed-value", "4.2", "scene.render.engine = 'BLENDER_EEVEE_NEXT'\n",
          "scene.render.engine = 'BLENDER_EEVEE'\n"),
-    case("layout-argument", "2.79",
+    case("split-factor", "2.79",
          """
          class Side(bpy.types.Panel):
              bl_label = "Side"

@@ -1,0 +1,81 @@
+"""What breaks in which Blender: the table, the places, the range."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_check.project import LoadedFile
+from kb_check.versions import VersionsReport, check_versions
+from simworlds.errors import UserError
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.project import Group
+
+OLD = b'import bpy\nbpy.context.object.draw_type = "WIRE"\n'
+RIGHT = b'import bpy\nbpy.context.object.display_type = "WIRE"\n'
+GROUP = (LoadedFile("addon/old.py", OLD), LoadedFile("addon/right.py", RIGHT))
+
+
+def checked(base: Path, group: Group, *versions: str) -> VersionsReport:
+    return check_versions([group], versions or [base.stem.removeprefix("blender-")], base.parent.parent)
+
+
+def in_versions(base: Path, broken: dict[str, bool]) -> VersionsReport:
+    """The report of a Blender that takes the files in some versions, and of this one in the others."""
+    (bad,) = checked(base, GROUP).reports
+    (good,) = checked(base, (LoadedFile("addon/old.py", RIGHT), LoadedFile("addon/right.py", RIGHT))).reports
+    return VersionsReport(
+        tuple(replace(bad if breaks else good, blender=version) for version, breaks in broken.items())
+    )
+
+
+def test_a_base_tells_what_is_wrong_in_its_version(base: Path) -> None:
+    report = checked(base, GROUP)
+    (version,) = report.versions
+    assert report.errors() == {"addon/old.py": {version: 1}, "addon/right.py": {version: 0}}
+    (found,) = report.breaks()
+    assert (found.path, found.finding.span.line, found.versions) == ("addon/old.py", 2, (version,))
+    assert report.runs_in() == []
+
+
+def test_the_range_is_told_with_what_breaks_beyond(base: Path) -> None:
+    report = in_versions(base, {"4.2": False, "4.5": False, "5.0": True, "5.1": True})
+    assert report.runs_in() == ["4.2", "4.5"]
+    assert report.verdict() == (
+        "Nothing found that breaks in 4.2 and 4.5; breaks in 5.0: 1 error, first at addon/old.py:2; "
+        "breaks in 5.1: 1 error, first at addon/old.py:2."
+    )
+    lines = list(report.text_lines())
+    assert lines[0].split() == ["file", "4.2", "4.5", "5.0", "5.1"]
+    assert lines[1].split() == ["addon/old.py", "–", "–", "1", "1"]
+    assert lines[3].startswith("addon/old.py:2:20: in 5.0 and 5.1: [unknown-attribute]")
+    assert "1 more file without errors." in lines
+
+
+def test_a_range_of_three_is_written_as_one(base: Path) -> None:
+    report = in_versions(base, {"4.2": False, "4.3": False, "4.4": False, "4.5": True, "5.0": False})
+    assert report.verdict().startswith("Nothing found that breaks in 4.2 to 4.4 and 5.0; breaks in 4.5")
+
+
+def test_nothing_wrong_anywhere(base: Path) -> None:
+    report = in_versions(base, {"4.2": False, "5.1": False})
+    assert list(report.text_lines()) == ["Nothing found that breaks in 4.2 and 5.1."]
+
+
+def test_json_has_the_same(base: Path) -> None:
+    report = in_versions(base, {"4.5": False, "5.0": True}).as_json()
+    assert report["runs_in"] == ["4.5"]
+    assert report["errors"] == {"4.5": 0, "5.0": 1}
+    (row,) = report["breaks"]
+    assert (row["line"], row["column"], row["versions"]) == (2, 20, ["5.0"])
+
+
+@pytest.mark.parametrize("version", ["2.49", "five", ""])
+def test_a_version_without_a_base_is_said(base: Path, version: str) -> None:
+    with pytest.raises(UserError):
+        checked(base, GROUP, version)
