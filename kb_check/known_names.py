@@ -49,6 +49,11 @@ class KnownNames:
         """The Blender of the base: ``5.1``."""
         return self.reader.meta.get("minor", "")
 
+    def was(self, owner: str, name: str) -> bool:
+        """Whether another Blender has a member that this one lacks; an operator may be named by its path."""
+        path = name if name.startswith("bpy.ops.") else f"{owner}.{name}"
+        return self._lookup.of_path(path) is not None
+
     def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
         """A member that a class or module lacks; ``reading`` unless it is assigned to."""
         removed = self._lookup.of_member(owner, name) or self._lookup.of_path(f"{owner}.{name}")

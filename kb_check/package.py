@@ -31,16 +31,19 @@ class Package:
         for cls, name in analysis.registered:
             self._classes.setdefault(name, set()).add(cls)
 
-    def has(self, owners: Iterable[str], name: str) -> bool:
-        """Whether a file registers that name for one of the owners, for their bases, or for what derives from them."""
+    def has(self, owners: Iterable[str], name: str, *, computed: bool = True) -> bool:
+        """Whether a file registers that name for one of the owners, for their bases, or for what derives from them.
+
+        ``computed``: an operator whose name a file puts together may be any.
+        """
         if name in self._operators or name in self._possible:
             return True
         holders = self._classes.get(name, set()) | self._classes.get(ANY, set())
-        return any(self._gives(owner, name, holders) for owner in owners)
+        return any(self._gives(owner, name, holders, computed=computed) for owner in owners)
 
-    def _gives(self, owner: str, name: str, holders: Iterable[str]) -> bool:
+    def _gives(self, owner: str, name: str, holders: Iterable[str], *, computed: bool) -> bool:
         if owner.startswith("bpy.ops"):
-            return ANY in self._operators or f"{owner}.{name}" in self._operators
+            return (computed and ANY in self._operators) or f"{owner}.{name}" in self._operators
         if owner == "bpy.types":
             return not self._types.isdisjoint((name, ANY))
         return any(

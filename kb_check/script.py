@@ -60,8 +60,15 @@ class Script:
             lacking = row.missing and not row.symbols and not row.possible
             if row.kind == "value" and row.value in self._own_identifiers:
                 continue
-            if lacking and row.sure and not row.guarded and not self.package.has(row.missing, row.value):
+            if lacking and row.sure and not row.guarded and not self._is_given(row):
                 yield row
+
+    def _is_given(self, row: Resolution) -> bool:
+        """Whether the package has it. A name that is put together is hardly one that Blender has lost."""
+        if not self.package.has(row.missing, row.value):
+            return False
+        certain = self.package.has(row.missing, row.value, computed=False)
+        return certain or not any(self.names.was(owner, row.value) for owner in row.missing)
 
     @cached_property
     def _own_identifiers(self) -> frozenset[str]:

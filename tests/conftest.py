@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from made_once import made_once
 from places import REPO
 
 if TYPE_CHECKING:
@@ -66,7 +67,9 @@ def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
         pytest.skip("there is no Blender in this environment")
     mini = REPO / "tests" / "corpora_mini"
     options = BuildOptions(manual=mini / "manual", guides=mini / "guides", offline=True)
-    return build(None, options=options, home=tmp_path_factory.mktemp("home")).path
+    return made_once(
+        tmp_path_factory, "base", lambda folder: build(None, options=options, home=folder / "home").path
+    )
 
 
 @pytest.fixture(scope="session")

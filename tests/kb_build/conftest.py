@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from built_base import MINIATURE, Built
+from made_once import made_once
 
 from kb_build.pipeline import BuildOptions, build
 
@@ -27,12 +28,15 @@ def blender_version() -> str:
 @pytest.fixture(scope="session")
 def built_once(tmp_path_factory: pytest.TempPathFactory, blender_version: str) -> Built:
     minor = ".".join(blender_version.split(".")[:2])
-    folder = tmp_path_factory.mktemp("built")
-    corpora = folder / "corpora"
-    shutil.copytree(MINIATURE / "manual", corpora / f"manual-{minor}-rst")
-    shutil.copytree(MINIATURE / "guides", corpora / f"api-guides-{minor}-rst")
-    options = BuildOptions(corpora=corpora, offline=True)
-    return Built(folder / "home", corpora, build(None, options=options, home=folder / "home"))
+
+    def make(folder: Path) -> Built:
+        corpora = folder / "corpora"
+        shutil.copytree(MINIATURE / "manual", corpora / f"manual-{minor}-rst")
+        shutil.copytree(MINIATURE / "guides", corpora / f"api-guides-{minor}-rst")
+        options = BuildOptions(corpora=corpora, offline=True)
+        return Built(folder / "home", corpora, build(None, options=options, home=folder / "home"))
+
+    return made_once(tmp_path_factory, "built", make)
 
 
 @pytest.fixture
