@@ -32,8 +32,10 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     same_owner = "." not in lacking.replacement or any(
         cls == owner for missing in row.missing for cls in (missing, *script.api.lineage(missing))
     )
+    # A property that became a socket is not reached by its name.
+    is_alike = (row.kind == "item") == ('puts["' in lacking.replacement) or "." not in lacking.replacement
     node = row.node.slice if isinstance(row.node, ast.Subscript) else row.node
-    if not same_owner or not name or (edit := script.renamed(node, name)) is None:
+    if not same_owner or not is_alike or not name or (edit := script.renamed(node, name)) is None:
         return None
     return Fix(f"Write {name}", (edit,), sure=lacking.sure)
 

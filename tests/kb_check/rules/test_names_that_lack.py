@@ -52,6 +52,14 @@ def test_a_renamed_socket_is_fixed_in_its_literal(checker: Checker) -> None:
     assert finding.fix.edits[0].text == "'Specular IOR Level'"
 
 
+def test_a_property_that_became_a_socket_is_told_but_not_renamed(checker: Checker) -> None:
+    code = "import bpy\ntree = bpy.data.node_groups.new('g', 'CompositorNodeTree')\n"
+    (found,) = checker.check(f"{code}tree.nodes.new('CompositorNodeColorBalance').lift = (1, 1, 1)\n")
+    assert found.rule == "unknown-attribute"
+    assert any("inputs[" in path for path in found.instead)
+    assert found.fix is None
+
+
 def test_old_code_about_collections_is_told_with_what_took_its_place(checker: Checker) -> None:
     code = "import bpy\nbpy.context.scene.objects.link(bpy.context.object)\nbpy.context.object.data.use_auto_smooth"
     first, second = (one for one in checker.check(code) if one.rule == "unknown-attribute")
