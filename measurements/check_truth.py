@@ -102,7 +102,10 @@ def with_edits(code: str, edits: Sequence[Edit]) -> str:
 
 
 def judge_fixes(counts: Counts, name: str, code: str, findings: Sequence[Finding]) -> None:
-    """Applies the sure fixes of a script and runs it: whether the statements that were mended run."""
+    """Applies the sure fixes of a script and runs it: whether the statements that were mended run.
+
+    A statement of which more was found than can be mended is no proof of either.
+    """
     sure = [finding for finding in findings if finding.fix is not None and finding.fix.sure]
     edits = {edit for finding in sure if finding.fix for edit in finding.fix.edits}
     if not sure:
@@ -110,9 +113,14 @@ def judge_fixes(counts: Counts, name: str, code: str, findings: Sequence[Finding
     mended = with_edits(code, list(edits))
     truth, statements = run(mended, name), Statements(mended)
     failed = {statements.first_line(error.line) for error in truth.errors if error.kind == "api"}
+    others = {
+        statements.first_line(finding.span.line)
+        for finding in findings
+        if finding.severity == "error" and finding not in sure
+    }
     for finding in sure:
         line = statements.first_line(finding.span.line)
-        if line in truth.ran or line in failed:
+        if line not in others and (line in truth.ran or line in failed):
             counts.fixes += 1
             counts.fixed += line not in failed
 
