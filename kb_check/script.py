@@ -58,7 +58,7 @@ class Script:
         """The parts that surely stand for nothing that this Blender, or the package, has."""
         for row in self.resolutions(*kinds):
             lacking = row.missing and not row.symbols and not row.possible
-            if row.kind == "value" and row.value in self._own_identifiers:
+            if row.kind == "value" and row.value in self.own_identifiers:
                 continue
             if lacking and row.sure and not row.guarded and not self._is_given(row):
                 yield row
@@ -71,7 +71,7 @@ class Script:
         return certain or not any(self.names.was(owner, row.value) for owner in row.missing)
 
     @cached_property
-    def _own_identifiers(self) -> frozenset[str]:
+    def own_identifiers(self) -> frozenset[str]:
         """What the script's classes call themselves: values of the enumerations that list such classes."""
         return frozenset(
             node.value.value

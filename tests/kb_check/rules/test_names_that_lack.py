@@ -92,3 +92,26 @@ def test_files_of_a_package_know_what_the_others_register(checker: Checker) -> N
         package.add(read.analysis)
     found = checker.check(reads["addon/ui.py"], package)
     assert [one.symbol for one in found if one.severity == "error"] == ["bpy.types.Scene.yours"]
+
+
+def test_nodes_that_went_or_never_were_are_told(checker: Checker) -> None:
+    code = """
+import bpy
+nodes = bpy.data.materials.new("a").node_tree.nodes
+nodes.new("ShaderNodeTexMusgrave")
+nodes.new(type="ShaderNodeTexNoize")
+nodes.new("ShaderNodeTexNoise")
+nodes.new("MyOwnNode")
+group = bpy.data.node_groups.new("g", "GeometryNodeTree")
+group.interface.new_socket("A", socket_type="NodeSocketFloaty")
+group.interface.new_socket("B", socket_type="NodeSocketFloat")
+
+class Own(bpy.types.ShaderNodeCustomGroup):
+    bl_idname = "ShaderNodeOfMine"
+
+nodes.new("ShaderNodeOfMine")
+"""
+    found = [one for one in checker.check(code) if one.rule == "unknown-node"]
+    assert [one.span.line for one in found] == [4, 5, 9]
+    assert "bpy.types.ShaderNodeTexNoise" in found[0].instead
+    assert "`ShaderNodeTexNoise`" in found[1].message
