@@ -113,7 +113,7 @@ SPANS = "<table><tr>" + "<td colspan=1000 rowspan=1000>x</td>" * 2_000
 HTML = st.recursive(TEXTS, elements, max_leaves=40)
 pytestmark = pytest.mark.slow
 BOUNDED = settings(
-    max_examples=30,
+    max_examples=10,
     deadline=None,
     derandomize=True,
     database=None,

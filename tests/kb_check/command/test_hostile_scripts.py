@@ -30,7 +30,7 @@ SCRIPTS = sorted(path for path in (REPO / "agents").rglob("inside/**/*.py") if p
 
 random_lines = st.lists(st.sampled_from(PIECES) | st.text(max_size=12), max_size=30).map("\n".join)
 eager = settings(
-    max_examples=150,
+    max_examples=60,
     deadline=None,
     suppress_health_check=[HealthCheck.function_scoped_fixture, HealthCheck.too_slow],
 )
