@@ -69,7 +69,7 @@ def make_data():
     bpy.data.armatures["armatures"].edit_bones.new("bone").tail = (0, 0, 1)
     bpy.ops.object.mode_set(mode="OBJECT")
     editor = scene.sequence_editor_create()
-    strips = editor.strips if hasattr(editor, "strips") else editor.sequences
+    strips = editor.strips if hasattr(editor, "strips") else editor.sequences  # pyright: ignore[reportAttributeAccessIssue]
     with suppress(*TRIED):
         strips.new_effect("color", "COLOR", 1, 1, length=20)
     with suppress(*TRIED):
