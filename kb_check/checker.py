@@ -18,7 +18,7 @@ from kb_check.script import Script
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Iterable, Mapping
     from pathlib import Path
     from typing import Self
 
@@ -81,8 +81,7 @@ class Checker:
         """The findings in a script, in order. ``package`` is what it and the files beside it register."""
         read = self.read(code) if isinstance(code, str) else code
         if package is None:
-            package = self.package()
-            package.add(read.analysis, read.may_register)
+            package = self.package([read])
         script = self.script(read, package)
         found = [finding for rule in all_rules().values() for finding in rule.check(script)]
         ignores = Ignores(read.code)
@@ -98,9 +97,12 @@ class Checker:
             read.code, read.tree, read.analysis, self.api, self.names, package, self.version, read.error
         )
 
-    def package(self) -> Package:
-        """An empty package, for this Blender's classes."""
-        return Package(self.api)
+    def package(self, reads: Iterable[Read] = ()) -> Package:
+        """What files register together, for this Blender's classes."""
+        package = Package(self.api)
+        for read in reads:
+            package.add(read.analysis, read.may_register)
+        return package
 
     def close(self) -> None:
         """Closes the base."""

@@ -60,7 +60,7 @@ class KnownNames:
         removed = removed or self._lookup.below(owner, name)
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
-        return self._never(owner, name, self._member_names(owner))
+        return self._never(owner, name, self.reader.member_names(owner))
 
     def parameter(self, function: str, name: str, names: Iterable[str]) -> Lacking:
         """A keyword that a function or operator does not take; ``names`` are those that it takes."""
@@ -119,12 +119,6 @@ class KnownNames:
     def _span(self) -> str:
         versions = self.reader.history_versions
         return f", and never had it from {versions[0]} to {versions[-1]}" if versions else ""
-
-    def _member_names(self, owner: str) -> list[str]:
-        names: dict[str, None] = {}
-        for entry in self.reader.lineage(owner):
-            names.update(dict.fromkeys(self.reader.members(entry.path)))
-        return list(names or self.reader.members(owner))
 
     @cached_property
     def _vocabulary(self) -> set[str]:

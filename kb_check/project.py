@@ -157,9 +157,7 @@ def check_group(checker: Checker, group: Group) -> list[list[Finding]]:
     paths = _module_paths(group)
     found = checker.read_files({path: source.text for path, source in zip(paths, sources, strict=True)})
     reads = [found[path] for path in paths]
-    package = checker.package()
-    for read in reads:
-        package.add(read.analysis, read.may_register)
+    package = checker.package(reads)
     return [
         [*_fault(source), *checker.check(read, package)] if file.wanted else []
         for file, source, read in zip(group, sources, reads, strict=True)

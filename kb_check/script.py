@@ -51,8 +51,11 @@ class Script:
 
     def resolutions(self, *kinds: str) -> Iterator[Resolution]:
         """What parts of the script stand for, of some kinds (see :class:`flow.types.Resolution`), in order."""
-        found = (row for row in self.analysis.resolutions.values() if not kinds or row.kind in kinds)
-        yield from sorted(found, key=lambda row: (_start(row.node), row.kind))
+        yield from (row for row in self._in_order if not kinds or row.kind in kinds)
+
+    @cached_property
+    def _in_order(self) -> list[Resolution]:
+        return sorted(self.analysis.resolutions.values(), key=lambda row: (_start(row.node), row.kind))
 
     def missing(self, *kinds: str) -> Iterator[Resolution]:
         """The parts that surely stand for nothing that this Blender, or the package, has."""
@@ -75,7 +78,7 @@ class Script:
         """What the script's classes call themselves: values of the enumerations that list such classes."""
         return frozenset(
             node.value.value
-            for node in ast.walk(self.tree)
+            for node in self.nodes
             if isinstance(node, ast.Assign)
             and any(isinstance(target, ast.Name) and target.id == "bl_idname" for target in node.targets)
             and isinstance(node.value, ast.Constant)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import io
 import textwrap
 from typing import TYPE_CHECKING
 
+from kb_check.source import split_lines
 from kb_serve.answer.budget import clip, tokens
 
 if TYPE_CHECKING:
@@ -17,11 +17,6 @@ _ORDER = ("error", "warning", "note")
 _FOR_MORE = 40  # tokens of the line about what did not fit
 _LONGEST_FIX = 400  # characters
 _MOST_LINES = 8  # that are named of equal findings
-
-
-def split_lines(code: str) -> list[str]:
-    """The lines of a script as Python counts them, with their ends."""
-    return io.StringIO(code, newline="").readlines()
 
 
 def ranked(findings: Sequence[Finding]) -> list[Finding]:

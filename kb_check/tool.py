@@ -8,13 +8,12 @@ from functools import cache
 from typing import TYPE_CHECKING, Any
 from weakref import WeakKeyDictionary
 
-from mcp_types import CallToolResult, TextContent, Tool, ToolAnnotations
+from mcp_types import CallToolResult, TextContent, Tool
 from pydantic import BaseModel, ConfigDict, Field
 
 from kb_serve.errors import BadQuery
 from kb_serve.service import readable
-from kb_serve.tool import parsed
-from simworlds.schemas.json_schema import schema_of
+from kb_serve.tool import parsed, reading_tool
 
 if TYPE_CHECKING:
     from kb_check.checker import Checker
@@ -75,20 +74,7 @@ class CheckReply(BaseModel):
 @cache
 def tool() -> Tool:
     """The tool as the list of tools has it."""
-    return Tool(
-        name=NAME,
-        title="Check Blender Python",
-        description=DESCRIPTION,
-        input_schema=schema_of(CheckArguments),
-        output_schema=schema_of(CheckReply),
-        annotations=ToolAnnotations(
-            title="Check Blender Python",
-            read_only_hint=True,
-            destructive_hint=False,
-            idempotent_hint=True,
-            open_world_hint=False,
-        ),
-    )
+    return reading_tool(NAME, "Check Blender Python", DESCRIPTION, CheckArguments, CheckReply)
 
 
 def answer(service: Service, arguments: dict[str, Any] | None) -> CallToolResult:
@@ -108,7 +94,8 @@ def answer(service: Service, arguments: dict[str, Any] | None) -> CallToolResult
 
 def _checked(base: KnowledgeBase, code: str, max_tokens: int, note: str) -> CheckReply:
     from kb_check.run_reach import RunReach, may_bring_names  # noqa: PLC0415 - loaded by the first check
-    from kb_check.summary import mended, ranked, split_lines, summarize  # noqa: PLC0415
+    from kb_check.source import split_lines  # noqa: PLC0415
+    from kb_check.summary import mended, ranked, summarize  # noqa: PLC0415
     from kb_serve.answer.budget import tokens  # noqa: PLC0415 - loaded with the base
 
     checker = _checker(base)

@@ -197,6 +197,13 @@ class BaseReader:
             yield entry
             entry = self.entry(entry.base) if entry.base else None
 
+    def member_names(self, owner: str) -> list[str]:
+        """The names of a class's members, inherited ones included, or of a module's."""
+        names: dict[str, None] = {}
+        for ancestor in self.lineage(owner):
+            names.update(dict.fromkeys(self.members(ancestor.path)))
+        return list(names or self.members(owner))
+
     def descends(self, cls: str, ancestor: str) -> bool:
         """Whether a class is ``ancestor`` or derives from it."""
         return any(entry.path == ancestor for entry in self.lineage(cls))

@@ -88,14 +88,21 @@ class DocsReply(BaseModel):
 @cache
 def tool() -> Tool:
     """The tool as the list of tools has it."""
+    return reading_tool(NAME, "Blender documentation", DESCRIPTION, DocsArguments, DocsReply)
+
+
+def reading_tool(
+    name: str, title: str, description: str, arguments: type[BaseModel], reply: type[BaseModel]
+) -> Tool:
+    """A tool that changes nothing, and gives the same for the same question."""
     return Tool(
-        name=NAME,
-        title="Blender documentation",
-        description=DESCRIPTION,
-        input_schema=schema_of(DocsArguments),
-        output_schema=schema_of(DocsReply),
+        name=name,
+        title=title,
+        description=description,
+        input_schema=schema_of(arguments),
+        output_schema=schema_of(reply),
         annotations=ToolAnnotations(
-            title="Blender documentation",
+            title=title,
             read_only_hint=True,
             destructive_hint=False,
             idempotent_hint=True,

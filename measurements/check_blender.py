@@ -102,9 +102,7 @@ def check_all(checker: Checker, folder: Path) -> Iterator[tuple[str, list[Findin
     for files in packages(folder):
         codes = {name: read_script(path) for name, path in files.items()}
         reads = checker.read_files(codes)
-        package = checker.package()
-        for read in reads.values():
-            package.add(read.analysis, read.may_register)
+        package = checker.package(reads.values())
         for name, read in reads.items():
             path = files[name].relative_to(folder).as_posix()
             yield path, checker.check(read, package), codes[name].count("\n")

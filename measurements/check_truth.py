@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
 from kb_check.checker import Checker
+from kb_check.migrate.text import Text
 from measurements.report import ReportPart, TargetFigure
 from measurements.scripts.truth import FOLDER, SETS, Truth, read_truth, run
 from measurements.setting import say
@@ -15,7 +16,7 @@ from measurements.setting import say
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kb_check.findings import Edit, Finding
+    from kb_check.findings import Finding
     from measurements.setting import Setting
 
 _HEADER = ("scripts", "errors of the API", "found", "findings", "right", "not executed", "sure fixes", "run")
@@ -88,19 +89,6 @@ def judge(counts: Counts, name: str, code: str, findings: Iterable[Finding], tru
                 counts.unjudged += 1
 
 
-def with_edits(code: str, edits: Sequence[Edit]) -> str:
-    """The code with edits that do not overlap."""
-    lines = code.splitlines(keepends=True)
-    starts = [0]
-    for line in lines:
-        starts.append(starts[-1] + len(line))
-    for edit in sorted(edits, key=lambda one: (one.span.line, one.span.column), reverse=True):
-        begin = starts[edit.span.line - 1] + edit.span.column
-        end = starts[edit.span.end_line - 1] + edit.span.end_column
-        code = code[:begin] + edit.text + code[end:]
-    return code
-
-
 def judge_fixes(counts: Counts, name: str, code: str, findings: Sequence[Finding]) -> None:
     """Applies the sure fixes of a script and runs it: whether the statements that were mended run.
 
@@ -110,7 +98,7 @@ def judge_fixes(counts: Counts, name: str, code: str, findings: Sequence[Finding
     edits = {edit for finding in sure if finding.fix for edit in finding.fix.edits}
     if not sure:
         return
-    mended = with_edits(code, list(edits))
+    mended = Text.original(code).edited(edits).code
     truth, statements = run(mended, name), Statements(mended)
     failed = {statements.first_line(error.line) for error in truth.errors if error.kind == "api"}
     others = {

@@ -80,9 +80,7 @@ def drift(older: Checker, newer: Checker, folder: Path) -> Drift:
             for read in before.values() for node in ast.walk(read.tree) if isinstance(node, ast.ClassDef)
         }  # fmt: skip
         registered = {name for read in before.values() for _, name in read.analysis.registered}
-        package = newer.package()
-        for read in after.values():
-            package.add(read.analysis, read.may_register)
+        package = newer.package(after.values())
         for name, read in after.items():
             path = files[name].relative_to(folder).as_posix()
             # A statement is reported as a whole: a call may begin lines above the keyword that is gone.

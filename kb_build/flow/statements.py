@@ -32,6 +32,7 @@ from kb_build.flow.types import (
     Type,
     Union,
     bounded,
+    general,
     join,
     literal,
     members,
@@ -107,7 +108,7 @@ class Statements(Calls):
         ):
             value = kind if owner.value is UNKNOWN and not owner.items else join(owner.value, kind)
             known = key if owner.key is UNKNOWN else join(owner.key, key)
-            self.scope.bind(target.value.id, Mapping(_general(known), value))
+            self.scope.bind(target.value.id, Mapping(general(known), value))
 
     def _store(self, target: ast.Attribute, kind: Type, value: ast.expr | None) -> None:
         owner = self.evaluate(target.value)
@@ -144,7 +145,7 @@ class Statements(Calls):
             if any(self.api.member(base, name) for base in bases):
                 return
         found = self.class_attribute(owner.number, name)
-        self.classes[found[1] if found else owner.number].bind(name, _general(kind))
+        self.classes[found[1] if found else owner.number].bind(name, general(kind))
 
     def _assign(self, node: ast.Assign) -> bool:
         kind = self.evaluate(node.value)
@@ -170,9 +171,9 @@ class Statements(Calls):
             grown = isinstance(before, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple))
             if grown:
                 before = Sequence("list", join(self.iterated(before), self.iterated(right)))
-            self.scope.bind(node.target.id, _general(before))
+            self.scope.bind(node.target.id, general(before))
         elif isinstance(node.target, ast.Attribute):
-            self._store(node.target, _general(before), None)
+            self._store(node.target, general(before), None)
         return True
 
     # Ways that part and meet.
@@ -453,7 +454,7 @@ class Statements(Calls):
         definition = self.classes[number]
         self._add_to_api(node.name, number, scope.state.names.get("bl_idname"))
         for name, kind in scope.ever.items():
-            definition.bind(name, _general(kind) if isinstance(kind, Plain) else kind)
+            definition.bind(name, general(kind) if isinstance(kind, Plain) else kind)
         self.scope.bind(node.name, LocalClass(number))
         return True
 
@@ -550,9 +551,9 @@ class Statements(Calls):
             received = _unsure(received)
         fallback = self.types.get(default, UNKNOWN) if default is not None else UNKNOWN
         if received is not UNKNOWN and received is not NONE:
-            return received if fallback is UNKNOWN else join(received, _general(fallback))
+            return received if fallback is UNKNOWN else join(received, general(fallback))
         if fallback is not UNKNOWN and fallback is not NONE:
-            return _general(fallback)
+            return general(fallback)
         return self._by_convention(function, argument.arg)
 
     def _annotated(self, node: ast.expr) -> Type:
@@ -636,13 +637,6 @@ class Statements(Calls):
         ast.AsyncFunctionDef: _define_function,
         ast.ClassDef: _define_class,
     }
-
-
-def _general(kind: Type) -> Type:
-    """A type without its literal value: what a name can hold besides its first value."""
-    if isinstance(kind, Plain) and kind.value is not None:
-        return Plain(kind.kind, None, kind.source)
-    return kind
 
 
 def _can_be_unsure(kind: Type) -> bool:

@@ -208,8 +208,8 @@ def without_none(kind: Type) -> Type:
     return kind
 
 
-def _general(kind: Type) -> Type:
-    """A type without its literal value."""
+def general(kind: Type) -> Type:
+    """A type without its literal value: what a name can hold besides its first value."""
     if isinstance(kind, Plain) and kind.value is not None:
         return Plain(kind.kind, None, kind.source)
     return kind
@@ -224,7 +224,7 @@ def union(kinds: Iterable[Type]) -> Type:
                 return UNKNOWN
             found[member] = None
     if len(found) > 1 and sum(isinstance(member, Plain) for member in found) > MOST_MEMBERS // 2:
-        found = dict.fromkeys(_general(member) for member in found)
+        found = dict.fromkeys(general(member) for member in found)
     if not found:
         return UNKNOWN
     if len(found) == 1:

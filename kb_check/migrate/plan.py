@@ -87,9 +87,7 @@ class Migrator:
             reads = {path: self._target.read(texts[name]) for name, path in paths.items()}
         else:
             reads = self._target.read_files({path: texts[name] for name, path in paths.items()})
-        package = self._target.package()
-        for read in reads.values():
-            package.add(read.analysis, read.may_register)
+        package = self._target.package(reads.values())
         for state in states:
             state.read = reads[paths[state.file.name]]
         return package
@@ -239,9 +237,7 @@ def _version(checker: Checker) -> Version:
 
 def _errors(checker: Checker, codes: Sequence[str]) -> list[list[Finding]]:
     reads = [checker.read(code) for code in codes]
-    package = checker.package()
-    for read in reads:
-        package.add(read.analysis, read.may_register)
+    package = checker.package(reads)
     return [[one for one in checker.check(read, package) if one.severity == "error"] for read in reads]
 
 

@@ -130,15 +130,6 @@ class Corrector:
         closest = _closest(written, self._members, _CLOSE, self._words)
         return None if closest and written.removesuffix("s") == closest.meant.removesuffix("s") else closest
 
-    def member_names(self, owner: str) -> list[str]:
-        """The members of a class, inherited ones included, or of a module."""
-        names: dict[str, None] = {}
-        for ancestor in self._reader.lineage(owner):
-            names.update(dict.fromkeys(self._reader.members(ancestor.path)))
-        if not names:
-            names.update(dict.fromkeys(self._reader.members(owner)))
-        return list(names)
-
     def corrected(
         self, chain: Chain, readings: list[ResolvedChain]
     ) -> tuple[ResolvedChain, list[Correction]] | None:
@@ -157,7 +148,7 @@ class Corrector:
             if not readings or readings[0].complete:
                 break
             resolved = readings[0]
-            similar = nearest(resolved.missing, self.member_names(resolved.owner), 1)
+            similar = nearest(resolved.missing, self._reader.member_names(resolved.owner), 1)
             if not similar:
                 break
             name, alike = similar[0]

@@ -137,7 +137,7 @@ class Recogniser:
         for missing in recognition.missing:
             if missing.name in removed:
                 continue
-            names = self._corrector.member_names(missing.owner) if missing.owner else []
+            names = self._reader.member_names(missing.owner) if missing.owner else []
             similar = nearest(missing.name, names)
             if missing.assigned:  # an assignment means ``select_set``, not ``select_get``
                 similar.sort(

@@ -101,8 +101,9 @@ def run(code: str, name: str) -> Truth:
         for line in out.decode(errors="replace").split("\n")
         if "\x1e" in line
     ]
-    statements = {node.lineno: node for node in ast.walk(ast.parse(code)) if isinstance(node, ast.stmt)}
-    bound = {node.id for node in ast.walk(ast.parse(code)) if isinstance(node, ast.Name)}
+    nodes = list(ast.walk(ast.parse(code)))
+    statements = {node.lineno: node for node in nodes if isinstance(node, ast.stmt)}
+    bound = {node.id for node in nodes if isinstance(node, ast.Name)}
     errors = [
         ScriptError(
             row["line"], row["type"], row["message"], kind_of(row, statements.get(row["line"]), bound)

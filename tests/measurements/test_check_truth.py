@@ -5,7 +5,8 @@ from __future__ import annotations
 import pytest
 
 from kb_check.findings import Edit, Finding, Span
-from measurements.check_truth import Counts, judge, with_edits
+from kb_check.migrate.text import Text
+from measurements.check_truth import Counts, judge
 from measurements.scripts.truth import Truth, read_truth, run, scripts
 
 SCRIPT = """\
@@ -49,7 +50,7 @@ def test_a_script_tells_every_error_and_goes_on() -> None:
 
 def test_edits_are_made_from_the_end() -> None:
     edits = [Edit(Span(1, 0, 1, 1), "long"), Edit(Span(1, 4, 1, 5), "b"), Edit(Span(2, 0, 2, 3), "")]
-    assert with_edits("x = y\nold()\n", edits) == "long = b\n()\n"
+    assert Text.original("x = y\nold()\n").edited(edits).code == "long = b\n()\n"
 
 
 def test_every_script_has_its_truth() -> None:
