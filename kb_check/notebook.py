@@ -22,7 +22,7 @@ def read_notebook(data: bytes) -> Source:
     try:
         notebook: Any = json.loads(data.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:
-        return Source("", fault=f"this is no notebook: {error}", fault_line=getattr(error, "lineno", 1))
+        return Source("", fault=f"this is no notebook: {error}")
     cells: Any = cast("dict[str, Any]", notebook).get("cells") if isinstance(notebook, dict) else None
     if not isinstance(cells, list):
         return Source("", fault="this is no notebook of the format 4: it has no list of cells")

@@ -60,6 +60,7 @@ def test_random_code_is_checked(checker: Checker, code: str) -> None:
 
 
 @eager
+@example(b"\n", "a.ipynb")
 @given(st.binary(max_size=200), st.sampled_from(["a.py", "a.ipynb"]))
 def test_random_bytes_are_checked(checker: Checker, data: bytes, name: str) -> None:
     holds(checker, data, name)
