@@ -88,6 +88,26 @@ class WorkerReply(Generic[T]):
     left: tuple[str, ...] = ()
 
 
+class _PrintedLines:
+    """Passes on what a tool reports; as long as it reports nothing, the lines that it prints."""
+
+    def __init__(self, output: CapturedOutput, progress: Progress) -> None:
+        self._output, self._progress = output, progress
+        self._seen = 0
+        self._reports = False
+
+    def report(self, done: float, total: float | None, text: str) -> None:
+        """The tool has reported."""
+        self._reports = True
+        self._progress(done, total, text)
+
+    def look(self) -> None:
+        """Passes on the last line if there is a new one."""
+        if not self._reports and self._output.lines > self._seen:
+            self._seen = self._output.lines
+            self._progress(self._seen, None, self._output.last_line)
+
+
 class BlenderProcess:
     """A running Blender, for one thread at a time. Raises CannotStart if it does not start."""
 
@@ -166,7 +186,8 @@ class BlenderProcess:
         progress: Progress | None = None,
         cancelled: threading.Event | None = None,
     ) -> WorkerReply[T]:
-        """Runs one tool; ``timeout`` in seconds, ``what`` names it in errors. ``progress`` gets (done, total, text).
+        """Runs one tool; ``timeout`` in seconds, ``what`` names it in errors. ``progress`` gets (done, total, text):
+        what the tool reports or, until it reports anything, the number of lines that it has printed and the last one.
 
         ``read`` makes a value of what the tool returned; what it cannot read is a breach, which ends the process.
         ``limited``: Blender is killed if it exceeds the limits of disk, memory and threads.
@@ -213,7 +234,8 @@ class BlenderProcess:
         limited: bool,
     ) -> AnswerMessage:
         """Reports progress until the answer has come, then stops the process. Raises Lost, Malformed."""
-        for message in self._messages(what, timeout, cancelled, limited=limited):
+        reports = progress if progress is None else _PrintedLines(self._stdout, progress)
+        for message in self._messages(what, timeout, cancelled, reports, limited=limited):
             claim = parse_message(message)
             if claim.ticket != ticket:
                 # Code has answered the call before in the worker's name, and the real answer came late.
@@ -221,8 +243,8 @@ class BlenderProcess:
                     f"Code had sent a false reply before {what} began; it is ignored, and Blender was stopped"
                 )
             if isinstance(claim, ProgressMessage):
-                if progress is not None:
-                    progress(*claim.progress)
+                if reports is not None:
+                    reports.report(*claim.progress)
                 continue
             threads = self._worker.threads_left()
             self._worker.pause()
@@ -258,7 +280,13 @@ class BlenderProcess:
             raise NeverBegan(f"Blender had ended before {what} began: {ending}", ending=ending) from None
 
     def _messages(
-        self, what: str, timeout: float, cancelled: threading.Event | None = None, *, limited: bool = True
+        self,
+        what: str,
+        timeout: float,
+        cancelled: threading.Event | None = None,
+        printed: _PrintedLines | None = None,
+        *,
+        limited: bool = True,
     ) -> Iterator[dict[str, Any]]:
         """The worker's messages until the deadline. Output is read meanwhile, so that Blender never waits for it.
 
@@ -276,6 +304,8 @@ class BlenderProcess:
                     self._read_printed(key)
                     continue
                 self._arrived += self._receive(what, now - started)
+            if printed is not None:
+                printed.look()
             while self._arrived:
                 message = self._arrived.popleft()
                 if limited and "progress" not in message:

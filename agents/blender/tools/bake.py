@@ -6,8 +6,11 @@ from typing import Any
 
 from pydantic import Field
 
+from agents.blender.formatting import format_list
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from simworlds.sandbox.replies import Claim, Name
 
+_LISTED = 20
 _LAST_FRAME = 1_048_574
 
 
@@ -86,11 +89,18 @@ def _read(data: dict[str, Any]) -> Result:
     return Result(text, data, failed=baked < len(caches))
 
 
-def _read_freed(data: dict[str, Any]) -> Result:
-    freed, unbaked = data["freed"], data["unbaked"]
-    lines = [f"Freed: {', '.join(freed)}."] if freed else ["Nothing was freed."]
-    lines += [f"Not baked before: {', '.join(unbaked)}."] if unbaked else []
-    return Result(" ".join(lines), data)
+class _Freed(Claim):
+    """The labels of caches whose bakes were freed, and of those that had none."""
+
+    freed: list[Name] = Field(max_length=10_000)
+    unbaked: list[Name] = Field(max_length=10_000)
+
+
+def _read_freed(data: Any) -> Result:
+    reply = _Freed.model_validate(data)
+    lines = [f"Freed: {format_list(reply.freed, _LISTED)}." if reply.freed else "Nothing was freed."]
+    lines += [f"Not baked before: {format_list(reply.unbaked, _LISTED)}."] if reply.unbaked else []
+    return Result(" ".join(lines), reply.model_dump())
 
 
 def _cache(cache: dict[str, Any]) -> str:

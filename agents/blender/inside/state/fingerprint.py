@@ -36,6 +36,17 @@ def fingerprint(scene):
     return {key_of(block): digest for block, digest in read.items()}
 
 
+def digests_by_part(blocks):
+    """{block: {part: digest}} of these data-blocks alone, whatever they point to."""
+    plans = {}
+    return {
+        block: {
+            name: digest for name, (digest, _) in BlockReader(block, plans, pictures=False).read().items()
+        }
+        for block in blocks
+    }
+
+
 def simulation_inputs(scene):
     """A digest of all that the simulations of ``scene`` may depend on, apart from the frame and their own caches."""
     read, total = {}, hashlib.blake2b(digest_size=12)
