@@ -11,6 +11,10 @@ if TYPE_CHECKING:
 
     from agents.blender.tools.scene_fold import Entry
 
+_PLAIN_ROOT = frozenset(
+    {"name", "type", "in", "location", "rotation", "scale", "tags", "count", "pattern", "parent"}
+)
+ROOT = "is_object_root"
 _FEW = 8  # items of a list in a readout that is not full
 
 
@@ -138,7 +142,9 @@ def collection(entry: Entry, *, names: bool) -> str:
 
 
 def scene_object(entry: Entry) -> str:
-    """An object: a line, and one for each modifier and constraint."""
+    """An object: a line, and one for each modifier and constraint; a root with nothing of its own in short."""
+    if _PLAIN_ROOT.issuperset(entry) and entry["type"] == "EMPTY" and ROOT in entry.get("tags", {}):
+        return "; ".join([f"- {titled(entry)} root of {', '.join(entry['in'])}", *_placement(entry)])
     head = f"- {titled(entry, entry['type'])} in {', '.join(entry['in'])}"
     lines = [joined(head, [*_placement(entry), *_properties(entry), *_tags(entry)])]
     lines += [f"  modifier {_modifier(modifier)}" for modifier in entry.get("modifiers", ())]
