@@ -89,21 +89,15 @@ class WorkerReply(Generic[T]):
 
 
 class _PrintedLines:
-    """Passes on what a tool reports; as long as it reports nothing, the lines that it prints."""
+    """Passes on the lines that a tool prints as its progress."""
 
     def __init__(self, output: CapturedOutput, progress: Progress) -> None:
         self._output, self._progress = output, progress
         self._seen = 0
-        self._reports = False
-
-    def report(self, done: float, total: float | None, text: str) -> None:
-        """The tool has reported."""
-        self._reports = True
-        self._progress(done, total, text)
 
     def look(self) -> None:
         """Passes on the last line if there is a new one."""
-        if not self._reports and self._output.lines > self._seen:
+        if self._output.lines > self._seen:
             self._seen = self._output.lines
             self._progress(self._seen, None, self._output.last_line)
 
@@ -184,10 +178,11 @@ class BlenderProcess:
         what: str = "",
         limited: bool = True,
         progress: Progress | None = None,
+        printed: bool = False,
         cancelled: threading.Event | None = None,
     ) -> WorkerReply[T]:
         """Runs one tool; ``timeout`` in seconds, ``what`` names it in errors. ``progress`` gets (done, total, text):
-        what the tool reports or, until it reports anything, the number of lines that it has printed and the last one.
+        what the tool reports; with ``printed``, how many lines it has printed and the last one, if it reports nothing.
 
         ``read`` makes a value of what the tool returned; what it cannot read is a breach, which ends the process.
         ``limited``: Blender is killed if it exceeds the limits of disk, memory and threads.
@@ -210,7 +205,8 @@ class BlenderProcess:
             self._worker.mark()
             self._worker.go_on()
             self._send(request, what, timeout)
-            answer = self._answer(ticket, what, timeout, progress, cancelled, limited=limited)
+            lines = _PrintedLines(self._stdout, progress) if printed and progress is not None else None
+            answer = self._answer(ticket, what, timeout, progress, cancelled, printed=lines, limited=limited)
             self._drain()
             return self._reply(answer, read)
         except (Refusal, ToolBroke):
@@ -231,11 +227,11 @@ class BlenderProcess:
         progress: Progress | None,
         cancelled: threading.Event | None,
         *,
+        printed: _PrintedLines | None,
         limited: bool,
     ) -> AnswerMessage:
         """Reports progress until the answer has come, then stops the process. Raises Lost, Malformed."""
-        reports = progress if progress is None else _PrintedLines(self._stdout, progress)
-        for message in self._messages(what, timeout, cancelled, reports, limited=limited):
+        for message in self._messages(what, timeout, cancelled, printed=printed, limited=limited):
             claim = parse_message(message)
             if claim.ticket != ticket:
                 # Code has answered the call before in the worker's name, and the real answer came late.
@@ -243,8 +239,8 @@ class BlenderProcess:
                     f"Code had sent a false reply before {what} began; it is ignored, and Blender was stopped"
                 )
             if isinstance(claim, ProgressMessage):
-                if reports is not None:
-                    reports.report(*claim.progress)
+                if progress is not None:
+                    progress(*claim.progress)
                 continue
             threads = self._worker.threads_left()
             self._worker.pause()
@@ -284,8 +280,8 @@ class BlenderProcess:
         what: str,
         timeout: float,
         cancelled: threading.Event | None = None,
-        printed: _PrintedLines | None = None,
         *,
+        printed: _PrintedLines | None = None,
         limited: bool = True,
     ) -> Iterator[dict[str, Any]]:
         """The worker's messages until the deadline. Output is read meanwhile, so that Blender never waits for it.

@@ -92,6 +92,7 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
         changes=True,
         after=f"after {title!r}",
         progress=call.progress,
+        printed=True,
         cancelled=call.cancelled,
     )
     data = reply.value.model_dump()

@@ -15,6 +15,7 @@ _PLAIN_ROOT = frozenset(
     {"name", "type", "in", "location", "rotation", "scale", "tags", "count", "pattern", "parent"}
 )
 ROOT = "is_object_root"
+_NEW_VIEWPORT = [0.8, 0.8, 0.8, 1]  # colour of a new material
 _FEW = 8  # items of a list in a readout that is not full
 
 
@@ -230,7 +231,9 @@ def material(entry: Entry) -> str:
 
 
 def _rest(entry: Entry) -> Iterable[str]:
-    yield f"viewport {row(entry['viewport'])}"
+    if entry["viewport"] != _NEW_VIEWPORT:
+        unseen = " (in no preview: these show its nodes)" if "nodes" in entry else ""
+        yield f"viewport {row(entry['viewport'])}{unseen}"
     if "surface_render_method" in entry:
         yield entry["surface_render_method"]
     if "linked" in entry:

@@ -53,7 +53,7 @@ def bake(arguments, report):
             try:
                 _run(scene, waiting, every, progress)
             except Diverged as error:
-                _give_up(waiting, error)
+                _give_up([job for job in waiting if not job.cache.baked], error)
         with _domains_off(_unchosen_fluids(every, jobs)):
             _check_result(scene, jobs, progress)
     finally:
@@ -103,10 +103,8 @@ def _keep_what_was_stepped(scene, jobs, frames):
 
 
 def _give_up(jobs, error):
-    """Frees what was not baked to the end, and says of each job why."""
+    """Frees what was not baked to the end or is not finite, and says of each job why."""
     for job in jobs:
-        if job.cache.baked:
-            continue
         own = job.cache.label == error.cache.label
         job.fault = (
             str(error)
@@ -425,4 +423,11 @@ def _check_result(scene, jobs, progress):
         scene.frame_set(frame)
         graph = bpy.context.evaluated_depsgraph_get()
         for job in at[frame]:
+            if job.fault:
+                continue
+            try:
+                DivergenceWatch(scene, [job.cache]).check(frame, graph)
+            except Diverged as error:
+                _give_up([job], error)
+                continue
             job.samples.append(simulated_movement.sample(job.cache, scene, graph))

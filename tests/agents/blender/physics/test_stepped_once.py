@@ -9,13 +9,18 @@ from test_bake import PARTS, one
 
 from agents.blender.tools.bake import TOOL as BAKE
 from agents.blender.tools.base import Call
+from agents.blender.tools.motion_sheet import TOOL as MOTION
+from agents.blender.tools.previews import TOOLS as PREVIEWS
 from agents.blender.tools.verify import TOOL as VERIFY
 from agents.blender.verification import read_measures
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
+
+(PREVIEW,) = (tool for tool in PREVIEWS if tool.name == "blender_scene_layout_preview")
 
 CLOTH_ON_BALL = f"""{PARTS}
 cloth()
@@ -182,3 +187,16 @@ def test_a_freed_liquid_simulates_again(session: LiveSession) -> None:
     )
     assert state == ("REPLAY", False)
     assert visited(session, "Tank")[0] == 12
+
+
+def test_a_motion_that_is_not_finite_is_not_shown_as_baked(session: LiveSession) -> None:
+    session.run(broken("cloth"))
+    with pytest.raises(Refusal, match="not finite"):
+        session.use(MOTION, actors=["Thing"])
+
+
+def test_a_preview_shows_a_frame_that_was_simulated_and_says_where_it_was_not(session: LiveSession) -> None:
+    session.run(CLOTH_ON_BALL)
+    assert "Shown at frame 1, not 9" in session.use(PREVIEW, frame=9).text
+    visited(session, "Flag")
+    assert "Shown at frame" not in session.use(PREVIEW, frame=9).text
