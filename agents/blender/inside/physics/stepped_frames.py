@@ -75,11 +75,15 @@ def holds(cache, scene, first, last):
 
 
 def restart(scene):
-    """Makes unbaked simulations start again at their first frame, without what is left of earlier ones."""
-    forget()
-    caches.restart_unbaked(scene)
+    """Makes unbaked simulations start again at their first frame, without what is left of earlier ones; those that
+    still hold their frames go on with them."""
+    steps = _valid_steps(scene)
     for cache in waiting_caches(scene):
-        if cache.domain is not None and cache.frames:
+        if steps is not None and _is_held(steps, cache):
+            continue
+        if cache.points is not None and not cache.baked:
+            caches.restart(cache)
+        elif cache.domain is not None and cache.frames:
             # Blender replays files of an older state of the scene; a change of type removes them.
             cache.domain.cache_type = "ALL"
             cache.domain.cache_type = "REPLAY"
@@ -90,10 +94,10 @@ def _key(scene):
 
 
 def _frames_of(cache, first, last):
-    """How many frames a cache gets when frames ``first`` to ``last`` are stepped through; at least one."""
+    """How many frames a cache gets when frames ``first`` to ``last`` are stepped through."""
     start, end = cache.expected
     step = 1 if cache.points is None else max(1, cache.points.frame_step)
-    return max(1, (min(end, last) - max(start, first)) // step + 1)
+    return max(0, (min(end, last) - max(start, first)) // step + 1)
 
 
 def _is_held(steps, cache):
@@ -115,5 +119,8 @@ def _check_counts(scene, _graph=None):
     for cache in caches.find_caches(scene):
         held = steps.held.get(cache.label)
         if held is not None and cache.points is not None and cache.frames < held:
+            if cache.kind == caches.DYNAMIC_PAINT:  # Blender drops its frames at the first one, whatever has changed
+                del steps.held[cache.label]
+                continue
             del _stepped[_key(scene)]
             return
