@@ -1,6 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What code changed in the open file: data-blocks and modifiers that differ, and simulations that it reset."""
 
+import contextlib
+import ctypes
+import os
+import sys
+
 import bpy
 from bpy.app.handlers import persistent
 
@@ -29,6 +34,7 @@ _MOST_BLOCKS = (
 _ELSEWHERE = frozenset({"collection", "view layers"})  # parts of scenes that other data-blocks tell of
 _WHOLE = frozenset({"settings", "geometry", "keyframes", "picture", "nodes", "shapes", "bones"})
 
+_C = ctypes.CDLL(None)
 _updated = set()
 _cache_watch = {"counts": None, "reset": {}}
 
@@ -128,9 +134,7 @@ class ChangeWatch:
     def _changes(self, key, digests):
         """What changed of a data-block, as a suffix of its name; "" if nothing did."""
         before, after = self._digests.get(key, {}), digests.get(key, {})
-        parts = sorted(
-            part for part in {*before, *after} - _ELSEWHERE if before.get(part) != after.get(part)
-        )
+        parts = sorted(part for part in {*before, *after} - _ELSEWHERE if before.get(part) != after.get(part))
         return f" ({', '.join(parts)})" if parts and not _WHOLE.issuperset(parts) else " " * bool(parts)
 
     def _reset_caches(self):
@@ -148,7 +152,38 @@ def _digests():
     blocks = [block for kind in KINDS for block in getattr(bpy.data, kind)]
     if len(blocks) > _MOST_BLOCKS:
         return None
-    return {uid(block): parts for block, parts in digests_by_part(blocks).items()}
+    with _silenced():
+        return {uid(block): parts for block, parts in digests_by_part(blocks).items()}
+
+
+@contextlib.contextmanager
+def _silenced():
+    """Drops what Blender prints about settings that are read: it is not the code's output."""
+    kept = []
+    try:
+        _flush()
+        for number in (1, 2):
+            kept.append((number, os.dup(number)))
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for number, _ in kept:
+            os.dup2(nowhere, number)
+        os.close(nowhere)
+    except OSError:  # the code has closed them; they are opened again after the call
+        pass
+    try:
+        yield
+    finally:
+        _flush()
+        for number, copy in kept:
+            os.dup2(copy, number)
+            os.close(copy)
+
+
+def _flush():
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(Exception):
+            stream.flush()
+    _C.fflush(None)
 
 
 def _names_by_kind():
