@@ -185,7 +185,7 @@ class Conversation:
     def _used(self, call: ToolUse, repeats: _Repeats) -> ToolResult:
         assert self._tools is not None
         self._context.safe()
-        result = self._tools.use(call)
+        result = self._tools.use(call) if not call.fault else _unreadable(call)
         times = repeats.count(call, result)
         if times < _SAME_CALLS:
             return result
@@ -214,6 +214,11 @@ class _Repeats:
 def _words(turn: Turn) -> tuple[Block, ...]:
     """The turn without calls, which nobody answers."""
     return tuple(block for block in turn.content if block.type != "tool_use")
+
+
+def _unreadable(call: ToolUse) -> ToolResult:
+    text = f"{call.name or 'The tool'} was not called. {call.fault} Send the whole call again."
+    return ToolResult(call.id, (Text(text),), failed=True)
 
 
 def _sure(turn: Turn | None) -> Turn:
