@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import uuid
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from pydantic import BaseModel, Field, NonNegativeInt, ValidationError
 from pydantic_core import from_json
@@ -177,16 +177,13 @@ def _tool_use(call: _Call, taken: set[str], *, is_cut: bool) -> ToolUse | None:
     # Nine letters and digits, which the strictest servers want.
     identifier = call.id if call.id and call.id not in taken else uuid.uuid4().hex[:9]
     taken.add(identifier)
-    arguments: Any = call.given
-    text = "".join(call.pieces)
-    fault = ""
-    if arguments is None:
-        try:
-            arguments = from_json(text, allow_inf_nan=False) if text.strip() else {}
-        except ValueError as error:
-            fault = f"The arguments are not valid JSON: {error}. They begin with {text[:_LONGEST_SHOWN]!r}."
-    if not fault and not isinstance(arguments, dict):
+    text = "".join(call.pieces) or "{}"
+    try:
+        arguments: Any = from_json(text, allow_inf_nan=False) if call.given is None else call.given
+    except ValueError as error:
+        fault = f"The arguments are not valid JSON: {error}. They begin with {text[:_LONGEST_SHOWN]!r}."
+    else:
+        if isinstance(arguments, dict):
+            return ToolUse(identifier, call.name, cast("dict[str, Any]", arguments))
         fault = f"The arguments have to be a JSON object, not {text[:_LONGEST_SHOWN]!r}."
-    if fault:
-        return None if is_cut else ToolUse(identifier, call.name, {}, fault)
-    return ToolUse(identifier, call.name, arguments)
+    return None if is_cut else ToolUse(identifier, call.name, {}, fault)

@@ -110,8 +110,9 @@ class _ChatApi:
         if not isinstance(error, package.APIStatusError):
             cause = error.__cause__ or error
             return Fault(one_line(f"{type(cause).__name__}: {cause}".rstrip(": ")))
-        status, headers = error.status_code, error.response.headers
-        words = one_line(f"{status} {error.message}")
+        reply: Any = error
+        status, headers = reply.status_code, reply.response.headers
+        words = one_line(f"{status} {reply.message}")
         lasting = not is_passing(status, headers)
         if status in (400, 422) and self._limit in words and self._limit != "max_tokens":
             self._limit, lasting = "max_tokens", False  # the older name, which is all that some servers know
