@@ -128,9 +128,9 @@ def _sound_plan(data: Any) -> tuple[ScenePlan | None, Sequence[object]]:
     return read_plan(data)
 
 
-def format_plan(plan: ScenePlan) -> str:
-    """The scene plan as every other role reads it."""
-    return f"The scene plan:\n{plan_json(plan)}"
+def format_plan(plan: ScenePlan, prompt: str) -> str:
+    """The request and the scene plan as every other role reads them."""
+    return f"The request: {prompt}\n\nThe scene plan:\n{plan_json(plan)}"
 
 
 def format_edit_plan(plan: EditPlan, prompt: str, known: Sequence[str] = ()) -> str:
