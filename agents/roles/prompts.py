@@ -42,8 +42,8 @@ def system_prompt(role: Role, stage: Stage | None = None, *, edit: bool = False)
     """The parts of a role's system prompt, from what all runs share to what only this stage has.
 
     Each role gets what it needs: the planner the whole protocol and the shapes of plans, the coder the protocol with
-    the rules of its stage, reviewers the shape of their answer. ``stage`` is for roles that work on a single one; ``edit``:
-    a file is edited, no scene is made.
+    the rules of its stage, reviewers the shape of their answer. ``stage`` is for roles that work on a single one;
+    ``edit``: a file is edited, no scene is made.
     """
     parts = [role_text(role, edit=edit)]
     if role == "planner":

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import base64
 import json
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from simworlds.llm.messages import Picture, Text, ToolResult, ToolUse
 from simworlds.llm.request import clean
@@ -39,10 +39,24 @@ def chat_params_of(ask: Ask) -> dict[str, Any]:
                 "name": ask.form.name,
                 "description": clean(ask.form.description),
                 "schema": ask.form.schema,
-                "strict": True,
+                "strict": _is_strict(ask.form.schema),
             },
         }
     return params
+
+
+def _is_strict(schema: Any) -> bool:
+    """Whether every object of a schema requires all of its fields and takes no others, as strict schemas have to."""
+    if isinstance(schema, list):
+        return all(map(_is_strict, cast("list[Any]", schema)))
+    if not isinstance(schema, dict):
+        return True
+    own = cast("dict[str, Any]", schema)
+    if own.get("type") == "object":
+        closed = own.get("additionalProperties") is False
+        if not closed or set(own.get("required", ())) != set(own.get("properties", {})):
+            return False
+    return all(map(_is_strict, own.values()))
 
 
 def _tool(tool: Tool) -> dict[str, Any]:
