@@ -52,10 +52,10 @@ def system_prompt(role: Role, stage: Stage | None = None, *, edit: bool = False)
         parts.append(guide(with_relations=False))
     if _ANSWERS[role]:
         parts.append(shapes_text(role, edit=edit))
-    if stage:
-        parts.append(stage_text(stage, edit=edit))
     if stage and role == "coder":
         parts.append(rules_guide(stage, edit=edit))
+    if stage:
+        parts.append(stage_text(stage, edit=edit))
     return tuple(parts)
 
 
