@@ -2,13 +2,18 @@
 
 from __future__ import annotations
 
+import json
+import re
 import shutil
 from dataclasses import dataclass
+from importlib import metadata
 from pathlib import Path
 
-from kb_build.pipeline import BuildOptions, BuildReport
+from kb_build.pipeline import BuildOptions, BuildReport, build
+from simworlds.releases import minor_of
 
 MINIATURE = Path(__file__).resolve().parent / "corpora_mini"
+_FEW = re.compile(r"bpy\.types\.(?:Cloth\w*|Mesh|ID|Modifier|bpy_struct)\b|bpy\.ops\.mesh\b|bpy(?:\.\w+)?$")
 
 
 @dataclass(frozen=True)
@@ -30,6 +35,13 @@ class Built:
         shutil.copytree(self.corpora, corpora)
         return Built(home, corpora, self.report)
 
+    def rebuilt_small(self) -> Built:
+        """Its base built again, of the few symbols that are left of Blender's own description."""
+        (extract,) = (self.home / "extracts").glob("*.jsonl")
+        _keep_few(extract)
+        self.path.unlink()
+        return Built(self.home, self.corpora, build(None, options=self.options, home=self.home))
+
     @property
     def path(self) -> Path:
         return self.home / "kb" / f"blender-{self.minor}.sqlite"
@@ -37,3 +49,23 @@ class Built:
     @property
     def minor(self) -> str:
         return ".".join(self.report.version.split(".")[:2])
+
+
+def build_miniature(folder: Path) -> Built:
+    """Builds a base in ``folder``: all of this environment's Blender, and the miniature manual and guides."""
+    minor = minor_of(metadata.version("bpy"))
+    home, corpora = folder / "home", folder / "corpora"
+    shutil.copytree(MINIATURE / "manual", corpora / f"manual-{minor}-rst")
+    shutil.copytree(MINIATURE / "guides", corpora / f"api-guides-{minor}-rst")
+    return Built(home, corpora, build(None, options=BuildOptions(corpora=corpora, offline=True), home=home))
+
+
+def _keep_few(extract: Path) -> None:
+    """Leaves the symbols of a few classes and operators in an extract: building with all of them takes seconds."""
+    kept: list[str] = []
+    for line in extract.read_text(encoding="utf-8").splitlines():
+        row = json.loads(line)
+        if row["record"] not in ("end", "manual") and ("path" not in row or _FEW.match(row["path"])):
+            kept.append(line)
+    end = json.dumps({"record": "end", "lines": len(kept)}, separators=(",", ":"))
+    extract.write_text("\n".join([*kept, end, ""]), encoding="utf-8")

@@ -14,6 +14,8 @@ from places import REPO
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from built_base import Built
+
     from kb_build.blender.extract_reader import Extract
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
@@ -32,7 +34,7 @@ def _readable_mktemp(self: pytest.TempPathFactory, basename: str, numbered: bool
 pytest.TempPathFactory.mktemp = _readable_mktemp
 
 # What tests get from a Blender, or from the documentation sources, by asking for a fixture.
-_OF_BLENDER = frozenset({"base", "extract", "kb", "reader"})
+_OF_BLENDER = frozenset({"base", "built_once", "extract", "kb", "reader"})
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -55,21 +57,24 @@ def corpora() -> Path:
 
 
 @pytest.fixture(scope="session")
-def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The file of a real base of this environment's Blender, with the miniature documentation's pages.
+def built_once(tmp_path_factory: pytest.TempPathFactory) -> Built:
+    """What ``base`` is in: its home, and the miniature documentation that it was built from. Never write to it."""
+    from built_base import build_miniature
 
-    Its home folder is ``base.parent.parent``. Never write to it.
-    """
-    from kb_build.pipeline import BuildOptions, build
     from simworlds.sandbox.runtime import installed_bpy
 
     if installed_bpy() is None:
         pytest.skip("there is no Blender in this environment")
-    mini = REPO / "tests" / "corpora_mini"
-    options = BuildOptions(manual=mini / "manual", guides=mini / "guides", offline=True)
-    return made_once(
-        tmp_path_factory, "base", lambda folder: build(None, options=options, home=folder / "home").path
-    )
+    return made_once(tmp_path_factory, "built", build_miniature)
+
+
+@pytest.fixture(scope="session")
+def base(built_once: Built) -> Path:
+    """The file of a real base of this environment's Blender, with the miniature documentation's pages.
+
+    Its home folder is ``base.parent.parent``. Never write to it.
+    """
+    return built_once.path
 
 
 @pytest.fixture(scope="session")
