@@ -8,12 +8,19 @@ import shutil
 from dataclasses import dataclass
 from importlib import metadata
 from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from kb_build.pipeline import BuildOptions, BuildReport, build
 from simworlds.releases import minor_of
 
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
 MINIATURE = Path(__file__).resolve().parent / "corpora_mini"
-_FEW = re.compile(r"bpy\.types\.(?:Cloth\w*|Mesh|ID|Modifier|bpy_struct)\b|bpy\.ops\.mesh\b|bpy(?:\.\w+)?$")
+_FEW = re.compile(
+    r"bpy\.types\.(?:Cloth\w*|Mesh(?:Vert\w+)?|ID|Modifier|bpy_struct)\b|bpy\.types\.(?:BlendData|Context)$"
+    r"|bpy\.ops\.mesh\b|bpy(?:\.\w+)?$"
+)
 
 
 @dataclass(frozen=True)
@@ -62,10 +69,20 @@ def build_miniature(folder: Path) -> Built:
 
 def _keep_few(extract: Path) -> None:
     """Leaves the symbols of a few classes and operators in an extract: building with all of them takes seconds."""
-    kept: list[str] = []
-    for line in extract.read_text(encoding="utf-8").splitlines():
-        row = json.loads(line)
-        if row["record"] not in ("end", "manual") and ("path" not in row or _FEW.match(row["path"])):
-            kept.append(line)
-    end = json.dumps({"record": "end", "lines": len(kept)}, separators=(",", ":"))
-    extract.write_text("\n".join([*kept, end, ""]), encoding="utf-8")
+    rows = [json.loads(line) for line in extract.read_text(encoding="utf-8").splitlines()]
+    few = {row["path"] for row in rows if _FEW.match(row.get("path", ""))}
+    kept = [
+        row
+        for row in rows
+        if row["record"] not in {"end", "manual"}
+        and row.get("path", "bpy") in few
+        and (row.get("kind") != "property" or _targets(row) <= few)
+    ]
+    kept.append({"record": "end", "lines": len(kept)})
+    lines = (json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n" for row in kept)
+    extract.write_text("".join(lines), encoding="utf-8")
+
+
+def _targets(row: Mapping[str, Any]) -> set[str]:
+    """The classes that a property leads to."""
+    return {f"bpy.types.{row[name]}" for name in ("target", "collection") if row.get(name)}

@@ -93,12 +93,13 @@ def test_run_killed_at_every_kind_of_event_ends_like_an_undisturbed_one(home: Pa
     assert becomes(lambda: not of_run(root / "blender"))
 
 
-def test_a_finished_run_is_not_begun_again(mended: Played) -> None:
-    before = (mended.root / NAME).read_bytes()
-    again = go_on(mended.root)  # without a key
+def test_a_finished_run_is_not_begun_again(mended: Played, tmp_path: Path) -> None:
+    root = shutil.copytree(mended.root, tmp_path / "run")
+    before = (root / NAME).read_bytes()
+    again = go_on(root)  # without a key
     assert again.ended.how == "done"
-    assert (again.ended.file, again.ended.shown) == (mended.ended.file, mended.ended.shown)
-    assert (mended.root / NAME).read_bytes() == before
+    assert (again.ended.file, again.ended.shown) == (root / "scene.blend", root / "still.png")
+    assert (root / NAME).read_bytes() == before
 
 
 def test_what_a_coder_saves_under_a_stages_name_never_takes_the_place_of_its_checkpoint(
