@@ -34,7 +34,7 @@ def _readable_mktemp(self: pytest.TempPathFactory, basename: str, numbered: bool
 pytest.TempPathFactory.mktemp = _readable_mktemp
 
 # What tests get from a Blender, or from the documentation sources, by asking for a fixture.
-_OF_BLENDER = frozenset({"base", "built_once", "extract", "kb", "reader"})
+_OF_BLENDER = frozenset({"base", "built_once", "extract", "kb", "reader", "small"})
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -87,6 +87,20 @@ def base(built_once: Built) -> Path:
     Its home folder is ``base.parent.parent``. Never write to it.
     """
     return built_once.path
+
+
+@pytest.fixture(scope="session")
+def _small_once(built_once: Built, tmp_path_factory: pytest.TempPathFactory) -> Built:
+    return made_once(tmp_path_factory, "small", lambda folder: built_once.copy(folder).rebuilt_small())
+
+
+@pytest.fixture
+def small(_small_once: Built, tmp_path: Path) -> Built:
+    """A base of one's own like ``base``, of few symbols: for tests that build again.
+
+    A build in its home asks Blender only if it is forced to.
+    """
+    return _small_once.copy(tmp_path)
 
 
 @pytest.fixture(scope="session")

@@ -1,4 +1,4 @@
-"""A hundred kills at random moments: the next call works, what was kept is there, and nothing is left behind."""
+"""Kills at random moments: the next call works, what was kept is there, and nothing is left behind."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-KILLS = 12  # of each of the five
+KILLS = 8  # of each of the five
 SEED = 20251
 
 # A scene that takes a moment to write, and has something to bake and to render.
