@@ -7,6 +7,7 @@ import random
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from pathlib import Path
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-KILLS = 8  # of each of the five
+KILLS = 12  # of each of the five
 SEED = 20251
 
 # A scene that takes a moment to write, and has something to bake and to render.
@@ -96,7 +97,11 @@ def opens_elsewhere(paths: list[Path], key: str) -> list[int]:
         f"    sys.stderr.write(f'{{bpy.context.scene[{key!r}]}}\\n')\nos._exit(0)"
     )
     words = [sys.executable, "-c", code, *map(str, paths)]
-    done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=True)
+    with tempfile.TemporaryDirectory() as folder:
+        environment = os.environ | {"TMPDIR": folder}
+        done = subprocess.run(
+            words, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=True
+        )
     return [int(line) for line in done.stderr.split() if line.lstrip("-").isdigit()]
 
 
