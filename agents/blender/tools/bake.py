@@ -31,7 +31,7 @@ class BakeArguments(Arguments):
     )
     free: bool = Field(
         default=False,
-        description="Instead of baking, free the bakes of `objects`, so that they simulate again.",
+        description="Free their bakes instead, so that they simulate again.",
     )
     timeout: float = Field(
         default=900.0, ge=1, le=86_400, description="Seconds after which Blender is stopped and put back."
@@ -40,12 +40,11 @@ class BakeArguments(Arguments):
 
 DESCRIPTION = """\
 Bake physics: cloth, soft bodies, particles, hair, rigid bodies, dynamic paint, liquid and gas; of all objects or of \
-some. Each cache's range is set from `frame_start` and `frame_end`; earlier bakes are replaced. Frames that \
-blender_trial, blender_verify or a preview have simulated are kept, if nothing has changed since. Afterwards every \
-cache is checked: that it is baked, covers the range, has all its frames, and that something moved; where nothing did, \
-the likely causes are named. A bake stops at the first frame that is not finite, and says why that may be. `free` \
-frees bakes. Fluids bake with cache_type 'ALL' into a folder that the run keeps; use this instead of \
-bpy.ops.fluid.free_all, which goes on in a thread and crashes later calls. A bake that runs past `timeout` \
+some. Each cache's range is set from `frame_start` and `frame_end`; earlier bakes are replaced; frames that were \
+simulated already are kept, if nothing has changed since. Afterwards every cache is checked: that it is baked, covers \
+the range, has all its frames, and that something moved; where nothing did, the likely causes are named. A bake stops \
+at the first frame that is not finite. Fluids bake with cache_type 'ALL' into a folder that the run keeps; use `free` \
+instead of bpy.ops.fluid.free_all, which goes on in a thread and crashes later calls. A bake that runs past `timeout` \
 (seconds) is undone."""
 
 

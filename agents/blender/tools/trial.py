@@ -31,24 +31,18 @@ class TrialArguments(Arguments):
         default=None,
         min_length=1,
         max_length=12,
-        description="Objects, or collections tagged as objects, to follow. Default: everything that is simulated.",
+        description="Objects to follow. Default: all that are simulated.",
     )
-    frames: int = Field(
-        default=24, ge=2, le=1000, description="How many frames to step, from the cache's first on."
-    )
-    seconds: float = Field(
-        default=60.0, ge=1, le=1800, description="When this time is over, the trial ends with what there is."
-    )
-    pictures: bool = Field(default=True, description="Also return up to six small pictures.")
+    frames: int = Field(default=24, ge=2, le=1000, description="Frames to step.")
+    seconds: float = Field(default=60.0, ge=1, le=1800, description="The trial ends when this time is over.")
+    pictures: bool = Field(default=True, description="Also return small pictures.")
 
 
 DESCRIPTION = """\
-Try a simulation before you bake it: steps some frames, and tells how it goes. For each object, over time: its lowest \
-and highest point, its speed, the volume of closed meshes, how deep it is in what it touches; a strip of small \
-pictures; seconds a frame, and what the whole bake would take. While it runs, a line for every frame is reported; it \
-can be cancelled, ends when `seconds` are over, and stops at the first frame that is not finite, with the likely \
-cause. Nothing is baked and the scene stays at its frame; what it has simulated is kept for the bake, if nothing \
-changes. Baked simulations are played: free them first (blender_bake with free) to try them anew."""
+Try a simulation before you bake it: steps some frames and tells of each object, over time, heights, speed, volume and \
+depth in what it touches; shows small pictures; tells seconds a frame and what the whole bake would take. Reports \
+every frame as it comes, and stops at the first that is not finite, with the likely cause. Nothing is baked, but what was \
+simulated is kept for the bake. Baked simulations are played: free them first."""
 
 
 class _Sample(Claim):
