@@ -41,8 +41,8 @@ class TrialArguments(Arguments):
 DESCRIPTION = """\
 Try a simulation before you bake it: steps some frames and tells of each object, over time, heights, speed, volume and \
 depth in what it touches; shows small pictures; tells seconds a frame and what the whole bake would take. Reports \
-every frame as it comes, and stops at the first that is not finite, with the likely cause. Nothing is baked, but what was \
-simulated is kept for the bake. Baked simulations are played: free them first."""
+every frame as it comes, and stops at the first that is not finite, with the likely cause. Nothing is baked, but what \
+was simulated is kept for the bake. Baked simulations are played: free them first."""
 
 
 class _Sample(Claim):

@@ -119,7 +119,9 @@ def _check_counts(scene, _graph=None):
     for cache in caches.find_caches(scene):
         held = steps.held.get(cache.label)
         if held is not None and cache.points is not None and cache.frames < held:
-            if cache.kind == caches.DYNAMIC_PAINT:  # Blender drops its frames at the first one, whatever has changed
+            if (
+                cache.kind == caches.DYNAMIC_PAINT
+            ):  # Blender drops its frames at the first one, whatever has changed
                 del steps.held[cache.label]
                 continue
             del _stepped[_key(scene)]
