@@ -1,45 +1,65 @@
-"""docutils without the work that it repeats for every nested block."""
+"""docutils and Sphinx without the work that they repeat for every page and every nested block."""
 
 from __future__ import annotations
 
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
+from unittest import mock
 
-from docutils.statemachine import State
+import sphinx.util.docutils
+from docutils.frontend import Values
+from docutils.parsers.rst.states import RSTStateMachine
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
+    from collections.abc import Generator, Sequence
 
-    Transitions = dict[str, tuple[Any, Any, str]]
+    from docutils.statemachine import State
+
+
+class _States(dict[str, "State[Any]"]):
+    """The states of a state machine by name, each made when it is entered first.
+
+    A nested block enters one or two of the fifteen, and making a state takes longer than parsing most blocks.
+    """
+
+    def __init__(self, machine: RSTStateMachine, classes: Sequence[type[State[Any]]]) -> None:
+        super().__init__()
+        self._machine = machine
+        self._classes = classes
+
+    def __missing__(self, name: str) -> State[Any]:
+        made = next((each for each in self._classes if each.__name__ == name), None)
+        if made is None:
+            raise KeyError(name)
+        state = self[name] = made(self._machine, self._machine.debug)
+        if getattr(self._machine, "memo", None) is not None:  # it is running: the others are ready
+            state.runtime_init()
+        return state
+
+
+def _add_states(machine: RSTStateMachine, classes: Sequence[type[State[Any]]]) -> None:
+    machine.states = _States(machine, classes)
 
 
 @contextmanager
-def shared_transitions() -> Generator[None]:
-    """Within this context docutils works out each state's table of transitions once per class.
+def less_repeated() -> Generator[None]:
+    """Within this context states are made when needed, and the settings of pages are worked out once.
 
-    It does so for all 15 states at every list, definition and directive body otherwise, from constants of the
-    class: a quarter of the time that the manual takes to parse. Only the methods have to be bound anew.
+    Else docutils makes all states for every list, definition and directive, and Sphinx a parser of command-line
+    options for every page: together a third of the time that the manual takes to parse.
     """
-    original = State.make_transitions
-    tables: dict[tuple[type[State[Any]], int], tuple[Any, list[str], list[tuple[str, Any, str, str]]]] = {}
+    original = sphinx.util.docutils._get_settings
+    known: dict[str, Any] = {}
 
-    def make_transitions(self: State[Any], name_list: Any) -> tuple[list[str], Transitions]:
-        # The list is kept in the table, so that its id stays its own.
-        key = (type(self), id(name_list))
-        table = tables.get(key)
-        if table is None:
-            names, transitions = original(self, name_list)
-            rows = [
-                (name, pattern, method.__name__, state)
-                for name, (pattern, method, state) in transitions.items()
-            ]
-            table = tables[key] = (name_list, names, rows)
-        return table[1], {
-            name: (pattern, getattr(self, method), state) for name, pattern, method, state in table[2]
-        }
+    def get_settings(*components: Any, defaults: Any, read_config_files: bool = False) -> Values:
+        # Of one application: its parser and its settings are always the same.
+        if not known:
+            made = original(*components, defaults=defaults, read_config_files=read_config_files)
+            known.update(made.__dict__)
+        return Values({**known, "record_dependencies": None})
 
-    State.make_transitions = make_transitions
-    try:
+    with (
+        mock.patch.object(RSTStateMachine, "add_states", _add_states),
+        mock.patch.object(sphinx.util.docutils, "_get_settings", get_settings),
+    ):
         yield
-    finally:
-        State.make_transitions = original
