@@ -157,7 +157,7 @@ CASES = (
          action = ob.animation_data.action
          count = len(anim_utils.action_ensure_channelbag_for_slot(action, action.slots[0]).fcurves)
          """),
-    case("renamed-value", "4.2", "scene.render.engine = 'BLENDER_EEVEE_NEXT'\n",
+    case("unknown-value", "4.2", "scene.render.engine = 'BLENDER_EEVEE_NEXT'\n",
          "scene.render.engine = 'BLENDER_EEVEE'\n"),
     case("split-factor", "2.79",
          """
