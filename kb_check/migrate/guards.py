@@ -81,11 +81,9 @@ def _covers(place: Place, node: ast.AST, span: Span) -> bool:
 
 def can_be_guarded(place: Place, change: Change) -> bool:
     """Whether the old form can stay beside the new one."""
-    if not place.bpy:
-        return False
     for edit in change.edits:
         statement = innermost(place, edit.span)
-        if statement is None:
+        if statement is None or not place.knows_bpy(statement):
             return False
         if not _alone(place, statement) and _expression(place, statement, edit.span) is None:
             return False

@@ -46,7 +46,13 @@ def _run(script):
 
 def _register(folder):
     """Registers the add-on in a folder, as Blender does when it is enabled, and takes it off again."""
+    import addon_utils  # found once bpy was imported
+
     above, name = os.path.split(os.path.abspath(folder))
+    # Blender's own add-on of that name may be enabled: it makes room.
+    addon_utils.disable(name)
+    for module in [module for module in sys.modules if module == name or module.startswith(name + ".")]:
+        del sys.modules[module]
     sys.path.insert(0, above)
     bpy.context.preferences.addons.new().module = name  # its own preferences, which it may ask for
     module = importlib.import_module(name)

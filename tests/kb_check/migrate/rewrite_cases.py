@@ -34,6 +34,19 @@ def case(rewrite: str, written_for: str, old: str, new: str) -> Case:
 
 
 CASES = (
+    case("renamed-import", "3.4",
+         """
+         from bpy.types import (
+             Operator, MetaSequence,
+             Sequence as Strip)
+         print(Operator, MetaSequence, Strip)
+         """,
+         """
+         from bpy.types import (
+             Operator, MetaStrip as MetaSequence,
+             Strip as Strip)
+         print(Operator, MetaSequence, Strip)
+         """),
     case("object-state", "2.79", "ob.select = True\n", "ob.select_set(True)\n"),
     case("object-state", "2.79", "ob.hide = not ob.select\n", "ob.hide_set(not ob.select_get())\n"),
     case("object-state", "2.79", "seen = [o for o in scene.objects if o.select]\n",
