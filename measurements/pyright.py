@@ -74,18 +74,19 @@ class OwnCheck:
     """``simworlds check``, in this process."""
 
     def __init__(self, base: Path) -> None:
-        self._checker = Checker(base)
+        self._base = base
 
     def errors(self, folder: Path) -> Errors:
         """The errors in the files below a folder."""
         found: Errors = {}
-        for group in load(find_files([folder], gitignore=False).groups, []):
-            for file, findings in zip(group, check_group(self._checker, group), strict=True):
-                found[Path(file.name).relative_to(folder).as_posix()] = [
-                    Error(each.span.line, each.span.end_line, f"{each.rule}: {each.message}")
-                    for each in findings
-                    if each.severity == "error"
-                ]
+        with Checker(self._base) as checker:
+            for group in load(find_files([folder], gitignore=False).groups, []):
+                for file, findings in zip(group, check_group(checker, group), strict=True):
+                    found[Path(file.name).relative_to(folder).as_posix()] = [
+                        Error(each.span.line, each.span.end_line, f"{each.rule}: {each.message}")
+                        for each in findings
+                        if each.severity == "error"
+                    ]
         return found
 
 
