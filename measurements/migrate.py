@@ -129,7 +129,9 @@ def migrated(migrator: Migrator, sample: Sample, folder: Path) -> tuple[Path, li
     files = migrator.migrate({str(file): read_script(file) for file in sample.files})
     copy = folder / sample.path.name
     if sample.path.is_dir():
-        shutil.copytree(sample.path, copy)
+        shutil.copytree(
+            sample.path, copy, ignore=shutil.ignore_patterns("__pycache__")
+        )  # being written, perhaps
     else:
         copy.parent.mkdir(parents=True, exist_ok=True)
         shutil.copy(sample.path, copy)
