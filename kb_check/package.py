@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import ANY
@@ -49,3 +51,10 @@ class Package:
         return any(
             cls == ANY or self._api.descends(owner, cls) or self._api.descends(cls, owner) for cls in holders
         )
+
+
+def paths_in_package(names: Iterable[str]) -> dict[str, str]:
+    """Name of a file → its path from the folder that holds the package on, as its modules import each other."""
+    places = {name: PurePath(os.path.realpath(name)) for name in names}
+    top = PurePath(os.path.commonpath([place.parent for place in places.values()])).parent
+    return {name: place.relative_to(top).as_posix() for name, place in places.items()}
