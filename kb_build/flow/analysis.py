@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 MOST_CHARACTERS = 2_000_000
 MOST_STEPS = 4_000_000  # expressions that are read, some more than once
 _STEPS_PER_CHARACTER = 4
-_ROUNDS = 3
+_ROUNDS = 6
 _DEEPEST_IMPORT = 20  # files that import each other are read within each other
 
 

@@ -10,8 +10,9 @@ from kb_build.flow.annotations import annotated
 from kb_build.flow.calls import Calls
 from kb_build.flow.core import ANY
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
-from kb_build.flow.facts import PARAMETERS, VERSION, T
-from kb_build.flow.scopes import Loop, Scope, State, chain_text, joined
+from kb_build.flow.expressions import is_decided
+from kb_build.flow.facts import PARAMETERS, T
+from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
 from kb_build.flow.types import (
     NONE,
     STR,
@@ -132,8 +133,9 @@ class Statements(Calls):
         if found.symbols or found.missing or found.possible:
             missing = () if is_expected else found.missing
             self.resolve(
-                target, "store", target.attr, found.symbols, missing, found.possible, sure=found.sure
-            )
+                target, "store", target.attr, found.symbols, missing, found.possible,
+                sure=found.sure, guarded=self.scope.state.doubts(chain_text(target.value)),
+            )  # fmt: skip
         if found.symbols and value is not None:
             self.check_value(found.type, value)
         if text and isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance):
@@ -151,7 +153,18 @@ class Statements(Calls):
         kind = self.evaluate(node.value)
         for target in node.targets:
             self.bind_target(target, kind, node.value)
+            if isinstance(target, ast.Name):
+                self._note_asked(target.id, node.value)
         return True
+
+    def _note_asked(self, name: str, value: ast.expr) -> None:
+        """Notes the owner in ``name = getattr(owner, "member", default)``."""
+        self.scope.asked.pop(name, None)
+        match value:
+            case ast.Call(func=ast.Name(id="getattr"), args=[owner, _, _]) if text := chain_text(owner):
+                self.scope.asked[name] = text
+            case _:
+                pass
 
     def _assign_annotated(self, node: ast.AnnAssign) -> bool:
         kind = self.evaluate(node.value) if node.value is not None else UNKNOWN
@@ -192,16 +205,34 @@ class Statements(Calls):
     def _if(self, node: ast.If) -> bool:
         test = self.evaluate(node.test)
         # Only another version's code is left out: a switch may be set by whoever reads the script.
-        truth = literal(test) if isinstance(test, Plain) and test.source == VERSION else None
+        truth = literal(test) if is_decided(test) else None
         before = self.scope.state
+        asks = truth is None and self._asks_version(node.test)
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
             if isinstance(truth, bool) and truth is not holds:
                 continue
             self.scope.state = before.copy()
             self.narrow(node.test, holds=holds)
+            if asks:
+                self.scope.state.doubted |= {EVERYTHING}
             ways.append(self._way(self.scope.state, body))
-        return self._meet(ways, before)
+        reached = self._meet(ways, before)
+        if None not in ways:
+            self.scope.state.doubted = before.doubted
+        return reached
+
+    def _asks_version(self, test: ast.expr) -> bool:
+        """Whether a condition asks for Blender's version by a function of the script, whose answer is not known."""
+        for node in ast.walk(test):
+            kind = self.types.get(node.func) if isinstance(node, ast.Call) else None
+            if isinstance(kind, LocalFunction):
+                function = self.functions[kind.number]
+                if function.asks_version is None:
+                    function.asks_version = _reads_version(function.node)
+                if function.asks_version:
+                    return True
+        return False
 
     def _loop(self, body: Rows[ast.stmt], orelse: Rows[ast.stmt], enter: Callable[[], None]) -> bool:
         """Reads a loop's body twice, so that what one turn binds is known in the next."""
@@ -277,7 +308,10 @@ class Statements(Calls):
                 self.evaluate(handler.type)
             if handler.name:
                 self.scope.bind(handler.name, UNKNOWN)
+            # What is done where a name is lacking may be for another Blender.
+            self.tolerant += _forgives(handler)
             ways.append(self._way(self.scope.state, handler.body))
+            self.tolerant -= _forgives(handler)
         reached = self._meet(ways, within.copy())
         return self.read_body(node.finalbody) and reached
 
@@ -660,6 +694,17 @@ def _used_names(function: ast.AST) -> dict[str, set[str]]:
         if isinstance(node, (ast.Attribute, ast.Subscript)) and isinstance(node.value, ast.Name):
             used.setdefault(node.value.id, set()).add(node.attr if isinstance(node, ast.Attribute) else "")
     return used
+
+
+def _reads_version(function: ast.AST) -> bool:
+    """Whether a function looks at ``app.version``."""
+    return any(
+        isinstance(node, ast.Attribute)
+        and node.attr == "version"
+        and isinstance(node.value, (ast.Attribute, ast.Name))
+        and (node.value.attr if isinstance(node.value, ast.Attribute) else node.value.id) == "app"
+        for node in ast.walk(function)
+    )
 
 
 def _differs(before: State, after: State) -> bool:

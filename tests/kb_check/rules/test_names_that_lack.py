@@ -115,3 +115,55 @@ nodes.new("ShaderNodeOfMine")
     assert [one.span.line for one in found] == [4, 5, 9]
     assert "bpy.types.ShaderNodeTexNoise" in found[0].instead
     assert "`ShaderNodeTexNoise`" in found[1].message
+
+
+def test_values_that_only_blender_makes_are_no_finding(checker: Checker) -> None:
+    code = """
+        import bpy
+        kind = bpy.context.object.particle_systems[0].settings.type
+        kind == 'SPRAYFOAM'
+        kind == 'REACTOR'
+    """
+    assert [(one.rule, one.span.line) for one in checker.check(dedent(code))] == [("never-true", 5)]
+
+
+def test_the_name_that_registering_gives_a_property_is_a_keyword(checker: Checker) -> None:
+    code = """
+        import bpy
+        bpy.types.Scene.one = bpy.props.IntProperty(attr="one", name="One")
+        bpy.types.Scene.two = bpy.props.IntProperty(atr="two", name="Two")
+    """
+    assert errors(checker, code) == [(4, "unknown-keyword")]
+
+
+def test_a_key_of_max_is_given_each_of_what_is_compared(checker: Checker) -> None:
+    code = """
+        import bpy
+        largest = (0, "")
+        for ob in bpy.data.objects:
+            largest = max(largest, (len(ob.modifiers), ob.name), key=lambda pair: pair[0])
+            max(3, ob.location, key=lambda one: one[0])
+    """
+    assert errors(checker, code) == []
+
+
+def test_a_function_is_read_with_all_that_calls_pass(checker: Checker) -> None:
+    """An attribute holds one of five classes in the end; that some of them lack it is no error."""
+    code = """
+        import bpy
+        class Cache:
+            def __init__(self, holder):
+                self.holder = holder
+            def end(self):
+                self.holder.frame_end = 3
+                self.holder.nowhere = 3
+        def caches(scene, surface: bpy.types.DynamicPaintSurface):
+            yield Cache(scene.rigidbody_world)
+            yield from others(surface)
+        def others(surface):
+            yield Cache(bpy.context.object.modifiers.new("x", "CLOTH"))
+            yield Cache(bpy.context.object.particle_systems[0])
+            yield Cache(surface)
+        caches(bpy.context.scene, None)
+    """
+    assert errors(checker, code) == [(8, "unknown-attribute")]
