@@ -7,7 +7,7 @@ import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import DEEPEST, StepsExhausted
-from kb_build.flow.facts import MORE_VALUES, VERSION, T
+from kb_build.flow.facts import MORE_VALUES, PRODUCTS, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import State, chain_text
 from kb_build.flow.types import (
@@ -197,7 +197,25 @@ class Expressions(Members):
 
     def _binary(self, node: ast.BinOp) -> Type:
         left, right = self.evaluate(node.left), self.evaluate(node.right)
-        return _operation(left, right, node.op)
+        return self.operation(node, left, right)
+
+    def operation(self, node: ast.BinOp | ast.AugAssign, left: Type, right: Type) -> Type:
+        """What an operation gives; a product that mathutils refuses is recorded."""
+        operator = node.op
+        if isinstance(operator, (ast.Mult, ast.MatMult)) and is_math(left) and is_math(right):
+            sign = "*" if isinstance(operator, ast.Mult) else "@"
+            self.resolutions.pop(node, None)
+            assert isinstance(left, Instance)
+            assert isinstance(right, Instance)
+            pair = left.cls, right.cls
+            # In place, the result must be of the same kind.
+            taken = PRODUCTS[sign] if isinstance(node, ast.BinOp) else PRODUCTS["*"]
+            if pair not in taken:
+                self.resolve(node, "product", sign, missing=pair, sure=left.sure and right.sure)
+                if pair not in PRODUCTS["@"]:
+                    return UNKNOWN
+                operator = ast.MatMult()  # which is meant
+        return _operation(left, right, operator)
 
     def _unary(self, node: ast.UnaryOp) -> Type:
         operand = self.evaluate(node.operand)
@@ -472,6 +490,11 @@ def _compared(left: Rows[Type], right: Rows[Type], operator: ast.cmpop) -> Type:
     if compare is None or (isinstance(operator, (ast.Eq, ast.NotEq)) and len(ours) > _MINOR):
         return BOOL
     return Plain("bool", compare(ours, theirs), VERSION)
+
+
+def is_math(kind: Type) -> bool:
+    """Whether a type is one of mathutils' values that can be multiplied."""
+    return isinstance(kind, Instance) and kind.cls in _MATH
 
 
 def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa: PLR0911, PLR0912 - one return a rule

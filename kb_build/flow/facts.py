@@ -128,6 +128,18 @@ MATH_OF_SUBTYPE = {
     "MATRIX": "Matrix", "COLOR": "Color", "COLOR_GAMMA": "Color",
 }  # fmt: skip
 
+# What mathutils multiplies, of two of its own values, by each operator; it refuses the other pairs.
+_BY_ITEM = frozenset(
+    (f"mathutils.{name}", f"mathutils.{name}") for name in ("Matrix", "Quaternion", "Vector")
+)
+PRODUCTS = {
+    "*": _BY_ITEM,
+    "@": _BY_ITEM | {
+        ("mathutils.Matrix", "mathutils.Vector"), ("mathutils.Vector", "mathutils.Matrix"),
+        ("mathutils.Quaternion", "mathutils.Vector"),
+    },
+}  # fmt: skip
+
 # Members of ``bpy.context`` whose class only an editor tells: name → class; with brackets, a list of them.
 CONTEXT_MEMBERS = {
     "active_editable_fcurve": "FCurve", "cloth": "ClothModifier", "collision": "CollisionModifier",

@@ -10,7 +10,7 @@ from kb_build.flow.annotations import annotated
 from kb_build.flow.calls import Calls
 from kb_build.flow.core import ANY
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
-from kb_build.flow.expressions import is_decided
+from kb_build.flow.expressions import is_decided, is_math
 from kb_build.flow.facts import PARAMETERS, T
 from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
 from kb_build.flow.types import (
@@ -138,7 +138,9 @@ class Statements(Calls):
             )  # fmt: skip
         if found.symbols and value is not None:
             self.check_value(found.type, value)
-        if text and isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance):
+        converts = is_math(kind) and is_math(found.type)  # a vector, given to a colour, becomes a colour
+        holds = isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts
+        if text and holds:
             self.scope.state.chains[text] = kind
 
     def _store_on_instance(self, owner: LocalInstance, name: str, kind: Type) -> None:
@@ -180,6 +182,8 @@ class Statements(Calls):
     def _assign_augmented(self, node: ast.AugAssign) -> bool:
         right = self.evaluate(node.value)
         before = self.evaluate(node.target)
+        if isinstance(node.op, (ast.Mult, ast.MatMult)) and is_math(before) and is_math(right):
+            before = self.operation(node, before, right)
         if isinstance(node.target, ast.Name):
             grown = isinstance(before, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple))
             if grown:
