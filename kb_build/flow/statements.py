@@ -139,7 +139,9 @@ class Statements(Calls):
         if found.symbols and value is not None:
             self.check_value(found.type, value)
         converts = is_math(kind) and is_math(found.type)  # a vector, given to a colour, becomes a colour
-        holds = isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts
+        holds = (
+            isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts
+        )
         if text and holds:
             self.scope.state.chains[text] = kind
 
