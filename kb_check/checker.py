@@ -50,8 +50,8 @@ class Checker:
     def __init__(self, base: Path) -> None:
         self._reader = BaseReader(base)
         self._symbols = BaseSymbols(base)
-        self.api = Api(self._symbols)
         self.names = KnownNames(self._reader)
+        self.api = Api(self._symbols, self.names)
         self.version = tuple(int(part) for part in self._reader.meta["blender"].split(".")[:3])
 
     def read(self, code: str) -> Read:

@@ -195,9 +195,8 @@ def measure(setting: Setting) -> ReportPart:
         with Checker(base) as checker:
             results = list(check_all(checker, folder))
             if base == setting.base:
+                seconds, lines = time.process_time() - began, sum(count for _, _, count in results)
                 own, own_files = check_inside(checker)
-        if base == setting.base:
-            seconds, lines = time.process_time() - began, sum(count for _, _, count in results)
         executable = runtime.get("executable") or sys.executable
         row, wrong = _judged(results, executable if Path(executable).exists() else sys.executable)
         rows.append((meta["minor"], *row))

@@ -79,9 +79,16 @@ class Members(Core):
         """An attribute of a value."""
         found = Lookup()
         if isinstance(kind, Union):
+            lost: list[Type] = []
             for member in kind.members:
                 if not isinstance(member, NoneValue):
+                    lacking, known = len(found.missing), len(found.types)
                     self._read(member, name, found)
+                    if len(found.missing) > lacking:
+                        lost += found.types[known:]
+                        del found.types[known:]
+            if not (found.symbols or found.possible):  # else who goes on has a member that has it
+                found.types += lost
         else:
             self._read(kind, name, found)
         if not found.types:
@@ -119,6 +126,8 @@ class Members(Core):
         ):
             found.missing.append(kind.cls)
             found.sure = found.sure and kind.cls not in DERIVED_BY_SCRIPTS
+            found.types.append(self._held(self.api.successor_type(kind.cls, name), kind, name))
+            return
         found.types.append(UNKNOWN)
 
     def is_open(self, cls: str) -> bool:
@@ -202,6 +211,8 @@ class Members(Core):
             known = nested is not None or name.startswith("_") or path in self.own_operators
             if not known and not _half_known(kind.path) and not self.is_there_at_times(path):
                 found.missing.append(kind.path)
+                found.types.append(self.api.successor_type(kind.path, name))
+                return
             found.types.append(UNKNOWN)
             return
         found.symbols.append(member.symbol.path)

@@ -623,7 +623,8 @@ class Statements(Calls):
         if function.used is None:
             function.used = _used_names(function.node)
         for attribute in function.used.get(name, ()):
-            if not attribute or not (self.api.member(cls, attribute) or self.api.below(cls, attribute)):
+            known = attribute and (self.api.member(cls, attribute) or self.api.below(cls, attribute))
+            if not known and not (attribute and self.api.had(cls, attribute)):
                 return UNKNOWN
         return Instance(cls, sure=False)
 

@@ -167,3 +167,51 @@ def test_a_function_is_read_with_all_that_calls_pass(checker: Checker) -> None:
         caches(bpy.context.scene, None)
     """
     assert errors(checker, code) == [(8, "unknown-attribute")]
+
+
+def test_what_took_the_place_of_a_name_is_judged_on(checker: Checker) -> None:
+    code = """
+        import bpy
+        strips = bpy.context.scene.sequence_editor.sequences
+        strips[0].channel
+        strips[0].nowhere
+        isinstance(strips[0], bpy.types.EffectSequence)
+    """
+    assert errors(checker, code) == [(3, "unknown-attribute"), (5, "unknown-attribute"), (6, "unknown-name")]
+
+
+def test_a_parameter_called_as_usual_has_lost_what_its_class_lost(checker: Checker) -> None:
+    code = """
+        def settings(brush):
+            brush.image_tool
+            return brush.size
+        def others(brush):
+            brush.image_tol
+            return brush.size
+        def of_its_own(brush):
+            brush.image_tool, brush.bristles
+    """
+    assert errors(checker, code) == [(3, "unknown-attribute")]
+    own = "class Tool:\n    def __init__(self):\n        self.image_tool = 1\n"
+    assert errors(checker, own + dedent(code)) == []
+
+
+def test_who_goes_on_has_a_value_that_has_the_name(checker: Checker) -> None:
+    code = """
+        import bpy
+        layer = bpy.context.object.data.layers.active
+        layer.hide
+        layer.nowhere
+    """
+    assert errors(checker, code) == [(5, "unknown-attribute")]
+
+
+def test_a_class_with_a_computed_name_is_hardly_one_that_is_gone(checker: Checker) -> None:
+    code = """
+        import bpy
+        for name in ("One", "Two"):
+            bpy.utils.register_class(type(name, (bpy.types.Panel,), {}))
+        bpy.types.One
+        bpy.types.EffectSequence
+    """
+    assert errors(checker, code) == [(6, "unknown-name")]

@@ -247,6 +247,8 @@ ob.matrix_world @= Matrix()
 scene["property"] = 5
 scene["property"]
 mesh.vertices
+bpy.data.meshes.new("quad").from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
+bpy.data.meshes["quad"].polygons[0].vertices[3]
 bm.verts[-1]
 bm.verts[0].co = (0, 0, 1)
 bm.verts[0].co.x = 1
