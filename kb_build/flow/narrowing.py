@@ -44,16 +44,10 @@ class Narrowing(Expressions):
                     self.narrow(value, holds=False)
             case ast.BoolOp(op=ast.Or()) if holds:
                 self._any_of(test.values)
-            case ast.Name() | ast.Attribute():
+            case ast.Name() | ast.Attribute() | ast.NamedExpr():
                 if holds:
-                    self._without_none(test)
-                else:
-                    self._lacks(test)
-            case ast.NamedExpr():
-                if holds:
-                    self._without_none(test.target)
-                else:
-                    self._lacks(test.value)
+                    self._without_none(test.target if isinstance(test, ast.NamedExpr) else test)
+                self._answered(test, holds=holds)
             case ast.Compare(ops=[operator], comparators=[right]):
                 self._comparison(test.left, operator, right, holds=holds)
             case ast.Call(func=ast.Name(id=name)):
@@ -64,16 +58,13 @@ class Narrowing(Expressions):
             case _:
                 pass
 
-    def _lacks(self, node: ast.expr) -> None:
-        """What was asked of something by ``getattr`` is not there: that is another Blender's."""
-        match node:
-            case ast.Name(id=name):
-                owner = self.scope.asked.get(name, "")
-            case ast.Call(func=ast.Name(id="getattr"), args=[subject, _, _]):
-                owner = chain_text(subject)
-            case _:
-                return
-        self._doubt(owner)
+    def _answered(self, node: ast.expr, *, holds: bool) -> None:
+        """Narrows by the ``hasattr`` or ``getattr`` whose answer a name, or an expression, is."""
+        if isinstance(node, ast.NamedExpr):
+            node = node.value
+        asked = self.scope.asked_by(node.id) if isinstance(node, ast.Name) else node
+        if isinstance(asked, ast.Call):
+            self.narrow(asked, holds=holds)
 
     def _doubt(self, text: str) -> None:
         if text:
@@ -119,7 +110,7 @@ class Narrowing(Expressions):
             if not positive:
                 self._without_none(left.target if isinstance(left, ast.NamedExpr) else left)
             else:
-                self._lacks(left.value if isinstance(left, ast.NamedExpr) else left)
+                self._answered(left, holds=False)
             return
         if not positive or not isinstance(left, ast.Attribute) or left.attr not in DISCRIMINANTS:
             return

@@ -78,7 +78,7 @@ class Loop:
 class Scope:
     """A module, a function or a class. ``ever`` joins all that a name was bound to: what other scopes see.
 
-    ``asked`` are the names that hold ``getattr(owner, "member", default)``, with the text of the owner.
+    ``asked`` are the names that hold what ``hasattr`` or ``getattr`` said, with the expression.
     """
 
     parent: Scope | None = None
@@ -87,7 +87,7 @@ class Scope:
     state: State = field(default_factory=State)
     ever: dict[str, Type] = field(default_factory=dict[str, Type])
     elsewhere: set[str] = field(default_factory=set[str])
-    asked: dict[str, str] = field(default_factory=dict[str, str])
+    asked: dict[str, ast.expr] = field(default_factory=dict[str, ast.expr])
     changes: int = 0
 
     def lookup(self, name: str) -> Type | None:
@@ -102,6 +102,15 @@ class Scope:
                 found = scope.ever.get(name)
                 if found is not None:
                     return found
+            scope = scope.parent
+        return None
+
+    def asked_by(self, name: str) -> ast.expr | None:
+        """The ``hasattr`` or ``getattr`` whose answer a name holds here."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.asked or name in scope.ever:
+                return scope.asked.get(name)
             scope = scope.parent
         return None
 

@@ -162,11 +162,14 @@ class Statements(Calls):
         return True
 
     def _note_asked(self, name: str, value: ast.expr) -> None:
-        """Notes the owner in ``name = getattr(owner, "member", default)``."""
+        """Notes ``name = hasattr(owner, "member")`` and ``name = getattr(owner, "member", default)``."""
         self.scope.asked.pop(name, None)
         match value:
-            case ast.Call(func=ast.Name(id="getattr"), args=[owner, _, _]) if text := chain_text(owner):
-                self.scope.asked[name] = text
+            case (
+                ast.Call(func=ast.Name(id="hasattr"), args=[_, _])
+                | ast.Call(func=ast.Name(id="getattr"), args=[_, _, _])
+            ):
+                self.scope.asked[name] = value
             case _:
                 pass
 

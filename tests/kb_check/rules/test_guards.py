@@ -37,6 +37,17 @@ GUARDED = {
         if not getattr(editor, "strips", None):
             editor.sequences
     """,
+    "a constant of hasattr": """
+        if HAS_OLD:
+            bpy.types.EffectSequence
+        if not HAS_NEW:
+            editor.sequences
+    """,
+    "a name of hasattr": """
+        has_new = hasattr(old, "strips")
+        if not has_new:
+            old.sequences
+    """,
     "the handler of AttributeError": """
         try:
             strips = editor.strips
@@ -102,6 +113,12 @@ UNGUARDED = {
         if "strips" in editor.bl_rna.properties:
             editor.sequences
     """,
+    "a name of hasattr that holds something else by then": """
+        has_new = hasattr(bpy.types, "EffectSequence")
+        has_new = old
+        if has_new:
+            editor.sequences
+    """,
     "behind both ways": """
         if compared(5, 0) < 0:
             pass
@@ -113,6 +130,8 @@ UNGUARDED = {
 AROUND = """
 import bpy
 NEW = bpy.app.version >= (5, 0, 0)
+HAS_OLD = hasattr(bpy.types, "EffectSequence")
+HAS_NEW = hasattr(bpy.types, "EffectStrip")
 
 def is_new():
     return bpy.app.version >= (5, 0, 0)
