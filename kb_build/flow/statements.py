@@ -489,6 +489,8 @@ class Statements(Calls):
                 if isinstance(kind, LocalClass) and kind.number != number and number < _MOST_CLASSES:
                     self.derived.setdefault(kind.number, []).append(number)
         scope = Scope(self.scope, is_class=True, cls=number)
+        scope.state.chains = dict(self.scope.state.chains)
+        scope.state.doubted = self.scope.state.doubted
         outer, self.scope = self.scope, scope
         try:
             self.read_body(node.body)

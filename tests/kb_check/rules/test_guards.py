@@ -43,6 +43,11 @@ GUARDED = {
         if not HAS_NEW:
             editor.sequences
     """,
+    "a class that is defined behind a guard": """
+        if HAS_OLD:
+            class Settings:
+                kind = bpy.types.EffectSequence
+    """,
     "a name of hasattr": """
         has_new = hasattr(old, "strips")
         if not has_new:
