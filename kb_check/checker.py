@@ -51,8 +51,8 @@ class Checker:
     def __init__(self, base: Path) -> None:
         self._reader = BaseReader(base)
         self._symbols = BaseSymbols(base)
-        self.api = Api(self._symbols)
         self.names = KnownNames(self._reader)
+        self.api = Api(self._symbols, self.names)
         self.version = version_key(self._reader.meta["blender"])
 
     def read(self, code: str) -> Read:

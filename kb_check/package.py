@@ -36,18 +36,18 @@ class Package:
     def has(self, owners: Iterable[str], name: str, *, computed: bool = True) -> bool:
         """Whether a file registers that name for one of the owners, for their bases, or for what derives from them.
 
-        ``computed``: an operator whose name a file puts together may be any.
+        ``computed``: a name that a file puts together may be any.
         """
         if name in self._operators or name in self._possible:
             return True
-        holders = self._classes.get(name, set()) | self._classes.get(ANY, set())
+        holders = self._classes.get(name, set()) | (self._classes.get(ANY, set()) if computed else set())
         return any(self._gives(owner, name, holders, computed=computed) for owner in owners)
 
     def _gives(self, owner: str, name: str, holders: Iterable[str], *, computed: bool) -> bool:
         if owner.startswith("bpy.ops"):
             return (computed and ANY in self._operators) or f"{owner}.{name}" in self._operators
         if owner == "bpy.types":
-            return not self._types.isdisjoint((name, ANY))
+            return name in self._types or (computed and ANY in self._types)
         return any(
             cls == ANY or self._api.descends(owner, cls) or self._api.descends(cls, owner) for cls in holders
         )
