@@ -95,8 +95,8 @@ def _free(cache):
 
 def _keep_what_was_stepped(scene, jobs, frames):
     """Makes bakes of the caches that hold all of ``frames`` as they were simulated before."""
-    held = [job for job in jobs if stepped_frames.holds(job.cache, scene, *frames)]
-    for job in held:
+    held = stepped_frames.held_caches(scene, [job.cache for job in jobs], *frames)
+    for job in (job for job in jobs if job.cache in held):
         job.keep(frames)
         job.check()
         job.kept, job.fault = not job.fault, None

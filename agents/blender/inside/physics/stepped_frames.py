@@ -62,16 +62,19 @@ def last_held(scene):
     return steps.last if all(_is_held(steps, cache) for cache in waiting_caches(scene)) else None
 
 
-def holds(cache, scene, first, last):
-    """Whether a cache that is not baked holds the frames ``first`` to ``last`` as they were simulated."""
+def held_caches(scene, chosen, first, last):
+    """Those of the ``chosen`` caches that are not baked and hold the frames ``first`` to ``last`` as simulated."""
     steps = _valid_steps(scene)
-    return (
-        steps is not None
-        and steps.first <= cache.range[0] == first
+    if steps is None or steps.first > first:
+        return []
+    return [
+        cache
+        for cache in chosen
+        if not cache.baked
+        and cache.range[0] == first
         and (steps.last >= last or steps.last >= cache.expected[1])
         and _is_held(steps, cache)
-        and not cache.baked
-    )
+    ]
 
 
 def restart(scene):
