@@ -93,7 +93,8 @@ class ChangeWatch:
         _updated.clear()
         self._before = _names_by_kind()
         self._modifiers = _modifiers()
-        self._digests = _digests()
+        with _silenced():
+            self._digests = _digests()
         self._caches = _frames_held(bpy.context.scene)
         _cache_watch.update(counts=self._caches, reset={})
 
@@ -152,13 +153,12 @@ def _digests():
     blocks = [block for kind in KINDS for block in getattr(bpy.data, kind)]
     if len(blocks) > _MOST_BLOCKS:
         return None
-    with _silenced():
-        return {uid(block): parts for block, parts in digests_by_part(blocks).items()}
+    return {uid(block): parts for block, parts in digests_by_part(blocks).items()}
 
 
 @contextlib.contextmanager
 def _silenced():
-    """Drops what Blender prints about settings that are read: it is not the code's output."""
+    """Drops what Blender prints when settings are read for the first time: it is not the code's output."""
     kept = []
     try:
         _flush()
@@ -168,7 +168,7 @@ def _silenced():
         for number, _ in kept:
             os.dup2(nowhere, number)
         os.close(nowhere)
-    except OSError:  # the code has closed them; they are opened again after the call
+    except OSError:  # they are closed
         pass
     try:
         yield
