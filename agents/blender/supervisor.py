@@ -134,19 +134,27 @@ class Supervisor:
         after: str = "",
         always_keep: bool = False,
         progress: Progress | None = None,
+        printed: bool = False,
         cancelled: threading.Event | None = None,
     ) -> WorkerReply[T]:
         """Runs a tool in Blender; ``what`` names it in errors. ``read`` makes a value of what it returned.
 
         ``changes``: it may change the scene, so a checkpoint may be due, described by ``after``; ``always_keep``: take
-        one in any case. Raises BlenderError.
+        one in any case. ``printed``: lines that the tool prints are reported as its progress. Raises BlenderError.
         """
         with self._lock:
             since = self.launch.usage.last_within_limits
 
             def attempt() -> WorkerReply[T]:
                 return self._running().call(
-                    tool, arguments, read, timeout=timeout, what=what, progress=progress, cancelled=cancelled
+                    tool,
+                    arguments,
+                    read,
+                    timeout=timeout,
+                    what=what,
+                    progress=progress,
+                    printed=printed,
+                    cancelled=cancelled,
                 )
 
             try:

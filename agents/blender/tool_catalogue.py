@@ -14,6 +14,7 @@ from agents.blender.tools import (
     render,
     scene_state,
     tag,
+    trial,
     verify,
 )
 
@@ -30,6 +31,7 @@ TOOLS: tuple[BlenderTool, ...] = (
     verify.TOOL,
     files.SAVE,
     files.LOAD,
+    trial.TOOL,
     bake.TOOL,
     render.TOOL,
 )

@@ -2,13 +2,20 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
+from pydantic import ConfigDict, Field
+
+from agents.blender.formatting import format_list
+from agents.plan.part import STAGES
 from agents.protocol.engine import verify
 from agents.protocol.facts import SceneFacts
+from agents.protocol.findings import Finding
+from agents.protocol.rules_by_stage import first_stage
 from simworlds.sandbox.errors import Refusal, ToolBroke
-from simworlds.sandbox.replies import Claim, Frame, Name
+from simworlds.sandbox.replies import Claim, Frame, Name, Text
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -21,6 +28,7 @@ if TYPE_CHECKING:
 
 SNAPSHOT_SECONDS = 60.0
 MEASURE_SECONDS = 600.0
+_LISTED = 4
 
 
 class ScenePosition(Claim):
@@ -28,6 +36,22 @@ class ScenePosition(Claim):
 
     scene: Name
     frame: Frame
+
+
+class _Divergence(Claim):
+    """A simulation that is not finite: its object, the first such frame, and likely causes."""
+
+    object: Name
+    frame: Frame
+    causes: list[Text] = Field(max_length=20)
+
+
+class _Unanswered(Claim):
+    """An answer without a value, because a simulation is not finite."""
+
+    model_config = ConfigDict(extra="forbid")
+    unmeasured: Annotated[str, Field(max_length=4000)]
+    diverged: _Divergence
 
 
 def read_measures(count: int, value: Any) -> list[dict[str, Any]]:
@@ -38,15 +62,23 @@ def read_measures(count: int, value: Any) -> list[dict[str, Any]]:
         or not all(isinstance(each, dict) for each in value)
     ):
         raise ValueError(f"it does not hold {count} answers")
+    for answer in value:
+        if "diverged" in answer:
+            _Unanswered.model_validate(answer)
     return value
 
 
 def verify_scene(blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | None, call: Call) -> Report:
-    """Checks the open scene against rules. Raises BlenderError if Blender is lost or cannot give the facts."""
+    """Checks the open scene against rules. Raises BlenderError if Blender is lost or cannot give the facts.
+
+    Simulations are stepped through only if a rule follows motion; else the scene is judged at its first frame while
+    any is not baked. A simulation that is not finite is one finding, in place of all that could not be measured.
+    """
+    diverged: list[_Unanswered] = []
 
     def measure(requests: list[dict[str, Any]]) -> list[dict[str, Any]]:
         try:
-            return blender.call(
+            answers = blender.call(
                 "measure",
                 {"requests": requests},
                 partial(read_measures, len(requests)),
@@ -56,8 +88,60 @@ def verify_scene(blender: Supervisor, rules: Sequence[Rule], plan: ScenePlan | N
             ).value
         except (Refusal, ToolBroke) as error:
             return [{"unmeasured": str(error)}] * len(requests)
+        diverged.extend(_Unanswered.model_validate(answer) for answer in answers if "diverged" in answer)
+        return answers
 
     facts = blender.call(
         "scene_facts", {}, SceneFacts.model_validate, timeout=SNAPSHOT_SECONDS, cancelled=call.cancelled
+    ).value
+    remarks: tuple[str, ...] = ()
+    if not any(map(_follows_motion, rules)) and (waiting := _unbaked_caches(facts)):
+        facts = facts.model_copy(update={"frame_end": facts.frame_start})
+        remarks = (
+            f"Judged at frame {facts.frame_start} only, since no rule here follows motion and these are not baked: "
+            f"{format_list(waiting, _LISTED)}.",
+        )
+    report = replace(verify(facts, measure, rules, plan), remarks=remarks)
+    return _as_one_cause(report, diverged[0]) if diverged else report
+
+
+def _unbaked_caches(facts: SceneFacts) -> list[str]:
+    """The caches that would be simulated if frames were stepped through, in words."""
+    waiting = [cache for cache in facts.caches if cache.on and (not cache.baked or cache.outdated)]
+    return [f"{cache.kind.replace('_', ' ')} of {cache.object or 'the scene'!r}" for cache in waiting]
+
+
+def _follows_motion(rule: Rule) -> bool:
+    return STAGES.index(first_stage(rule)) >= STAGES.index("motion")
+
+
+def _as_one_cause(report: Report, answer: _Unanswered) -> Report:
+    """The report with one finding for a simulation that is not finite, instead of one for each missing measure."""
+    cause = answer.diverged
+    finding = Finding(
+        "simulation",
+        "hard",
+        (cause.object,),
+        answer.unmeasured,
+        f"{_capital('; or '.join(cause.causes))}."
+        if cause.causes
+        else "Change the solver's settings, and try again.",
+        frame=cause.frame,
     )
-    return verify(facts.value, measure, rules, plan)
+    others = [other for other in report.findings if not _is_due_to(other, answer)]
+    left = {other.rule for other in others}
+    unjudged = {other.rule for other in report.findings} - left
+    why = f"the simulation of {cause.object!r} breaks down at frame {cause.frame}"
+    return replace(
+        report,
+        findings=(finding, *others),
+        not_applicable={**report.not_applicable, **dict.fromkeys(sorted(unjudged), why)},
+    )
+
+
+def _is_due_to(finding: Finding, answer: _Unanswered) -> bool:
+    return finding.outcome == "undecided" and answer.unmeasured in finding.message
+
+
+def _capital(words: str) -> str:
+    return words[:1].upper() + words[1:]

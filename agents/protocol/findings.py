@@ -35,13 +35,14 @@ class Report:
     """The outcome of a run.
 
     ``passed`` are the rules that ran and found nothing; ``not_applicable`` maps those with nothing to judge to the
-    reason.
+    reason. ``remarks`` are sentences on how the scene was judged.
     """
 
     findings: tuple[Finding, ...]
     passed: tuple[str, ...]
     not_applicable: dict[str, str] = field(default_factory=dict[str, str])
     seconds: float = 0.0
+    remarks: tuple[str, ...] = ()
 
     @property
     def ok(self) -> bool:

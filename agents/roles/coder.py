@@ -20,22 +20,25 @@ NAME = "coder"
 # and loads by itself, and blender_group sets an object's tags too.
 _ALWAYS_LEFT_OUT = frozenset({"blender_save", "blender_load", "blender_tag_object"})
 _LEFT_OUT: dict[str, frozenset[str]] = {
-    "modeling": frozenset({"blender_motion_sheet_preview", "blender_bake", "blender_render"}),
+    "modeling": frozenset(
+        {"blender_motion_sheet_preview", "blender_bake", "blender_trial", "blender_render"}
+    ),
     "uv": frozenset(
         {
             "blender_motion_sheet_preview",
             "blender_bake",
+            "blender_trial",
             "blender_group",
             "blender_system_layout_preview",
             "blender_render",
         }
     ),
-    "texture": frozenset({"blender_motion_sheet_preview", "blender_bake", "blender_group"}),
+    "texture": frozenset({"blender_motion_sheet_preview", "blender_bake", "blender_trial", "blender_group"}),
     "deformation_setup": frozenset({"blender_single_mesh_preview", "blender_render"}),
-    "motion": frozenset({"blender_single_mesh_preview", "blender_system_layout_preview"}),
-    "camera": frozenset({"blender_single_mesh_preview", "blender_bake", "blender_group"}),
-    "light": frozenset({"blender_single_mesh_preview", "blender_bake", "blender_group"}),
-    "render": frozenset({"blender_single_mesh_preview", "blender_system_layout_preview"}),
+    "motion": frozenset({"blender_single_mesh_preview", "blender_system_layout_preview", "blender_render"}),
+    "camera": frozenset({"blender_single_mesh_preview", "blender_bake", "blender_trial", "blender_group"}),
+    "light": frozenset({"blender_single_mesh_preview", "blender_bake", "blender_trial", "blender_group"}),
+    "render": frozenset({"blender_single_mesh_preview", "blender_system_layout_preview", "blender_trial"}),
 }
 
 

@@ -88,6 +88,20 @@ class WorkerReply(Generic[T]):
     left: tuple[str, ...] = ()
 
 
+class _PrintedLines:
+    """Passes on the lines that a tool prints as its progress."""
+
+    def __init__(self, output: CapturedOutput, progress: Progress) -> None:
+        self._output, self._progress = output, progress
+        self._seen = 0
+
+    def look(self) -> None:
+        """Passes on the last line if there is a new one."""
+        if self._output.lines > self._seen:
+            self._seen = self._output.lines
+            self._progress(self._seen, None, self._output.last_line)
+
+
 class BlenderProcess:
     """A running Blender, for one thread at a time. Raises CannotStart if it does not start."""
 
@@ -164,9 +178,11 @@ class BlenderProcess:
         what: str = "",
         limited: bool = True,
         progress: Progress | None = None,
+        printed: bool = False,
         cancelled: threading.Event | None = None,
     ) -> WorkerReply[T]:
-        """Runs one tool; ``timeout`` in seconds, ``what`` names it in errors. ``progress`` gets (done, total, text).
+        """Runs one tool; ``timeout`` in seconds, ``what`` names it in errors. ``progress`` gets (done, total, text):
+        what the tool reports; with ``printed``, how many lines it has printed and the last one, if it reports nothing.
 
         ``read`` makes a value of what the tool returned; what it cannot read is a breach, which ends the process.
         ``limited``: Blender is killed if it exceeds the limits of disk, memory and threads.
@@ -189,7 +205,8 @@ class BlenderProcess:
             self._worker.mark()
             self._worker.go_on()
             self._send(request, what, timeout)
-            answer = self._answer(ticket, what, timeout, progress, cancelled, limited=limited)
+            lines = _PrintedLines(self._stdout, progress) if printed and progress is not None else None
+            answer = self._answer(ticket, what, timeout, progress, cancelled, printed=lines, limited=limited)
             self._drain()
             return self._reply(answer, read)
         except (Refusal, ToolBroke):
@@ -210,10 +227,11 @@ class BlenderProcess:
         progress: Progress | None,
         cancelled: threading.Event | None,
         *,
+        printed: _PrintedLines | None,
         limited: bool,
     ) -> AnswerMessage:
         """Reports progress until the answer has come, then stops the process. Raises Lost, Malformed."""
-        for message in self._messages(what, timeout, cancelled, limited=limited):
+        for message in self._messages(what, timeout, cancelled, printed=printed, limited=limited):
             claim = parse_message(message)
             if claim.ticket != ticket:
                 # Code has answered the call before in the worker's name, and the real answer came late.
@@ -258,7 +276,13 @@ class BlenderProcess:
             raise NeverBegan(f"Blender had ended before {what} began: {ending}", ending=ending) from None
 
     def _messages(
-        self, what: str, timeout: float, cancelled: threading.Event | None = None, *, limited: bool = True
+        self,
+        what: str,
+        timeout: float,
+        cancelled: threading.Event | None = None,
+        *,
+        printed: _PrintedLines | None = None,
+        limited: bool = True,
     ) -> Iterator[dict[str, Any]]:
         """The worker's messages until the deadline. Output is read meanwhile, so that Blender never waits for it.
 
@@ -276,6 +300,8 @@ class BlenderProcess:
                     self._read_printed(key)
                     continue
                 self._arrived += self._receive(what, now - started)
+            if printed is not None:
+                printed.look()
             while self._arrived:
                 message = self._arrived.popleft()
                 if limited and "progress" not in message:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 HEAD_BYTES = 12_000
 TAIL_BYTES = 12_000
+LONGEST_LINE = 400
 
 
 class CapturedOutput:
@@ -17,9 +18,12 @@ class CapturedOutput:
         self._head = bytearray()
         self._tail = bytearray()
         self._dropped = 0
+        self._line = bytearray()
+        self.lines, self.last_line = 0, ""  # complete lines, and the last one that is not empty
 
     def add(self, data: bytes) -> None:
         """Adds output."""
+        self._count_lines(data)
         room = HEAD_BYTES - len(self._head)
         if room > 0:
             self._head += data[:room]
@@ -28,6 +32,16 @@ class CapturedOutput:
         if (over := len(self._tail) - TAIL_BYTES) > 0:
             del self._tail[:over]
             self._dropped += over
+
+    def _count_lines(self, data: bytes) -> None:
+        *lines, rest = data.split(b"\n")
+        if lines:
+            self.lines += len(lines)
+            lines[0] = bytes(self._line) + lines[0]
+            self._line.clear()
+            filled = (line for line in reversed(lines) if line.strip())
+            self.last_line = next(filled, self.last_line.encode()).decode("utf-8", "replace")[:LONGEST_LINE]
+        self._line += rest[: LONGEST_LINE - len(self._line)]
 
     @property
     def text(self) -> str:

@@ -38,6 +38,8 @@ _CALLS: dict[str, tuple[Tool, ...]] = {
     "load": (_SAVE, Tool("blender_load", {"path": "kept.blend"})),
     "kept_caches": (Tool("blender_load", {"checkpoint": 1}),),
     "bake": (Tool("blender_bake"),),
+    "free_bake": (Tool("blender_bake", {"free": True}),),
+    "trial": (Tool("blender_trial", {"frames": 2}),),
     "tag": (Tool("blender_tag_object", {"objects": [{"name": "Cube", "is_object_root": True}]}),),
     "go_to_frame": (_VERIFY,),
     "scene_facts": (_VERIFY,),

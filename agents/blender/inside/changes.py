@@ -1,17 +1,42 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What code changed in the open file: names of data-blocks and modifiers added, removed and changed."""
+"""What code changed in the open file: data-blocks and modifiers that differ, and simulations that it reset."""
+
+import contextlib
+import ctypes
+import os
+import sys
 
 import bpy
 from bpy.app.handlers import persistent
 
+from .physics import caches
+from .state.fingerprint import digests_by_part
+
 # Collections of bpy.data whose changes are reported.
 KINDS = (
-    *("objects", "materials", "collections", "meshes", "lights", "cameras", "actions", "node_groups"),
-    *("images", "scenes", "worlds"),
+    *(
+        "objects",
+        "materials",
+        "collections",
+        "meshes",
+        "curves",
+        "lights",
+        "cameras",
+        "actions",
+        "node_groups",
+    ),
+    *("images", "textures", "particles", "armatures", "lattices", "shape_keys", "scenes", "worlds"),
 )
 LISTED = 40  # names of one kind in a report; the rest are counted
+_MOST_BLOCKS = (
+    3000  # whose settings are compared; of more, those that Blender evaluated anew count as changed
+)
+_ELSEWHERE = frozenset({"collection", "view layers"})  # parts of scenes that other data-blocks tell of
+_WHOLE = frozenset({"settings", "geometry", "keyframes", "picture", "nodes", "shapes", "bones"})
 
+_C = ctypes.CDLL(None)
 _updated = set()
+_cache_watch = {"counts": None, "reset": {}}
 
 
 def uid(block):
@@ -29,10 +54,34 @@ def _note_updates(_scene, graph):
         _updated.add(uid(update.id.original))
 
 
+@persistent
+def _note_counts(scene, _graph=None):
+    """Notes which simulations lost frames that they had at the last frame change."""
+    before = _cache_watch["counts"]
+    if before is None:
+        return
+    now = _cache_watch["counts"] = _frames_held(scene)
+    for label, (count, _) in before.items():
+        if label in now and now[label][0] < count:
+            _cache_watch["reset"].setdefault(label, f"{label}, at frame {scene.frame_current}")
+
+
+def _frames_held(scene):
+    """{label: (frames, whether outdated)} of the simulations whose frames are kept by Blender."""
+    return {
+        cache.label: (cache.frames, cache.points.is_outdated)
+        for cache in caches.find_caches(scene)
+        if cache.points is not None
+    }
+
+
 def _listen():
-    handlers = bpy.app.handlers.depsgraph_update_post
-    if _note_updates not in handlers:
-        handlers.append(_note_updates)
+    for handlers, listener in (
+        (bpy.app.handlers.depsgraph_update_post, _note_updates),
+        (bpy.app.handlers.frame_change_post, _note_counts),
+    ):
+        if listener not in handlers:
+            handlers.append(listener)
 
 
 class ChangeWatch:
@@ -44,6 +93,10 @@ class ChangeWatch:
         _updated.clear()
         self._before = _names_by_kind()
         self._modifiers = _modifiers()
+        with _silenced():
+            self._digests = _digests()
+        self._caches = _frames_held(bpy.context.scene)
+        _cache_watch.update(counts=self._caches, reset={})
 
     @staticmethod
     def _settle():
@@ -52,18 +105,85 @@ class ChangeWatch:
             layer.update()
 
     def report(self):
-        """{kind: {"added" | "removed" | "changed": names}}; modifiers by ``Object[Modifier]``; {} if nothing is."""
+        """{kind: {"added" | "removed" | "changed": names}}; {} if nothing is.
+
+        Modifiers are by ``Object[Modifier]``; ``caches`` has those that were ``reset``: they simulate again from their
+        first frame. What changed of a data-block is in brackets: ``Cube (transform)``.
+        """
         self._settle()
         report = {}
+        digests = _digests() if self._digests is not None else None
         for kind, new in _names_by_kind().items():
             old = self._before[kind]
-            updated = {key for key in new if key in old and (key in _updated or old[key] != new[key])}
-            if entry := _entry(old, new, updated):
+            both = [key for key in new if key in old]
+            if digests is None:
+                changed = {key: new[key] for key in both if key in _updated or old[key] != new[key]}
+            else:
+                changed = {key: new[key] + what for key in both if (what := self._changes(key, digests))}
+                changed.update({key: f"{old[key]} → {new[key]}" for key in both if old[key] != new[key]})
+            if entry := _entry(old, new, changed):
                 report[kind] = entry
         old, new = self._modifiers, _modifiers()
-        if entry := _entry(old, new, {key for key in new if key in old and new[key] != old[key]}):
+        renamed = [key for key in new if key in old and new[key][1] != old[key][1]]
+        old, new = ({key: f"{owner}[{name}]" for key, (owner, name) in names.items()} for names in (old, new))
+        if entry := _entry(old, new, {key: new[key] for key in renamed}):
             report["modifiers"] = entry
+        if reset := self._reset_caches():
+            report["caches"] = {"reset": _shortened(reset)}
         return report
+
+    def _changes(self, key, digests):
+        """What changed of a data-block, as a suffix of its name; "" if nothing did."""
+        before, after = self._digests.get(key, {}), digests.get(key, {})
+        parts = sorted(part for part in {*before, *after} - _ELSEWHERE if before.get(part) != after.get(part))
+        return f" ({', '.join(parts)})" if parts and not _WHOLE.issuperset(parts) else " " * bool(parts)
+
+    def _reset_caches(self):
+        reset = dict(_cache_watch["reset"])
+        _cache_watch["counts"] = None
+        now = _frames_held(bpy.context.scene)
+        for label, (count, outdated) in self._caches.items():
+            if label in now and count and (now[label][0] < count or (now[label][1] and not outdated)):
+                reset.setdefault(label, label)
+        return sorted(reset.values())
+
+
+def _digests():
+    """{uid: {part: digest}} of the data-blocks; None if there are too many to compare."""
+    blocks = [block for kind in KINDS for block in getattr(bpy.data, kind)]
+    if len(blocks) > _MOST_BLOCKS:
+        return None
+    return {uid(block): parts for block, parts in digests_by_part(blocks).items()}
+
+
+@contextlib.contextmanager
+def _silenced():
+    """Drops what Blender prints when settings are read for the first time: it is not the code's output."""
+    kept = []
+    try:
+        _flush()
+        for number in (1, 2):
+            kept.append((number, os.dup(number)))
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for number, _ in kept:
+            os.dup2(nowhere, number)
+        os.close(nowhere)
+    except OSError:  # they are closed
+        pass
+    try:
+        yield
+    finally:
+        _flush()
+        for number, copy in kept:
+            os.dup2(copy, number)
+            os.close(copy)
+
+
+def _flush():
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(Exception):
+            stream.flush()
+    _C.fflush(None)
 
 
 def _names_by_kind():
@@ -74,21 +194,22 @@ def _modifiers():
     names = {}
     for obj in bpy.data.objects:
         for modifier in obj.modifiers:
-            names[uid(obj), uid(modifier)] = f"{obj.name}[{modifier.name}]"
+            names[uid(obj), uid(modifier)] = (obj.name, modifier.name)
     return names
 
 
 def _entry(old, new, changed):
-    """The names that differ between ``old`` and ``new`` ({uid: name}), and those of the uids that ``changed``."""
+    """The names that differ between ``old`` and ``new`` ({uid: name}), and the ``changed`` ones."""
     entry = {}
     for word, names in (
         ("added", [name for key, name in new.items() if key not in old]),
         ("removed", [name for key, name in old.items() if key not in new]),
-        ("changed", [new[key] for key in changed]),
+        ("changed", [name.strip() for name in changed.values()]),
     ):
-        listed = sorted(names)
-        if len(listed) > LISTED:
-            listed = [*listed[:LISTED], f"… and {len(listed) - LISTED} more"]
-        if listed:
-            entry[word] = listed
+        if names:
+            entry[word] = _shortened(sorted(names))
     return entry
+
+
+def _shortened(names):
+    return [*names[:LISTED], f"… and {len(names) - LISTED} more"] if len(names) > LISTED else names

@@ -34,6 +34,7 @@ def execute(arguments, report):
     # The code may have patched what is used below, or left a tracer or an alarm that raises here once.
     for _ in range(3):
         try:
+            interpreter_state.current.stop_alarms_and_tracers()  # pyright: ignore[reportAttributeAccessIssue]
             interpreter_state.current.forget_modules(loaded)  # pyright: ignore[reportAttributeAccessIssue]
             interpreter_state.current.restore_names()  # pyright: ignore[reportAttributeAccessIssue]
             break

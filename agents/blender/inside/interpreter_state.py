@@ -140,7 +140,7 @@ class InterpreterState:
 
         Returns descriptions of what it left behind that cannot be undone.
         """
-        self._stop_alarms_and_tracers()
+        self.stop_alarms_and_tracers()
         for stream in {*(getattr(sys, name, None) for name in _STREAMS[1:]), *self._streams.values()}:
             with contextlib.suppress(Exception):
                 stream.flush()
@@ -153,7 +153,8 @@ class InterpreterState:
             left.append("an audit hook, which Python cannot remove")
         return left
 
-    def _stop_alarms_and_tracers(self):
+    def stop_alarms_and_tracers(self):
+        """Ends what code has set up to interrupt others later."""
         for alarm in _ALARMS:
             signal.setitimer(alarm, 0)
         faulthandler.cancel_dump_traceback_later()

@@ -20,6 +20,8 @@ TOOLS = {
     "load": ("portable_copy", "load"),
     "kept_caches": ("portable_copy", "caches_of_file"),
     "bake": ("physics.bake", "bake"),
+    "free_bake": ("physics.bake", "free"),
+    "trial": ("motion.trial", "trial"),
     "scene_facts": ("measure.scene_facts", "scene_facts"),
     "measure": ("measure.batch", "measure"),
     "go_to_frame": ("motion.timeline", "go_to_frame"),

@@ -1,4 +1,4 @@
-"""``blender_bake``: bakes physics and checks the caches."""
+"""``blender_bake``: bakes physics and checks the caches, or frees bakes."""
 
 from __future__ import annotations
 
@@ -6,8 +6,11 @@ from typing import Any
 
 from pydantic import Field
 
+from agents.blender.formatting import format_list
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from simworlds.sandbox.replies import Claim, Name
 
+_LISTED = 20
 _LAST_FRAME = 1_048_574
 
 
@@ -26,6 +29,10 @@ class BakeArguments(Arguments):
     frame_end: int | None = Field(
         default=None, ge=1, le=_LAST_FRAME, description="Last frame. Default: the scene's."
     )
+    free: bool = Field(
+        default=False,
+        description="Free their bakes instead, so that they simulate again.",
+    )
     timeout: float = Field(
         default=900.0, ge=1, le=86_400, description="Seconds after which Blender is stopped and put back."
     )
@@ -33,19 +40,33 @@ class BakeArguments(Arguments):
 
 DESCRIPTION = """\
 Bake physics: cloth, soft bodies, particles, hair, rigid bodies, dynamic paint, liquid and gas; of all objects or of \
-some. Each cache's range is set from `frame_start` and `frame_end`; earlier bakes are replaced. Afterwards every cache \
-is checked: that it is baked, covers the range, has all its frames, and that something moved; where nothing did, the \
-likely causes are named. Fluids bake with cache_type 'ALL' into a folder that the run keeps; use this instead of \
-bpy.ops.fluid.free_all, which goes on in a thread and crashes later calls. A bake that runs past `timeout` (seconds) \
-is undone."""
+some. Each cache's range is set from `frame_start` and `frame_end`; earlier bakes are replaced; frames that were \
+simulated already are kept, if nothing has changed since. Afterwards every cache is checked: that it is baked, covers \
+the range, has all its frames, and that something moved; where nothing did, the likely causes are named. A bake stops \
+at the first frame that is not finite. Fluids bake with cache_type 'ALL' into a folder that the run keeps; use `free` \
+instead of bpy.ops.fluid.free_all, which goes on in a thread and crashes later calls. A bake that runs past `timeout` \
+(seconds) is undone."""
 
 
 def run(context: ToolContext, arguments: BakeArguments, call: Call) -> Result:
-    """Bakes, and checks the caches."""
+    """Bakes, and checks the caches; or frees bakes."""
     blender = context.blender
+    if arguments.free:
+        return blender.call(
+            "free_bake",
+            {"objects": arguments.objects},
+            _read_freed,
+            timeout=arguments.timeout,
+            changes=True,
+            after="after freeing bakes",
+            cancelled=call.cancelled,
+        ).value
     reply = blender.call(
         "bake",
-        {**arguments.model_dump(exclude={"timeout"}), "folder": blender.folder.workspace.for_blender()},
+        {
+            **arguments.model_dump(exclude={"timeout", "free"}),
+            "folder": blender.folder.workspace.for_blender(),
+        },
         _read,
         timeout=arguments.timeout,
         changes=True,
@@ -67,6 +88,20 @@ def _read(data: dict[str, Any]) -> Result:
     return Result(text, data, failed=baked < len(caches))
 
 
+class _Freed(Claim):
+    """The labels of caches whose bakes were freed, and of those that had none."""
+
+    freed: list[Name] = Field(max_length=10_000)
+    unbaked: list[Name] = Field(max_length=10_000)
+
+
+def _read_freed(data: Any) -> Result:
+    reply = _Freed.model_validate(data)
+    lines = [f"Freed: {format_list(reply.freed, _LISTED)}." if reply.freed else "Nothing was freed."]
+    lines += [f"Not baked before: {format_list(reply.unbaked, _LISTED)}."] if reply.unbaked else []
+    return Result(" ".join(lines), reply.model_dump())
+
+
 def _cache(cache: dict[str, Any]) -> str:
     if cache["fault"]:
         return f"**{cache['label']}: not baked**: {cache['fault']}"
@@ -74,7 +109,8 @@ def _cache(cache: dict[str, Any]) -> str:
     size = f"{cache['bytes'] / 1e6:.1f} MB" if cache["bytes"] >= 1e5 else f"{cache['bytes'] / 1e3:.1f} kB"
     where = f" in {cache['folder']}" if cache["folder"] else ""
     frames = f"frames {first}–{last}" if first <= last else "no frames"
-    line = f"{cache['label']}: {frames}, {cache['seconds']:.1f} s, {size}{where}; "
+    took = "simulated before and kept" if cache["kept"] else f"{cache['seconds']:.1f} s"
+    line = f"{cache['label']}: {frames}, {took}, {size}{where}; "
     if cache["warning"]:
         return f"{line}**{cache['warning']}**"
     if cache["unit"] != "m":

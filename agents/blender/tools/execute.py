@@ -40,7 +40,8 @@ class ExecuteArguments(Arguments):
 DESCRIPTION = """\
 Run Python in the live Blender. Each call has a fresh namespace; `bpy.data` stays from call to call. Code \
 with names, keywords or values that this Blender lacks is not run: the reply says what to write instead. \
-Else the reply has the printed output, the value of a final expression, what changed in the scene, and for an \
+Else the reply has the printed output (lines are also reported while the code runs), the value of a final \
+expression, what changed in the scene and which simulations it reset, and for an \
 error the line that failed, with what the documentation of this Blender version says about the wrong \
 name. Physics: step frames one by one or bake; never jump. No network, no other processes; write files \
 below the current folder. Code that runs past `timeout` (seconds) or ends Blender is undone: Blender is \
@@ -91,6 +92,7 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
         changes=True,
         after=f"after {title!r}",
         progress=call.progress,
+        printed=True,
         cancelled=call.cancelled,
     )
     data = reply.value.model_dump()
@@ -146,6 +148,10 @@ def _text(data: dict[str, Any], reply: WorkerReply[_Outcome], checked: PreFlight
             for kind, entry in data["changed"].items()
             for word, names in entry.items()
         ]
+        if data["changed"].get("caches"):
+            lines.append(
+                "  A reset simulation simulates again from its first frame, however far it had come."
+            )
         parts.append("Changed:\n" + "\n".join(lines))
     if data["mode"] != "OBJECT":
         parts.append(f"Blender is in {data['mode']} mode.")

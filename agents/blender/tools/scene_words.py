@@ -11,6 +11,11 @@ if TYPE_CHECKING:
 
     from agents.blender.tools.scene_fold import Entry
 
+_PLAIN_ROOT = frozenset(
+    {"name", "type", "in", "location", "rotation", "scale", "tags", "count", "pattern", "parent"}
+)
+ROOT = "is_object_root"
+_NEW_VIEWPORT = [0.8, 0.8, 0.8, 1]  # colour of a new material
 _FEW = 8  # items of a list in a readout that is not full
 
 
@@ -138,7 +143,9 @@ def collection(entry: Entry, *, names: bool) -> str:
 
 
 def scene_object(entry: Entry) -> str:
-    """An object: a line, and one for each modifier and constraint."""
+    """An object: a line, and one for each modifier and constraint; a root with nothing of its own in short."""
+    if _PLAIN_ROOT.issuperset(entry) and entry["type"] == "EMPTY" and ROOT in entry.get("tags", {}):
+        return "; ".join([f"- {titled(entry)} root of {', '.join(entry['in'])}", *_placement(entry)])
     head = f"- {titled(entry, entry['type'])} in {', '.join(entry['in'])}"
     lines = [joined(head, [*_placement(entry), *_properties(entry), *_tags(entry)])]
     lines += [f"  modifier {_modifier(modifier)}" for modifier in entry.get("modifiers", ())]
@@ -224,7 +231,9 @@ def material(entry: Entry) -> str:
 
 
 def _rest(entry: Entry) -> Iterable[str]:
-    yield f"viewport {row(entry['viewport'])}"
+    if entry["viewport"] != _NEW_VIEWPORT:
+        unseen = " (in no preview: these show its nodes)" if "nodes" in entry else ""
+        yield f"viewport {row(entry['viewport'])}{unseen}"
     if "surface_render_method" in entry:
         yield entry["surface_render_method"]
     if "linked" in entry:

@@ -93,7 +93,7 @@ def coverage(report: Report, scope: VerificationScope) -> list[str]:
     ]
     if NO_ROLES in reasons:
         lines.append(_UNTAGGED)
-    return lines
+    return [*lines, *map(plain, report.remarks)]
 
 
 def _count(number: int, noun: str) -> str:

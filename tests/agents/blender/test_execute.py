@@ -15,6 +15,15 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
+FLAG = """
+bpy.ops.mesh.primitive_grid_add(x_subdivisions=4, y_subdivisions=4)
+flag = bpy.context.object
+flag.name = flag.data.name = "Flag"
+flag.modifiers.new("Cloth", "CLOTH")
+flag.modifiers.new("Solid", "SOLIDIFY")
+bpy.ops.mesh.primitive_cube_add(location=(5, 0, 0))
+"""
+
 
 def test_the_value_of_a_final_expression_comes_back(session: LiveSession) -> None:
     found = session.use(TOOL, code="x = 20\nx + 1")
@@ -36,7 +45,7 @@ def test_reports_changes_by_kind(session: LiveSession) -> None:
     assert made.data["changed"]["objects"] == {"added": ["Cube"]}
     assert made.data["changed"]["modifiers"] == {"added": ["Cube[Smooth]"]}
     moved = session.use(TOOL, code="bpy.data.objects['Cube'].location.x = 2")
-    assert moved.data["changed"]["objects"] == {"changed": ["Cube"]}
+    assert moved.data["changed"]["objects"] == {"changed": ["Cube (transform)"]}
     gone = session.use(TOOL, code="bpy.data.objects.remove(bpy.data.objects['Cube'])")
     assert gone.data["changed"]["objects"] == {"removed": ["Cube"]}
     assert gone.data["changed"]["modifiers"] == {"removed": ["Cube[Smooth]"]}
@@ -213,3 +222,72 @@ def test_a_crash_says_which_line_it_was_in(own_session: LiveSession) -> None:
     with pytest.raises(Died) as crash:
         own_session.use(TOOL, code="import ctypes\nctypes.string_at(0)")
     assert 'File "<blender_execute>", line 2' in crash.value.printed
+
+
+# What is printed while it runs
+
+
+def test_printed_lines_are_told_while_the_code_runs(session: LiveSession) -> None:
+    told: list[tuple[float, float | None, str]] = []
+    waiting = """
+import os, time
+print("one")
+while not os.path.exists("heard"):
+    time.sleep(0.01)
+print("two")
+"""
+
+    def hear(done: float, total: float | None, text: str) -> None:
+        told.append((done, total, text))
+        (session.blender.folder.workspace.mount / "heard").touch()
+
+    found = session.use(TOOL, Call(progress=hear), code=waiting)
+    assert told[0] == (1, None, "one")
+    assert found.data["stdout"].split() == ["one", "two"]
+
+
+# What changed
+
+
+def changed(session: LiveSession, code: str) -> dict[str, dict[str, list[str]]]:
+    """What a call says that it changed."""
+    found = session.use(TOOL, code=code)
+    assert not found.failed, found.text
+    assert ("Changed:" in found.text) == bool(found.data["changed"])
+    return found.data["changed"]
+
+
+@pytest.mark.parametrize(
+    ("code", "kind", "told"),
+    [
+        ("bpy.data.objects['Flag']['mood'] = 2", "objects", "Flag (custom properties)"),
+        ("bpy.data.objects['Flag'].modifiers['Cloth'].settings.mass = 2", "objects", "Flag (modifiers)"),
+        ("bpy.data.objects['Flag'].modifiers['Solid'].thickness = 2", "objects", "Flag (modifiers)"),
+        ("bpy.data.objects['Flag'].location.x = 2", "objects", "Flag (transform)"),
+        ("bpy.data.objects['Flag'].data.vertices[0].co.z = 2", "meshes", "Flag"),
+        ("bpy.context.scene.gravity.z = -1", "scenes", "Scene (gravity)"),
+        ("bpy.data.objects['Flag'].name = 'Banner'", "objects", "Flag → Banner"),
+    ],
+)
+def test_exactly_what_was_changed_is_told(session: LiveSession, code: str, kind: str, told: str) -> None:
+    session.run(FLAG)
+    assert changed(session, code) == {kind: {"changed": [told]}}
+
+
+def test_what_a_new_link_has_evaluated_anew_is_not_told_as_changed(session: LiveSession) -> None:
+    session.run(FLAG)
+    told = changed(session, "bpy.context.collection.objects.link(bpy.data.objects.new('New', None))")
+    assert told["objects"] == {"added": ["New"]}
+    assert changed(session, "bpy.context.scene.frame_set(5)\nbpy.context.scene.frame_set(1)") == {}
+
+
+def test_a_simulation_that_starts_again_is_told(session: LiveSession) -> None:
+    session.run(FLAG)
+    step = "for frame in range({}, {}):\n    bpy.context.scene.frame_set(frame)\n"
+    pin = "bpy.data.objects['Flag'].modifiers['Cloth'].settings.pin_stiffness = {}\n"
+    session.run(step.format(1, 6))
+    between = session.use(TOOL, code=pin.format(2) + step.format(6, 9))
+    assert between.data["changed"]["caches"]["reset"][0].startswith("cloth of 'Flag'")
+    assert "simulates again from its first frame" in between.text
+    session.run(step.format(1, 6))
+    assert "caches" not in changed(session, step.format(6, 9))

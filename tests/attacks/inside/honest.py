@@ -210,6 +210,29 @@ def on_bake(arguments):
     return {"caches": [], "range": [1, 2], "seconds": 0.1, "notes": []}
 
 
+def on_free_bake(arguments):
+    return {"freed": ["cloth of 'Cube'"], "unbaked": []}
+
+
+def on_trial(arguments):
+    os.makedirs(arguments["folder"], exist_ok=True)
+    leave(os.path.join(arguments["folder"], "1.png"), png(64, 64))
+    place = {"lowest": 0.0, "highest": 1.0, "middle": [0.0, 0.0, 0.5], "speed": 1.0}
+    sample = {"frame": 1, **place, "volume": 1.0, "depth": 0.1, "inside": "Floor"}
+    return {
+        "first": 1,
+        "last": 2,
+        "simulated": True,
+        "seconds_per_frame": [0.1, 0.2],
+        "whole": [100, 20.0],
+        "stopped": "",
+        "caches": ["cloth of 'Cube'"],
+        "actors": [{"name": "Cube", "lowest": 0.0, "peak_speed": 1.0, "samples": [sample]}],
+        "pictures": {"1": "1.png"},
+        "notes": [],
+    }
+
+
 def on_go_to_frame(arguments):
     return {"scene": "Scene", "frame": 1}
 

@@ -11,6 +11,7 @@ from ..geometry.distances import box_distance, gap
 from ..geometry.penetration import penetration
 from ..geometry.solids import NoSurface, NotNumbers, Solids, Unmeasurable
 from ..geometry.topology import connected_labels
+from ..physics.finite_check import Diverged
 from .camera_visibility import camera_view
 from .containment import embedding, enclosure
 from .frame_loop import FOLLOWED, Followers, unmeasured_as_answer
@@ -25,7 +26,8 @@ def measure(arguments, report):
     """[{"value": …} or {"unmeasured": why}] for ``requests``, in their order.
 
     Frames are visited in order, each once for all its requests; if a simulation is not baked, every frame from its
-    start is visited. The scene ends at the frame where it was.
+    start is visited. The scene ends at the frame where it was. If a simulation is not finite, no further frame is
+    visited, and answers without a value have ``diverged`` as well: the ``object``, the ``frame`` and likely ``causes``.
     """
     requests = arguments["requests"]
     answers = [{"unmeasured": _NOT_REACHED} for _ in requests]
@@ -39,11 +41,19 @@ def measure(arguments, report):
         for frame in followers.through(by_frame, report):
             _measure_here(requests, by_frame.get(frame, []), answers)
     except Unmeasurable as reason:
-        for answer in answers:
-            if answer.get("unmeasured") == _NOT_REACHED:
-                answer["unmeasured"] = str(reason)
+        _fill(answers, {"unmeasured": str(reason)})
+    except Diverged as reason:
+        diverged = {"object": reason.object, "frame": reason.frame, "causes": reason.causes}
+        _fill(answers, {"unmeasured": reason.what, "diverged": diverged})
     followers.finish()
     return answers
+
+
+def _fill(answers, answer):
+    """Gives ``answer`` to all requests whose frame was not reached."""
+    for other in answers:
+        if other.get("unmeasured") == _NOT_REACHED:
+            other.update(answer)
 
 
 def _measure_here(requests, places, answers):

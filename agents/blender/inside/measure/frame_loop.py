@@ -13,7 +13,7 @@ import bpy
 from ..geometry.solids import Unmeasurable
 from ..motion.mesh_tracker import MeshTracker
 from ..motion.timeline import FrameStepper
-from ..physics.caches import restart_unbaked
+from ..physics.finite_check import Diverged
 from .collisions import PassageFollower, TouchFollower
 from .movement import PathFollower, TogetherFollower
 
@@ -54,7 +54,8 @@ class Followers:
     def through(self, frames, report):
         """Takes the scene to each of ``frames`` and of the followers' frames, yields each, and goes back at the end.
 
-        If a simulation is not baked, every frame from its start is visited. Raises Unmeasurable for too many.
+        If a simulation is not baked, every frame from its start is visited. Raises Unmeasurable for too many, and
+        Diverged; what is followed then has no result.
         """
         spans = [range(follower.start, follower.end + 1) for follower in self._followers.values()]
         frames = sorted({*frames, *itertools.chain(*spans)})
@@ -67,11 +68,11 @@ class Followers:
             raise Unmeasurable(
                 f"{count} frames would have to be visited{'; bake first' * bool(stepper.stepped_for)}"
             )
-        if stepper.stepped_for:
-            restart_unbaked(bpy.context.scene)  # else Blender would use the state after a jump as a result
         done, tracker = itertools.count(), MeshTracker()
         with stepper:
-            for frame, graph in stepper.through(frames, lambda at: report(next(done), count, f"frame {at}")):
+            for frame, graph in self._visited(
+                stepper, frames, lambda at: report(next(done), count, f"frame {at}")
+            ):
                 yield frame
                 tracker.enter(frame, graph)
                 for place, follower in list(self._followers.items()):
@@ -80,6 +81,13 @@ class Followers:
                         with unmeasured_as_answer(self._answers, place):
                             follower.look(frame, graph, tracker)
                             self._followers[place] = follower
+
+    def _visited(self, stepper, frames, visiting):
+        try:
+            yield from stepper.through(frames, visiting)
+        except Diverged:
+            self._followers.clear()
+            raise
 
     def finish(self):
         """Stores the results as answers."""

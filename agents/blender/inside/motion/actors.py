@@ -92,8 +92,11 @@ class ActorState:
         return [Vector(place) for place in there[:: max(1, len(there) // count)].tolist()]
 
 
-def resolve(names, scene):
-    """The actors of these names, collections tagged as objects before objects. Raises Refused."""
+def resolve(names, scene, most=None):
+    """The actors of these names, collections tagged as objects before objects. Raises Refused.
+
+    ``most``: about how many points of each are followed; None for all.
+    """
     layer = bpy.context.view_layer
     collections = {collection.name: collection for collection in scene.collection.children_recursive}
     tagged = {name for name, collection in collections.items() if collection.get(ROLE) == OBJECT}
@@ -112,7 +115,7 @@ def resolve(names, scene):
         there = [obj for obj in objects if obj.name in layer.objects]
         if not there:
             raise Refused(f"{name!r} is not in the view layer {layer.name!r}, so it does not move.")
-        actors.append(Actor(name, kind, _with_geometry(there)))
+        actors.append(Actor(name, kind, _with_geometry(there), most))
     return actors
 
 

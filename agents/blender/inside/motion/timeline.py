@@ -6,7 +6,8 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.simulation_zones import objects_with_zones
-from ..physics.caches import restart_unbaked, unbaked
+from ..physics import stepped_frames
+from ..physics.finite_check import DivergenceWatch
 
 _MOST_FRAMES = 5000
 
@@ -14,21 +15,18 @@ _MOST_FRAMES = 5000
 def go_to_frame(arguments, report):
     """Takes the scene to ``frame`` (None: it stays): in one jump, or step by step if a simulation is not baked.
 
-    Returns the ``scene``'s name and its current ``frame``. Raises Refused if that needs too many frames.
+    Returns the ``scene``'s name and its current ``frame``. Raises Refused if that needs too many frames, and Diverged.
     """
     scene, frame = bpy.context.scene, arguments["frame"]
     if frame is not None and frame != scene.frame_current:
-        starts = [cache["start"] for cache in unbaked(scene) if cache["start"] < frame]
-        first = min(starts, default=frame)
-        if frame - first > _MOST_FRAMES:
+        stepper = FrameStepper(scene, frame)
+        count = stepper.count([frame])
+        if count > _MOST_FRAMES:
             raise Refused(
-                f"Going to frame {frame} would simulate {frame - first} frames, more than {_MOST_FRAMES}: bake first."
+                f"Going to frame {frame} would simulate {count} frames, more than {_MOST_FRAMES}: bake first."
             )
-        if starts:
-            restart_unbaked(scene)
-        for at in range(first, frame + 1):
-            report(at - first, frame - first, f"frame {at}")
-            scene.frame_set(at)
+        for _ in stepper.through([frame], lambda at: report(at - frame + count, count, f"frame {at}")):
+            pass
     return {"scene": scene.name, "frame": scene.frame_current}
 
 
@@ -36,12 +34,12 @@ class FrameStepper:
     """Visits frames of a scene in order, and goes back to the frame before at the end of ``with``.
 
     No simulated frame is skipped: if a cache of the scene is not baked, every frame from its start, ``stepped_from``,
-    is visited; ``stepped_for`` names such caches.
+    is visited, unless the caches still hold these frames; ``stepped_for`` names such caches.
     """
 
     def __init__(self, scene, first):
         self._scene = scene
-        waiting = [(cache["label"], cache["start"]) for cache in unbaked(scene)]
+        waiting = [(cache.label, cache.range[0]) for cache in stepped_frames.waiting_caches(scene)]
         waiting += [
             (f"simulation nodes of {obj.name!r}", scene.frame_start) for obj in objects_with_zones(scene)
         ]
@@ -62,16 +60,31 @@ class FrameStepper:
     def _steps(self, frames):
         if self.stepped_from is None or not frames:
             return frames
+        held = stepped_frames.last_held(self._scene)
+        if held is not None and frames[-1] <= held:
+            return frames
         return range(self.stepped_from, frames[-1] + 1)
 
     def through(self, frames, visiting):
         """Yields (frame, evaluated dependency graph) for each of the sorted ``frames``.
 
-        Calls ``visiting(frame)`` before each frame that it visits.
+        Calls ``visiting(frame)`` before each frame that it visits. Raises Diverged at the first frame at which a
+        simulation is not finite.
         """
-        wanted = set(frames)
-        for frame in self._steps(frames):
-            visiting(frame)
-            self._scene.frame_set(frame)
-            if frame in wanted:
-                yield frame, bpy.context.evaluated_depsgraph_get()
+        wanted, steps = set(frames), self._steps(frames)
+        simulates = isinstance(steps, range)
+        if simulates and stepped_frames.last_held(self._scene) is None:
+            stepped_frames.restart(self._scene)  # else Blender would use the state after a jump as a result
+        watch, done = DivergenceWatch(self._scene), None
+        try:
+            for frame in steps:
+                visiting(frame)
+                self._scene.frame_set(frame)
+                graph = bpy.context.evaluated_depsgraph_get()
+                watch.check(frame, graph)
+                done = frame
+                if frame in wanted:
+                    yield frame, graph
+        finally:
+            if simulates and done is not None:
+                stepped_frames.note(self._scene, steps[0], done)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Bakes physics, then checks whether it is baked and whether anything moved."""
+"""Bakes physics and frees bakes; checks whether what was baked is whole and whether anything moved."""
 
 import os
 import re
@@ -14,7 +14,8 @@ from simworlds.sandbox.inside.refusal import Refused
 from ..blend.file_io import SCENE_FILE, make_own, reason
 from ..blend.names import nearest
 from ..blend.temporary import temporary_settings
-from . import caches, simulated_movement, stillness_causes
+from . import caches, simulated_movement, stepped_frames, stillness_causes
+from .finite_check import Diverged, DivergenceWatch
 
 CACHE_FOLDER = "cache"  # below the workspace, for fluids
 _SAMPLES = 5  # frames at which movement is measured
@@ -26,10 +27,13 @@ _FLUID_PARTS = ("data", "noise", "mesh", "particles", "guide")
 def bake(arguments, report):
     """Bakes the caches of ``objects`` (None: all) over ``frame_start`` to ``frame_end`` (None: the scene's).
 
+    Frames that were simulated before, and still are valid, are kept. A simulation that is not finite ends the bake at
+    that frame; the caches of its pass are freed.
+
     ``folder`` is the workspace. Returns {"range", "seconds", "caches": one entry for each, "notes"}; an entry has
     what PhysicsCache.describe() and simulated_movement.compare() return, ``label``, ``seconds`` (of the pass over the
-    frames, which several caches may share), ``fault`` (what is wrong with the bake) and ``warning`` (nothing moved, and
-    why).
+    frames, which several caches may share), ``kept`` (it was simulated before), ``fault`` (what is wrong with the
+    bake) and ``warning`` (nothing moved, and why).
     """
     started = time.perf_counter()
     scene = bpy.context.scene
@@ -41,10 +45,15 @@ def bake(arguments, report):
     jobs = [_Job(cache) for cache in chosen]
     progress = _Progress(report)
     try:
-        for job in jobs:
+        _keep_what_was_stepped(scene, jobs, frames)
+        waiting = [job for job in jobs if not job.kept]
+        for job in waiting:
             job.prepare(frames)
         with _BakeRange(scene, frames):
-            _run(scene, jobs, every, progress)
+            try:
+                _run(scene, waiting, every, progress)
+            except Diverged as error:
+                _give_up([job for job in waiting if not job.cache.baked], error)
         with _domains_off(_unchosen_fluids(every, jobs)):
             _check_result(scene, jobs, progress)
     finally:
@@ -57,6 +66,53 @@ def bake(arguments, report):
         "caches": [job.entry(scene) for job in jobs],
         "notes": notes,
     }
+
+
+def free(arguments, report):
+    """Frees the bakes of ``objects`` (None: of all): they simulate again. Returns the ``freed`` caches' labels."""
+    del report
+    scene = bpy.context.scene
+    chosen = _chosen(scene, caches.find_caches(scene), arguments["objects"])
+    freed = [cache for cache in chosen if cache.baked]
+    for cache in freed:
+        _free(cache)
+        if cache.domain is not None:
+            cache.domain.cache_type = "REPLAY"
+    stepped_frames.forget()
+    return {"freed": [cache.label for cache in freed], "unbaked": [c.label for c in chosen if c not in freed]}
+
+
+def _free(cache):
+    if cache.domain is not None:
+        # The files remain: earlier checkpoints still show them.
+        cache.domain.cache_directory = f"//{_new_folder(cache)}"
+        _forget_bake(cache.domain)
+        cache.domain.cache_type = "ALL"
+    else:
+        with bpy.context.temp_override(point_cache=cache.points):
+            bpy.ops.ptcache.free_bake()
+
+
+def _keep_what_was_stepped(scene, jobs, frames):
+    """Makes bakes of the caches that hold all of ``frames`` as they were simulated before."""
+    held = stepped_frames.held_caches(scene, [job.cache for job in jobs], *frames)
+    for job in (job for job in jobs if job.cache in held):
+        job.keep(frames)
+        job.check()
+        job.kept, job.fault = not job.fault, None
+
+
+def _give_up(jobs, error):
+    """Frees what was not baked to the end or is not finite, and says of each job why."""
+    for job in jobs:
+        own = job.cache.label == error.cache.label
+        job.fault = (
+            str(error)
+            if own
+            else f"the bake was stopped at frame {error.frame}, where another one broke down"
+        )
+        job.is_cause_known = True
+        _free(job.cache)
 
 
 def _chosen(scene, every, names):
@@ -137,44 +193,46 @@ class _Job:
         self.seconds = 0.0
         self.expected = None
         self.samples = []
+        self.kept = False
+        self.is_cause_known = False
 
     def prepare(self, frames):
-        """Frees it, and sets its range and folder."""
+        """Frees it, and sets its range; a fluid gets a new folder."""
+        _free(self.cache)
+        self.cache.range = frames
+        self.expected = self.cache.expected
+
+    def keep(self, frames):
+        """Makes a bake over ``frames`` of those that the cache holds."""
         cache = self.cache
-        if cache.domain is not None:
-            # A folder of its own for every bake: if this one is interrupted, the files of the last one remain.
-            cache.domain.cache_directory = f"//{self._new_folder()}"
-            _forget_bake(cache.domain)
-            cache.domain.cache_type = "ALL"
-        else:
+        if cache.domain is None:
             with bpy.context.temp_override(point_cache=cache.points):
-                bpy.ops.ptcache.free_bake()
+                bpy.ops.ptcache.bake_from_cache()
+            if cache.range != frames:  # setting it marks the cache of some kinds as outdated
+                cache.range = frames
+            self.expected = cache.expected
+            return
+        domain, stepped = cache.domain, cache.folder
+        folder = f"//{_new_folder(cache)}"
+        target = bpy.path.abspath(folder)
+        os.makedirs(os.path.dirname(target), exist_ok=True)
+        shutil.move(stepped, target)  # a change of the type removes the files of the domain's folder
+        domain.cache_type = "ALL"
         cache.range = frames
         self.expected = cache.expected
-
-    def _base_folder(self):
-        name = self.cache.owner.name
-        plain = re.sub(r"[^\w-]+", "_", name, flags=re.ASCII)[:40]
-        return (
-            f"{CACHE_FOLDER}/fluid/{plain if plain == name else f'{plain}-{zlib.crc32(name.encode()):08x}'}"
-        )
-
-    def _bake_numbers(self):
-        """The numbers of the bakes that lie on disk."""
-        folder = bpy.path.abspath(f"//{self._base_folder()}")
-        names = os.listdir(folder) if os.path.isdir(folder) else []
-        return sorted(int(name) for name in names if name.isdigit())
-
-    def _new_folder(self):
-        return f"{self._base_folder()}/{max(self._bake_numbers(), default=0) + 1:04d}"
+        domain.cache_directory = folder
+        liquid = domain.domain_type == "LIQUID"
+        domain.has_cache_baked_data = True
+        domain.has_cache_baked_mesh = liquid and domain.use_mesh
+        domain.has_cache_baked_noise = not liquid and domain.use_noise
 
     def remove_old_bakes(self, every):
         """Removes old bakes."""
         if self.cache.domain is None or self.fault:
             return
         used = {os.path.realpath(cache.folder) for cache in every if cache.domain is not None}
-        for number in self._bake_numbers()[:-_KEPT]:
-            folder = bpy.path.abspath(f"//{self._base_folder()}/{number:04d}")
+        for number in _bake_numbers(self.cache)[:-_KEPT]:
+            folder = bpy.path.abspath(f"//{_base_folder(self.cache)}/{number:04d}")
             if os.path.realpath(folder) not in used:
                 shutil.rmtree(folder, ignore_errors=True)
 
@@ -196,8 +254,12 @@ class _Job:
     def entry(self, scene):
         """The cache's entry in the result."""
         entry = self.cache.describe()
-        entry.update(label=self.cache.label, seconds=self.seconds, fault=self.fault, warning=None)
+        entry.update(
+            label=self.cache.label, seconds=self.seconds, kept=self.kept, fault=self.fault, warning=None
+        )
         entry.update(simulated_movement.compare(self.cache, self.samples))
+        if self.is_cause_known:
+            return entry
         if self.fault or entry["still"]:
             causes = "; ".join(stillness_causes.likely_causes(self.cache, scene))
             because = f": {causes}" if causes else ""
@@ -206,6 +268,25 @@ class _Job:
             else:
                 entry["warning"] = ("nothing moved" if entry["seen"] else "it is empty") + because
         return entry
+
+
+def _base_folder(cache):
+    """The folder of a fluid's bakes, below the workspace."""
+    name = cache.owner.name
+    plain = re.sub(r"[^\w-]+", "_", name, flags=re.ASCII)[:40]
+    return f"{CACHE_FOLDER}/fluid/{plain if plain == name else f'{plain}-{zlib.crc32(name.encode()):08x}'}"
+
+
+def _bake_numbers(cache):
+    """The numbers of the bakes of a fluid that lie on disk."""
+    folder = bpy.path.abspath(f"//{_base_folder(cache)}")
+    names = os.listdir(folder) if os.path.isdir(folder) else []
+    return sorted(int(name) for name in names if name.isdigit())
+
+
+def _new_folder(cache):
+    """A folder of its own for every bake: if this one is interrupted, the files of the last one remain."""
+    return f"{_base_folder(cache)}/{max(_bake_numbers(cache), default=0) + 1:04d}"
 
 
 def _forget_bake(domain):
@@ -226,7 +307,7 @@ def _unchosen_fluids(every, jobs):
 
 
 def _run(scene, jobs, every, progress):
-    """Bakes, what others depend on first, with as few passes over the frames as possible."""
+    """Bakes, what others depend on first, with as few passes over the frames as possible. Raises Diverged."""
     carriers = {
         obj.field.source_object
         for obj in scene.objects
@@ -235,55 +316,42 @@ def _run(scene, jobs, every, progress):
     early = [job for job in jobs if job.cache.domain is not None and job.cache.owner in carriers]
     late = [job for job in jobs if job.cache.domain is not None and job not in early]
     points = [job for job in jobs if job.cache.domain is None]
-    groups = _groups(points, every)
-    progress.expect([*([job] for job in early), *groups, *([job] for job in late)])
+    progress.expect([*([job] for job in early), *([points] if points else []), *([job] for job in late)])
     for job in early:
-        _bake([job], progress)
-    with _domains_off([cache for cache in every if cache.domain is not None and cache.owner not in carriers]):
-        for group in groups:
-            _bake(group, progress)
+        _bake_fluid(job, progress)
+    if points:
+        with _domains_off(
+            [cache for cache in every if cache.domain is not None and cache.owner not in carriers]
+        ):
+            _bake_points(scene, points, progress)
     for job in late:
-        _bake([job], progress)
+        _bake_fluid(job, progress)
 
 
-def _groups(points, every):
-    """Which caches to bake in one pass: Blender has an operator for one cache, and one for all in the scene but hair.
-
-    The latter bakes 250 frames of a domain, whatever its range.
-    """
-    chosen = {job.cache.points for job in points}
-    others = [
-        cache
-        for cache in every
-        if cache.domain is not None or not (cache.points in chosen or cache.points.is_baked)
-    ]
-    many = [] if others else [job for job in points if job.cache.kind != caches.HAIR]
-    rest = [[job] for job in points if job not in many]
-    return [many, *rest] if many else rest
-
-
-def _bake(group, progress):
+def _bake_points(scene, jobs, progress):
+    """Steps through the frames once for all ``jobs``, which fills their caches, and makes bakes of these."""
     began = time.perf_counter()
-    try:
-        with progress.over(group):
-            _bake_caches([job.cache for job in group])
-    except RuntimeError as error:
-        for job in group:
-            job.fault = reason(error)
-    for job in group:
+    watch = DivergenceWatch(scene, [job.cache for job in jobs])
+    caches.restart_unbaked(scene)
+    first, last = min(job.cache.range[0] for job in jobs), max(job.cache.range[1] for job in jobs)
+    with progress.over(jobs):
+        for frame in range(first, last + 1):
+            scene.frame_set(frame)
+            watch.check(frame, bpy.context.evaluated_depsgraph_get())
+    for job in jobs:
+        job.keep(job.cache.range)
         job.seconds = time.perf_counter() - began
 
 
-def _bake_caches(group):
-    cache = group[0]
-    if len(group) > 1:
-        bpy.ops.ptcache.bake_all(bake=True)
-    elif cache.domain is None:
-        with bpy.context.temp_override(point_cache=cache.points):
-            bpy.ops.ptcache.bake(bake=True)
-    else:
-        with bpy.context.temp_override(object=cache.owner, active_object=cache.owner):
+def _bake_fluid(job, progress):
+    began = time.perf_counter()
+    owner = job.cache.owner
+    try:
+        with progress.over([job]), bpy.context.temp_override(object=owner, active_object=owner):
             bpy.ops.fluid.bake_all()
+    except RuntimeError as error:
+        job.fault = reason(error)
+    job.seconds = time.perf_counter() - began
 
 
 def _length(group):
@@ -355,4 +423,11 @@ def _check_result(scene, jobs, progress):
         scene.frame_set(frame)
         graph = bpy.context.evaluated_depsgraph_get()
         for job in at[frame]:
+            if job.fault:
+                continue
+            try:
+                DivergenceWatch(scene, [job.cache]).check(frame, graph)
+            except Diverged as error:
+                _give_up([job], error)
+                continue
             job.samples.append(simulated_movement.sample(job.cache, scene, graph))

@@ -227,8 +227,12 @@ def restart_unbaked(scene):
     """
     for cache in find_caches(scene):
         if cache.simulated and cache.points is not None and not cache.baked:
-            points = cache.points
-            points.frame_step = points.frame_step  # setting it, to any value, marks the cache as outdated
+            restart(cache)
+
+
+def restart(cache):
+    """Makes a simulation that is not baked, and is no fluid, start again at its first frame."""
+    cache.points.frame_step = cache.points.frame_step  # setting it, to any value, marks the cache as outdated
 
 
 def _of_modifier(obj, modifier):

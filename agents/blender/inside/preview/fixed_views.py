@@ -12,6 +12,7 @@ from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.names import listed, nearest, quoted
 from ..blend.protocol_tags import OBJECT, ROLE, SYSTEM, object_collections
+from ..physics import stepped_frames
 from ..physics.caches import unbaked
 from .framing import CLOSE, LOOSE, VIEWS, WIDE, BoundingBox, boxes_of, camera_rotation, choose_framed, fit
 from .room_cutaway import RoomCutaway
@@ -111,7 +112,8 @@ def _at(scene, frame, notes):
         bpy.context.view_layer.update()
         yield
         return
-    if waiting := [cache["label"] for cache in unbaked(scene)]:
+    held = stepped_frames.last_held(scene)
+    if (held is None or frame > held) and (waiting := [cache["label"] for cache in unbaked(scene)]):
         verb = "is" if len(waiting) == 1 else "are"
         notes.append(
             f"Shown at frame {here}, not {frame}: {listed(waiting, _NAMED)} {verb} not baked, and frames of unbaked "

@@ -2,10 +2,12 @@
 """Materials, cameras, lights, the world and render settings in a readout."""
 
 import math
+from collections import Counter
 
 import bpy
 from mathutils import Vector
 
+from .new_nodes import new_inputs
 from .rna_values import changed_settings, number, numbers, text, to_json
 
 # Inputs that a summary of a shader lists; the others are listed if they are linked, or in full detail.
@@ -167,24 +169,38 @@ def _source_node(socket):
 
 
 def _node_facts(node, everything):
+    """A node with its linked inputs, and the values of others: those that differ from a new node's, or, without
+    ``everything``, the main ones."""
     entry = {"shader": text(node.bl_label or node.type)}
     group = getattr(node, "node_tree", None)
     if group is not None:
         entry["shader"] = f"group {text(group.name)}"
+    shown = [(at, socket) for at, socket in enumerate(list(node.inputs)[:MOST_SOCKETS]) if _is_shown(socket)]
+    names = Counter(socket.name for _, socket in shown)
+    usual = new_inputs(node) if everything else {}
     inputs = {}
-    for socket in list(node.inputs)[:MOST_SOCKETS]:
-        name = text(socket.name)
+    for at, socket in shown:
+        # Of sockets with the same name, a subscript by number tells which is meant.
+        name = text(socket.name) + (f"[{at}]" if names[socket.name] > 1 else "")
         if socket.is_linked:
             source = _source_node(socket)
             inputs[name] = f"<- {_source(source)}" if source is not None else "<-"
             continue
-        if not socket.enabled or socket.hide_value or not hasattr(socket, "default_value"):
+        if socket.hide_value or not hasattr(socket, "default_value"):
             continue
-        if everything or (name in _SUMMARY_INPUTS and not _is_default(name, socket, node)):
-            inputs[name] = to_json(socket.default_value)
+        value = to_json(socket.default_value)
+        if everything:
+            if usual.get(socket.identifier) != value:
+                inputs[name] = value
+        elif socket.name in _SUMMARY_INPUTS and not _is_default(socket.name, socket, node):
+            inputs[name] = value
     if inputs:
         entry["inputs"] = inputs
     return entry
+
+
+def _is_shown(socket):
+    return socket.is_linked or socket.enabled
 
 
 def _source(node):
@@ -205,7 +221,7 @@ def _is_default(name, socket, node):
 
 
 def _tree(tree):
-    """All nodes, with the values of unlinked inputs and the sources of linked ones."""
+    """All nodes, with the sources of linked inputs, and of others the values that a new node does not have."""
     nodes = []
     for node in tree.nodes:
         if len(nodes) == MOST_NODES:
@@ -222,8 +238,35 @@ def _tree(tree):
 
 
 def _own_settings(node):
-    """The settings of a node's own type that are not at their defaults."""
-    return changed_settings(node, leave=bpy.types.Node.bl_rna.properties.keys())
+    """The settings of a node's own type that are not at their defaults; the stops of a ramp, the points of curves."""
+    settings = changed_settings(node, leave=bpy.types.Node.bl_rna.properties.keys())
+    ramp = getattr(node, "color_ramp", None)
+    if ramp is not None:
+        settings["color_ramp"] = ramp_facts(ramp)
+    curves = getattr(getattr(node, "mapping", None), "curves", None)
+    if curves is not None:
+        points = {
+            str(at): curve_points(curve)
+            for at, curve in enumerate(curves)
+            if curve_points(curve) != _STRAIGHT
+        }
+        if points:
+            settings["curves"] = points
+    return settings
+
+
+_STRAIGHT = [[0, 0], [1, 1]]
+
+
+def ramp_facts(ramp):
+    """A colour ramp: its stops as [position, colour], and its interpolation."""
+    stops = [[number(stop.position), numbers(stop.color)] for stop in ramp.elements]
+    return {"interpolation": ramp.interpolation, "stops": stops}
+
+
+def curve_points(curve):
+    """The points of a curve as [x, y]."""
+    return [numbers(point.location) for point in list(curve.points)[:MOST_SOCKETS]]
 
 
 def render_facts(scene, detail):

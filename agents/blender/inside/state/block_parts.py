@@ -43,6 +43,8 @@ _NEVER_OF = {
     "FCurve": _words("hide lock"),
     "Object": _words("dimensions"),
     "Camera": _words("angle angle_x angle_y"),
+    # Reading these prints warnings; other settings say which files there are.
+    "FluidDomainSettings": _words("cache_particle_format openvdb_cache_compress_type"),
     "Image": _words("render_slots filepath filepath_raw packed_file packed_files"),
     "Sound": _words("packed_file"),
     "VectorFont": _words("packed_file"),

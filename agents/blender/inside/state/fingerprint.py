@@ -10,11 +10,18 @@ import hashlib
 
 import bpy
 
+from .block_parts import CACHES, CUSTOM
 from .block_reader import BlockReader, is_id, key_of
 
 _SHORT = 8  # letters of a part's digest: enough to see that a part differs
 # User interface, and tools for painting.
 _NO_CONTENT = frozenset({"WindowManager", "Screen", "WorkSpace", "Brush", "Palette", "PaintCurve", "Library"})
+# What no simulation depends on. Custom properties count only where drivers can read them.
+_ONLY_LOOKS = frozenset({"Material", "World", "Light", "Camera"})
+_LOOKS = frozenset(
+    {"materials", "camera", "world", "render", "color management", "compositing", "markers", "sequencer"}
+)
+_FLUID_PARTICLES = frozenset({"FLUID", "FLIP", "FOAM", "SPRAY", "BUBBLE", "TRACER"})
 _RENDER_IMAGES = frozenset({"RENDER_RESULT", "COMPOSITING"})
 
 
@@ -27,6 +34,34 @@ def fingerprint(scene):
     for block in _read_reachable([scene], plans, read, pictures=True):
         read[block] = _block_digest(read[block])
     return {key_of(block): digest for block, digest in read.items()}
+
+
+def digests_by_part(blocks):
+    """{block: {part: digest}} of these data-blocks alone, whatever they point to."""
+    plans = {}
+    return {
+        block: {
+            name: digest for name, (digest, _) in BlockReader(block, plans, pictures=False).read().items()
+        }
+        for block in blocks
+    }
+
+
+def simulation_inputs(scene):
+    """A digest of all that the simulations of ``scene`` may depend on, apart from the frame and their own caches."""
+    read, total = {}, hashlib.blake2b(digest_size=12)
+    for _ in _read_reachable([scene], {}, read, pictures=False, without=_ONLY_LOOKS):
+        pass
+    driven = any(getattr(getattr(block, "animation_data", None), "drivers", None) for block in read)
+    # Blender itself writes the settings of a fluid's particles at each frame.
+    of_fluids = {key_of(block) for block in read if getattr(block, "type", "") in _FLUID_PARTICLES}
+    left_out = _LOOKS | {CACHES} | (frozenset() if driven else {CUSTOM})
+    for key, parts in sorted(((key_of(block), parts) for block, parts in read.items()), key=_first):
+        if key in of_fluids:
+            continue
+        digests = [(name, digest) for name, (digest, _) in sorted(parts.items()) if name not in left_out]
+        total.update(repr((key, digests)).encode("utf-8", "replace"))
+    return total.hexdigest()
 
 
 def data_blocks(report):
@@ -55,18 +90,26 @@ def data_blocks(report):
     }
 
 
-def _read_reachable(roots, plans, read, *, pictures):
-    """Reads ``roots`` and everything they point to into ``read``; yields each block after reading it."""
+def _read_reachable(roots, plans, read, *, pictures, without=frozenset()):
+    """Reads ``roots`` and all they point to into ``read``, but blocks of some kinds; yields each after reading it."""
     waiting, seen = list(roots), {block.as_pointer() for block in roots}
     while waiting:
         block = waiting.pop()
         read[block] = parts = BlockReader(block, plans, pictures=pictures).read()
         for _, uses in parts.values():
             for other in uses:
-                if other.as_pointer() not in seen and not _is_no_content(other):
+                if (
+                    other.as_pointer() not in seen
+                    and not _is_no_content(other)
+                    and key_of(other).partition(" ")[0] not in without
+                ):
                     seen.add(other.as_pointer())
                     waiting.append(other)
         yield block
+
+
+def _first(pair):
+    return pair[0]
 
 
 def _block_digest(parts):

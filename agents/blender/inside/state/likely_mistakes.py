@@ -5,11 +5,15 @@ import math
 import os
 
 import bpy
+from mathutils import Vector
 
 from ..blend.names import listed
-from .rna_values import text
+from .rna_values import number, text
 
 MOST_NAMES = 6
+_CENTRED_SHAPES = frozenset({"BOX", "SPHERE", "CAPSULE", "CYLINDER", "CONE"})
+_OFF, _OFF_SHARE = 0.001, 0.01  # metres, and share of its size, that a shape may be off its mesh
+_MOST_BODIES = 500
 
 
 def notes_of(scene, view_layer, objects, facts):
@@ -42,10 +46,30 @@ def _invalid_setup(scene, objects):
         out = [obj for obj in bodies if obj.name_full not in inside]
         if out:
             yield f"Rigid bodies outside the rigid-body world's collection, so not simulated: {_names(out)}."
+    yield from _shapes_off_their_meshes(bodies)
     if scene.camera is None and any(obj.type == "CAMERA" for obj in objects):
         yield "The scene has cameras, but none is active (scene.camera)."
     if scene.frame_start > scene.frame_end:
         yield f"The frame range is empty: {scene.frame_start} to {scene.frame_end}."
+
+
+def _shapes_off_their_meshes(bodies):
+    """Primitive collision shapes are centred on the origin, wherever the mesh is."""
+    off = []
+    for obj in bodies[:_MOST_BODIES]:
+        shape = obj.rigid_body.collision_shape
+        if shape not in _CENTRED_SHAPES or obj.type != "MESH" or not _is_finite(obj.matrix_world):
+            continue
+        corners = [Vector(corner) for corner in obj.bound_box]
+        middle = obj.matrix_world.to_3x3() @ (sum(corners, Vector()) / len(corners))
+        size = obj.dimensions.length
+        if middle.length > max(_OFF, _OFF_SHARE * size):
+            off.append(f"{shape} of {text(obj.name)!r} by {number(round(middle.length, 4))} m")
+    if off:
+        yield (
+            "Primitive collision shapes are centred on the origin; here that is not the middle of the mesh: "
+            f"{listed(off, MOST_NAMES)}. Set the origin to the middle of its bounds, or use CONVEX_HULL."
+        )
 
 
 def _missing_files():

@@ -85,7 +85,10 @@ def _rigid_body(obj):
     }
     if body.kinematic:
         entry["animated"] = True
-    return _add_settings(entry, changed_settings(body))
+    settings = changed_settings(body)
+    if "collision_collections" in settings:
+        settings["collision_collections"] = [at for at, on in enumerate(body.collision_collections) if on]
+    return _add_settings(entry, settings)
 
 
 def _rigid_body_constraint(obj):

@@ -23,6 +23,7 @@ MOST_OBJECTS = 5_000  # of one readout
 MOST_ENTRIES = 5_000  # of any other section
 SECTIONS = ("collections", "objects", "physics", "animation", "materials", "view")
 DATA_BLOCKS = "data_blocks"
+_OF_VIEW = ("CAMERA", "LIGHT")
 
 
 def scene_state(arguments, report):
@@ -105,16 +106,14 @@ class _Reading:
                 yield material_facts(material, self.detail)
 
     def view(self):
-        for obj in self.chosen:
-            if obj.type == "CAMERA" and obj.data is not None:
-                yield camera_facts(obj, self.scene)
-        for obj in self.chosen:
-            if obj.type == "LIGHT" and obj.data is not None:
-                yield light_facts(obj)
-        if self.whole:
-            if self.scene.world is not None:
-                yield world_facts(self.scene.world, self.detail)
-            yield render_facts(self.scene, self.detail)
+        # Whoever asks for objects that are no camera or light wants to know how these are seen and lit.
+        own = [obj for obj in self.chosen if obj.type in _OF_VIEW and obj.data is not None]
+        every = [obj for obj in self.everything if obj.type in _OF_VIEW and obj.data is not None]
+        for obj in sorted(own or every, key=lambda obj: _OF_VIEW.index(obj.type)):
+            yield camera_facts(obj, self.scene) if obj.type == "CAMERA" else light_facts(obj)
+        if self.scene.world is not None:
+            yield world_facts(self.scene.world, self.detail)
+        yield render_facts(self.scene, self.detail)
 
 
 def _scene_facts(reading):
@@ -172,18 +171,22 @@ def _find(names, everything):
     for obj in everything:
         by_name.setdefault(obj.name, []).append(obj)
     for pattern in names:
-        matches = by_name.get(pattern) or _matching(pattern, everything)
+        matches = [*by_name.get(pattern, ()), *_of_collection(pattern, everything)]
+        matches = matches or _fitting(pattern, everything)
         if not matches:
             raise Refused(_unknown(pattern, by_name))
         wanted.update(obj.name_full for obj in matches)
     return [obj for obj in everything if obj.name_full in wanted]
 
 
-def _matching(words, everything):
-    collection = bpy.data.collections.get(words)
-    if collection is not None:
-        inside = {obj.name_full for obj in collection.all_objects}
-        return [obj for obj in everything if obj.name_full in inside]
+def _of_collection(name, everything):
+    """The objects of a collection, which may be called as an object is."""
+    collection = bpy.data.collections.get(name)
+    inside = {obj.name_full for obj in collection.all_objects} if collection is not None else set()
+    return [obj for obj in everything if obj.name_full in inside]
+
+
+def _fitting(words, everything):
     if not any(sign in words for sign in "*?["):
         return []
     fits = re.compile(fnmatch.translate(words)).match

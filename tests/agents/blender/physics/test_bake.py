@@ -123,7 +123,7 @@ def test_every_kind_of_cache_is_baked_over_the_scenes_range(session: LiveSession
     done = [done for done, _, _ in seen]
     assert done == sorted(set(done))
     assert {total for _, total, _ in seen} == {done[-1]}
-    assert "5 caches: frame 7 of 1–12" in [text for _, _, text in seen]
+    assert "6 caches: frame 7 of 1–12" in [text for _, _, text in seen]
 
 
 def test_the_range_is_set_from_the_arguments_and_the_scene_keeps_its_own(session: LiveSession) -> None:

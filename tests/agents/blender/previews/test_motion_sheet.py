@@ -348,7 +348,7 @@ def test_progress_is_told_as_frames_go_by(session: LiveSession) -> None:
     told: list[tuple[float, float | None, str]] = []
     session.use(TOOL, Call(progress=lambda *one: told.append(one)), actors=["Crate"], frames=[1, 20])
     done = [one[0] for one in told]
-    assert len(done) >= 40
+    assert len(done) >= 22  # 20 frames, and 2 that are drawn from what was simulated
     assert done == sorted(done)
     assert done[-1] <= (told[-1][1] or 0)
 

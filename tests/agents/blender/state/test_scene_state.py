@@ -591,6 +591,88 @@ scene.view_settings.exposure = 0.5
     assert "node Noise Texture" in full.text
 
 
+def test_nodes_tell_what_differs_from_a_new_one_every_socket_and_the_stops_of_ramps(
+    session: LiveSession,
+) -> None:
+    session.run(
+        CUBE.format("")
+        + """
+paint = bpy.data.materials.new('Paint')
+o.data.materials.append(paint)
+tree = paint.node_tree
+new, link = tree.nodes.new, tree.links.new
+maths, ramp, curve, mix, glass = (
+    new('ShaderNode' + kind) for kind in ('Math', 'ValToRGB', 'RGBCurve', 'MixShader', 'BsdfGlass')
+)
+maths.operation = 'MULTIPLY'
+maths.inputs[0].default_value, maths.inputs[1].default_value = 3, 4
+ramp.color_ramp.elements.new(0.4).color = (1, 0, 0, 1)
+curve.mapping.curves[3].points.new(0.5, 0.7)
+link(tree.nodes['Principled BSDF'].outputs[0], mix.inputs[1])
+link(glass.outputs[0], mix.inputs[2])
+link(mix.outputs[0], tree.nodes['Material Output'].inputs['Surface'])
+tree.nodes['Principled BSDF'].inputs['Roughness'].default_value = 0.2
+"""
+    )
+    before = session.run("len(bpy.data.node_groups)")
+    found = read(session, detail="full", sections=["materials"])
+    paint = entry(found, "materials", "Paint")
+    nodes = {node["name"]: node for node in paint["tree"]}
+    assert nodes["Math"]["inputs"] == {"Value[0]": 3, "Value[1]": 4}
+    assert nodes["Color Ramp"]["settings"]["color_ramp"]["stops"] == [
+        [0, [0, 0, 0, 1]],
+        [0.4, [1, 0, 0, 1]],
+        [1, [1, 1, 1, 1]],
+    ]
+    assert nodes["RGB Curves"]["settings"]["curves"] == {"3": [[0, 0], [0.5, 0.7], [1, 1]]}
+    assert nodes["Principled BSDF"]["inputs"] == {"Roughness": 0.2}
+    assert paint["surface"]["inputs"] == {"Shader[1]": "<- Principled BSDF", "Shader[2]": "<- Glass BSDF"}
+    assert session.run("len(bpy.data.node_groups)") == before
+
+
+def test_chosen_objects_keep_the_view(session: LiveSession) -> None:
+    session.run(CUBE.format("") + "bpy.ops.object.camera_add()\nbpy.ops.object.light_add(type='SUN')")
+    assert [one["name"] for one in read(session, objects=["Cube"]).data["view"]] == ["Camera", "Sun", "Scene"]
+    assert [one["name"] for one in read(session, objects=["Sun"]).data["view"]] == ["Sun", "Scene"]
+
+
+def test_an_object_and_a_collection_of_one_name_are_both_read(session: LiveSession) -> None:
+    session.run(
+        """
+chair = bpy.data.collections.new('Chair')
+bpy.context.scene.collection.children.link(chair)
+for name in ('Chair', 'Leg'):
+    chair.objects.link(bpy.data.objects.new(name, None))
+bpy.data.objects['Chair']['is_object_root'] = True
+bpy.context.scene.collection.objects.link(bpy.data.objects.new('Else', None))
+"""
+    )
+    found = read(session, objects=["Chair"])
+    assert [one["name"] for one in found.data["objects"]] == ["Chair", "Leg"]
+    assert "- Chair root of Chair; at 0 0 0\n" in found.text
+
+
+def test_a_collision_shape_off_its_mesh_is_marked_and_its_collections_are_numbered(
+    session: LiveSession,
+) -> None:
+    session.run(
+        CUBE.format("")
+        + """
+bpy.ops.rigidbody.object_add()
+o.rigid_body.collision_shape = 'BOX'
+o.rigid_body.collision_collections = [number in (0, 3) for number in range(20)]
+"""
+    )
+    found = read(session)
+    assert "!" not in found.text
+    assert entry(found, "physics", "Cube")["settings"]["collision_collections"] == [0, 3]
+    session.run("for vertex in bpy.data.objects['Cube'].data.vertices: vertex.co.z += 0.25")
+    marked = read(session).text
+    assert "BOX of 'Cube' by 0.25 m" in marked
+    session.run("bpy.data.objects['Cube'].rigid_body.collision_shape = 'CONVEX_HULL'")
+    assert "BOX of" not in read(session).text
+
+
 # What fits, and how to ask for more
 
 CROWD = """

@@ -1,0 +1,289 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Tries a simulation over a few frames: numbers and small pictures, and what the whole bake would take."""
+
+import contextlib
+import os
+import time
+
+import bpy
+
+from simworlds.sandbox.inside.refusal import Refused
+
+from ..geometry.penetration import penetration
+from ..geometry.solids import Solids, Unmeasurable
+from ..physics import caches, stepped_frames
+from ..physics.finite_check import Diverged
+from ..preview.frame_pictures import FramePictures, PictureJob
+from .actors import resolve, round_to
+from .timeline import FrameStepper
+from .trajectories import Track
+from .viewpoints import path_view
+
+_MOST_ACTORS = 12
+_SAMPLES = 6  # frames that are drawn, and at which volumes and depths are measured
+_TOLD = 3  # actors in a line of progress
+_MOST_POINTS = 20_000  # of an actor that are followed
+_LATE = 4  # the last quarter of the frames tells what later ones will take
+_RAYS = 8
+_MOST_PARTNERS = 20  # of an actor, whose depth in it is measured
+
+
+def trial(arguments, report):
+    """Steps ``frames`` frames of the simulations of ``objects`` (None: all), for at most ``seconds``.
+
+    ``folder`` gets the pictures (None: none are made), ``width`` pixels wide each. Caches that are baked are played.
+    No bake is left behind, and the scene stays at its frame. Returns, in metres, m/s and seconds: the ``first`` and
+    ``last`` frame, ``simulated`` (False: nothing had to be), ``seconds_per_frame`` (of all frames, and of the last
+    ones), ``whole`` (frames of the whole bake, and the seconds it would take), ``stopped`` (why it ended early),
+    ``actors`` with their ``samples``, ``pictures`` ({frame: file in ``folder``}) and ``notes``.
+    """
+    scene = bpy.context.scene
+    chosen = caches.find_caches(scene) if arguments["objects"] is None else []
+    names = arguments["objects"] or _simulated_names(scene, chosen)
+    actors = resolve(names[:_MOST_ACTORS], scene, _MOST_POINTS)
+    notes = (
+        [f"Only the first {_MOST_ACTORS} of {len(names)} are measured."] if len(names) > _MOST_ACTORS else []
+    )
+    parts = {obj.name for actor in actors for obj in actor.objects}
+    own = caches.of_objects(scene, parts)
+    if not own:
+        raise Refused("There is nothing to try: none of these objects is simulated.")
+    notes += [
+        f"Baked, so played as it is: {cache.label}." for cache in own if cache.baked and not cache.outdated
+    ]
+    with _stepping_fluids(own, arguments["folder"]):
+        run = _Trial(scene, actors, arguments, report)
+        run.step()
+        run.draw(notes)
+    return {**run.result(own), "notes": notes}
+
+
+def _simulated_names(scene, found):
+    """The objects that caches move, in the scene's order."""
+    names = dict.fromkeys(cache.object for cache in found if cache.object is not None)
+    world = scene.rigidbody_world
+    if world is not None and world.collection is not None:
+        bodies = (obj for obj in world.collection.objects if obj.rigid_body is not None)
+        names.update(dict.fromkeys(obj.name for obj in bodies if obj.rigid_body.type == "ACTIVE"))
+    there = {obj.name for obj in bpy.context.view_layer.objects}
+    names = [name for name in names if name in there]
+    if not names:
+        raise Refused("There is nothing to try: the scene has no simulation.")
+    return names
+
+
+@contextlib.contextmanager
+def _stepping_fluids(own, folder):
+    """Lets unbaked domains of the chosen ones be simulated by stepping, and removes what that left behind."""
+    waiting = [cache.domain for cache in own if cache.domain is not None and not cache.baked]
+    before = [(domain, domain.cache_type, domain.cache_directory) for domain in waiting]
+    before = [entry for entry in before if entry[1] != "REPLAY"]
+    try:
+        # A change of the type removes the files of the folder, which must be the trial's own then.
+        for number, (domain, _, _) in enumerate(before):
+            domain.cache_directory = os.path.join(folder, f"fluid-{number}")
+            domain.cache_type = "REPLAY"
+        yield
+    finally:
+        for domain, kind, place in before:
+            domain.cache_type = kind
+            domain.cache_directory = place
+        if before:
+            stepped_frames.forget()
+
+
+class _Trial:
+    """The frames that are stepped, and what is measured at them."""
+
+    def __init__(self, scene, actors, arguments, report):
+        self._scene, self._report = scene, report
+        self._seconds, self._width = arguments["seconds"], arguments["width"]
+        self._folder = arguments["folder"]
+        self._stepper = FrameStepper(scene, scene.frame_start)
+        first = self._stepper.stepped_from
+        self._first = scene.frame_start if first is None else first
+        self._wanted = range(self._first, self._first + arguments["frames"])
+        held = stepped_frames.last_held(scene)
+        self._simulates = first is not None and (held is None or held < self._wanted[-1])
+        self._tracks = [Track(actor, scene.render.fps / scene.render.fps_base) for actor in actors]
+        self._took = []
+        self._stopped = ""
+        self._solid_facts = {}
+        self._pictures = {}
+
+    def step(self):
+        """Visits the frames until the time is up or a simulation is not finite."""
+        began = time.monotonic()
+        samples = set(_evenly(self._wanted, _SAMPLES))
+        with self._stepper:
+            started = [began]
+            steps = self._stepper.through(self._wanted, lambda _frame: started.append(time.monotonic()))
+            try:
+                for frame, graph in steps:
+                    self._took.append(time.monotonic() - started[-1])
+                    for track in self._tracks:
+                        track.add(frame, track.actor.state_at(graph))
+                    if frame in samples or frame == self._wanted[-1]:
+                        self._measure_solids(frame)
+                    self._report(len(self._took), len(self._wanted), self._line(frame))
+                    if time.monotonic() - began > self._seconds and frame != self._wanted[-1]:
+                        self._stopped = f"the {self._seconds:g} s for this trial were over"
+                        self._measure_solids(frame)
+                        break
+            except Diverged as error:
+                self._stopped = str(error)
+            finally:
+                steps.close()
+
+    def _line(self, frame):
+        """What is streamed of a frame."""
+        told = [
+            f"{track.actor.name}: {_where(track)}"
+            for track in self._tracks[:_TOLD]
+            if track.centres[-1] is not None
+        ]
+        return f"frame {frame} in {self._took[-1]:.2f} s; {'; '.join(told)}"
+
+    def _measure_solids(self, frame):
+        if self._solid_facts.get(frame):
+            return
+        solids = Solids()
+        self._solid_facts[frame] = [_solid_facts(track.actor, solids, self._scene) for track in self._tracks]
+
+    def draw(self, notes):
+        """Draws the measured frames, if they can be visited again without simulating them again."""
+        if self._width is None or not self._took:
+            return
+        frames = [frame for frame in self._solid_facts if self._tracks[0].frames[0] <= frame]
+        view = path_view(_All(self._tracks), self._width)
+        stepper = FrameStepper(self._scene, self._first)
+        if view is None or stepper.count(frames) > len(frames):
+            notes.append("No pictures: the frames would have to be simulated again.")
+            return
+        os.makedirs(self._folder, exist_ok=True)
+        pictures = FramePictures(self._scene)
+        names = {obj.name for track in self._tracks for obj in track.actor.objects}
+        with stepper:
+            for frame, graph in stepper.through(sorted(frames), lambda _frame: None):
+                path = os.path.join(self._folder, f"{frame}.png")
+                states = [track.actor.state_at(graph) for track in self._tracks]
+                points = [point for state in states if state is not None for point in state.sample(_RAYS)]
+                for _ in pictures.render([PictureJob(names, points, view, path)]):
+                    self._pictures[str(frame)] = os.path.basename(path)
+        notes += pictures.notes
+
+    def result(self, own):
+        """The result as data."""
+        last = self._first + len(self._took) - 1
+        late = self._took[-max(1, len(self._took) // _LATE) :]
+        pace = sum(late) / len(late) if late else 0.0
+        left = max(0, self._scene.frame_end - last)
+        return {
+            "first": self._first,
+            "last": last,
+            "simulated": self._simulates,
+            "seconds_per_frame": [_mean(self._took), pace],
+            "whole": [self._scene.frame_end - self._first + 1, sum(self._took) + left * pace],
+            "stopped": self._stopped,
+            "caches": [cache.label for cache in own],
+            "actors": [self._actor_entry(number, track) for number, track in enumerate(self._tracks)],
+            "pictures": self._pictures,
+        }
+
+    def _actor_entry(self, number, track):
+        lows = [low.z for low in track.lows if low is not None]
+        speeds = [speed for speed in track.main_speeds if speed is not None]
+        return {
+            "name": track.actor.name,
+            "lowest": round_to(min(lows)) if lows else None,
+            "peak_speed": round_to(max(speeds)) if speeds else None,
+            "samples": [
+                {"frame": frame, **_place(track, frame), **facts[number]}
+                for frame, facts in sorted(self._solid_facts.items())
+                if frame in track.frames
+            ],
+        }
+
+
+class _All:
+    """Several tracks as one, as a view needs it."""
+
+    def __init__(self, tracks):
+        self.lows, self.highs, self.centres = [], [], []
+        for track in tracks:
+            self.lows += track.lows
+            self.highs += track.highs
+            self.centres += track.centres
+
+
+def _evenly(frames, count):
+    last = len(frames) - 1
+    return [frames[round(last * at / max(1, count - 1))] for at in range(min(count, last + 1))]
+
+
+def _mean(values):
+    return sum(values) / len(values) if values else 0.0
+
+
+def _where(track):
+    speed = track.main_speeds[-1]
+    return f"lowest {track.lows[-1].z:.3f} m" + (f", {speed:.2f} m/s" if speed is not None else "")
+
+
+def _place(track, frame):
+    at = track.frames.index(frame)
+    low, high, centre = track.lows[at], track.highs[at], track.centres[at]
+    return {
+        "lowest": low and round_to(low.z),
+        "highest": high and round_to(high.z),
+        "middle": centre and [round_to(part) for part in centre],
+        "speed": round_to(track.main_speeds[at]),
+    }
+
+
+def _solid_facts(actor, solids, scene):
+    """{"volume": of closed meshes, "depth": how deep it is in another rendered mesh, "inside": that one's name}."""
+    facts = {"volume": None, "depth": None, "inside": None}
+    if actor.measured not in {"vertices", "fluid"}:
+        return facts
+    names = [obj.name for obj in actor.objects]
+    try:
+        solid = solids.joined(names)
+    except Unmeasurable:
+        return facts
+    if solid.closed:
+        facts["volume"] = round_to(_volume(solid), 1e-6)
+    if actor.measured == "fluid":
+        return facts
+    for other in _partners(solid, names, solids, scene):
+        try:
+            shared = penetration(solid, other)
+        except Unmeasurable:
+            continue
+        if shared is not None and shared[0] is not None and shared[0] > (facts["depth"] or 0.0):
+            facts["depth"], facts["inside"] = round_to(float(shared[0]), 1e-5), other.name
+    return facts
+
+
+def _volume(solid):
+    a, b, c = (solid.points[solid.triangles[:, corner]] for corner in range(3))
+    first, second = b - a, c - a
+    normal = first[:, [1, 2, 0]] * second[:, [2, 0, 1]] - first[:, [2, 0, 1]] * second[:, [1, 2, 0]]
+    return abs(float((a * normal).sum()) / 6)
+
+
+def _partners(solid, names, solids, scene):
+    """The solids of other meshes that are rendered and whose boxes overlap that of ``solid``."""
+    there = []
+    for obj in scene.objects:
+        if obj.type != "MESH" or obj.name in names or obj.hide_render or not obj.visible_get():
+            continue
+        if any(modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN" for modifier in obj.modifiers):
+            continue
+        with contextlib.suppress(Unmeasurable):
+            other = solids[obj.name]
+            if (solid.low < other.high).all() and (other.low < solid.high).all():
+                there.append(other)
+                if len(there) == _MOST_PARTNERS:
+                    break
+    return there
