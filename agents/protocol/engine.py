@@ -33,7 +33,9 @@ def verify(
     """
     began = time.perf_counter()
     tolerances, refused = TOLERANCES.tightened(plan.tolerances if plan else {})
-    context = RuleContext(facts, SceneStructure(facts), tolerances, plan)
+    unbaked = any(cache.on and not cache.baked for cache in facts.caches)
+    judges_end = not unbaked or any(rule.follows_motion for rule in rules)
+    context = RuleContext(facts, SceneStructure(facts), tolerances, plan, judges_end)
     findings = [_error("plan", "soft", f"The plan's tolerances: {reason}.") for reason in refused]
     not_applicable: dict[str, str] = {}
     requests: dict[Request[Any], None] = {}

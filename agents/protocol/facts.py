@@ -66,6 +66,21 @@ class ConstraintFacts(_Frozen):
     on: bool = True
 
 
+class FluidFacts(_Frozen):
+    """What an object is to the fluid solver.
+
+    ``matter`` is liquid, gas (a domain) or smoke, fire, both, liquid (a flow); ``behavior`` of a flow: geometry, inflow
+    or outflow. ``cell`` is the size of a domain's cells in metres. ``surface``: the domain's mesh is the liquid's
+    surface, at least at some frame of its bake, not always only the domain's box.
+    """
+
+    role: str
+    matter: str = ""
+    behavior: str = ""
+    cell: float = 0.0
+    surface: bool = False
+
+
 class RigidBodyFacts(_Frozen):
     """A rigid body. ``active``: the solver moves it; ``kinematic``: its animation moves it instead, all the time."""
 
@@ -103,6 +118,7 @@ class ObjectFacts(_Frozen):
     modifiers: tuple[ModifierFacts, ...] = ()
     constraints: tuple[ConstraintFacts, ...] = ()
     rigid_body: RigidBodyFacts | None = None
+    fluid: FluidFacts | None = None
     force_field: str | None = None
     keys: dict[str, int] = Field(default_factory=dict[str, int])
     animated_shape_keys: bool = False
@@ -120,6 +136,16 @@ class ObjectFacts(_Frozen):
     def is_fluid_domain(self) -> bool:
         """Whether it is a fluid's domain, which encloses the simulation and is no body itself."""
         return any(modifier.type == "FLUID_DOMAIN" for modifier in self.modifiers)
+
+    @property
+    def is_only_a_box(self) -> bool:
+        """Whether its mesh is the box of a fluid's domain, without a liquid's surface: no body, whatever is rendered."""
+        return self.fluid is not None and self.fluid.role == "domain" and not self.fluid.surface
+
+    @property
+    def is_gas(self) -> bool:
+        """Whether it is the domain of smoke or fire."""
+        return self.fluid is not None and (self.fluid.role, self.fluid.matter) == ("domain", "gas")
 
     @property
     def is_active_body(self) -> bool:

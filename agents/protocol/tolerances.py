@@ -112,6 +112,9 @@ class Tolerances:
     course: float = _tolerance(
         10.0, "°", "largest angle between a motion's direction, or a turn, and the planned one"
     )
+    flow_course: float = _tolerance(
+        60.0, "°", "… of a liquid or gas, whose middle also sinks, spreads or drifts"
+    )
     gravity_share: float = _tolerance(0.10, "", "largest deviation of a fall's acceleration from gravity")
     tunnel_share: float = _tolerance(
         0.05, "", "largest depth of a moving object in a collider, as a share of the smallest dimension"

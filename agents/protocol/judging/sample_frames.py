@@ -12,10 +12,12 @@ def sample_frames(context: RuleContext, *nodes: str) -> tuple[int | None, ...]:
     """Frames at which a relation of ``nodes`` is checked; it must hold at one of them.
 
     For nodes that stand still: the current one (None). For moving ones: the timeline's first and last frame, since a
-    chair that is thrown over stands at first, and a ball that drops into a bowl is in it at last.
+    chair that is thrown over stands at first, and a ball that drops into a bowl is in it at last; the first alone as
+    long as motion is not to be judged.
     """
     if any(moves(context, node) for node in nodes):
-        return (context.facts.frame_start, context.facts.frame_end)
+        facts = context.facts
+        return (facts.frame_start, facts.frame_end) if context.judges_end else (facts.frame_start,)
     return (None,)
 
 

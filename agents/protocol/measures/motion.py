@@ -18,7 +18,8 @@ class MotionPathMeasure(Measure):
     each other. ``size``: its largest extent. ``centres`` are the means of its points, ``origins`` the means of its
     objects' origins; None where it does not exist. ``speeds`` (m/s) are means over its points, or the speed of the
     centre where points cannot be followed; ``rotations`` are axes as long as the angle: both since the frame before,
-    None where unknown. ``ways``: the mean distance of its points from where they were at the last mark.
+    None where unknown. ``ways``: the mean distance of its points from where they were at the last mark. ``reaches``:
+    how far its farthest point is from where its centre was at the last mark (or first, if it began to exist later).
     """
 
     start: int
@@ -30,6 +31,7 @@ class MotionPathMeasure(Measure):
     speeds: tuple[float | None, ...]
     rotations: tuple[Vector | None, ...]
     ways: tuple[float | None, ...]
+    reaches: tuple[float | None, ...] = ()
 
 
 @dataclass(frozen=True)

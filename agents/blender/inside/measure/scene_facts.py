@@ -4,10 +4,12 @@
 import math
 
 import bpy
+import numpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.fcurves import curves_of, played_curves
+from ..blend.fluids import domain_of, is_empty_domain
 from ..blend.protocol_tags import CONTACT, ROLE, ROOT, STRICT_GROUNDING
 from ..physics.caches import find_caches
 
@@ -30,6 +32,8 @@ def scene_facts(arguments, report):
     scene = bpy.context.scene
     geometry = GeometryFacts(scene, bpy.context.evaluated_depsgraph_get())
     holders = _holders(scene)
+    caches = find_caches(scene)
+    baked_fluids = {cache.object for cache in caches if cache.kind == "fluid" and cache.baked}
     world = scene.world
     return {
         "version": bpy.app.version_string,
@@ -44,8 +48,10 @@ def scene_facts(arguments, report):
         "camera": scene.camera.name if scene.camera else None,
         "world_light": _world_light(world) if world else 0.0,
         "collections": _collections(scene),
-        "objects": [_object(obj, holders, geometry) for obj in scene.objects],
-        "caches": [_cache(cache) for cache in find_caches(scene)],
+        "objects": [
+            _object(obj, holders, geometry) | {"fluid": _fluid(obj, baked_fluids)} for obj in scene.objects
+        ],
+        "caches": [_cache(cache) for cache in caches],
     }
 
 
@@ -201,6 +207,36 @@ def _rigid_body(obj):
         "kinematic": bool(body.kinematic) and not switched,
         "enabled": bool(body.enabled),
     }
+
+
+def _fluid(obj, baked):
+    """What an object is to the fluid solver, if fluids of the objects ``baked`` are; None for nothing."""
+    modifier = next((entry for entry in obj.modifiers if entry.type == "FLUID"), None)
+    if modifier is None or modifier.fluid_type == "NONE":
+        return None
+    facts = {"role": modifier.fluid_type.lower()}
+    if modifier.fluid_type == "FLOW":
+        flow = modifier.flow_settings
+        facts.update(matter=flow.flow_type.lower(), behavior=flow.flow_behavior.lower())
+    domain = domain_of(obj)
+    if domain is not None:
+        evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        has_mesh = domain.domain_type == "LIQUID" and domain.use_mesh
+        facts.update(
+            matter=domain.domain_type.lower(),
+            cell=_number(max(_own_size(obj)) / max(1, domain.resolution_max)),
+            surface=has_mesh and (obj.name in baked or not is_empty_domain(evaluated)),
+        )
+    return facts
+
+
+def _own_size(obj):
+    """The extents of an object's own mesh, before modifiers, in metres."""
+    places = numpy.array([vertex.co for vertex in obj.data.vertices], float).reshape(-1, 3)
+    if not len(places):
+        return (0.0, 0.0, 0.0)
+    lengths = numpy.linalg.norm(numpy.array(obj.matrix_world, float)[:3, :3], axis=0)
+    return (places.max(axis=0) - places.min(axis=0)) * lengths
 
 
 def _changing_curves(block):

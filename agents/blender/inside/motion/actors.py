@@ -7,7 +7,7 @@ from mathutils import Vector
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..blend.fluids import domain_of
+from ..blend.fluids import domain_of, is_empty_domain
 from ..blend.names import nearest
 from ..blend.protocol_tags import OBJECT, ROLE, ROOT
 from ..geometry.evaluated_meshes import coordinates, transformed
@@ -193,13 +193,6 @@ def _fluid(evaluated):
         return None
     places = _surface(evaluated)
     return places, numpy.ones(len(places))
-
-
-def is_empty_domain(evaluated):
-    """Whether the mesh of an evaluated object is only the box of a fluid domain, without liquid."""
-    return domain_of(evaluated) is not None and len(evaluated.data.vertices) == len(
-        evaluated.original.data.vertices
-    )
 
 
 def _gas(evaluated, domain):

@@ -78,6 +78,8 @@ def _not_fastened(
             gap.here,
             f"{describe_move(relation.part, gap_vector(gap))}, so that it touches {relation.host!r}.",
         )
+    if _is_fluid(context, relation.part):
+        return  # its source touches the host; what comes out of it goes where it will
     if not _is_linked(context, relation):
         yield Violation(
             f"{relation.part!r} does not move with {relation.host!r}: no parent or constraint links them.",
@@ -95,6 +97,11 @@ def _not_fastened(
             gap.here,
             "Remove what moves it separately (keys, physics, other constraints), or set the link's influence to 1.",
         )
+
+
+def _is_fluid(context: RuleContext, node: str) -> bool:
+    obj = context.structure.logical_object_of(node)
+    return obj is not None and any(item.is_fluid_domain for item in obj.members)
 
 
 def _is_linked(context: RuleContext, relation: FixedAttachment) -> bool:

@@ -40,6 +40,8 @@ def _pairs(context: RuleContext) -> Iterator[_ContactPair]:
     seen: set[frozenset[Names]] = set()
     for contact in declared_contacts(context):
         a, b = context.structure.surfaces_of(contact.a), context.structure.surfaces_of(contact.b)
+        if _of_one_fluid(context, contact):
+            continue
         if set(a) & set(b):  # a part touches the rest of its object
             a, b = (a, _without(b, a)) if len(a) < len(b) else (_without(a, b), b)
         key = frozenset((a, b))
@@ -47,6 +49,14 @@ def _pairs(context: RuleContext) -> Iterator[_ContactPair]:
             seen.add(key)
             frames = sample_frames(context, contact.a, contact.b)
             yield _ContactPair(contact, a, b, frames, contact_gap(context, a, b))
+
+
+def _of_one_fluid(context: RuleContext, contact: DeclaredContact) -> bool:
+    """Whether a contact joins a fluid's domain and something in it of the same object, which needs no touch."""
+    objects = context.structure.objects
+    ends = [context.structure.logical_object_of(node) for node in (contact.a, contact.b)]
+    domains = [node for node in (contact.a, contact.b) if node in objects and objects[node].is_fluid_domain]
+    return bool(domains) and ends[0] is not None and ends[0] == ends[1]
 
 
 def _without(names: Names, others: Names) -> Names:

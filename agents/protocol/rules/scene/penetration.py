@@ -32,7 +32,7 @@ def _requests(context: RuleContext) -> Iterator[CrossingsRequest]:
     yield CrossingsRequest(names, but=but, noise=noise)
     moving = tuple(name for name in names if context.structure.can_move(name))
     for frame in dict.fromkeys((facts.frame_start, facts.frame_end)):
-        if moving and frame != facts.frame:
+        if moving and frame != facts.frame and (context.judges_end or frame == facts.frame_start):
             yield CrossingsRequest(names, frame, moving, but, noise)
 
 
