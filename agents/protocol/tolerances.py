@@ -120,6 +120,13 @@ class Tolerances:
         0.05, "", "largest depth of a moving object in a collider, as a share of the smallest dimension"
     )
     jump: float = _tolerance(1.5, "", "largest step in a frame, as a multiple of the top planned speed")
+    volume_share: float = _tolerance(
+        0.15, "", "largest change of a liquid's volume that nothing is added to or taken from"
+    )
+    lid_share: float = _tolerance(0.03, "", "largest share of a liquid or gas at a border that cuts it off")
+    leave_share: float = _tolerance(
+        0.2, "", "smallest share of a gas that leaves its source by the end", least=True
+    )
     rest_speed: float = _tolerance(
         0.01, "m/s", "largest speed of an object at rest; for objects above 1 m, per metre of size"
     )

@@ -131,3 +131,25 @@ class CameraViewRequest(Request[CameraViewMeasure], kind="view", answer=CameraVi
 
     names: Names
     frame: int | None = None
+
+
+class MatterMeasure(Measure):
+    """The liquid or gas of a domain; all None while there is none.
+
+    ``volume``: what a liquid's surface encloses, in m³. Shares of all matter: ``lid`` within a cell or two of the
+    domain's top, ``sides`` of its sides, ``away`` outside its sources.
+    """
+
+    volume: float | None = None
+    lid: float | None = None
+    sides: float | None = None
+    away: float | None = None
+
+
+@dataclass(frozen=True)
+class MatterRequest(Request[MatterMeasure], kind="matter", answer=MatterMeasure):
+    """How much there is in a fluid's domain, and where. ``sources`` are the meshes that it comes out of."""
+
+    domain: str
+    sources: Names
+    frame: int | None = None

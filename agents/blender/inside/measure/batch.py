@@ -14,6 +14,7 @@ from ..geometry.topology import connected_labels
 from .camera_visibility import camera_view
 from .containment import embedding, enclosure
 from .frame_loop import FOLLOWED, Followers, unmeasured_as_answer
+from .matter import matter
 from .openings import opening
 from .relative_position import axes_of, beside, over
 from .support import depth, flush, support
@@ -225,4 +226,5 @@ MEASURED = {
     "over": over,
     "beside": beside,
     "view": camera_view,
+    "matter": matter,
 }

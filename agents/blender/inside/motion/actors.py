@@ -72,13 +72,14 @@ class ActorState:
     """An actor at one frame.
 
     ``places`` (n × 3, metres) are those of its points, the same ones in every state with as many; ``alive`` is a mask
-    of those that exist. Weighted points, as of a fluid, are not the same from frame to frame. ``centre`` is the mean,
+    of those that exist. Points with ``weights``, as of a fluid, are not the same from frame to frame. ``centre`` is the mean,
     ``low`` and ``high`` are the corners of the box along the world's axes.
     """
 
     def __init__(self, places, *, alive=None, weights=None):
         self.places = places
         self.alive = numpy.ones(len(places), bool) if alive is None else alive
+        self.weights = weights
         self.is_followed = weights is None
         there = places[self.alive]
         self.is_there = bool(len(there)) and bool(numpy.isfinite(there).all())
