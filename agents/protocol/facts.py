@@ -82,11 +82,17 @@ class FluidFacts(_Frozen):
 
 
 class RigidBodyFacts(_Frozen):
-    """A rigid body. ``active``: the solver moves it; ``kinematic``: its animation moves it instead, all the time."""
+    """A rigid body. ``active``: the solver moves it; ``kinematic``: its animation moves it instead, all the time.
+
+    ``off_centre``: how far the middle of its own mesh is from its origin, on which primitive collision shapes are
+    centred, in metres.
+    """
 
     active: bool
     kinematic: bool = False
     enabled: bool = True
+    shape: str = ""
+    off_centre: float = 0.0
 
 
 class ObjectFacts(_Frozen):
@@ -97,6 +103,7 @@ class ObjectFacts(_Frozen):
     ``rendered``: renders show it. ``evaluated`` is false for objects that are hidden from the viewport or outside the
     view layer. ``keys`` counts keyframes by channel (``location``, ``rotation_euler``, …; ``other``) of curves that
     change over time; ``driven`` are the channels that drivers set; ``animated_shape_keys``: shape keys move it.
+    ``force_reach``: a force field has no effect beyond this many metres; None for no limit.
     ``fault`` says why it could not be described; it is "" where all went well.
     """
 
@@ -120,6 +127,8 @@ class ObjectFacts(_Frozen):
     rigid_body: RigidBodyFacts | None = None
     fluid: FluidFacts | None = None
     force_field: str | None = None
+    force_strength: float = 1.0
+    force_reach: float | None = None
     keys: dict[str, int] = Field(default_factory=dict[str, int])
     animated_shape_keys: bool = False
     drivers: int = 0
@@ -139,7 +148,7 @@ class ObjectFacts(_Frozen):
 
     @property
     def is_only_a_box(self) -> bool:
-        """Whether its mesh is the box of a fluid's domain, without a liquid's surface: no body, whatever is rendered."""
+        """Whether its mesh is only the box of a fluid's domain, without a liquid's surface: it is no body."""
         return self.fluid is not None and self.fluid.role == "domain" and not self.fluid.surface
 
     @property

@@ -214,7 +214,9 @@ class Solids:
                 f"{name!r} is not evaluated: it, or its collection, is hidden from the viewport or excluded"
             )
         if is_empty_domain(evaluated):
-            raise NoSurface(f"{name!r} is the box of a fluid's domain, without a liquid's surface at this frame")
+            raise NoSurface(
+                f"{name!r} is the box of a fluid's domain, without a liquid's surface at this frame"
+            )
         shapes = [*self._instanced(obj)]
         with mesh_of(evaluated) as mesh:
             if mesh is not None and len(mesh.polygons):

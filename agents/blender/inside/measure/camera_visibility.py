@@ -195,7 +195,6 @@ class _Rays:
             )
         return self._clear[obj.name]
 
-
     def _is_box_of_fluid(self, obj):
         """Whether it is a domain without a liquid's surface, of which renders show no more than a gas."""
         domain = domain_of(obj)

@@ -149,7 +149,9 @@ def _object(obj, holders, geometry):
     }
     field = obj.field
     if field is not None and field.type != "NONE":
-        facts["force_field"] = field.type
+        facts.update(force_field=field.type, force_strength=_number(field.strength))
+        if field.use_max_distance:
+            facts["force_reach"] = _number(field.distance_max)
     if obj.type == "LIGHT":
         facts.update(light=obj.data.type, energy=_number(obj.data.energy))
     return facts | geometry.of(obj)
@@ -206,6 +208,8 @@ def _rigid_body(obj):
         "active": body.type == "ACTIVE",
         "kinematic": bool(body.kinematic) and not switched,
         "enabled": bool(body.enabled),
+        "shape": body.collision_shape,
+        "off_centre": _off_centre(obj),
     }
 
 
@@ -237,6 +241,13 @@ def _own_size(obj):
         return (0.0, 0.0, 0.0)
     lengths = numpy.linalg.norm(numpy.array(obj.matrix_world, float)[:3, :3], axis=0)
     return (places.max(axis=0) - places.min(axis=0)) * lengths
+
+
+def _off_centre(obj):
+    """How far the middle of an object's box is from its origin, in metres."""
+    corners = numpy.array(obj.bound_box, float)
+    lengths = numpy.linalg.norm(numpy.array(obj.matrix_world, float)[:3, :3], axis=0)
+    return _number(numpy.linalg.norm((corners.min(axis=0) + corners.max(axis=0)) / 2 * lengths))
 
 
 def _changing_curves(block):

@@ -72,8 +72,8 @@ class ActorState:
     """An actor at one frame.
 
     ``places`` (n × 3, metres) are those of its points, the same ones in every state with as many; ``alive`` is a mask
-    of those that exist. Points with ``weights``, as of a fluid, are not the same from frame to frame. ``centre`` is the mean,
-    ``low`` and ``high`` are the corners of the box along the world's axes.
+    of those that exist. Points with ``weights``, as of a fluid, are not the same from frame to frame. ``centre`` is the
+    mean, ``low`` and ``high`` are the corners of the box along the world's axes.
     """
 
     def __init__(self, places, *, alive=None, weights=None):

@@ -56,9 +56,7 @@ def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
     for domain in _domains(context):
         name = _name(context, domain)
         try:
-            samples = [
-                (request.frame or 0, measures[request]) for request in _requests_of(context, domain)
-            ]
+            samples = [(request.frame or 0, measures[request]) for request in _requests_of(context, domain)]
         except Unmeasured as reason:
             yield T8.undecided((name,), reason)
             continue
@@ -101,7 +99,7 @@ def _wrong_gas(context: RuleContext, name: str, samples: _Samples) -> Iterator[F
         finding = T8.finding(
             (name,),
             f"{cut:.0%} of the gas of {name!r} is at the {border} of its domain at frame {frame}, which cuts it off.",
-            fix="Make the domain larger there, or let the gas dissolve before it arrives; leave it if no camera sees it.",
+            fix="Make the domain larger there, or let the gas dissolve before; leave it if no camera sees it.",
             frame=frame,
             measured=cut,
             tolerance=tolerances.lid_share,
