@@ -42,6 +42,11 @@ Reference = Annotated[
 class RelationPart(PlanPart):
     """Base class of the relations."""
 
+    when: Literal["start_or_end", "end", "always"] = Field(
+        default="start_or_end",
+        description="end: only once all has moved; always: at the first and the last frame.",
+    )
+
     @property
     def named_nodes(self) -> Iterator[tuple[str, str]]:
         """(field, node) for every object that it joins: ``("child", "Cup")``, ``("parents[1]", "Table/Top")``."""
@@ -226,4 +231,4 @@ Relation = Annotated[
     | CoMoves,
     Field(discriminator="kind"),
 ]
-CONTACTS = (SupportedBy, StableAgainst, FixedAttachment, Aperture)
+CONTACTS = (SupportedBy, StableAgainst, FixedAttachment, Aperture, EmbeddedIn)

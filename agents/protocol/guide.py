@@ -89,7 +89,8 @@ def _relations() -> str:
         [
             "## Relations of a plan",
             f"Each joins objects, or their parts as `Object/Part`. {contacts} declare a contact, as "
-            f"`{vocabulary.CONTACT_WITH}` does. For moving objects, a relation must hold at the first or last frame.",
+            f"`{vocabulary.CONTACT_WITH}` does. For moving objects, a relation must hold at the first or last frame; "
+            "by its `when` (end, always) only at the last, or at both.",
             *map(_relation, get_args(get_args(relations.Relation)[0])),
         ]
     )
@@ -103,7 +104,7 @@ def _relation(kind: type[relations.RelationPart]) -> str:
         if field.is_required()
         else f"{name}?"
         for name, field in fields_of.items()
-        if name != "kind"
+        if name not in {"kind", "when"}
     ]
     meaning = " ".join((kind.__doc__ or "").split("\n\n")[0].replace("``", "`").split())
     return f"- {names}({', '.join(members)}): {meaning}"

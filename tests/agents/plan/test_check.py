@@ -160,7 +160,7 @@ def changed(path: str, value: Any) -> dict[str, Any]:
             "It is missing.",
         ),
         ("relations[0].parents", "Floor", "relations[0].parents", 'should be a list. Given: "Floor".'),
-        ("relations[3].fould", 4, "relations[3].fould", "did you mean 'fold' (fields: kind, members, "),
+        ("relations[3].fould", 4, "relations[3].fould", "did you mean 'fold' (fields: when, kind, members, "),
         ("relations[3].spacing", "wide", "relations[3].spacing", "Write a number or a list of two numbers."),
         ("camera.target", [1, 2], "camera.target", "Write a name or a list of three numbers."),
         ("motion.phases[0].end", 0, "motion.phases[0].end", "Frame 0 is before the start frame, 1."),

@@ -95,7 +95,7 @@ def test_the_protocol_names_every_rule_tolerance_tag_and_relation() -> None:
         assert word in text
     for kind in get_args(get_args(relations.Relation)[0]):
         line = next(one for one in text.splitlines() if one.startswith(f"- {_kind(kind)}("))
-        for name in set(kind.model_fields) - {"kind"}:
+        for name in set(kind.model_fields) - {"kind", "when"}:  # said once, of all of them
             assert re.search(rf"[(, ]{name}[…?,)]", line), line
 
 
@@ -177,6 +177,6 @@ def test_prompts_stay_short() -> None:
     rows |= {f"{role}, whole": sum(map(of_text, system_prompt(role, "motion"))) for role in ROLES}
     rows |= {f"{role}, edit": sum(map(of_text, system_prompt(role, "motion", edit=True))) for role in ROLES}
     sys.stdout.write("\n".join(f"{name:24} {tokens:6} tokens at most" for name, tokens in rows.items()))
-    assert rows["the protocol"] < 3000
+    assert rows["the protocol"] < 3200
     assert max(rows[f"stage {stage}"] for stage in STAGES) < 1000
     assert max(rows.values()) < 9000

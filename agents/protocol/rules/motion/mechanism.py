@@ -107,9 +107,8 @@ R15 = Rule(
     "R15",
     "mechanism",
     "hard",
-    "What deformation_kind declares is set up: its solver is on, what it rests on or is contained in takes part in the "
-    "simulation, collision shapes are where the meshes are, planned force fields exist and reach something, and no "
-    "keyframes or shape keys imitate a solver.",
+    "What deformation_kind declares is set up: its solver is on, partners and force fields take part, collision shapes "
+    "are where the meshes are, and no keyframes or shape keys imitate it.",
     "A motion that only looks simulated cannot be changed: move the ball, and the dominoes fall as before.",
     "Set up the declared solver and its partners, and remove what imitates it.",
     _wrong_mechanisms,

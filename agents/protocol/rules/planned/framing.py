@@ -134,7 +134,7 @@ R14 = Rule(
     "framing",
     "hard",
     "The active camera shows each planned subject: inside the picture, large enough, not hidden by other objects; in a "
-    "moving scene at the first, middle and last frame; a gas, or a liquid's inflow, at one of them.",
+    "moving scene at the first, middle and last frame; gas and inflows at one of them.",
     "An object that the camera does not show was built for nothing.",
     "Aim the camera at its subjects, from a place and with a lens that show them all.",
     _judge,

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from agents.protocol.judging.declared_contacts import DeclaredContact, declared_contacts
 from agents.protocol.judging.move_advice import describe_closing_move, gap_vector
-from agents.protocol.judging.sample_frames import sample_frames
+from agents.protocol.judging.sample_frames import relation_frames, sample_frames
 from agents.protocol.judging.sizes import contact_gap
 from agents.protocol.measures.geometry import GapMeasure, GapRequest
 from agents.protocol.measures.requests import Measures, Names, Unmeasured
@@ -47,7 +47,13 @@ def _pairs(context: RuleContext) -> Iterator[_ContactPair]:
         key = frozenset((a, b))
         if key not in seen or not a or not b:
             seen.add(key)
-            frames = sample_frames(context, contact.a, contact.b)
+            frames = (
+                relation_frames(context, contact.relation)
+                if contact.relation is not None
+                else sample_frames(context, contact.a, contact.b)
+            )
+            if not frames:
+                continue  # it is to touch once all has moved
             yield _ContactPair(contact, a, b, frames, contact_gap(context, a, b))
 
 

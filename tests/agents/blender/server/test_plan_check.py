@@ -39,7 +39,7 @@ def test_summarises_a_valid_plan() -> None:
         "- Checked from motion on: R18, R19, T1–T8.",
         "- Checked from camera on: R14.",
     ]
-    assert data(answer) == {"sound": True, "faults": [], "stages": list(_plan().stages)}
+    assert data(answer) == {"sound": True, "faults": [], "stages": list(_plan().stages), "doubts": []}
 
 
 def _plan(**more: Any) -> ScenePlan:
