@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
+from agents.protocol.causes import without_consequences
 from agents.protocol.findings import Finding, Report
 from agents.protocol.measures.requests import Unmeasured, measure
-from agents.protocol.rule import NotApplicable, RuleContext
+from agents.protocol.rule import NO_PLAN, NotApplicable, RuleContext
 from agents.protocol.structure import SceneStructure
 from agents.protocol.tolerances import TOLERANCES
 
@@ -42,7 +43,7 @@ def verify(
     ready: list[Rule] = []
     for rule in rules:
         if rule.needs_plan and plan is None:
-            not_applicable[rule.id] = "no plan was given"
+            not_applicable[rule.id] = NO_PLAN
             continue
         try:
             requests |= dict.fromkeys(rule.requests(context))
@@ -62,6 +63,7 @@ def verify(
         findings += of_rule
         if not of_rule:
             passed.append(rule.id)
+    findings = without_consequences(findings)
     return Report(tuple(findings), tuple(passed), not_applicable, time.perf_counter() - began)
 
 

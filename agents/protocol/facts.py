@@ -50,12 +50,16 @@ class CollectionFacts(_Frozen):
 
 
 class ModifierFacts(_Frozen):
-    """A modifier. ``on``: it is switched on for renders. ``target``: the object that it works with."""
+    """A modifier. ``on``: it is switched on for renders. ``target``: the object that it works with.
+
+    ``pinned``: it is a cloth with pins.
+    """
 
     name: str
     type: str
     on: bool = True
     target: str | None = None
+    pinned: bool = False
 
 
 class ConstraintFacts(_Frozen):

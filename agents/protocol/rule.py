@@ -39,6 +39,7 @@ class RuleContext:
         return self.plan
 
 
+NO_PLAN = "no plan was given"
 NO_ROLES = "no collection has the tag protocol_role"  # why rules about the layout do not apply
 
 

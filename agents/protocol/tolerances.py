@@ -105,6 +105,9 @@ class Tolerances:
     )
     onset: float = _tolerance(2.0, "frames", "how early or late a phase may start")
     onset_share: float = _tolerance(0.05, "", "… or this share of the phase, if that is more")
+    onset_caused: float = _tolerance(
+        0.25, "", "… or this share of its cause's phase, if another actor causes it and that is more"
+    )
     order: float = _tolerance(1.0, "frames", "how long after its effect a cause may start")
     extent_share: float = _tolerance(
         0.10, "", "largest deviation of a displacement, amplitude or turn, as a share of the planned one"

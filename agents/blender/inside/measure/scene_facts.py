@@ -180,6 +180,8 @@ def _modifier(modifier):
     facts = {"name": modifier.name, "type": modifier.type, "on": bool(modifier.show_render)}
     if modifier.type == "FLUID":
         facts["type"] = f"FLUID_{modifier.fluid_type}"
+    if modifier.type == "CLOTH":
+        facts["pinned"] = bool(modifier.settings.vertex_group_mass)
     if target is not None:
         facts["target"] = target.name
     return facts

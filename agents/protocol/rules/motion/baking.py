@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     from agents.protocol.structure import LogicalObject
 
 
+_BAKE = "Bake it over the whole range (blender_bake)."
+
+
 def _range(context: RuleContext, obj: LogicalObject) -> tuple[int, int]:
     """The frames that must be baked: those of the planned phases, or the whole timeline."""
     planned = context.plan.motion.phases if context.plan else ()
@@ -28,11 +31,12 @@ def _range(context: RuleContext, obj: LogicalObject) -> tuple[int, int]:
 
 def _wrong_motions(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     structure = context.structure
+    shared: dict[str, list[str]] = {}
     for obj, deformation, motion in declared_objects(context):
         name = obj.name
         yield from wrong_tag(R19, context, obj, "motion_kind", motion)
         if deformation in SOLVERS and motion != "none":
-            yield from _unbaked(context, obj, deformation)
+            yield from _unbaked(context, obj, deformation, shared)
         if motion == "keyframe" and not animated_objects(structure, obj):
             yield R19.finding((name,), f"{name!r} is declared to move by keyframes, but has none.")
         if motion == "none" and deformation not in SOLVERS and (moving := animated_objects(structure, obj)):
@@ -42,9 +46,14 @@ def _wrong_motions(context: RuleContext, _measures: Measures) -> Iterator[Findin
             )
         if motion == "bake" and deformation not in SOLVERS and not active_solvers(structure, obj):
             yield R19.finding((name,), f"{name!r} is declared to be baked, but no solver moves it.")
+    for problem, names in shared.items():
+        yield R19.finding(tuple(names), f"{problem}.", fix=_BAKE)
 
 
-def _unbaked(context: RuleContext, obj: LogicalObject, kind: str) -> Iterator[Finding]:
+def _unbaked(
+    context: RuleContext, obj: LogicalObject, kind: str, shared: dict[str, list[str]]
+) -> Iterator[Finding]:
+    """Findings about an object's own caches; those of all bodies of a world are noted in ``shared``."""
     solver = solver_of(context.structure, obj, kind)
     if not solver.actors:
         return  # R15 says so
@@ -52,12 +61,12 @@ def _unbaked(context: RuleContext, obj: LogicalObject, kind: str) -> Iterator[Fi
     if not solver.caches:
         yield R19.finding((obj.name,), f"{obj.name!r} has a {SOLVERS[kind][2]}, but no cache to bake.")
     for cache in solver.caches:
-        if problem := _bake_problem(cache, start, end):
-            yield R19.finding(
-                (obj.name, *((cache.object,) if cache.object else ())),
-                f"The {_cache_name(cache)} of {obj.name!r} {problem}.",
-                fix="Bake it over the whole range (blender_bake).",
-            )
+        problem = _bake_problem(cache, start, end)
+        if problem and cache.object:
+            message = f"The {_cache_name(cache)} of {obj.name!r} {problem}."
+            yield R19.finding((obj.name, cache.object), message, fix=_BAKE)
+        elif problem:
+            shared.setdefault(f"The {_cache_name(cache)} {problem}", []).append(obj.name)
 
 
 def _bake_problem(cache: CacheFacts, start: int, end: int) -> str:

@@ -13,6 +13,7 @@ from agents.protocol.judging.phases import (
     find_onset,
     moving_speed,
     onset_tolerance,
+    onset_window,
     phase_label,
     planned_phases,
 )
@@ -59,7 +60,7 @@ def _wrong_onsets(context: RuleContext, measures: Measures) -> Iterator[Finding]
         except Unmeasured as reason:
             yield T2.undecided((phase.actor,), reason)
             continue
-        most = onset_tolerance(context, phase)
+        most = onset_window(context, phase)
         if onset is None:
             least = moving_speed(context, motion, phase)
             speeds = motion.speeds(phase.start, phase.end)
@@ -312,7 +313,7 @@ T2 = Rule(
     _wrong_onsets,
     _onset_requests,
     needs_plan=True,
-    tolerances=("onset", "onset_share", "moving_share", "rest_speed"),
+    tolerances=("onset", "onset_share", "onset_caused", "moving_share", "rest_speed"),
 )
 T3 = Rule(
     "T3",

@@ -8,7 +8,7 @@ import numpy as np
 
 from agents.plan.graph import reachable
 from agents.plan.relations import Aperture, FixedAttachment
-from agents.protocol.judging.move_advice import describe_move, gap_vector
+from agents.protocol.judging.move_advice import describe_move, gap_vector, is_near
 from agents.protocol.judging.planned_relations import Violation, relation_rule, surface_pair, surfaces
 from agents.protocol.judging.poses import anchor
 from agents.protocol.judging.sample_frames import moves, sample_frames
@@ -76,7 +76,9 @@ def _not_fastened(
             most,
             "m",
             gap.here,
-            f"{describe_move(relation.part, gap_vector(gap))}, so that it touches {relation.host!r}.",
+            f"{describe_move(relation.part, gap_vector(gap))}, so that it touches {relation.host!r}."
+            if is_near(context, part, gap.distance)
+            else None,
         )
     if _is_fluid(context, relation.part):
         return  # its source touches the host; what comes out of it goes where it will

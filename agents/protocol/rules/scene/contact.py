@@ -108,7 +108,7 @@ def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
             f"{gap.distance * 1000:.1f} mm apart{when}.",
             # A moving object is where its animation puts it; a move at one frame would be no fix.
             fix=V1.fix
-            if frame is not None
+            if frame is not None or not move
             else f"{move}; or remove the declaration if they should not touch.",
             measured=gap.distance,
             tolerance=pair.most,

@@ -6,7 +6,8 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from agents.plan.graph import reachable
+from agents.plan.graph import held_by, reachable
+from agents.plan.part import owner_of
 from agents.protocol.judging.declared_contacts import declared_contacts
 from agents.protocol.judging.sizes import diagonal_around
 from agents.protocol.measures.geometry import PiecesRequest
@@ -35,6 +36,15 @@ def _neighbours(context: RuleContext) -> dict[str, set[str]]:
     return neighbours
 
 
+def _planned_in_the_air(context: RuleContext) -> set[str]:
+    """Objects that move by the plan, and that no relation of it holds: they fall, fly or flow, as is meant."""
+    plan = context.plan
+    if plan is None:
+        return set()
+    held = {owner_of(node) for relation in plan.relations for node, _ in held_by(relation)}
+    return {planned.name for planned in plan.objects if planned.mechanism[1] != "none"} - held
+
+
 def _ungrounded(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     structure = context.structure
     if not structure.logical_objects:
@@ -42,8 +52,9 @@ def _ungrounded(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     strict = context.facts.strict_grounding or (context.plan is not None and context.plan.strict_grounding)
     neighbours = _neighbours(context)
     grounded = reachable(structure.grounds, lambda name: neighbours[name])
+    airborne = set[str]() if strict else _planned_in_the_air(context)
     for obj in structure.logical_objects:
-        if obj.name not in grounded and obj.surfaces:
+        if obj.name not in grounded and obj.surfaces and obj.name not in airborne:
             finding = W1.finding(
                 (obj.name,), f"{obj.name!r} is not connected to the ground by declared contacts."
             )
