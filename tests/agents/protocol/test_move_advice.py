@@ -88,7 +88,7 @@ def test_what_is_moved_as_told_is_mended(
 
 
 def test_nothing_is_told_to_move_by_more_than_half_its_size(session: LiveSession) -> None:
-    build(session, CRATE.format(0, 1, ""))
+    build(session, FLOOR + CRATE.format(0, 1, ""))
     (finding,) = verified(
         session, "R5", a_plan({"kind": "SupportedBy", "child": "Crate", "parents": ("Floor",)})
     ).findings

@@ -111,7 +111,7 @@ R19 = Rule(
     "R19",
     "motion as declared",
     "hard",
-    "What motion_kind declares moves the object: keyframes, or a baked simulation.",
+    "What motion_kind declares moves the object: keyframes, or a bake.",
     "An unbaked simulation plays differently on every machine; an object without its keyframes stands still.",
     "Bake the simulation, or set the keyframes; tag the object as it moves.",
     _wrong_motions,

@@ -145,7 +145,7 @@ T8 = Rule(
     "T8",
     "matter",
     "hard",
-    "A liquid keeps its volume and stays below its domain's top; a gas leaves its source and is not cut off.",
+    "A liquid keeps its volume, below its domain's top; a gas leaves its source.",
     "A liquid that doubles while it falls, or a flat top where the domain ends, gives the simulation away.",
     "Change the domain's size and resolution or the flow, and bake again.",
     _judge,

@@ -107,8 +107,8 @@ R15 = Rule(
     "R15",
     "mechanism",
     "hard",
-    "What deformation_kind declares is set up: its solver is on, partners and force fields take part, collision shapes "
-    "are where the meshes are, and no keyframes or shape keys imitate it.",
+    "What deformation_kind declares is set up: solver on, partners and fields in it, collision shapes on their meshes; "
+    "no keys imitate it.",
     "A motion that only looks simulated cannot be changed: move the ball, and the dominoes fall as before.",
     "Set up the declared solver and its partners, and remove what imitates it.",
     _wrong_mechanisms,

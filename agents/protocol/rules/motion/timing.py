@@ -331,8 +331,8 @@ T4 = Rule(
     "T4",
     "extent",
     "hard",
-    "The actor moves as far as planned in its phase: displacement, direction, amplitude, turn; of what flows, its "
-    "middle or its front.",
+    "The actor moves as far as planned in its phase: displacement, direction, amplitude, turn (of what flows: "
+    "its middle or front).",
     "A swing of a few centimetres is not seen, and a ball that rolls half the way knocks nothing over.",
     "Change the start, the speed or the keyframes until the end of the phase is the planned one, and bake again.",
     _wrong_extents,

@@ -58,6 +58,10 @@ def test_a_cloth_that_is_pinned_or_lies_is_no_fall(session: LiveSession) -> None
     made(session, 0.3, 1, PIN)
     assert verified(session, "T6", PLAN).findings == ()
     session.empty()
-    slab = 'slab = box("Slab", (-1, -1, 2.8), (1, 1, 2.999))\\nslab.modifiers.new("C", "COLLISION")\\nthing("Floor", slab)'
-    made(session, 0.3, 1, slab.replace("\\n", "\n"))
+    slab = """
+slab = box("Slab", (-1, -1, 2.8), (1, 1, 2.999))
+slab.modifiers.new("Collision", "COLLISION")
+thing("Shelf", slab)
+"""
+    made(session, 0.3, 1, slab)
     assert verified(session, "T6", PLAN).findings == ()
