@@ -40,12 +40,12 @@ Reference = Annotated[
 
 
 class RelationPart(PlanPart):
-    """Base class of the relations."""
+    """Base class of the relations.
 
-    when: Literal["start_or_end", "end", "always"] = Field(
-        default="start_or_end",
-        description="end: only once all has moved; always: at the first and the last frame.",
-    )
+    ``when`` it must hold: at the first or the last frame, only at the last (once all has moved), or at both.
+    """
+
+    when: Literal["start_or_end", "end", "always"] = "start_or_end"
 
     @property
     def named_nodes(self) -> Iterator[tuple[str, str]]:

@@ -166,6 +166,15 @@ class ObjectFacts(_Frozen):
         return self.rigid_body is not None and self.rigid_body.active and self.rigid_body.enabled
 
 
+class JointFacts(_Frozen):
+    """A rigid-body constraint at an object. ``a`` and ``b`` are the bodies; ``limited``: it limits how they move."""
+
+    type: str
+    a: str | None = None
+    b: str | None = None
+    limited: bool = False
+
+
 class CacheFacts(_Frozen):
     """A physics cache. ``kind`` is cloth, soft_body, particles, rigid_body, fluid, …; ``owner`` is the modifier's name.
 
@@ -200,3 +209,4 @@ class SceneFacts(_Frozen):
     collections: tuple[CollectionFacts, ...] = ()
     objects: tuple[ObjectFacts, ...] = ()
     caches: tuple[CacheFacts, ...] = ()
+    joints: tuple[JointFacts, ...] = ()

@@ -29,9 +29,11 @@ _NEED_STRENGTH = frozenset(
 
 
 def setup_problems(context: RuleContext) -> Iterator[_Problem]:
-    """Planned force fields that are missing or without effect, and planned colliders that nothing collides with."""
+    """What the plan has set up besides actors: force fields, colliders, joints, and the kind of each fluid."""
     if context.plan is None:
         return
+    yield from _joint_problems(context)
+    yield from _wrong_fluids(context)
     actors = [item for obj in context.structure.logical_objects for item in _actors(context, obj)]
     for planned in context.plan.objects:
         if planned.role == "force":
@@ -45,6 +47,50 @@ def setup_problems(context: RuleContext) -> Iterator[_Problem]:
                     "Give it what its partners collide with: a collision modifier for cloth, soft bodies and "
                     "particles, a passive rigid body for rigid bodies, a fluid effector for fluids.",
                 )
+
+
+def _joint_problems(context: RuleContext) -> Iterator[_Problem]:
+    """Planned joints that no rigid-body constraint makes, or that have no limits though limits are planned."""
+    structure = context.structure
+    for planned in context.planned.joints:
+        sides = [
+            {item.name for item in obj.members}
+            if (obj := structure.by_name.get(name)) is not None
+            else set[str]()
+            for name in (planned.part, planned.host)
+        ]
+        made = [
+            joint
+            for joint in context.facts.joints
+            if (joint.a in sides[0] and joint.b in sides[1]) or (joint.a in sides[1] and joint.b in sides[0])
+        ]
+        name = f"The planned {planned.kind} of {planned.part!r} and {planned.host!r}"
+        if not made:
+            yield (
+                planned.part,
+                f"{name} is missing.",
+                "Add an Empty with a rigid-body constraint between a body of each, at the joint's place and turned so "
+                "that its axis is the planned one.",
+            )
+        elif planned.limits is not None and not any(joint.limited for joint in made):
+            yield planned.part, f"{name} has no limits.", "Switch on the constraint's limits, as planned."
+
+
+def _wrong_fluids(context: RuleContext) -> Iterator[_Problem]:
+    """Planned fluids whose domain is of the other kind: a gas for a liquid, or a liquid for smoke and fire."""
+    for planned in context.planned.objects:
+        obj = context.structure.by_name.get(planned.name)
+        domains = [item for item in obj.meshes if item.is_fluid_domain] if obj is not None else []
+        if planned.fluid_kind is None or not domains:
+            continue
+        is_gas = planned.fluid_kind != "liquid"
+        if not any(item.is_gas == is_gas for item in domains):
+            yield (
+                planned.name,
+                f"{planned.name!r} is planned as {planned.fluid_kind.replace('_', ' ')}, but its domain is of the kind "
+                f"{'LIQUID' if is_gas else 'GAS'}.",
+                f"Set the domain's type to {'GAS' if is_gas else 'LIQUID'}, and its flows' to match.",
+            )
 
 
 def _actors(context: RuleContext, obj: LogicalObject) -> list[ObjectFacts]:

@@ -52,6 +52,7 @@ def scene_facts(arguments, report):
             _object(obj, holders, geometry) | {"fluid": _fluid(obj, baked_fluids)} for obj in scene.objects
         ],
         "caches": [_cache(cache) for cache in caches],
+        "joints": [_joint(obj.rigid_body_constraint) for obj in scene.objects if obj.rigid_body_constraint],
     }
 
 
@@ -243,6 +244,16 @@ def _own_size(obj):
         return (0.0, 0.0, 0.0)
     lengths = numpy.linalg.norm(numpy.array(obj.matrix_world, float)[:3, :3], axis=0)
     return (places.max(axis=0) - places.min(axis=0)) * lengths
+
+
+def _joint(joint):
+    limits = [name for name in dir(joint) if name.startswith("use_limit_")]
+    return {
+        "type": joint.type,
+        "a": joint.object1.name if joint.object1 else None,
+        "b": joint.object2.name if joint.object2 else None,
+        "limited": joint.enabled and any(getattr(joint, name) for name in limits),
+    }
 
 
 def _off_centre(obj):

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from scenes import a_motion, build, the_finding, verified
 
+from agents.plan.scene import Joint
+
 if TYPE_CHECKING:
     from live_session import LiveSession
 
@@ -120,3 +122,49 @@ wind.field.strength, wind.field.use_max_distance, wind.field.distance_max = 3, T
 wind.location.x = 2
 """)
     assert "ends 1 m from its centre; the nearest simulated object is 1.5" in breach(session, made).message
+
+
+POST = """
+post = box("Post body", (0.3, -0.1, 0.1), (0.5, 0.1, 0.6))
+thing("Post", post)
+rigid(post, "PASSIVE")
+"""
+JOINT = """
+bpy.ops.object.empty_add()
+hinge = bpy.context.object
+hinge.name = "Hinge"
+bpy.ops.rigidbody.constraint_add(type="HINGE")
+hinge.rigid_body_constraint.object1 = bpy.data.objects["Post body"]
+hinge.rigid_body_constraint.object2 = bpy.data.objects["Ball"]
+"""
+
+
+def test_a_planned_joint_is_made_and_limited(session: LiveSession) -> None:
+    joint = {"kind": "hinge", "part": "Actor", "host": "Post", "limits": (-90, 0)}
+    made = plan("rigid", Post="static").model_copy(update={"joints": (Joint.model_validate(joint),)})
+    build(session, TABLE + ACTORS["rigid"] + PARTNERS["rigid"] + POST)
+    session.run(JOINT)
+    assert "has no limits" in breach(session, made).message
+    session.run('bpy.data.objects["Hinge"].rigid_body_constraint.use_limit_ang_z = True')
+    assert verified(session, "R15", made).passed == ("R15",)
+    session.run('bpy.data.objects["Hinge"].rigid_body_constraint.object1 = None')
+    assert "The planned hinge of 'Actor' and 'Post' is missing." in breach(session, made).message
+
+
+def test_smoke_is_not_simulated_as_a_liquid(session: LiveSession) -> None:
+    build(
+        session,
+        """
+domain = box("Domain", (-0.5, -0.5, 0), (0.5, 0.5, 1))
+thing("Actor", domain)
+domain.modifiers.new("Fluid", "FLUID").fluid_type = "DOMAIN"
+domain.modifiers["Fluid"].domain_settings.domain_type = "LIQUID"
+bpy.data.collections["Actor"]["deformation_kind"] = "sim_fluid"
+""",
+    )
+    made = a_motion(roles={"Actor": "fluid"})
+    smoke = made.objects[0].model_copy(update={"fluid_kind": "smoke"})
+    made = made.model_copy(update={"objects": (smoke,)})
+    assert "planned as smoke, but its domain is of the kind LIQUID" in breach(session, made).message
+    session.run('bpy.data.objects["Domain"].modifiers["Fluid"].domain_settings.domain_type = "GAS"')
+    assert verified(session, "R15", made).passed == ("R15",)
