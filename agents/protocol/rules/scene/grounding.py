@@ -6,8 +6,7 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from agents.plan.graph import held_by, reachable
-from agents.plan.part import owner_of
+from agents.plan.graph import reachable
 from agents.protocol.judging.declared_contacts import declared_contacts
 from agents.protocol.judging.sizes import diagonal_around
 from agents.protocol.measures.geometry import PiecesRequest
@@ -36,13 +35,10 @@ def _neighbours(context: RuleContext) -> dict[str, set[str]]:
     return neighbours
 
 
-def _planned_in_the_air(context: RuleContext) -> set[str]:
-    """Objects that move by the plan, and that no relation of it holds: they fall, fly or flow, as is meant."""
-    plan = context.plan
-    if plan is None:
-        return set()
-    held = {owner_of(node) for relation in plan.relations for node, _ in held_by(relation)}
-    return {planned.name for planned in plan.objects if planned.mechanism[1] != "none"} - held
+def _planned_to_move(context: RuleContext) -> set[str]:
+    """Objects that move by the plan: unless it declares a contact, they begin in the air, as is meant."""
+    planned = context.plan.objects if context.plan else ()
+    return {obj.name for obj in planned if obj.mechanism[1] != "none"}
 
 
 def _ungrounded(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
@@ -52,7 +48,7 @@ def _ungrounded(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     strict = context.facts.strict_grounding or (context.plan is not None and context.plan.strict_grounding)
     neighbours = _neighbours(context)
     grounded = reachable(structure.grounds, lambda name: neighbours[name])
-    airborne = set[str]() if strict else _planned_in_the_air(context)
+    airborne = set[str]() if strict else _planned_to_move(context)
     for obj in structure.logical_objects:
         if obj.name not in grounded and obj.surfaces and obj.name not in airborne:
             finding = W1.finding(
