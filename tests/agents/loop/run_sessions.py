@@ -61,11 +61,15 @@ def answered(home: Path, team: Callable[[dict[str, Any]], Reply]) -> Iterator[Fa
         yield api
 
 
+def only_look(row: Mapping[str, Any]) -> None:
+    """What an onlooker does at a row, if it is not told otherwise."""
+
+
 @dataclass
 class Onlooker:
     """Keeps what it is told; ``on_row`` may act on it."""
 
-    on_row: OnRow = lambda row: None
+    on_row: OnRow = only_look
     rows: list[Row] = field(default_factory=list)
     heard: list[tuple[str, str]] = field(default_factory=list)
 
@@ -107,9 +111,7 @@ class Played:
         return [(row["stage"], row["taken"]) for row in self.of("decided")]
 
 
-def seat(
-    limits: RunLimits | None = None, stop: Stop | None = None, on_row: OnRow = lambda row: None
-) -> RunSession:
+def seat(limits: RunLimits | None = None, stop: Stop | None = None, on_row: OnRow = only_look) -> RunSession:
     return RunSession(limits or RunLimits(), Onlooker(on_row), stop or Stop(threading.Event()))
 
 
