@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 import mcp_types as types
 
+from agents.plan.arithmetic import DOUBTED, doubts_of
 from agents.plan.part import STAGES
 from agents.plan.scene import ScenePlan
 from agents.protocol.report.text_format import fold_names, format_rule_ids
@@ -27,8 +28,8 @@ DESCRIPTION = """\
 Check a scene plan before anything is built: fields and their values, unknown names, relations that contradict each \
 other or form a cycle, objects without support, contents that do not fit into their container, phases outside the \
 timeline or before their cause, tolerances. The reply lists each fault with its path, or, for a valid plan, what is in \
-it and from which stage on each rule of blender_verify applies. Blender is not used and the geometry is not known: \
-overlaps are measured once the objects are built."""
+it and from which stage on each rule of blender_verify applies; and doubts: relations, falls and views that cannot \
+hold by sizes, positions and frames. Blender is not used and shapes are not known."""
 _LISTED_FAULTS = 20
 _LISTED = 12
 
@@ -66,7 +67,9 @@ def answer(arguments: Mapping[str, Any]) -> types.CallToolResult:
     plan, faults = plan_from(data)
     if plan is None:
         return _result(_fault_text(faults), {"sound": False, "faults": [_as_json(fault) for fault in faults]})
-    return _result(summary(plan), {"sound": True, "faults": [], "stages": list(plan.stages)})
+    doubts = doubts_of(plan)
+    data = {"sound": True, "faults": [], "stages": list(plan.stages), "doubts": list(map(_as_json, doubts))}
+    return _result(summary(plan) + _doubt_text(doubts), data)
 
 
 def _result(text: str, data: dict[str, Any] | None = None, *, failed: bool = False) -> types.CallToolResult:
@@ -86,6 +89,15 @@ def _fault_text(faults: list[Fault]) -> str:
     lines = [f"- `{fault.path or 'plan'}`: {fault.message}" for fault in faults[:_LISTED_FAULTS]]
     lines += [f"- … and {count - _LISTED_FAULTS} more"] if count > _LISTED_FAULTS else []
     return "\n".join([f"The plan has {count} fault{'s' if count != 1 else ''}:", *lines])
+
+
+def _doubt_text(doubts: list[Fault]) -> str:
+    if not doubts:
+        return ""
+    lines = [f"- `{doubt.path}`: {doubt.message}" for doubt in doubts[:_LISTED_FAULTS]]
+    left = len(doubts) - _LISTED_FAULTS
+    lines += [f"- … and {left} more"] if left > 0 else []
+    return "\n".join(["", "", f"Doubts ({len(doubts)}):", *lines, DOUBTED])
 
 
 def summary(plan: ScenePlan) -> str:

@@ -56,6 +56,8 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
     text = _listed(findings) if task.known else outcome.text
     if task.declared and moves(stage) and (untagged := undeclared(run, stage, task.declared)):
         findings, text = [*untagged, *findings], f"{_listed(untagged)}\n{text}"
+    if task.unplanned is not None and (unplanned := task.unplanned(stage)):
+        findings, text = [*unplanned, *findings], f"{_listed(unplanned)}\n{text}"
     return VerifierVerdict(all(one["severity"] != "hard" for one in findings), text, tuple(findings))
 
 

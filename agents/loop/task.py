@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -23,7 +23,7 @@ class RunTask:
 
     An ``edit`` has no scene plan; it is judged without what was ``known`` of the file before, and, unless the file is
     ``tagged`` (keeps the scene protocol), without the rules of its layout. ``actors`` are those that move;
-    of an edit, ``declared`` says by what.
+    of an edit, ``declared`` says by what, and ``unplanned`` finds what has changed that its plan does not ask for.
     """
 
     plan_text: str
@@ -33,6 +33,7 @@ class RunTask:
     tagged: bool = True
     known: tuple[Finding, ...] = ()
     declared: tuple[EditedActor, ...] = ()
+    unplanned: Callable[[Stage], list[Finding]] | None = None
 
     def verification(self, stage: Stage) -> dict[str, Any]:
         """What ``blender_verify`` is asked at the end of a stage."""

@@ -57,6 +57,7 @@ def faults_of(plan: ScenePlan) -> list[Fault]:
         *_pattern_faults(plan),
         *_phase_faults(plan),
         *_stage_faults(plan),
+        *_mechanism_faults(plan),
     ]
 
 
@@ -240,6 +241,28 @@ def _cause_faults(path: str, phase: MotionPhase, by_name: dict[str, MotionPhase]
             f"{path}.cause",
             f"The cause {cause.name!r} starts at frame {cause.start}, after its effect at frame {phase.start}.",
         )
+
+
+def _mechanism_faults(plan: ScenePlan) -> Iterator[Fault]:
+    """Fluids' words for what is no fluid; joints of what is no rigid body."""
+    roles = {planned.name: planned.role for planned in plan.objects}
+    for place, planned in enumerate(plan.objects):
+        if planned.role != "fluid" and (planned.fluid_kind is not None or planned.inflow):
+            field = "fluid_kind" if planned.fluid_kind is not None else "inflow"
+            yield Fault(
+                f"objects[{place}].{field}", f"{planned.name!r} has the role {planned.role!r}, not 'fluid'."
+            )
+    for place, joint in enumerate(plan.joints):
+        for field, name in (("part", joint.part), ("host", joint.host)):
+            if name not in roles:
+                yield Fault(f"joints[{place}].{field}", f"There is no object {name!r}{near(name, roles)}.")
+        if joint.part == joint.host:
+            yield Fault(f"joints[{place}].host", f"{joint.part!r} cannot be joined to itself.")
+        elif roles.get(joint.part, "rigid") != "rigid":
+            yield Fault(
+                f"joints[{place}].part",
+                f"{joint.part!r} is no rigid body; its role is {roles[joint.part]!r}.",
+            )
 
 
 def _stage_faults(plan: ScenePlan) -> Iterator[Fault]:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from agents.plan.faults import Fault
 from agents.plan.part import owner_of
-from agents.plan.relations import CONTACTS, Direction, EmbeddedIn, Inside, OnTopOf, Relation, SupportedBy
+from agents.plan.relations import CONTACTS, Direction, Inside, OnTopOf, Relation, SupportedBy
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -35,7 +35,7 @@ def reachable(starts: Iterable[str], links: Callable[[str], Iterable[str]]) -> d
 
 def held_by(relation: Relation) -> Iterator[tuple[str, str]]:
     """(what is held, what holds it) for relations that keep something from falling."""
-    if isinstance(relation, (*CONTACTS, EmbeddedIn, Inside, OnTopOf)):
+    if isinstance(relation, (*CONTACTS, Inside, OnTopOf)):
         held, *holders = relation.nodes
         yield from ((held, holder) for holder in holders)
 

@@ -40,7 +40,12 @@ Reference = Annotated[
 
 
 class RelationPart(PlanPart):
-    """Base class of the relations."""
+    """Base class of the relations.
+
+    ``when`` it must hold: at the first or the last frame, only at the last (once all has moved), or at both.
+    """
+
+    when: Literal["start_or_end", "end", "always"] = "start_or_end"
 
     @property
     def named_nodes(self) -> Iterator[tuple[str, str]]:
@@ -226,4 +231,4 @@ Relation = Annotated[
     | CoMoves,
     Field(discriminator="kind"),
 ]
-CONTACTS = (SupportedBy, StableAgainst, FixedAttachment, Aperture)
+CONTACTS = (SupportedBy, StableAgainst, FixedAttachment, Aperture, EmbeddedIn)

@@ -12,7 +12,7 @@ from agents.plan.relations import Relation
 
 PhysicsRole = Literal[
     "ground", "static", "collider", "rigid", "cloth", "soft", "fluid", "container", "emitter", "force", "rig",
-    "keyframed",
+    "keyframed", "hair",
 ]  # fmt: skip
 DeformationKind = Literal["rig", "sim_cloth", "sim_fluid", "sim_rigid", "sim_soft", "sim_particle", "none"]
 MotionMechanism = Literal["keyframe", "bake", "none"]
@@ -24,6 +24,7 @@ MECHANISMS: dict[str, tuple[DeformationKind, MotionMechanism]] = {
     "collider": ("none", "none"),
     "container": ("none", "none"),
     "force": ("none", "none"),
+    "hair": ("none", "none"),
     "rigid": ("sim_rigid", "bake"),
     "cloth": ("sim_cloth", "bake"),
     "soft": ("sim_soft", "bake"),
@@ -47,12 +48,17 @@ class Material(PlanPart):
     texture: str = Field(default="", max_length=300, description="What the surface looks like, in words.")
 
 
+FluidKind = Literal["liquid", "smoke", "fire", "smoke_and_fire"]
+
+
 class PlannedObject(PlanPart):
     """One logical object: an L3 collection with a root Empty and one or more meshes.
 
     ``dimensions`` are the extents of the whole object in metres along its own axes; ``position`` (metres) and
     ``rotation`` (degrees, XYZ) are those of its root. ``systems`` are the L2 collections that it belongs to, ``parts``
     the names of meshes that relations refer to. ``holds_volume``: its meshes must be closed surfaces.
+    ``fluid_kind``: what a ``fluid`` is; a liquid is planned as the body that it starts as, smoke and fire as their
+    source. ``inflow``: it keeps coming out of its source.
     """
 
     name: Name
@@ -66,6 +72,8 @@ class PlannedObject(PlanPart):
     parts: tuple[Name, ...] = ()
     allows_disconnected: bool = False
     holds_volume: bool = False
+    fluid_kind: FluidKind | None = None
+    inflow: bool = False
 
     @property
     def mechanism(self) -> tuple[DeformationKind, MotionMechanism]:
@@ -79,6 +87,26 @@ class ObjectGroup(PlanPart):
     name: Name
     members: tuple[Name, ...] = Field(min_length=2)
     same: tuple[Literal["dimensions", "material", "role", "mesh"], ...] = ()
+
+
+class Joint(PlanPart):
+    """A joint of rigid bodies. ``axis`` is in the world; ``limits`` are in degrees, for a slider in metres."""
+
+    kind: Literal["hinge", "slider", "ball", "fixed"]
+    part: Name
+    host: Name
+    axis: Vector = (0.0, 0.0, 1.0)
+    limits: tuple[float, float] | None = None
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Joint:
+        if self.limits is not None and self.limits[0] > self.limits[1]:
+            raise ValueError(
+                f"limits: the lower one, {self.limits[0]}, is above the upper one, {self.limits[1]}"
+            )
+        if not any(self.axis):
+            raise ValueError("axis: (0, 0, 0) has no direction; give the joint's direction")
+        return self
 
 
 class Light(PlanPart):
@@ -126,6 +154,7 @@ class ScenePlan(PlanPart):
     objects: tuple[PlannedObject, ...] = Field(min_length=1)
     relations: tuple[Relation, ...] = ()
     groups: tuple[ObjectGroup, ...] = ()
+    joints: tuple[Joint, ...] = ()
     lighting: tuple[Light, ...] = Field(min_length=1)
     camera: Camera
     render: RenderSettings

@@ -5,9 +5,10 @@ from __future__ import annotations
 import time
 from typing import TYPE_CHECKING, Any
 
+from agents.protocol.causes import without_consequences
 from agents.protocol.findings import Finding, Report
 from agents.protocol.measures.requests import Unmeasured, measure
-from agents.protocol.rule import NotApplicable, RuleContext
+from agents.protocol.rule import NO_PLAN, NotApplicable, RuleContext
 from agents.protocol.structure import SceneStructure
 from agents.protocol.tolerances import TOLERANCES
 
@@ -33,14 +34,16 @@ def verify(
     """
     began = time.perf_counter()
     tolerances, refused = TOLERANCES.tightened(plan.tolerances if plan else {})
-    context = RuleContext(facts, SceneStructure(facts), tolerances, plan)
+    unbaked = any(cache.on and not cache.baked for cache in facts.caches)
+    judges_end = not unbaked or any(rule.follows_motion for rule in rules)
+    context = RuleContext(facts, SceneStructure(facts), tolerances, plan, judges_end)
     findings = [_error("plan", "soft", f"The plan's tolerances: {reason}.") for reason in refused]
     not_applicable: dict[str, str] = {}
     requests: dict[Request[Any], None] = {}
     ready: list[Rule] = []
     for rule in rules:
         if rule.needs_plan and plan is None:
-            not_applicable[rule.id] = "no plan was given"
+            not_applicable[rule.id] = NO_PLAN
             continue
         try:
             requests |= dict.fromkeys(rule.requests(context))
@@ -60,6 +63,7 @@ def verify(
         findings += of_rule
         if not of_rule:
             passed.append(rule.id)
+    findings = without_consequences(findings)
     return Report(tuple(findings), tuple(passed), not_applicable, time.perf_counter() - began)
 
 

@@ -50,12 +50,16 @@ class CollectionFacts(_Frozen):
 
 
 class ModifierFacts(_Frozen):
-    """A modifier. ``on``: it is switched on for renders. ``target``: the object that it works with."""
+    """A modifier. ``on``: it is switched on for renders. ``target``: the object that it works with.
+
+    ``pinned``: it is a cloth with pins.
+    """
 
     name: str
     type: str
     on: bool = True
     target: str | None = None
+    pinned: bool = False
 
 
 class ConstraintFacts(_Frozen):
@@ -66,12 +70,33 @@ class ConstraintFacts(_Frozen):
     on: bool = True
 
 
+class FluidFacts(_Frozen):
+    """What an object is to the fluid solver.
+
+    ``matter`` is liquid, gas (a domain) or smoke, fire, both, liquid (a flow); ``behavior`` of a flow: geometry, inflow
+    or outflow. ``cell`` is the size of a domain's cells in metres. ``surface``: the domain's mesh is the liquid's
+    surface, at least at some frame of its bake, not always only the domain's box.
+    """
+
+    role: str
+    matter: str = ""
+    behavior: str = ""
+    cell: float = 0.0
+    surface: bool = False
+
+
 class RigidBodyFacts(_Frozen):
-    """A rigid body. ``active``: the solver moves it; ``kinematic``: its animation moves it instead, all the time."""
+    """A rigid body. ``active``: the solver moves it; ``kinematic``: its animation moves it instead, all the time.
+
+    ``off_centre``: how far the middle of its own mesh is from its origin, on which primitive collision shapes are
+    centred, in metres.
+    """
 
     active: bool
     kinematic: bool = False
     enabled: bool = True
+    shape: str = ""
+    off_centre: float = 0.0
 
 
 class ObjectFacts(_Frozen):
@@ -82,6 +107,7 @@ class ObjectFacts(_Frozen):
     ``rendered``: renders show it. ``evaluated`` is false for objects that are hidden from the viewport or outside the
     view layer. ``keys`` counts keyframes by channel (``location``, ``rotation_euler``, …; ``other``) of curves that
     change over time; ``driven`` are the channels that drivers set; ``animated_shape_keys``: shape keys move it.
+    ``force_reach``: a force field has no effect beyond this many metres; None for no limit.
     ``fault`` says why it could not be described; it is "" where all went well.
     """
 
@@ -103,7 +129,10 @@ class ObjectFacts(_Frozen):
     modifiers: tuple[ModifierFacts, ...] = ()
     constraints: tuple[ConstraintFacts, ...] = ()
     rigid_body: RigidBodyFacts | None = None
+    fluid: FluidFacts | None = None
     force_field: str | None = None
+    force_strength: float = 1.0
+    force_reach: float | None = None
     keys: dict[str, int] = Field(default_factory=dict[str, int])
     animated_shape_keys: bool = False
     drivers: int = 0
@@ -122,9 +151,28 @@ class ObjectFacts(_Frozen):
         return any(modifier.type == "FLUID_DOMAIN" for modifier in self.modifiers)
 
     @property
+    def is_only_a_box(self) -> bool:
+        """Whether its mesh is only the box of a fluid's domain, without a liquid's surface: it is no body."""
+        return self.fluid is not None and self.fluid.role == "domain" and not self.fluid.surface
+
+    @property
+    def is_gas(self) -> bool:
+        """Whether it is the domain of smoke or fire."""
+        return self.fluid is not None and (self.fluid.role, self.fluid.matter) == ("domain", "gas")
+
+    @property
     def is_active_body(self) -> bool:
         """Whether it is a rigid body that the solver or its animation moves."""
         return self.rigid_body is not None and self.rigid_body.active and self.rigid_body.enabled
+
+
+class JointFacts(_Frozen):
+    """A rigid-body constraint at an object. ``a`` and ``b`` are the bodies; ``limited``: it limits how they move."""
+
+    type: str
+    a: str | None = None
+    b: str | None = None
+    limited: bool = False
 
 
 class CacheFacts(_Frozen):
@@ -161,3 +209,4 @@ class SceneFacts(_Frozen):
     collections: tuple[CollectionFacts, ...] = ()
     objects: tuple[ObjectFacts, ...] = ()
     caches: tuple[CacheFacts, ...] = ()
+    joints: tuple[JointFacts, ...] = ()

@@ -101,7 +101,8 @@ def _contacts() -> str:
     return (
         "## Relations of a plan\n"
         f"Each joins objects, or their parts as `Object/Part`. {contacts} declare a contact, as "
-        f"`{vocabulary.CONTACT_WITH}` does. For moving objects, a relation must hold at the first or last frame."
+        f"`{vocabulary.CONTACT_WITH}` does. For moving objects, a relation must hold at the first or last frame "
+        "(`when` end: at the last; always: at both)."
     )
 
 
@@ -117,7 +118,7 @@ def _relation(kind: type[relations.RelationPart]) -> str:
         if field.is_required()
         else f"{name}?"
         for name, field in fields_of.items()
-        if name != "kind"
+        if name not in {"kind", "when"}
     ]
     meaning = " ".join((kind.__doc__ or "").split("\n\n")[0].replace("``", "`").split())
     return f"- {names}({', '.join(members)}): {meaning}"

@@ -20,12 +20,17 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class RuleContext:
-    """What a rule judges: a scene's facts, and the plan that it was built to, if there is one."""
+    """What a rule judges: a scene's facts, and the plan that it was built to, if there is one.
+
+    ``judges_end``: the last frame counts too. It does not where simulations are still unbaked and no rule follows
+    motion: then all of them would be simulated for it, and what is set up may still change.
+    """
 
     facts: SceneFacts
     structure: SceneStructure
     tolerances: Tolerances
     plan: ScenePlan | None = None
+    judges_end: bool = True
 
     @property
     def planned(self) -> ScenePlan:
@@ -34,6 +39,7 @@ class RuleContext:
         return self.plan
 
 
+NO_PLAN = "no plan was given"
 NO_ROLES = "no collection has the tag protocol_role"  # why rules about the layout do not apply
 
 
@@ -64,6 +70,11 @@ class Rule:
     requests: Callable[[RuleContext], Iterable[Request[Any]]] = no_requests
     needs_plan: bool = False
     tolerances: tuple[str, ...] = ()
+
+    @property
+    def follows_motion(self) -> bool:
+        """Whether it is of the family that follows actors through the whole timeline."""
+        return self.id.startswith("T")
 
     def finding(self, objects: tuple[str, ...], message: str, **more: Any) -> Finding:
         """A breach of this rule; ``more`` are further fields of the finding."""

@@ -12,7 +12,13 @@ if TYPE_CHECKING:
     from agents.protocol.rule import Rule
 
 # Rule or family → the stage that builds what it judges. All others judge from the first stage on.
-FIRST_STAGES: dict[str, Stage] = {"R15": "motion", "R18": "motion", "T": "motion", "R14": "camera"}
+FIRST_STAGES: dict[str, Stage] = {
+    "R15": "deformation_setup",
+    "R18": "motion",
+    "R19": "motion",
+    "T": "motion",
+    "R14": "camera",
+}
 _LAYOUT_FAMILIES = frozenset("CG")  # they hold only for files that follow the protocol throughout
 
 

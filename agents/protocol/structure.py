@@ -18,8 +18,8 @@ if TYPE_CHECKING:
 SCENE = ""  # the name of the scene's own collection, where it is a parent
 _MOVING_MODIFIERS = frozenset(
     {
-        "CLOTH", "SOFT_BODY", "FLUID_DOMAIN", "FLUID_FLOW", "PARTICLE_SYSTEM", "DYNAMIC_PAINT", "ARMATURE",
-        "MESH_CACHE", "MESH_SEQUENCE_CACHE",
+        "CLOTH", "SOFT_BODY", "FLUID_DOMAIN", "PARTICLE_SYSTEM", "DYNAMIC_PAINT", "ARMATURE", "MESH_CACHE",
+        "MESH_SEQUENCE_CACHE",
     }
 )  # fmt: skip
 _MOVING_CONSTRAINTS = frozenset({"FOLLOW_PATH", "TRANSFORM_CACHE", "FOLLOW_TRACK"})
@@ -47,9 +47,13 @@ class LogicalObject:
 
     @property
     def surfaces(self) -> tuple[str, ...]:
-        """Names of its meshes with a surface that renders show; of all with a surface if renders show none."""
-        rendered = tuple(mesh.name for mesh in self.meshes if mesh.surface and mesh.rendered)
-        return rendered or tuple(mesh.name for mesh in self.meshes if mesh.surface)
+        """Names of its meshes with a surface that renders show; of all with a surface if renders show none.
+
+        The box of a fluid's domain is none: a fluid that is not there yet, or has no surface, is where its flows are.
+        """
+        bodies = [mesh for mesh in self.meshes if mesh.surface and not mesh.is_only_a_box]
+        rendered = tuple(mesh.name for mesh in bodies if mesh.rendered)
+        return rendered or tuple(mesh.name for mesh in bodies)
 
 
 class SceneStructure:
@@ -129,6 +133,8 @@ class SceneStructure:
         if item is None:
             return ()
         if item.is_root:
+            return tuple(name for obj in self.owners.get(node, ()) for name in obj.surfaces)
+        if item.is_only_a_box:
             return tuple(name for obj in self.owners.get(node, ()) for name in obj.surfaces)
         return (node,) if item.surface else ()
 

@@ -105,6 +105,9 @@ class Tolerances:
     )
     onset: float = _tolerance(2.0, "frames", "how early or late a phase may start")
     onset_share: float = _tolerance(0.05, "", "… or this share of the phase, if that is more")
+    onset_caused: float = _tolerance(
+        0.25, "", "… or this share of its cause's phase, if another actor causes it and that is more"
+    )
     order: float = _tolerance(1.0, "frames", "how long after its effect a cause may start")
     extent_share: float = _tolerance(
         0.10, "", "largest deviation of a displacement, amplitude or turn, as a share of the planned one"
@@ -112,11 +115,21 @@ class Tolerances:
     course: float = _tolerance(
         10.0, "°", "largest angle between a motion's direction, or a turn, and the planned one"
     )
+    flow_course: float = _tolerance(
+        60.0, "°", "… of a liquid or gas, whose middle also sinks, spreads or drifts"
+    )
     gravity_share: float = _tolerance(0.10, "", "largest deviation of a fall's acceleration from gravity")
     tunnel_share: float = _tolerance(
         0.05, "", "largest depth of a moving object in a collider, as a share of the smallest dimension"
     )
     jump: float = _tolerance(1.5, "", "largest step in a frame, as a multiple of the top planned speed")
+    volume_share: float = _tolerance(
+        0.15, "", "largest change of a liquid's volume that nothing is added to or taken from"
+    )
+    lid_share: float = _tolerance(0.03, "", "largest share of a liquid or gas at a border that cuts it off")
+    leave_share: float = _tolerance(
+        0.2, "", "smallest share of a gas that leaves its source by the end", least=True
+    )
     rest_speed: float = _tolerance(
         0.01, "m/s", "largest speed of an object at rest; for objects above 1 m, per metre of size"
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from agents.plan.arithmetic import DOUBTED, doubts_of
 from agents.plan.check import read_plan
 from agents.plan.edit import EditPlan, unknown_targets
 from agents.plan.scene import ScenePlan
@@ -49,6 +50,7 @@ The reviewer:
 Decide, as one JSON object."""
 
 
+_DOUBTS = 20
 _KNOWN = 20  # faults of the file that are told
 _BEFORE = """\
 What the verifier had to say of the file before the edit. It does not count, unless it gets worse, and is not to be \
@@ -64,7 +66,7 @@ class Planner:
 
     def strategic(self, prompt: str) -> ScenePlan:
         """The scene plan, which contradicts itself nowhere."""
-        plan = self._talk.data("", ScenePlan, _STRATEGIC.format(prompt=prompt), reader=_sound_plan)
+        plan = self._talk.data("", ScenePlan, _STRATEGIC.format(prompt=prompt), reader=_PlanReader())
         self._plan = (self._talk.said,)
         return plan
 
@@ -122,10 +124,24 @@ class Planner:
         return self._talk.data(stage, Decision, words, pinned=(*self._plan, verified))
 
 
-def _sound_plan(data: Any) -> tuple[ScenePlan | None, Sequence[object]]:
-    if not isinstance(data, dict):
-        return None, ["The plan is a JSON object."]
-    return read_plan(data)
+class _PlanReader:
+    """Reads scene plans. What their numbers speak against is told once: whoever plans may know better."""
+
+    def __init__(self) -> None:
+        self._told = False
+
+    def __call__(self, data: Any) -> tuple[ScenePlan | None, Sequence[object]]:
+        """A plan that contradicts itself nowhere, or what is wrong with it."""
+        if not isinstance(data, dict):
+            return None, ["The plan is a JSON object."]
+        plan, faults = read_plan(data)
+        if plan is None or self._told:
+            return plan, faults
+        doubts = doubts_of(plan)
+        if not doubts:
+            return plan, []
+        self._told = True
+        return None, [*doubts[:_DOUBTS], DOUBTED]
 
 
 def format_plan(plan: ScenePlan, prompt: str) -> str:

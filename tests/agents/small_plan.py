@@ -41,7 +41,7 @@ def small_plan() -> dict[str, Any]:
             {"kind": "LeftOf", "a": "Shelf", "b": "Ball", "frame": "camera"},
         ],
         "lighting": [{"name": "Sun", "kind": "sun", "energy": 3}],
-        "camera": {"position": [0, -4, 1.5], "target": "Shelf", "subjects": ["Ball"]},
+        "camera": {"position": [0, -4, 1.5], "target": "Ball", "lens": 120, "subjects": ["Ball"]},
         "render": {"kind": "animation"},
         "motion": {
             "phases": [

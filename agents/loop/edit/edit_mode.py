@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
 from agents.loop.algorithm import ALL_AT_ONCE, build, finish
 from agents.loop.edit.inputs import picture
-from agents.loop.edit.untouched import blocks, compared
+from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
 from agents.loop.events import PlanMade, ReferenceKept
 from agents.loop.judging import verify
@@ -75,5 +76,9 @@ def _task(run: Run, plan: EditPlan, before: Blocks) -> RunTask:
     known = verify(run, "light", bare).findings
     told = [f"{one['rule']} {', '.join(one['objects'])}: {one['message']}" for one in known]
     return replace(
-        bare, plan_text=format_edit_plan(plan, run.options.prompt, told), known=known, declared=plan.actors
+        bare,
+        plan_text=format_edit_plan(plan, run.options.prompt, told),
+        known=known,
+        declared=plan.actors,
+        unplanned=partial(unplanned, run, before, plan),
     )

@@ -14,8 +14,11 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
 
     from agents.loop.run import Run
+    from agents.loop.task import Finding
     from agents.plan.edit import EditPlan
     from agents.plan.part import Stage
+
+UNPLANNED = "unplanned"  # stands for a rule in findings
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,6 +73,40 @@ def compared(before: Blocks, after: Blocks, plan: EditPlan) -> Edited:
         parts={name: parts[name] for name in sorted(changed)},
         why={name: consequences.explain(name) for name in sorted(touched)},
     )
+
+
+def unplanned(run: Run, before: Blocks, plan: EditPlan, stage: Stage) -> list[Finding]:
+    """A hard finding for each data-block that has changed without being asked for. Raises RunError."""
+    edited = compared(before, blocks(run, stage), plan)
+    return [_unplanned_finding(edited, name) for name in edited.outside]
+
+
+def _unplanned_finding(edited: Edited, name: str) -> Finding:
+    kind, _, own = name.partition(" ")
+    if name in edited.added:
+        what, fix = "is new", "Remove it, or make it part of what the plan names"
+    elif name in edited.removed:
+        what, fix = "is gone", "Bring it back from the file that is edited"
+    else:
+        parts = ", ".join(edited.parts.get(name, ()))
+        what = f"has changed{f' ({parts})' if parts else ''}"
+        fix = (
+            "Set it back to what it was in the file, or change a copy of it that only the plan's targets use"
+        )
+    why = edited.why.get(name, "")
+    return {
+        "rule": UNPLANNED,
+        "severity": "hard",
+        "objects": [own],
+        "message": f"{kind} {own!r} {what}, which no task of the edit plan asks for{f'; it is {why}' if why else ''}.",
+        "fix": f"{fix}.",
+        "outcome": "broken",
+        "frame": None,
+        "measured": None,
+        "tolerance": None,
+        "unit": "",
+        "at": None,
+    }
 
 
 def _differing(one: Mapping[str, str], other: Mapping[str, str]) -> tuple[str, ...]:

@@ -11,16 +11,18 @@ from agents.plan.relations import CONTACTS, EmbeddedIn, Inside
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from agents.plan.relations import RelationPart
     from agents.protocol.rule import RuleContext
 
 
 @dataclass(frozen=True, slots=True)
 class DeclaredContact:
-    """A declaration that ``a`` touches ``b``. ``by`` is its source: a tag of an object, or a relation of the plan."""
+    """A declaration that ``a`` touches ``b``. ``by`` names its source: a tag of an object, or a ``relation``."""
 
     a: str
     b: str
     by: str
+    relation: RelationPart | None = None
 
 
 def declared_contacts(context: RuleContext) -> Iterator[DeclaredContact]:
@@ -43,7 +45,7 @@ def _of_plan(context: RuleContext) -> Iterator[DeclaredContact]:
     for place, relation in enumerate(context.plan.relations if context.plan else ()):
         if isinstance(relation, CONTACTS):
             for child, parent in held_by(relation):
-                yield DeclaredContact(child, parent, f"relations[{place}] ({relation.kind})")
+                yield DeclaredContact(child, parent, f"relations[{place}] ({relation.kind})", relation)
 
 
 def allowed_crossings(context: RuleContext) -> set[frozenset[str]]:

@@ -73,6 +73,18 @@ class MeasuredMotion:
             raise Unmeasured("its points are not the same at each frame")
         return np.array(distances, dtype=float)
 
+    @property
+    def flows(self) -> bool:
+        """Whether it is a liquid or gas, which spreads: its middle goes another way than its front."""
+        return self.path.measured == "fluid"
+
+    def reach(self, end: int) -> float:
+        """How far its farthest point is, at a frame, from where its centre was when its phase began."""
+        reaches = self.path.reaches[end - self.start : end - self.start + 1]
+        if not reaches or reaches[0] is None:
+            raise Unmeasured(f"it does not exist at frame {end}")
+        return reaches[0]
+
     def step_rotations(self, start: int, end: int) -> Array:
         """The rotation of each step, as an axis as long as the angle."""
         rotations = self.path.rotations[start + 1 - self.start : end + 1 - self.start]
@@ -90,6 +102,8 @@ def followed_names(context: RuleContext, node: str) -> Names:
     obj = structure.by_name.get(node)
     if obj is None:
         return structure.surfaces_of(node)
+    if domains := tuple(item.name for item in obj.meshes if item.is_fluid_domain):
+        return domains  # flows are where a fluid comes from, no part of it
     generators = [item.name for item in (*obj.meshes, *obj.others) if item.has_modifier(_GENERATORS)]
     bones = [item.name for item in obj.others if item.type == "ARMATURE"]
     return tuple(dict.fromkeys([*generators, *obj.surfaces] or bones or [root.name for root in obj.roots]))

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 _AXES = (("−X", "+X"), ("−Y", "+Y"), ("−Z", "+Z"))
 _WORDS = {"+Z": "up", "−Z": "down"}
+_MOST = 0.5  # of an object's diagonal
 _ALONG_AXIS = 0.999  # share of a move along one axis, from which only that axis is named
 
 
@@ -39,16 +40,23 @@ def _signed(length: float) -> str:
     return f"{length * 1000:+.1f}".replace("-", "−").replace("+0.0", "0").replace("−0.0", "0")
 
 
+def is_near(context: RuleContext, names: Names, length: float) -> bool:
+    """Whether a move is short enough to be advised: what has to go farther is in the wrong place altogether."""
+    return length <= _MOST * diagonal_around(context, names)
+
+
 def describe_closing_move(
     context: RuleContext, first: tuple[str, Names], second: tuple[str, Names], move: Vector
 ) -> str:
     """Which of two objects, given as (name, its surfaces), to move so that the first goes by ``move`` relative to the
-    second: the smaller one, but never one of the ground.
+    second: the smaller one, but never one of the ground. "" for a move that is too far to be advised.
     """
     if _is_ground(context, first[0]) == _is_ground(context, second[0]):
         moves_first = diagonal_around(context, first[1]) <= diagonal_around(context, second[1])
     else:
         moves_first = _is_ground(context, second[0])
+    if not is_near(context, first[1] if moves_first else second[1], math.hypot(*move)):
+        return ""
     if moves_first:
         return describe_move(first[0], move)
     return describe_move(second[0], (-move[0], -move[1], -move[2]))

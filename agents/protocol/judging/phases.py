@@ -84,6 +84,15 @@ def onset_tolerance(context: RuleContext, phase: MotionPhase) -> float:
     return max(context.tolerances.onset, context.tolerances.onset_share * (phase.end - phase.start))
 
 
+def onset_window(context: RuleContext, phase: MotionPhase) -> float:
+    """How many frames early or late a phase may start; nobody can plan to the frame when another phase sets it off."""
+    most = onset_tolerance(context, phase)
+    cause = next((other for other in context.planned.motion.phases if other.name == phase.cause), None)
+    if cause is None or cause.actor == phase.actor:
+        return most
+    return max(most, context.tolerances.onset_caused * (cause.end - cause.start))
+
+
 def moving_speed(context: RuleContext, motion: MeasuredMotion, phase: MotionPhase) -> float:
     """The speed from which an actor counts as moving in a phase, in m/s.
 
@@ -143,7 +152,7 @@ def actual_span(context: RuleContext, motion: MeasuredMotion, phase: MotionPhase
     if onset is None or onset.carried:
         return phase.start, phase.end
     shift = onset.frame - phase.start
-    if abs(shift) > onset_tolerance(context, phase):
+    if abs(shift) > onset_window(context, phase):
         return phase.start, phase.end
     later = [
         other.start

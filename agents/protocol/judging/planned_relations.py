@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from agents.plan.relations import RelationPart
-from agents.protocol.judging.sample_frames import sample_frames
+from agents.protocol.judging.sample_frames import relation_frames
 from agents.protocol.measures.requests import Unmeasured
 from agents.protocol.rule import NotApplicable, Rule
 
@@ -62,7 +62,7 @@ def relation_rule(  # noqa: PLR0913 - what a rule consists of
             raise NotApplicable(f"the plan has no {what or ' or '.join(kind.__name__ for kind in kinds)}")
         for relation in relations:
             if not _absent(context, relation):
-                for frame in sample_frames(context, *relation.nodes):
+                for frame in relation_frames(context, relation):
                     yield from requests(context, relation, frame)
 
     def judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
@@ -85,21 +85,29 @@ def _findings(
     indexed: tuple[int, Kind],
     violations: Callable[[RuleContext, Measures, Kind, int | None], Iterable[Violation]],
 ) -> Iterator[Finding]:
-    """The findings of a relation that holds at none of its frames, from the frame with the smallest violations."""
+    """The findings of a relation that does not hold, from the frame that decides it.
+
+    That is the one with the smallest violations, since a relation must hold at one of its frames; of a relation that
+    must always hold, the one with the largest.
+    """
     place, relation = indexed
     unmeasured: Unmeasured | None = None
     by_frame: list[tuple[int | None, list[Violation]]] = []
-    for frame in sample_frames(context, *relation.nodes):
+    for frame in relation_frames(context, relation):
         try:
             by_frame.append((frame, list(violations(context, measures, relation, frame))))
         except Unmeasured as reason:
             unmeasured = reason
-    if any(not violated for _, violated in by_frame):
-        return
-    if unmeasured is not None:
+    always = relation.when == "always"
+    broken = [sample for sample in by_frame if sample[1]]
+    holds = not broken if always else len(broken) < len(by_frame)
+    if unmeasured is not None and (not broken if always else not holds):
         yield rule.undecided(relation.nodes, unmeasured)
         return
-    frame, violated = min(by_frame, key=lambda sample: (len(sample[1]), sum(map(_excess, sample[1]))))
+    if holds or not broken:  # or there is no frame yet at which it is to hold
+        return
+    decides = max if always else min
+    frame, violated = decides(broken, key=lambda sample: (len(sample[1]), sum(map(_excess, sample[1]))))
     for violation in violated:
         yield rule.finding(
             violation.objects or relation.nodes,

@@ -18,7 +18,8 @@ class MotionPathMeasure(Measure):
     each other. ``size``: its largest extent. ``centres`` are the means of its points, ``origins`` the means of its
     objects' origins; None where it does not exist. ``speeds`` (m/s) are means over its points, or the speed of the
     centre where points cannot be followed; ``rotations`` are axes as long as the angle: both since the frame before,
-    None where unknown. ``ways``: the mean distance of its points from where they were at the last mark.
+    None where unknown. ``ways``: the mean distance of its points from where they were at the last mark. ``reaches``:
+    how far its farthest point is from where its centre was at the last mark (or first, if it began to exist later).
     """
 
     start: int
@@ -30,6 +31,7 @@ class MotionPathMeasure(Measure):
     speeds: tuple[float | None, ...]
     rotations: tuple[Vector | None, ...]
     ways: tuple[float | None, ...]
+    reaches: tuple[float | None, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -128,4 +130,26 @@ class CameraViewRequest(Request[CameraViewMeasure], kind="view", answer=CameraVi
     """How the active camera sees the named objects. In the answer, ``by`` names what hides them, the most first."""
 
     names: Names
+    frame: int | None = None
+
+
+class MatterMeasure(Measure):
+    """The liquid or gas of a domain; all None while there is none.
+
+    ``volume``: what a liquid's surface encloses, in m³. Shares of all matter: ``lid`` within a cell or two of the
+    domain's top, ``sides`` of its sides, ``away`` outside its sources.
+    """
+
+    volume: float | None = None
+    lid: float | None = None
+    sides: float | None = None
+    away: float | None = None
+
+
+@dataclass(frozen=True)
+class MatterRequest(Request[MatterMeasure], kind="matter", answer=MatterMeasure):
+    """How much there is in a fluid's domain, and where. ``sources`` are the meshes that it comes out of."""
+
+    domain: str
+    sources: Names
     frame: int | None = None

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from agents.protocol.report.text_format import format_rule_ids, format_value
-from agents.protocol.rule import NO_ROLES
+from agents.protocol.rule import NO_PLAN, NO_ROLES
 from simworlds.terminal.text import plain
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from agents.protocol.report.grouping import FindingGroup
     from agents.protocol.rule import Rule
 
+_TOLD = frozenset({NO_ROLES, NO_PLAN})
 _UNTAGGED = (
     "Most rules need the protocol's tags, and this scene has none: tag its objects first (blender_group)."
 )
@@ -88,12 +89,19 @@ def coverage(report: Report, scope: VerificationScope) -> list[str]:
     for name in order:
         if name in report.not_applicable:
             reasons.setdefault(report.not_applicable[name], []).append(name)
-    lines += [
-        f"Not checked: {format_rule_ids(names, order)}: {plain(why)}." for why, names in reasons.items()
-    ]
+    lines += _not_checked(reasons, order)
     if NO_ROLES in reasons:
         lines.append(_UNTAGGED)
     return [*lines, *map(plain, report.remarks)]
+
+
+def _not_checked(reasons: dict[str, list[str]], order: list[str]) -> list[str]:
+    """One line: only reasons that the reader can do something about are spelt out."""
+    told = {why: names for why, names in reasons.items() if why in _TOLD}
+    idle = [name for why, names in reasons.items() if why not in _TOLD for name in names]
+    parts = [f"{format_rule_ids(names, order)} ({plain(why)})" for why, names in told.items()]
+    parts += [f"{format_rule_ids(idle, order)} (nothing to judge)"] if idle else []
+    return [f"Not checked: {'; '.join(parts)}."] if parts else []
 
 
 def _count(number: int, noun: str) -> str:

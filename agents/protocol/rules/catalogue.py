@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.protocol.rules.motion import comoves, mechanism, plausibility, settle, timing
+from agents.protocol.rules.motion import baking, comoves, matter, mechanism, plausibility, settle, timing
 from agents.protocol.rules.planned import (
     arrangement,
     attachment,
@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 _FAMILIES = "CGVWRT"  # layout, parents, geometry, warnings, plan against scene, motion
 _SCENE = (collection_layout, parents, contact, penetration, grounding, lights_and_cameras)
 _PLANNED = (inventory, shape, support, attachment, containment, position, arrangement, framing)
-_MOTION = (comoves, mechanism, timing, plausibility, settle)
+_MOTION = (comoves, mechanism, baking, timing, plausibility, settle, matter)
 
 
 def _order(rule: Rule) -> tuple[int, int]:

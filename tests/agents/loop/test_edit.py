@@ -162,12 +162,13 @@ def pristine(kitchen: Path) -> bytes:
 def taller(
     play: Callable[..., Played], kitchen: Path, pristine: bytes, tmp_path_factory: pytest.TempPathFactory
 ) -> Played:
-    """A mug made taller and a jug added, where the planner first errs and the coder moves the spoon, too."""
+    """A mug made taller and a jug added, where the planner first errs and the coder at first moves the spoon, too."""
     reference = tmp_path_factory.mktemp("reference") / "wanted.webp"
     Image.new("RGB", (3000, 1000), (200, 30, 30)).save(reference)
     wrong = plan(task("modeling", "Mugg"))
     right = plan(task("modeling", "Mug"), task("modeling", "Jug", kind="add"))
-    team = Team(code={"modeling": RED})
+    back = 'import bpy\nbpy.data.objects["Spoon"].location.x = 0.5'
+    team = Team(coder={"modeling": (run(RED), DONE, run(back), DONE)})
     team.plan = lambda params: reply(right if "there is nothing called" in words_of(params) else wrong)
     return play(
         team, mode="edit", prompt="Make the mug taller, and add a jug", file=kitchen, reference=reference
@@ -181,7 +182,8 @@ def test_an_edit_changes_what_is_asked_for_and_reports_every_data_block(
     report = taller.the("edited")
     assert report["added"] == ["Mesh Jug", "Object Jug"]
     assert report["removed"] == []
-    assert report["changed"] == ["Object Mug", "Object Spoon", "Scene Scene"]
+    assert report["changed"] == ["Object Mug", "Scene Scene"]
+    assert report["outside"] == []
     assert report["why"]["Scene Scene"] == "holds Jug"
     assert {"Mesh Table", "Object Table", "Light Lamp", "Action LampAction", "Image leaf.png"} <= set(
         report["unchanged"]
@@ -191,10 +193,20 @@ def test_an_edit_changes_what_is_asked_for_and_reports_every_data_block(
     assert {name for name in before if before[name] != after.get(name)} == set(report["changed"])
 
 
-def test_what_an_edit_moves_beside_what_was_asked_for_is_named_in_a_warning(taller: Played) -> None:
-    assert taller.the("edited")["outside"] == ["Object Spoon"]
+def test_what_an_edit_moves_beside_what_was_asked_for_keeps_the_stage_open(taller: Played) -> None:
+    first, second = taller.of("verified", stage="modeling")
+    assert [(one["rule"], one["severity"], one["objects"]) for one in first["findings"]] == [
+        ("unplanned", "hard", ["Spoon"])
+    ]
+    assert "(transform), which no task of the edit plan asks for" in first["findings"][0]["message"]
+    assert second["ok"]
+    assert taller.taken == [("modeling", "retry"), ("modeling", "advance")]
+
+
+def test_what_changed_beside_what_was_asked_for_is_named_in_a_warning(taller: Played) -> None:
+    moved = {"outside": ["Object Spoon"], "parts": {"Object Spoon": ["transform"]}}
     history = read_run_state(taller.root)
-    told = "\n".join(format_event(read_event(taller.the("edited")), history))
+    told = "\n".join(format_event(read_event({**taller.the("edited"), **moved}), history))
     assert "Warning" in told
     assert "Object Spoon (transform)" in told
     assert "Object Mug" not in told.partition("Warning")[2]

@@ -22,7 +22,7 @@ def drop_cache(aim: Aim) -> Mutation:
         aim.name,
         code,
         "freed" + (" and cut short" if "frame_end" in code else ""),
-        ("R15", "T1"),
+        ("R19", "T1"),
     )
 
 

@@ -27,7 +27,8 @@ Look = Literal["front", "right", "top", "three-quarter", "tree", "camera", "curv
 class Case:
     """``base`` builds what the two have in common, then comes ``good`` or ``bad`` (scripts for scenes.build).
 
-    ``says`` tells what is to be seen where the rule holds. ``baked``: the good one is baked before it is judged.
+    ``says`` tells what is to be seen where the rule holds. ``baked``: the good one is baked before it is judged,
+    ``twin_baked``: the bad one too.
     """
 
     base: str
@@ -37,6 +38,7 @@ class Case:
     look: Look = "tree"
     plan: ScenePlan | None = None
     baked: bool = False
+    twin_baked: bool = False
 
 
 FLOOR = 'thing("Floor", box("Slab", (-1, -1, -0.05), (1, 1, 0)), system_name="ground")\n'
@@ -384,6 +386,21 @@ key(cart, 40, location=(2, 0, 0))
 linear(cart)
 """
 
+SMOKE = """
+domain = box("Domain", (-0.5, -0.5, 0.3), (0.5, 0.5, 1.6))
+source = box("Source", (-0.1, -0.1, 0.45), (0.1, 0.1, 0.55))
+source.hide_render = True
+thing("Smoke", domain, source, at=(0, 0, 0.5))
+kinds = bpy.data.collections["Smoke"]
+kinds["deformation_kind"], kinds["motion_kind"] = "sim_fluid", "bake"
+for one, kind in ((domain, "DOMAIN"), (source, "FLOW")):
+    one.modifiers.new("Fluid", "FLUID").fluid_type = kind
+settings = domain.modifiers["Fluid"].domain_settings
+settings.domain_type, settings.resolution_max = "GAS", 16
+flow = source.modifiers["Fluid"].flow_settings
+flow.flow_type, flow.flow_behavior = "SMOKE", "INFLOW"
+"""
+
 MOVING: dict[str, Case] = {
     "R15": Case(
         CLOTH,
@@ -395,7 +412,13 @@ MOVING: dict[str, Case] = {
         "for frame, value in ((1, 0), (12, 1)):\n"
         "    shape.value = value\n"
         '    shape.keyframe_insert("value", frame=frame)',
-        "The flag is declared a cloth, and the cloth solver moves it, baked.",
+        "The flag is declared a cloth, and the cloth solver moves it.",
+    ),
+    "R19": Case(
+        CLOTH + 'flag.modifiers.new("Cloth", "CLOTH")\n',
+        "",
+        "",
+        "The flag is declared to be baked, and it is.",
         baked=True,
     ),
     "R18": Case(
@@ -456,6 +479,16 @@ MOVING: dict[str, Case] = {
         "curve",
         a_motion({"actor": "Ball", "kind": "fall", "start": 1, "end": 14}, last=14),
     ),
+    "T8": Case(
+        TIME.format(18) + SMOKE,
+        "",
+        "settings.alpha = settings.beta = 0",
+        "The smoke rises from its source.",
+        "curve",
+        a_motion({"actor": "Smoke", "kind": "flow", "start": 1, "end": 18}, last=18),
+        baked=True,
+        twin_baked=True,
+    ),
     "T7": Case(
         TIME.format(60),
         SETTLE.format(damping=0.15),
@@ -471,6 +504,6 @@ CASES: dict[str, Case] = LAYOUT | SURFACES | PLANNED | MOVING
 def judge(session: LiveSession, rule: str, case: Case, *, good: bool) -> Report:
     """Builds one of the two, and has the rule judge it."""
     build(session, f"{case.base}\n{case.good if good else case.bad}")
-    if case.baked and good:
+    if case.baked if good else case.twin_baked:
         session.use(BAKE)
     return verified(session, rule, case.plan)

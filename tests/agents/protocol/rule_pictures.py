@@ -19,6 +19,7 @@ sys.path[:0] = [str(REPO), str(REPO / "tests"), str(REPO / "tests" / "agents")]
 from live_session import LiveSession  # noqa: E402
 from PIL import Image, ImageDraw  # noqa: E402
 from rule_cases import CASES, Case, judge  # noqa: E402
+from scenes import measured  # noqa: E402
 
 from agents.blender.sheets import contact_sheet  # noqa: E402
 from agents.blender.sheets.findings_sheet import FindingMark, linear, panel_of  # noqa: E402
@@ -26,6 +27,7 @@ from agents.blender.sheets.text_layout import round_length, shortened, text_widt
 from agents.blender.sheets.view_reply import FindingsReply  # noqa: E402
 from agents.blender.sheets.worker_pictures import taken_picture  # noqa: E402
 from agents.protocol.facts import SceneFacts  # noqa: E402
+from agents.protocol.measures.motion import MotionPathRequest  # noqa: E402
 from agents.protocol.report.grouping import group_findings  # noqa: E402
 from agents.protocol.structure import is_mesh  # noqa: E402
 from simworlds.sandbox.replies import unread  # noqa: E402
@@ -280,7 +282,15 @@ def curves(session: LiveSession, case: Case) -> Shot:
         "    name: [round(at.z if heights else (at - places[0]).length, 3) for at in places]\n"
         "    for name, places in found.items()}}"
     )
-    return Shot(curves=told["curves"], frames=told["frames"])
+    gases = {name: reaches(session, case) for name in names if name == "Smoke"}
+    return Shot(curves=told["curves"] | gases, frames=told["frames"])
+
+
+def reaches(session: LiveSession, case: Case) -> list[float]:
+    """How far a gas gets from where it begins, at every frame of the plan."""
+    assert case.plan is not None
+    path = measured(session, MotionPathRequest(("Domain",), case.plan.frame_start, case.plan.frame_end))
+    return [round(reach or 0.0, 3) for reach in path.reaches]
 
 
 def shows_heights(case: Case) -> bool:

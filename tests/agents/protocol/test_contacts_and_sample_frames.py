@@ -12,7 +12,7 @@ from scenes import a_plan
 from agents.protocol.facts import SceneFacts
 from agents.protocol.judging.declared_contacts import allowed_crossings, declared_contacts
 from agents.protocol.judging.poses import anchor
-from agents.protocol.judging.sample_frames import moves, planned_pose_frame, sample_frames
+from agents.protocol.judging.sample_frames import moves, planned_pose_frame, relation_frames, sample_frames
 from agents.protocol.judging.sizes import smallest_diagonal
 from agents.protocol.judging.vectors import angle_between, axes_of_euler, place_and_axes, rotation_between
 from agents.protocol.rule import RuleContext
@@ -179,3 +179,41 @@ def test_a_matrix_is_a_place_and_unit_axes() -> None:
     place, axes = place_and_axes((0, -2, 0, 7, 3, 0, 0, 8, 0, 0, 0, 9, 0, 0, 0, 1))
     assert place.tolist() == [7, 8, 9]
     assert axes.tolist() == [[0, 1, 0], [-1, 0, 0], [0, 0, 0]]
+
+
+FALLS = {"rigid_body": {"active": True}}
+
+
+@pytest.mark.parametrize(
+    ("when", "cup", "role", "frames"),
+    [
+        ("start_or_end", FALLS, "rigid", (1, 20)),
+        ("always", FALLS, "rigid", (1, 20)),
+        ("end", FALLS, "rigid", (20,)),
+        ("end", {}, "rigid", ()),  # it is to move, but does not yet
+        ("end", {}, "static", (None,)),
+        ("start_or_end", {}, "rigid", (None,)),
+    ],
+)
+def test_a_relation_is_checked_when_it_is_to_hold(
+    when: str, cup: dict[str, Any], role: str, frames: tuple[int | None, ...]
+) -> None:
+    context = a_subject({**RESTS, "when": when}, **cup)
+    objects = [
+        one.model_copy(update={"role": role if one.name == "Cup" else "static"})
+        for one in context.planned.objects
+    ]
+    plan = context.planned.model_copy(update={"objects": tuple(objects)})
+    context = RuleContext(context.facts, context.structure, TOLERANCES, plan)
+    assert relation_frames(context, plan.relations[0]) == frames
+
+
+def test_what_is_not_baked_is_checked_at_the_first_frame_while_no_rule_follows_motion() -> None:
+    context = a_subject(RESTS, **FALLS)
+    early = RuleContext(context.facts, context.structure, TOLERANCES, context.plan, judges_end=False)
+    assert sample_frames(early, "Cup") == (1,)
+
+
+def test_what_is_embedded_touches_its_host() -> None:
+    embedded = {"kind": "EmbeddedIn", "part": "Cup", "host": "Table", "depth": 0.01}
+    assert [(one.a, one.b) for one in declared_contacts(a_subject(embedded))] == [("Cup", "Table")]

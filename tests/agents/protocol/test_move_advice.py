@@ -60,7 +60,7 @@ MENDED: dict[str, tuple[str, str, ScenePlan | None]] = {
     "a turned crate in its floor": ("V2", CRATE.format(0, -0.05, ", turn=(30, 20, 10)"), None),
     "a crate off what it leans on": (
         "R6",
-        'box_of = box("Wall side", (0.3, -2, 0), (0.4, 2, 2))\nthing("Wall", box_of)\n' + CRATE.format(0, 0, ""),
+        'box_of = box("Wall side", (0.2, -2, 0), (0.3, 2, 2))\nthing("Wall", box_of)\n' + CRATE.format(0, 0, ""),
         a_plan({"kind": "StableAgainst", "child": "Crate", "parent": "Wall"}),
     ),
     "a crate that floats": (
@@ -85,3 +85,39 @@ def test_what_is_moved_as_told_is_mended(
         "bpy.context.view_layer.update()"
     )
     assert verified(session, rule, plan).passed == (rule,)
+
+
+def test_nothing_is_told_to_move_by_more_than_half_its_size(session: LiveSession) -> None:
+    build(session, FLOOR + CRATE.format(0, 1, ""))
+    (finding,) = verified(
+        session, "R5", a_plan({"kind": "SupportedBy", "child": "Crate", "parents": ("Floor",)})
+    ).findings
+    assert "1000.0 mm above" in finding.message
+    assert "1000" not in finding.fix
+
+
+def test_a_plant_in_an_open_compartment_of_a_bookcase_is_on_its_board(session: LiveSession) -> None:
+    """Boards that meet flush, in one mesh of several closed shells, some of them inside out."""
+    build(
+        session,
+        """
+shape = bmesh.new()
+for number, (low, high) in enumerate([
+    ((-0.4, -0.15, 0), (-0.38, 0.15, 1)), ((0.38, -0.15, 0), (0.4, 0.15, 1)), ((-0.38, 0.14, 0), (0.38, 0.15, 1)),
+    ((-0.38, -0.15, 0), (0.38, 0.14, 0.02)), ((-0.38, -0.15, 0.4), (0.38, 0.14, 0.42)),
+    ((-0.38, -0.15, 0.98), (0.38, 0.14, 1)),
+]):
+    corners = bmesh.ops.create_cube(shape, size=1)["verts"]
+    for corner in corners:
+        corner.co = Vector([low[i] + (corner.co[i] + 0.5) * (high[i] - low[i]) for i in range(3)])
+    if number % 2:
+        bmesh.ops.reverse_faces(shape, faces=list({face for corner in corners for face in corner.link_faces}))
+data = bpy.data.meshes.new("Boards")
+shape.to_mesh(data)
+thing("Bookcase", bpy.data.objects.new("Boards", data))
+thing("Plant", lathe("Pot", [(0, 0), (0.06, 0), (0.1, 0.3), (0, 0.3)], at=(0.1, 0, 0.42)), at=(0.1, 0, 0.42))
+""",
+    )
+    plan = a_plan({"kind": "SupportedBy", "child": "Plant", "parents": ("Bookcase",)})
+    assert verified(session, "V2,R5", plan).passed == ("V2", "R5")
+    assert verified(session, "V2").passed == ("V2",)

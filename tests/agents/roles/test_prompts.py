@@ -105,7 +105,7 @@ def test_a_role_is_told_what_it_needs_and_no_more(stage: Stage) -> None:
 
     coder = len(whole("coder", stage)) + size(lambda name: is_needed(name, stage))
     reviewer = len(whole("reviewer", stage)) + size(lambda name: "preview" in name or "state" in name)
-    assert coder < 29_000
+    assert coder < 29_200
     assert reviewer < 14_000
 
 
@@ -126,7 +126,7 @@ def test_the_protocol_names_every_rule_tolerance_tag_and_relation() -> None:
         assert word in text
     for kind in get_args(get_args(relations.Relation)[0]):
         line = next(one for one in text.splitlines() if one.startswith(f"- {_kind(kind)}("))
-        for name in set(kind.model_fields) - {"kind"}:
+        for name in set(kind.model_fields) - {"kind", "when"}:  # said once, of all of them
             assert re.search(rf"[(, ]{name}[…?,)]", line), line
 
 
@@ -202,6 +202,6 @@ def test_prompts_stay_short() -> None:
     rows |= {f"{role}, whole": sum(map(of_text, system_prompt(role, "motion"))) for role in ROLES}
     rows |= {f"{role}, edit": sum(map(of_text, system_prompt(role, "motion", edit=True))) for role in ROLES}
     sys.stdout.write("\n".join(f"{name:24} {tokens:6} tokens at most" for name, tokens in rows.items()))
-    assert rows["the protocol"] < 3000
+    assert rows["the protocol"] < 3200
     assert max(rows[f"stage {stage}"] for stage in STAGES) < 1000
     assert max(rows.values()) < 9000

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which objects are fluid domains."""
+"""Which objects are fluid domains, and what their meshes are."""
 
 
 def domain_of(obj, *, shown_only=False):
@@ -11,3 +11,10 @@ def domain_of(obj, *, shown_only=False):
         if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
             return modifier.domain_settings if modifier.show_viewport or not shown_only else None
     return None
+
+
+def is_empty_domain(evaluated):
+    """Whether the mesh of an evaluated object is only the box of a fluid domain, without liquid."""
+    return domain_of(evaluated) is not None and len(evaluated.data.vertices) == len(
+        evaluated.original.data.vertices
+    )

@@ -8,6 +8,7 @@ import numpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
+from ..blend.fluids import is_empty_domain
 from .evaluated_meshes import Instances, TooManyInstances, TriangleMesh, are_finite, mesh_of
 
 MOST_TRIANGLES = 4_000_000
@@ -211,6 +212,10 @@ class Solids:
         if not evaluated.is_evaluated:
             raise Unmeasurable(
                 f"{name!r} is not evaluated: it, or its collection, is hidden from the viewport or excluded"
+            )
+        if is_empty_domain(evaluated):
+            raise NoSurface(
+                f"{name!r} is the box of a fluid's domain, without a liquid's surface at this frame"
             )
         shapes = [*self._instanced(obj)]
         with mesh_of(evaluated) as mesh:

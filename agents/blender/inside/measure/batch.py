@@ -15,6 +15,7 @@ from ..physics.finite_check import Diverged
 from .camera_visibility import camera_view
 from .containment import embedding, enclosure
 from .frame_loop import FOLLOWED, Followers, unmeasured_as_answer
+from .matter import matter
 from .openings import opening
 from .relative_position import axes_of, beside, over
 from .support import depth, flush, support
@@ -235,4 +236,5 @@ MEASURED = {
     "over": over,
     "beside": beside,
     "view": camera_view,
+    "matter": matter,
 }

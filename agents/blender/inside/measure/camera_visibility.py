@@ -5,7 +5,7 @@ import bpy
 import numpy
 from mathutils import Vector
 
-from ..blend.fluids import domain_of
+from ..blend.fluids import domain_of, is_empty_domain
 from ..blend.visibility import rendered_objects
 from ..geometry.solids import Unmeasurable
 from ..motion.mesh_tracker import surface_points
@@ -190,10 +190,17 @@ class _Rays:
             self._clear[obj.name] = (
                 (obj.name in bpy.context.view_layer.objects and obj.name not in self._rendered)
                 or not getattr(obj, "visible_camera", True)
-                or _is_gas(obj)
+                or self._is_box_of_fluid(obj)
                 or (bool(slots) and all(map(_is_see_through, slots)))
             )
         return self._clear[obj.name]
+
+    def _is_box_of_fluid(self, obj):
+        """Whether it is a domain without a liquid's surface, of which renders show no more than a gas."""
+        domain = domain_of(obj)
+        return domain is not None and (
+            domain.domain_type == "GAS" or is_empty_domain(obj.evaluated_get(self._graph))
+        )
 
 
 def _solid(solids, name):
@@ -201,11 +208,6 @@ def _solid(solids, name):
         return solids[name]
     except Unmeasurable:
         return None
-
-
-def _is_gas(obj):
-    domain = domain_of(obj)
-    return domain is not None and domain.domain_type == "GAS"
 
 
 def _is_see_through(material):

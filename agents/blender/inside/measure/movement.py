@@ -51,7 +51,8 @@ class PathFollower:
         self._track = Track(self._actor, scene.render.fps / scene.render.fps_base)
         self._marks = set(request["marks"])
         self._mark = None
-        self._origins, self._ways = [], []
+        self._origins, self._ways, self._reaches = [], [], []
+        self._centre = None
         self._size = 0.0
 
     def look(self, frame, graph, tracker):
@@ -62,10 +63,14 @@ class PathFollower:
         self._track.add(frame, state)
         self._origins.append(state and self._origin(graph))
         self._ways.append(_mean_distance(self._mark, state))
+        if self._centre is None and state is not None:
+            self._centre = state.centre
+        self._reaches.append(_reach(state, self._centre))
         if state is not None and not self._size:
             self._size = max(state.high - state.low)
         if frame in self._marks:
             self._mark = state
+            self._centre = state and state.centre
 
     def _origin(self, graph):
         places = [obj.evaluated_get(graph).matrix_world.translation for obj in self._actor.objects]
@@ -88,11 +93,19 @@ class PathFollower:
             "speeds": speeds,
             "rotations": [_rounded(rotation) for rotation in track.rotations],
             "ways": self._ways,
+            "reaches": self._reaches,
         }
 
 
 def _rounded(vector):
     return None if vector is None else [round(part, 7) for part in vector]
+
+
+def _reach(state, centre):
+    """How far the farthest point of a state is from a place; None where one of them does not exist."""
+    if state is None or centre is None:
+        return None
+    return float(numpy.linalg.norm(state.places[state.alive] - numpy.array(centre), axis=1).max())
 
 
 def _pairs(before, after):

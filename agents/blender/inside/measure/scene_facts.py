@@ -4,10 +4,12 @@
 import math
 
 import bpy
+import numpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.fcurves import curves_of, played_curves
+from ..blend.fluids import domain_of, is_empty_domain
 from ..blend.protocol_tags import CONTACT, ROLE, ROOT, STRICT_GROUNDING
 from ..physics.caches import find_caches
 
@@ -30,6 +32,8 @@ def scene_facts(arguments, report):
     scene = bpy.context.scene
     geometry = GeometryFacts(scene, bpy.context.evaluated_depsgraph_get())
     holders = _holders(scene)
+    caches = find_caches(scene)
+    baked_fluids = {cache.object for cache in caches if cache.kind == "fluid" and cache.baked}
     world = scene.world
     return {
         "version": bpy.app.version_string,
@@ -44,8 +48,11 @@ def scene_facts(arguments, report):
         "camera": scene.camera.name if scene.camera else None,
         "world_light": _world_light(world) if world else 0.0,
         "collections": _collections(scene),
-        "objects": [_object(obj, holders, geometry) for obj in scene.objects],
-        "caches": [_cache(cache) for cache in find_caches(scene)],
+        "objects": [
+            _object(obj, holders, geometry) | {"fluid": _fluid(obj, baked_fluids)} for obj in scene.objects
+        ],
+        "caches": [_cache(cache) for cache in caches],
+        "joints": [_joint(obj.rigid_body_constraint) for obj in scene.objects if obj.rigid_body_constraint],
     }
 
 
@@ -143,7 +150,9 @@ def _object(obj, holders, geometry):
     }
     field = obj.field
     if field is not None and field.type != "NONE":
-        facts["force_field"] = field.type
+        facts.update(force_field=field.type, force_strength=_number(field.strength))
+        if field.use_max_distance:
+            facts["force_reach"] = _number(field.distance_max)
     if obj.type == "LIGHT":
         facts.update(light=obj.data.type, energy=_number(obj.data.energy))
     return facts | geometry.of(obj)
@@ -172,6 +181,8 @@ def _modifier(modifier):
     facts = {"name": modifier.name, "type": modifier.type, "on": bool(modifier.show_render)}
     if modifier.type == "FLUID":
         facts["type"] = f"FLUID_{modifier.fluid_type}"
+    if modifier.type == "CLOTH":
+        facts["pinned"] = bool(modifier.settings.vertex_group_mass)
     if target is not None:
         facts["target"] = target.name
     return facts
@@ -200,7 +211,56 @@ def _rigid_body(obj):
         "active": body.type == "ACTIVE",
         "kinematic": bool(body.kinematic) and not switched,
         "enabled": bool(body.enabled),
+        "shape": body.collision_shape,
+        "off_centre": _off_centre(obj),
     }
+
+
+def _fluid(obj, baked):
+    """What an object is to the fluid solver, if fluids of the objects ``baked`` are; None for nothing."""
+    modifier = next((entry for entry in obj.modifiers if entry.type == "FLUID"), None)
+    if modifier is None or modifier.fluid_type == "NONE":
+        return None
+    facts = {"role": modifier.fluid_type.lower()}
+    if modifier.fluid_type == "FLOW":
+        flow = modifier.flow_settings
+        facts.update(matter=flow.flow_type.lower(), behavior=flow.flow_behavior.lower())
+    domain = domain_of(obj)
+    if domain is not None:
+        evaluated = obj.evaluated_get(bpy.context.evaluated_depsgraph_get())
+        has_mesh = domain.domain_type == "LIQUID" and domain.use_mesh
+        facts.update(
+            matter=domain.domain_type.lower(),
+            cell=_number(max(_own_size(obj)) / max(1, domain.resolution_max)),
+            surface=has_mesh and (obj.name in baked or not is_empty_domain(evaluated)),
+        )
+    return facts
+
+
+def _own_size(obj):
+    """The extents of an object's own mesh, before modifiers, in metres."""
+    places = numpy.array([vertex.co for vertex in obj.data.vertices], float).reshape(-1, 3)
+    if not len(places):
+        return (0.0, 0.0, 0.0)
+    lengths = numpy.linalg.norm(numpy.array(obj.matrix_world, float)[:3, :3], axis=0)
+    return (places.max(axis=0) - places.min(axis=0)) * lengths
+
+
+def _joint(joint):
+    limits = [name for name in dir(joint) if name.startswith("use_limit_")]
+    return {
+        "type": joint.type,
+        "a": joint.object1.name if joint.object1 else None,
+        "b": joint.object2.name if joint.object2 else None,
+        "limited": joint.enabled and any(getattr(joint, name) for name in limits),
+    }
+
+
+def _off_centre(obj):
+    """How far the middle of an object's box is from its origin, in metres."""
+    corners = numpy.array(obj.bound_box, float)
+    lengths = numpy.linalg.norm(numpy.array(obj.matrix_world, float)[:3, :3], axis=0)
+    return _number(numpy.linalg.norm((corners.min(axis=0) + corners.max(axis=0)) / 2 * lengths))
 
 
 def _changing_curves(block):

@@ -7,7 +7,7 @@ from mathutils import Vector
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from ..blend.fluids import domain_of
+from ..blend.fluids import domain_of, is_empty_domain
 from ..blend.names import nearest
 from ..blend.protocol_tags import OBJECT, ROLE, ROOT
 from ..geometry.evaluated_meshes import coordinates, transformed
@@ -72,13 +72,14 @@ class ActorState:
     """An actor at one frame.
 
     ``places`` (n × 3, metres) are those of its points, the same ones in every state with as many; ``alive`` is a mask
-    of those that exist. Weighted points, as of a fluid, are not the same from frame to frame. ``centre`` is the mean,
-    ``low`` and ``high`` are the corners of the box along the world's axes.
+    of those that exist. Points with ``weights``, as of a fluid, are not the same from frame to frame. ``centre`` is the
+    mean, ``low`` and ``high`` are the corners of the box along the world's axes.
     """
 
     def __init__(self, places, *, alive=None, weights=None):
         self.places = places
         self.alive = numpy.ones(len(places), bool) if alive is None else alive
+        self.weights = weights
         self.is_followed = weights is None
         there = places[self.alive]
         self.is_there = bool(len(there)) and bool(numpy.isfinite(there).all())
@@ -196,13 +197,6 @@ def _fluid(evaluated):
         return None
     places = _surface(evaluated)
     return places, numpy.ones(len(places))
-
-
-def is_empty_domain(evaluated):
-    """Whether the mesh of an evaluated object is only the box of a fluid domain, without liquid."""
-    return domain_of(evaluated) is not None and len(evaluated.data.vertices) == len(
-        evaluated.original.data.vertices
-    )
 
 
 def _gas(evaluated, domain):

@@ -9,10 +9,10 @@ import numpy
 from mathutils import Vector
 from mathutils.bvhtree import BVHTree
 
-from ..blend.fluids import domain_of
+from ..blend.fluids import domain_of, is_empty_domain
 from ..blend.protocol_tags import object_collections
 from ..geometry.evaluated_meshes import coordinates, transformed
-from .actors import is_empty_domain, round_to
+from .actors import round_to
 
 MOST_POLYGONS = 100_000  # of a surface that is measured
 _POINTS = 200  # of a surface, from which distances to another one are measured

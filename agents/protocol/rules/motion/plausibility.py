@@ -18,6 +18,7 @@ from agents.protocol.judging.phases import (
     planned_phases,
 )
 from agents.protocol.judging.sizes import contact_gap, smallest_dimension
+from agents.protocol.judging.solver_advice import into_collider
 from agents.protocol.measures.motion import ContactFramesRequest, PassageRequest
 from agents.protocol.measures.requests import Measures, Request, Unmeasured
 from agents.protocol.rule import Rule, RuleContext
@@ -38,6 +39,8 @@ _IMPACT = (
 )
 _MIN_FRAMES = 3  # that a fall is fitted to
 _HALVES_FROM = 8  # frames from which both halves must be falls: eased keyframes are one only on average
+_MIN_SINKING = 4  # frames that a cloth has to fall before it is judged
+_SINKING = 0.35  # share of a free fall below which a cloth that nothing holds sinks as if in syrup
 _WITHOUT_SURFACE = frozenset({"emitter", "fluid"})  # roles that colliders stop by other means
 
 
@@ -55,7 +58,7 @@ def _requests(context: RuleContext) -> Iterator[Request[Any]]:
 
 def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
     for place, phase in planned_phases(context):
-        for check in (_fall, _jump):
+        for check in (_fall, _sink, _jump):
             try:
                 yield from check(context, measures, place, phase)
             except Unmeasured as reason:
@@ -70,7 +73,8 @@ def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
 def _touching(context: RuleContext, phase: MotionPhase) -> ContactFramesRequest | None:
     """The request for when a falling actor touches anything."""
     own = mesh_names(context, phase.actor)
-    if phase.kind != "fall" or not own:
+    sinks = _may_sink(context, phase)
+    if (phase.kind != "fall" and not sinks) or not own:
         return None
     others = tuple(
         mesh.name
@@ -83,7 +87,8 @@ def _touching(context: RuleContext, phase: MotionPhase) -> ContactFramesRequest 
     )
     if not others:
         return None
-    return ContactFramesRequest(own, others, phase.start, phase.end, contact_gap(context, own))
+    end = phase.end if phase.kind == "fall" else min(phase.end, _sinking_end(context, phase))
+    return ContactFramesRequest(own, others, phase.start, end, contact_gap(context, own))
 
 
 def _fall(context: RuleContext, measures: Measures, place: int, phase: MotionPhase) -> Iterator[Finding]:
@@ -119,6 +124,51 @@ def _fall(context: RuleContext, measures: Measures, place: int, phase: MotionPha
             measured=acceleration,
             tolerance=most,
             unit="m/s²",
+        )
+
+
+def _may_sink(context: RuleContext, phase: MotionPhase) -> bool:
+    """Whether a phase lets a cloth fall that nothing holds: no pins, no force field."""
+    planned = context.planned.object(phase.actor)
+    obj = context.structure.by_name.get(phase.actor)
+    if phase.kind not in {"fall", "deform"} or planned is None or planned.role != "cloth" or obj is None:
+        return False
+    pinned = any(modifier.pinned for mesh in obj.meshes for modifier in mesh.modifiers)
+    return not pinned and not any(item.force_field for item in context.facts.objects)
+
+
+def _sinking_end(context: RuleContext, phase: MotionPhase) -> int:
+    """The last frame of the half second in which air has not slowed down a cloth yet."""
+    return phase.start + max(_MIN_SINKING, round(context.facts.fps / 2))
+
+
+def _sink(context: RuleContext, measures: Measures, place: int, phase: MotionPhase) -> Iterator[Finding]:
+    """A cloth that nothing holds or touches begins to fall nearly as fast as a stone, whatever air does later."""
+    request = _touching(context, phase)
+    if not _may_sink(context, phase) or request is None:
+        return
+    motion = measured_motion(context, measures, phase.actor)
+    last_frame = min(phase.end, _sinking_end(context, phase), motion.end)
+    touching = set(measures[request].frames)
+    if phase.start in touching or not motion.deforms:
+        return
+    first, last = _flight(context, motion, (phase.start, last_frame), touching)
+    if first != phase.start or last - first < _MIN_SINKING:
+        return
+    fallen = float(np.diff(motion.places(first, last) @ _down(context)).sum())
+    seconds = (last - first) / motion.fps
+    gravity = gravity_of(context)
+    share = fallen / (gravity * seconds**2 / 2)
+    if share < _SINKING:
+        yield T6.finding(
+            (phase.actor,),
+            f"{phase_label(place, phase)} sinks {fallen:.3f} m in the first {seconds:.2g} s, {share:.0%} of a free "
+            "fall, with nothing that holds it.",
+            fix="Give the cloth a mass of a gram a vertex or so, lower its air viscosity, raise its quality; then bake "
+            "again.",
+            frame=last,
+            measured=share,
+            tolerance=_SINKING,
         )
 
 
@@ -269,7 +319,8 @@ def _tunnels(context: RuleContext, measures: Measures, actor: str) -> Iterator[F
             yield T6.finding(
                 (actor, collider),
                 f"{actor!r} {what}",
-                fix="Give both a fitting collision shape, make the collider thicker, or simulate more substeps; then "
+                fix=into_collider(context, actor)
+                or "Give both a fitting collision shape, make the collider thicker, or simulate more substeps; then "
                 "bake again.",
                 frame=passage.frame,
                 measured=passage.depth,

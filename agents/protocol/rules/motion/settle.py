@@ -15,6 +15,7 @@ from agents.protocol.judging.phases import (
     rest_speed,
     rest_start,
 )
+from agents.protocol.judging.solver_advice import unrest
 from agents.protocol.measures.requests import Measures, Request, Unmeasured
 from agents.protocol.rule import Rule, RuleContext
 
@@ -63,6 +64,7 @@ def _unrest(
             measured=float(speeds[worst]),
             tolerance=most,
             unit="m/s",
+            fix=unrest(context, phase.actor) or T7.fix,
         )
     elif (
         phase.kind == "hold"
@@ -76,6 +78,7 @@ def _unrest(
             measured=off,
             tolerance=most,
             unit="m",
+            fix=unrest(context, phase.actor) or T7.fix,
         )
     if motion.deforms or not motion.has_fixed_points:
         return
@@ -89,6 +92,7 @@ def _unrest(
             measured=float(rates[worst]),
             tolerance=context.tolerances.rest_turn,
             unit="rad/s",
+            fix=unrest(context, phase.actor) or T7.fix,
         )
 
 

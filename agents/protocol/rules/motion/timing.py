@@ -13,6 +13,7 @@ from agents.protocol.judging.phases import (
     find_onset,
     moving_speed,
     onset_tolerance,
+    onset_window,
     phase_label,
     planned_phases,
 )
@@ -59,7 +60,7 @@ def _wrong_onsets(context: RuleContext, measures: Measures) -> Iterator[Finding]
         except Unmeasured as reason:
             yield T2.undecided((phase.actor,), reason)
             continue
-        most = onset_tolerance(context, phase)
+        most = onset_window(context, phase)
         if onset is None:
             least = moving_speed(context, motion, phase)
             speeds = motion.speeds(phase.start, phase.end)
@@ -238,6 +239,13 @@ def _extent(
     most = max(context.tolerances.extent_share * phase.extent, _min_distance(context, motion))
     if abs(distance - phase.extent) <= most:
         return None
+    if motion.flows and distance < phase.extent:
+        # What flows spreads: its extent may be meant as the way of its middle, or of its front.
+        reach = motion.reach(frames[1])
+        if phase.extent - most <= reach:
+            return None
+        sentence = f"reaches {reach:.3f} m from where it began; the plan says {phase.extent:g} m."
+        return sentence, reach, most, "m"
     return f"moves {distance:.3f} m; the plan says {phase.extent:g} m.", distance, most, "m"
 
 
@@ -266,7 +274,8 @@ def _direction(
     moves = motion.displacements(*frames)
     distances = np.linalg.norm(moves, axis=1)
     move = moves[int(np.argmax(distances)) if phase.kind in _RETURNING else -1]
-    planned, most = np.array(phase.direction, dtype=float), context.tolerances.course
+    planned = np.array(phase.direction, dtype=float)
+    most = context.tolerances.flow_course if motion.flows else context.tolerances.course
     if np.linalg.norm(move) <= _min_distance(context, motion):
         if phase.kind != "rotate":
             return "ends where it started; it does not move in the planned direction.", 180.0, most, "°"
@@ -304,7 +313,7 @@ T2 = Rule(
     _wrong_onsets,
     _onset_requests,
     needs_plan=True,
-    tolerances=("onset", "onset_share", "moving_share", "rest_speed"),
+    tolerances=("onset", "onset_share", "onset_caused", "moving_share", "rest_speed"),
 )
 T3 = Rule(
     "T3",
@@ -322,12 +331,13 @@ T4 = Rule(
     "T4",
     "extent",
     "hard",
-    "The actor moves as far as planned in its phase: displacement, direction, amplitude, turn.",
+    "The actor moves as far as planned in its phase: displacement, direction, amplitude, turn (of what flows: "
+    "its middle or front).",
     "A swing of a few centimetres is not seen, and a ball that rolls half the way knocks nothing over.",
     "Change the start, the speed or the keyframes until the end of the phase is the planned one, and bake again.",
     _wrong_extents,
     _extent_requests,
     needs_plan=True,
-    tolerances=("extent_share", "course", *CONTACT),
+    tolerances=("extent_share", "course", "flow_course", *CONTACT),
 )
 RULES = (T2, T3, T4)

@@ -8,7 +8,7 @@ import numpy as np
 
 from agents.plan.graph import reachable
 from agents.plan.relations import Aperture, FixedAttachment
-from agents.protocol.judging.move_advice import describe_move, gap_vector
+from agents.protocol.judging.move_advice import describe_move, gap_vector, is_near
 from agents.protocol.judging.planned_relations import Violation, relation_rule, surface_pair, surfaces
 from agents.protocol.judging.poses import anchor
 from agents.protocol.judging.sample_frames import moves, sample_frames
@@ -76,8 +76,12 @@ def _not_fastened(
             most,
             "m",
             gap.here,
-            f"{describe_move(relation.part, gap_vector(gap))}, so that it touches {relation.host!r}.",
+            f"{describe_move(relation.part, gap_vector(gap))}, so that it touches {relation.host!r}."
+            if is_near(context, part, gap.distance)
+            else None,
         )
+    if _is_fluid(context, relation.part):
+        return  # its source touches the host; what comes out of it goes where it will
     if not _is_linked(context, relation):
         yield Violation(
             f"{relation.part!r} does not move with {relation.host!r}: no parent or constraint links them.",
@@ -95,6 +99,11 @@ def _not_fastened(
             gap.here,
             "Remove what moves it separately (keys, physics, other constraints), or set the link's influence to 1.",
         )
+
+
+def _is_fluid(context: RuleContext, node: str) -> bool:
+    obj = context.structure.logical_object_of(node)
+    return obj is not None and any(item.is_fluid_domain for item in obj.members)
 
 
 def _is_linked(context: RuleContext, relation: FixedAttachment) -> bool:

@@ -24,6 +24,9 @@ def _embedding(context: RuleContext, relation: EmbeddedIn, frame: int | None) ->
 def _enclosure(context: RuleContext, relation: Inside, frame: int | None) -> EnclosureRequest:
     content, container = surface_pair(context, *relation.nodes)
     noise = context.tolerances.noise(smallest_dimension(context, content, container))
+    # A liquid's surface is only as exact as the cells that it is computed on.
+    fluids = [fluid for name in content if (fluid := context.structure.objects[name].fluid) is not None]
+    noise = max([noise, *(fluid.cell for fluid in fluids)])
     return EnclosureRequest(content, container, noise, frame)
 
 

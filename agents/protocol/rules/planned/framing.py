@@ -65,7 +65,20 @@ def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
         if not seen:
             yield R14.undecided((name,), "it does not exist at any of the checked frames")
             continue
-        yield from _badly_framed(context, name, seen)
+        findings = list(_badly_framed(context, name, seen))
+        if findings and _grows(context, name):
+            # It begins as nothing and may leave the picture: one frame that shows it well is enough.
+            by_frame = [list(_badly_framed(context, name, [view])) for view in seen]
+            findings = min(by_frame, key=len)
+        yield from findings
+
+
+def _grows(context: RuleContext, name: str) -> bool:
+    """Whether a subject flows out bit by bit: a gas, or an inflow of liquid."""
+    obj = context.structure.by_name.get(name)
+    return obj is not None and any(
+        item.is_gas or (item.fluid is not None and item.fluid.behavior == "inflow") for item in obj.members
+    )
 
 
 def _badly_framed(
@@ -121,7 +134,7 @@ R14 = Rule(
     "framing",
     "hard",
     "The active camera shows each planned subject: inside the picture, large enough, not hidden by other objects; in a "
-    "moving scene at the first, middle and last frame.",
+    "moving scene at the first, middle and last frame; gas and inflows at one of them.",
     "An object that the camera does not show was built for nothing.",
     "Aim the camera at its subjects, from a place and with a lens that show them all.",
     _judge,

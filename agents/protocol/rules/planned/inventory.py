@@ -19,10 +19,7 @@ def _judge(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     for planned in plan.objects:
         name = planned.name
         if planned.role == "force":
-            field = structure.objects.get(name)
-            if field is None or field.force_field is None:
-                yield R1.finding((name,), f"The planned force field {name!r} is missing.")
-            continue
+            continue  # a solver's partner, not geometry: R15 looks for it
         obj = structure.by_name.get(name)
         if obj is None:
             yield R1.finding(

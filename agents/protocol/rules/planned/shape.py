@@ -39,8 +39,7 @@ def _sized(context: RuleContext) -> Iterator[tuple[PlannedObject, ExtentsRequest
     """Planned objects with a size of their own, which force fields and simulated fluids do not have."""
     for planned in context.planned.objects:
         obj = context.structure.by_name.get(planned.name)
-        meshes = [mesh for mesh in obj.meshes if mesh.surface and mesh.rendered] if obj else []
-        is_fluid = bool(meshes) and all(mesh.is_fluid_domain for mesh in meshes)
+        is_fluid = obj is not None and any(mesh.is_fluid_domain and mesh.rendered for mesh in obj.meshes)
         if planned.role != "force" and not is_fluid:
             yield planned, _extents(context, planned.name)
 

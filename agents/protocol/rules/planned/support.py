@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from agents.plan.relations import Aperture, EmbeddedIn, FixedAttachment, Inside, StableAgainst, SupportedBy
 from agents.protocol.judging.balance import balance
-from agents.protocol.judging.move_advice import describe_move, gap_vector
+from agents.protocol.judging.move_advice import describe_move, gap_vector, is_near
 from agents.protocol.judging.planned_relations import (
     Violation,
     relation_rule,
@@ -41,7 +42,11 @@ def _too_deep(
     if measured.depth <= most:
         return None
     sentence = f"{names[0]!r} is {_mm(measured.depth)} deep in {names[1]}."
-    fix = f"Move {names[0]!r} out by {_mm(measured.depth)}, so that the surfaces meet."
+    fix = (
+        f"Move {names[0]!r} out by {_mm(measured.depth)}, so that the surfaces meet."
+        if is_near(context, request.a, measured.depth)
+        else f"See why {names[0]!r} is inside {names[1]}: one of them is misplaced, or a hollow of it is closed."
+    )
     return Violation(sentence, measured.depth, most, "m", measured.at, fix)
 
 
@@ -95,7 +100,9 @@ def _not_resting(
             return
     support = measures[request]
     if support.opposed is None:
-        yield _floating(child, parents, support.clearance, support.at, request.within)
+        floating = _floating(child, parents, support.clearance, support.at, request.within)
+        is_far = support.clearance is not None and not is_near(context, request.child, support.clearance)
+        yield replace(floating, fix=None) if is_far else floating
         return
     if _is_held(context, child, FixedAttachment, Aperture, EmbeddedIn, Inside):
         return
@@ -180,7 +187,11 @@ def _not_leaning(
     gap = measures[GapRequest(request.child, request.parent, frame)]
     if gap.distance > request.within:
         sentence = f"{child!r} is {_mm(gap.distance)} away from {parent!r}."
-        fix = f"{describe_move(child, gap_vector(gap))}, so that its face lies against {parent!r}."
+        fix = (
+            f"{describe_move(child, gap_vector(gap))}, so that its face lies against {parent!r}."
+            if is_near(context, request.child, gap.distance)
+            else None
+        )
         yield Violation(sentence, gap.distance, request.within, "m", gap.here, fix)
         return
     flush = measures[request]

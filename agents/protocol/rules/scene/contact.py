@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from agents.protocol.judging.declared_contacts import DeclaredContact, declared_contacts
 from agents.protocol.judging.move_advice import describe_closing_move, gap_vector
-from agents.protocol.judging.sample_frames import sample_frames
+from agents.protocol.judging.sample_frames import relation_frames, sample_frames
 from agents.protocol.judging.sizes import contact_gap
 from agents.protocol.measures.geometry import GapMeasure, GapRequest
 from agents.protocol.measures.requests import Measures, Names, Unmeasured
@@ -40,13 +40,29 @@ def _pairs(context: RuleContext) -> Iterator[_ContactPair]:
     seen: set[frozenset[Names]] = set()
     for contact in declared_contacts(context):
         a, b = context.structure.surfaces_of(contact.a), context.structure.surfaces_of(contact.b)
+        if _of_one_fluid(context, contact):
+            continue
         if set(a) & set(b):  # a part touches the rest of its object
             a, b = (a, _without(b, a)) if len(a) < len(b) else (_without(a, b), b)
         key = frozenset((a, b))
         if key not in seen or not a or not b:
             seen.add(key)
-            frames = sample_frames(context, contact.a, contact.b)
+            frames = (
+                relation_frames(context, contact.relation)
+                if contact.relation is not None
+                else sample_frames(context, contact.a, contact.b)
+            )
+            if not frames:
+                continue  # it is to touch once all has moved
             yield _ContactPair(contact, a, b, frames, contact_gap(context, a, b))
+
+
+def _of_one_fluid(context: RuleContext, contact: DeclaredContact) -> bool:
+    """Whether a contact joins a fluid's domain and something in it of the same object, which needs no touch."""
+    objects = context.structure.objects
+    ends = [context.structure.logical_object_of(node) for node in (contact.a, contact.b)]
+    domains = [node for node in (contact.a, contact.b) if node in objects and objects[node].is_fluid_domain]
+    return bool(domains) and ends[0] is not None and ends[0] == ends[1]
 
 
 def _without(names: Names, others: Names) -> Names:
@@ -92,7 +108,7 @@ def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
             f"{gap.distance * 1000:.1f} mm apart{when}.",
             # A moving object is where its animation puts it; a move at one frame would be no fix.
             fix=V1.fix
-            if frame is not None
+            if frame is not None or not move
             else f"{move}; or remove the declaration if they should not touch.",
             measured=gap.distance,
             tolerance=pair.most,

@@ -35,6 +35,12 @@ def _neighbours(context: RuleContext) -> dict[str, set[str]]:
     return neighbours
 
 
+def _planned_to_move(context: RuleContext) -> set[str]:
+    """Objects that move by the plan: unless it declares a contact, they begin in the air, as is meant."""
+    planned = context.plan.objects if context.plan else ()
+    return {obj.name for obj in planned if obj.mechanism[1] != "none"}
+
+
 def _ungrounded(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     structure = context.structure
     if not structure.logical_objects:
@@ -42,8 +48,9 @@ def _ungrounded(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     strict = context.facts.strict_grounding or (context.plan is not None and context.plan.strict_grounding)
     neighbours = _neighbours(context)
     grounded = reachable(structure.grounds, lambda name: neighbours[name])
+    airborne = set[str]() if strict else _planned_to_move(context)
     for obj in structure.logical_objects:
-        if obj.name not in grounded and obj.surfaces:
+        if obj.name not in grounded and obj.surfaces and obj.name not in airborne:
             finding = W1.finding(
                 (obj.name,), f"{obj.name!r} is not connected to the ground by declared contacts."
             )

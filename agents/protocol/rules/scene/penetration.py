@@ -32,7 +32,7 @@ def _requests(context: RuleContext) -> Iterator[CrossingsRequest]:
     yield CrossingsRequest(names, but=but, noise=noise)
     moving = tuple(name for name in names if context.structure.can_move(name))
     for frame in dict.fromkeys((facts.frame_start, facts.frame_end)):
-        if moving and frame != facts.frame:
+        if moving and frame != facts.frame and (context.judges_end or frame == facts.frame_start):
             yield CrossingsRequest(names, frame, moving, but, noise)
 
 
@@ -69,7 +69,8 @@ def _finding(context: RuleContext, pair: Crossing, frame: int | None) -> Finding
     fix = V2.fix
     if frame is None and pair.way is not None and math.hypot(*pair.way) <= _MAX_MOVE * pair.depth:
         first, second = _movable(context, pair.a, pair.b), _movable(context, pair.b, pair.a)
-        fix = f"{describe_closing_move(context, first, second, pair.way)}; {_DECLARE}."
+        if move := describe_closing_move(context, first, second, pair.way):
+            fix = f"{move}; {_DECLARE}."
     return V2.finding(
         names,
         f"{pair.a!r} and {pair.b!r} penetrate each other by {pair.depth * 1000:.1f} mm{when}.",

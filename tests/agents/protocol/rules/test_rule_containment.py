@@ -250,3 +250,31 @@ def test_what_cannot_be_measured_is_undecided(session: LiveSession, more: str, r
     found = the_finding(held(session, cup("thick") + BALL.format(x=0, z=0.04) + more))
     assert (found.outcome, found.objects) == ("undecided", ("Ball", "Cup"))
     assert reason in found.message
+
+
+@pytest.mark.parametrize(("when", "told"), [("start_or_end", False), ("end", False), ("always", True)])
+def test_a_ball_that_drops_into_a_bowl_is_in_it_at_the_end(
+    session: LiveSession, when: str, told: bool
+) -> None:
+    script = """
+scene.frame_start, scene.frame_end = 1, 10
+thing("Bowl", lathe("Clay", [(0, 0), (0.3, 0), (0.3, 0.3), (0.27, 0.3), (0.27, 0.03), (0, 0.03)]))
+root = thing("Ball", ball("Sphere", 0.05, at=(0, 0, 0)))
+"""
+    keys = "key(root, 1, location=(0, 0, 1))\nkey(root, 10, location=(0, 0, 0.1))\n"
+    relation = {"kind": "Inside", "content": "Ball", "container": "Bowl", "when": when}
+    plan = a_plan(relation, frame_end=10)
+    plan = plan.model_copy(
+        update={
+            "objects": tuple(
+                one.model_copy(update={"role": "keyframed"}) if one.name == "Ball" else one
+                for one in plan.objects
+            )
+        }
+    )
+    build(session, script + keys)
+    assert bool(verified(session, "R9", plan).findings) == told
+    # Before it moves, only what is to hold at the end waits.
+    session.empty()
+    build(session, script + "root.location.z = 1")
+    assert bool(verified(session, "R9", plan).findings) == (when != "end")

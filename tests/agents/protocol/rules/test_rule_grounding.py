@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
-from scenes import a_plan, build, the_finding, verified
+from scenes import a_motion, a_plan, build, the_finding, verified
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -139,3 +139,18 @@ def test_what_cannot_be_measured_is_told(session: LiveSession) -> None:
     build(session, PLATES.format(bolt=0, plate=0) + 'bpy.data.objects["Bolt"].hide_viewport = True')
     found = the_finding(verified(session, "W2"))
     assert (found.objects, found.outcome) == (("Rig",), "undecided")
+
+
+def test_what_the_plan_lets_move_may_begin_in_the_air(session: LiveSession) -> None:
+    build(
+        session,
+        """
+thing("Floor", box("Slab", (-2, -2, -0.1), (2, 2, 0)), system_name="ground")
+thing("Ball", ball("Sphere", 0.1, at=(0, 0, 1)))
+""",
+    )
+    assert [one.objects for one in verified(session, "W1").findings] == [("Ball",)]
+    falls = {"actor": "Ball", "kind": "fall", "start": 1, "end": 10}
+    assert verified(session, "W1", a_motion(falls, roles={"Ball": "rigid"})).findings == ()
+    strict = a_motion(falls, roles={"Ball": "rigid"}, strict_grounding=True)
+    assert [one.severity for one in verified(session, "W1", strict).findings] == ["hard"]

@@ -14,9 +14,16 @@ def ids(stage: Stage, **more: bool) -> list[str]:
 
 
 def test_a_scene_that_does_not_move_yet_is_judged_by_what_stands() -> None:
-    still = [rule.id for rule in RULES if rule.id[0] != "T" and rule.id not in {"R14", "R15", "R18"}]
-    for stage in ("modeling", "uv", "texture", "deformation_setup"):
+    still = [rule.id for rule in RULES if rule.id[0] != "T" and rule.id not in {"R14", "R15", "R18", "R19"}]
+    for stage in ("modeling", "uv", "texture"):
         assert ids(stage) == still
+
+
+def test_solvers_are_judged_when_they_are_set_up_and_bakes_when_things_move() -> None:
+    for edit in (False, True):
+        setup, motion = (set(ids(stage, edit=edit)) for stage in ("deformation_setup", "motion"))
+        assert "R15" in setup
+        assert "R19" in motion - setup
 
 
 def test_motion_is_judged_from_its_stage_on_and_framing_from_the_cameras() -> None:

@@ -18,7 +18,7 @@ from agents.protocol.report.sarif import as_sarif, sarif_failure
 from agents.protocol.report.summary import VerificationScope, coverage, exit_code, verdict
 from agents.protocol.report.table import as_table
 from agents.protocol.report.text_format import fold_names, format_rule_ids, format_value
-from agents.protocol.rule import NO_ROLES
+from agents.protocol.rule import NO_PLAN, NO_ROLES
 from agents.protocol.rules.catalogue import BY_ID, RULES
 from simworlds.terminal.text import plain
 
@@ -317,16 +317,21 @@ def test_the_table_fits_a_narrow_terminal_and_tells_markup_as_it_is() -> None:
 
 def test_what_was_not_checked_is_told_with_its_reason() -> None:
     lines = coverage(
-        report(passed=("W4",), C1=NO_ROLES, R1="no plan was given"),
-        checked("C1", "W4", "R1"),
+        report(
+            passed=("W4",),
+            C1=NO_ROLES,
+            R1=NO_PLAN,
+            R6="the plan has no StableAgainst",
+            R8="the plan has no Aperture",
+        ),
+        checked("C1", "W4", "R1", "R6", "R8"),
     )
-    assert lines[:4] == [
+    assert lines[:3] == [
         "Checked: W4.",
         "Passed: W4.",
-        f"Not checked: C1: {NO_ROLES}.",
-        "Not checked: R1: no plan was given.",
+        f"Not checked: C1 ({NO_ROLES}); R1 (no plan was given); R6, R8 (nothing to judge).",
     ]
-    assert "blender_group" in lines[4]
+    assert "blender_group" in lines[3]
 
 
 def test_what_was_not_decided_does_not_count_as_checked() -> None:
