@@ -9,6 +9,7 @@ from agents.blender.tools import (
     execute,
     files,
     group,
+    material_preview,
     motion_sheet,
     previews,
     render,
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
 TOOLS: tuple[BlenderTool, ...] = (
     scene_state.TOOL,
     *previews.TOOLS,
+    material_preview.TOOL,
     motion_sheet.TOOL,
     execute.TOOL,
     tag.TOOL,

@@ -26,6 +26,7 @@ TOOLS = {
     "findings_image": ("preview.findings_image", "findings_image"),
     "group": ("group", "group"),
     "preview": ("preview.fixed_views", "preview"),
+    "material_sheet": ("preview.material_sheet", "material_sheet"),
     "motion_sheet": ("motion.motion_sheet", "motion_sheet"),
     "scene_state": ("state.readout", "scene_state"),
     "render_plan": ("render.camera_frames", "plan"),

@@ -67,6 +67,33 @@ class PreviewReply(Claim):
         return right - x, back - y, top - z
 
 
+class LitView(DrawnView):
+    """The scene in neutral light at a ``frame``."""
+
+    frame: Frame
+
+
+class LitObject(Claim):
+    """An object alone in neutral light: its ``materials``, which others are ``alike`` and so not shown, and which of
+    its parts are ``bare``: without a material."""
+
+    name: Name
+    file: _File
+    metres_per_pixel: Scale
+    materials: list[Name] = Field(max_length=20)
+    alike: list[Name] = Field(max_length=20)
+    bare: list[Name] = Field(max_length=20)
+
+
+class MaterialReply(Claim):
+    """Stills in neutral light."""
+
+    title: Name
+    scene: list[LitView] = Field(max_length=4)
+    objects: list[LitObject] = Field(max_length=12)
+    notes: list[Note] = Field(max_length=_MOST_NOTES)
+
+
 class FindingsReply(Claim):
     """The pictures of marked findings."""
 

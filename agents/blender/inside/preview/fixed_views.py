@@ -41,7 +41,7 @@ def preview(arguments, report):
     scene, kind, notes = bpy.context.scene, arguments["kind"], []
     title, objects = _subject(scene, kind, arguments.get("name"), notes)
     engine = drawing_engine(notes)
-    with _at(scene, arguments.get("frame"), notes), StudioScene(engine) as studio:
+    with at_frame(scene, arguments.get("frame"), notes), StudioScene(engine) as studio:
         subject = copy_of(studio, kind, title, objects, notes)
         renderer = PreviewRenderer(studio, subject, arguments["folder"], arguments["size"])
         renderer.set_up(kind in {SYSTEM, SCENE}, arguments["everything"], notes)
@@ -104,7 +104,7 @@ def _listed(names):
 
 
 @contextlib.contextmanager
-def _at(scene, frame, notes):
+def at_frame(scene, frame, notes):
     """Takes the scene to a frame and back; leaves it where it is if the jump would spoil a simulation."""
     here, part = scene.frame_current, scene.frame_subframe
     if frame is None or frame == here:
@@ -189,9 +189,10 @@ class PreviewRenderer:
     """Renders the pictures of a scene copy. ``whole``: the box that is framed, in metres of the world; ``away``: how
     far cameras stand from it, in units of the studio scene."""
 
-    def __init__(self, studio, subject, folder, size):
+    def __init__(self, studio, subject, folder, size, *, first=0):
+        """``first``: the number of the first picture's file."""
         self._studio, self._subject, self._folder, self._size = studio, subject, folder, size
-        self._files = 0
+        self._first = self._files = first
 
     def set_up(self, is_layout, everything, notes, around=()):
         """Chooses the framing and fills the studio scene; a layout does not frame what is far too large or far away.
@@ -223,13 +224,14 @@ class PreviewRenderer:
         large = large_pieces(studio, pieces) if is_layout and not around else []
         placed = [(piece, studio.add(piece.data, piece.matrix)) for piece in large]
         self._owners = {obj: piece.owner for piece, obj in placed}
-        self._room = find_room(studio, placed, boxes.values())
+        self._placed = list(placed)
+        self._room = find_room(studio, placed, _grouped(bpy.context.scene, boxes).values())
         self._opening = RoomCutaway(studio, self._room)
         if self._opening.fault:
             notes.append(f"Rooms are shown with all their walls: {self._opening.fault}.")
         for piece in pieces:
             if piece not in large:
-                studio.add(piece.data, piece.matrix)
+                self._placed.append((piece, studio.add(piece.data, piece.matrix)))
         self._faces = sum(
             len(getattr(piece.data, "polygons", ())) * (1 if piece.is_solid else _SCATTERED)
             for piece in pieces
@@ -241,28 +243,28 @@ class PreviewRenderer:
         self.away = min(2 * REACH + reach, _FARTHEST)
         self._camera.data.clip_end = 2 * self.away
 
+    @property
+    def files(self):
+        """The number of the next picture's file."""
+        return self._files
+
     @contextlib.contextmanager
     def cleaned_up(self):
         """Removes the pictures rendered so far if a later one fails."""
         try:
             yield
         except BaseException:
-            for number in range(self._files):
+            for number in range(self._first, self._files):
                 with contextlib.suppress(OSError):
                     os.remove(os.path.join(self._folder, _FILE.format(number)))
             raise
 
-    def fixed_views(self, report, total, marks=()):
+    def fixed_views(self, report, total, marks=(), views=VIEWS):
         """The pictures from the fixed sides; with ``marks``, where in them these places of the world are."""
-        for number, (name, towards, up) in enumerate(VIEWS):
+        for number, (name, towards, up) in enumerate(views):
             report(number, total, name)
             rotation = camera_rotation(towards, up)
-            middle, across = fit(self._outline, rotation, self._margin)
-            place = self._studio.placed(Matrix.Translation(middle)).translation
-            matrix = rotation.to_4x4()
-            matrix.translation = place + rotation.col[2] * self.away
-            self._camera.matrix_world = matrix
-            self._camera.data.ortho_scale = across * self._studio.scale
+            middle, across = self._aim(self._outline, rotation, self._margin)
             with self._opening.towards(rotation) as cut:
                 file = self._render(self._camera, (self._size, self._size), self._slant(towards, cut))
             yield {
@@ -312,12 +314,39 @@ class PreviewRenderer:
             "file": file,
             "size": list(size),
             "metres_per_pixel": None,
-            "axes": _axes(matrix.to_3x3().normalized()),
+            "axes": [],  # a picture through a camera is to show what the camera sees, and nothing over it
             "cut_away": [],
             "labels": [],
             "ground": None,
             "lens": lens,
         }
+
+    def _aim(self, outline, rotation, margin):
+        """Turns the camera to points of the world; returns the middle of its picture and the width, in metres."""
+        middle, across = fit(outline, rotation, margin)
+        matrix = rotation.to_4x4()
+        matrix.translation = (
+            self._studio.placed(Matrix.Translation(middle)).translation + rotation.col[2] * self.away
+        )
+        self._camera.matrix_world = matrix
+        self._camera.data.ortho_scale = across * self._studio.scale
+        return middle, across
+
+    def alone(self, owners, towards, side):
+        """The picture, ``side`` pixels wide, of some objects (names) without all others: (file, metres a pixel)."""
+        mine = [(piece, obj) for piece, obj in self._placed if piece.owner in owners]
+        others = [obj for piece, obj in self._placed if piece.owner not in owners and not obj.hide_render]
+        most = max(8, _OUTLINE // max(1, len(mine)))
+        rotation = camera_rotation(towards, (0, 0, 1))
+        outline = [place for piece, _ in mine for place in piece.outline(most)]
+        _, across = self._aim(outline, rotation, CLOSE)
+        for obj in others:
+            obj.hide_render = True
+        try:
+            return self._render(self._camera, (side, side), 1.0), across / side
+        finally:
+            for obj in others:
+                obj.hide_render = False
 
     def _label_pixels(self, rotation, middle, across):
         """[name, x, y] of what is labelled, in pixels from the upper left."""
@@ -343,17 +372,26 @@ class PreviewRenderer:
         return file
 
 
+def _grouped(scene, boxes):
+    """The boxes of the protocol's objects, and of those of Blender's that belong to none."""
+    groups, members = {}, set()
+    for collection in object_collections(scene):
+        own = {obj.name for obj in collection.all_objects} & boxes.keys()
+        if own:
+            groups[collection.name] = BoundingBox.around(boxes[name] for name in own)
+            members |= own
+    return groups | {name: box for name, box in boxes.items() if name not in members and name not in groups}
+
+
 def _labels(scene, boxes, whole):
     """The centres of the largest objects of the protocol (lacking those, of Blender's), those that fill the picture
     left out."""
-    groups = {}
-    for collection in object_collections(scene):
-        members = [boxes[obj.name] for obj in collection.all_objects if obj.name in boxes]
-        if members:
-            groups[collection.name] = BoundingBox.around(members)
-    groups = groups or boxes
+    tagged = {collection.name for collection in object_collections(scene)}
+    groups = _grouped(scene, boxes)
     small = {
-        name: box for name, box in groups.items() if whole.meets(box) and box.diagonal < 0.6 * whole.diagonal
+        name: box
+        for name, box in groups.items()
+        if (name in tagged or not tagged) and whole.meets(box) and box.diagonal < 0.6 * whole.diagonal
     }
     largest = sorted(small, key=lambda name: -small[name].diagonal)[:_LABELS]
     return {name: small[name].centre for name in largest}

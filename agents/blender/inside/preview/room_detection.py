@@ -16,8 +16,9 @@ from .studio_scene import REACH
 _WALL = 0.3 * REACH  # an object of this size can be a wall
 _PART = 0.12 * REACH  # and of this size, under a roof, a part of a wall
 _FURNITURE = 0.45 * REACH  # larger objects can be a roof, and do not count as content of a room
-_ON_WALL = 0.04 * REACH  # what is this close to the shell belongs to it
+_ON_WALL = 0.04 * REACH  # a wall that is this close to the shell belongs to it
 _ABOVE_TOP = 0.005 * REACH
+_LOW = 0.08 * REACH  # a hollow that is no higher is the inside of a board or a shelf
 _STEP = 1e-4 * REACH
 _MOST_FACES = 200_000  # of an object that rays are cast against
 _MOST_THINGS = 60
@@ -62,7 +63,7 @@ def find_room(studio, placed, boxes):
     tops = [_top(studio, box) for box in boxes if box.diagonal * studio.scale <= _FURNITURE]
     tops = tops[:: max(1, len(tops) // _MOST_TOPS)]
     grid = _grid(studio, placed)
-    within = [top for top in tops if rays.is_inside(top)]
+    within = [top for top in tops if rays.is_inside(top) and not rays.is_low(top)]
     if tops and len(within) < _SOME * len(tops):
         return _under_roof(rays, tops, grid)
     # A solid is not a room: if nothing is in it, only the fronts of faces count as walls.
@@ -101,6 +102,11 @@ class _Rays:
             return sum(meets(direction, _PART) for direction in _AROUND) >= 8
         return sum(meets(direction, _WALL) for direction in _AROUND) >= 9
 
+    def is_low(self, place):
+        """Whether something is right above."""
+        hits = self._hits(place, _UP[0])
+        return bool(hits) and hits[0][1] < _LOW
+
     def outermost(self, inside):
         """The objects that rays from inside mostly hit last."""
         met, last = {}, {}
@@ -115,9 +121,8 @@ class _Rays:
                         first.setdefault(name, distance)
                 for name, distance in first.items():
                     met[name] = met.get(name, 0) + 1
-                    last[name] = last.get(name, 0) + (
-                        name == hits[-1][0] or distance > hits[-1][1] - _ON_WALL
-                    )
+                    is_wall = self._sizes[name] >= _WALL and distance > hits[-1][1] - _ON_WALL
+                    last[name] = last.get(name, 0) + (name == hits[-1][0] or is_wall)
         return [self._objects[name] for name in met if last[name] >= 0.5 * met[name]]
 
     def roof(self, place):
@@ -147,7 +152,7 @@ class _Rays:
 
 def _is_castable(piece):
     mesh = piece.data
-    if not piece.is_solid or piece.is_liquid or not isinstance(mesh, bpy.types.Mesh):
+    if not piece.is_solid or piece.is_liquid or piece.is_helper or not isinstance(mesh, bpy.types.Mesh):
         return False
     return len(mesh.polygons) <= _MOST_FACES
 
