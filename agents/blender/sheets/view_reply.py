@@ -49,7 +49,8 @@ class CloseUp(Claim):
 
 
 class PreviewReply(Claim):
-    """A preview: ``low`` and ``high`` are the corners of what is framed."""
+    """A preview: ``low`` and ``high`` are the corners of what is framed; ``turned``: by how many degrees about the
+    vertical the views are, along the subject's own axes."""
 
     title: Name
     frame: Frame
@@ -59,6 +60,7 @@ class PreviewReply(Claim):
     views: list[DrawnView] = Field(min_length=1, max_length=6)
     notes: list[Note] = Field(max_length=_MOST_NOTES)
     engine: Name
+    turned: float = Field(default=0.0, ge=-360, le=360)
 
     @property
     def size(self) -> Corner:

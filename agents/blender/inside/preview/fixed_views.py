@@ -11,9 +11,21 @@ from mathutils import Matrix
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.names import listed, nearest, quoted
-from ..blend.protocol_tags import OBJECT, ROLE, SYSTEM, object_collections
+from ..blend.protocol_tags import GROUND, OBJECT, ROLE, ROOT, SYSTEM, object_collections
 from ..physics.caches import unbaked
-from .framing import CLOSE, LOOSE, VIEWS, WIDE, BoundingBox, boxes_of, camera_rotation, choose_framed, fit
+from .framing import (
+    CLOSE,
+    LOOSE,
+    VIEWS,
+    WIDE,
+    BoundingBox,
+    boxes_of,
+    camera_rotation,
+    choose_framed,
+    fit,
+    turn_of,
+    turned_views,
+)
 from .room_cutaway import RoomCutaway
 from .room_detection import find_room, large_pieces
 from .scene_copy import DRAWABLE, SceneCopy
@@ -23,6 +35,8 @@ MESH, SCENE = "mesh", "scene"  # kinds of subjects, besides OBJECT and SYSTEM
 _NAMED = 6  # in a note; the rest are counted
 _OUTLINE = 6000  # points from which the framing is chosen
 _LABELS = 14
+_LABELLED = {"top", "three-quarter"}
+_SMALL = 0.4  # share of what is framed: of smaller subjects there is a close view
 _SHADOWED = 300_000  # faces; of more, shadows take seconds
 _SCATTERED = 12  # faces of dots and strands cost this many times as much as a solid's
 _IN_ROOM = 0.4  # slant of the light in a room, low so that the walls' shadows do not cover its content
@@ -35,7 +49,9 @@ _CAMERA_WIDER = 2  # times a panel that the camera's picture may be wide
 def preview(arguments, report):
     """Renders pictures of ``kind`` (mesh, object, system, scene) ``name`` at ``frame`` (None: the current one).
 
-    ``everything``: frame grounds and skies as well. The pictures are left in ``folder``, larger than their ``size``, to
+    ``everything``: frame grounds and skies as well. ``subjects``: names of objects, of the protocol's or of Blender's,
+    that the scene is about; none: all but grounds. If they are small in the views, one view more is close to them. One
+    mesh or object is seen along its own axes. The pictures are left in ``folder``, larger than their ``size``, to
     which the caller shrinks them. Returns what the preview's text needs, with the names of the files.
     """
     scene, kind, notes = bpy.context.scene, arguments["kind"], []
@@ -44,10 +60,14 @@ def preview(arguments, report):
     with at_frame(scene, arguments.get("frame"), notes), StudioScene(engine) as studio:
         subject = copy_of(studio, kind, title, objects, notes)
         renderer = PreviewRenderer(studio, subject, arguments["folder"], arguments["size"])
-        renderer.set_up(kind in {SYSTEM, SCENE}, arguments["everything"], notes)
+        is_layout = kind in {SYSTEM, SCENE}
+        wanted = _subjects(scene, subject, arguments["subjects"], notes) if kind == SCENE else {}
+        renderer.set_up(is_layout, arguments["everything"], notes, labelled=wanted)
         camera = scene.camera if kind == SCENE else None
+        turn = 0.0 if is_layout else turn_of(_root_of(objects).matrix_world)
         with renderer.cleaned_up():
-            views = list(renderer.fixed_views(report, len(VIEWS) + (camera is not None)))
+            views = list(renderer.fixed_views(report, len(VIEWS) + (camera is not None), views=turned_views(turn)))
+            views += renderer.close_view([name for owners in wanted.values() for name in owners])
             if camera is not None:
                 report(len(views), len(views) + 1, "camera")
                 views += renderer.camera_view(camera, scene.render, notes)
@@ -61,10 +81,30 @@ def preview(arguments, report):
             "views": views,
             "notes": notes,
             "engine": engine,
+            "turned": round(math.degrees(turn), 1),
         }
 
 
 # The subject
+
+
+def _root_of(objects):
+    """The root of an object of the protocol; lacking that, the first of Blender's."""
+    return next((obj for obj in objects if obj.get(ROOT)), objects[0])
+
+
+def _subjects(scene, subject, names, notes):
+    """{name: the drawn objects of it}: of these names, or of all the protocol's objects but those of the ground."""
+    drawn = {piece.owner for piece in subject.pieces}
+    tagged = {one.name: {obj.name for obj in one.all_objects} & drawn for one in object_collections(scene)}
+    if names:
+        known = {name: {name} for name in drawn} | tagged
+        if unknown := [name for name in names if not known.get(name)]:
+            notes.append(f"Nothing to see of {_listed(unknown)}.")
+        return {name: known[name] for name in names if known.get(name)}
+    ground = scene.collection.children_recursive
+    ground = {child.name for one in ground if one.name == GROUND for child in one.children_recursive}
+    return {name: owners for name, owners in tagged.items() if owners and name not in ground}
 
 
 def _subject(scene, kind, name, notes):
@@ -194,10 +234,11 @@ class PreviewRenderer:
         self._studio, self._subject, self._folder, self._size = studio, subject, folder, size
         self._first = self._files = first
 
-    def set_up(self, is_layout, everything, notes, around=()):
+    def set_up(self, is_layout, everything, notes, *, around=(), labelled=()):
         """Chooses the framing and fills the studio scene; a layout does not frame what is far too large or far away.
 
         ``around``: names of objects to be framed, if any of them can be seen, instead of all; no room is opened then.
+        ``labelled``: names that are labelled before all others.
         """
         boxes = boxes_of(self._subject.pieces)
         wanted = {name: boxes[name] for name in around if name in boxes} or boxes
@@ -217,7 +258,7 @@ class PreviewRenderer:
         framed_pieces = [piece for piece in self._subject.pieces if piece.owner in set(framed)]
         most = max(8, _OUTLINE // len(framed_pieces))
         self._outline = [place for piece in framed_pieces for place in piece.outline(most)]
-        self._labels = _labels(bpy.context.scene, boxes, self.whole) if is_layout else {}
+        self._labels = _labels(bpy.context.scene, boxes, self.whole, labelled) if is_layout else {}
         studio = self._studio
         studio.aim(self.whole.centre, across)
         pieces = self._subject.pieces
@@ -274,7 +315,7 @@ class PreviewRenderer:
                 "metres_per_pixel": across / self._size,
                 "axes": _axes(rotation),
                 "cut_away": sorted({self._owners[obj] for obj in cut}),
-                "labels": self._label_pixels(rotation, middle, across) if name == "top" else [],
+                "labels": self._label_pixels(rotation, middle, across) if name in _LABELLED else [],
                 **(
                     {"marks": [self._pixel_of(mark, rotation, middle, across) for mark in marks]}
                     if marks
@@ -283,26 +324,30 @@ class PreviewRenderer:
                 "ground": self._size * (0.5 + middle.z / across) if not towards[2] else None,
             }
 
+    def close_view(self, owners):
+        """The three-quarter picture of some objects (names) among all others; none if the fixed views show them well."""
+        mine = [piece for piece, _ in self._placed if piece.owner in owners]
+        if not mine or BoundingBox.around(mine).diagonal > _SMALL * self.whole.diagonal:
+            return
+        name, towards, up = next(view for view in VIEWS if view[0] == "three-quarter")
+        most = max(8, _OUTLINE // len(mine))
+        whole, self._outline = self._outline, [place for piece in mine for place in piece.outline(most)]
+        margin, self._margin = self._margin, LOOSE
+        try:
+            (view,) = self.fixed_views(lambda *_: None, 1, views=((name, towards, up),))
+        finally:
+            self._outline, self._margin = whole, margin
+        yield {**view, "name": "subjects"}
+
     def camera_view(self, camera, render, notes):
         """The picture through a camera of the scene; none, and a note, if it cannot be rendered."""
-        seen = camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        matrix = seen.matrix_world.copy()
-        if (
-            seen.type != "CAMERA"
-            or seen.data.type == "PANO"
-            or not all(math.isfinite(part) for row in matrix for part in row)
-        ):
+        obj = studio_camera(self._studio, camera)
+        if obj is None:
             notes.append(
                 f"The scene's camera {camera.name!r} is neither perspective nor orthographic, so its view is not shown."
             )
             return
-        data = seen.data.copy()
-        obj = self._studio.camera(data, matrix)
-        data.animation_data_clear()
-        data.dof.use_dof = False
-        scale = self._studio.scale
-        data.clip_start, data.clip_end = data.clip_start * scale, data.clip_end * scale
-        data.ortho_scale *= scale
+        data = obj.data
         aspect = (render.resolution_x * render.pixel_aspect_x) / (render.resolution_y * render.pixel_aspect_y)
         width = min(self._size * _CAMERA_WIDER, round(self._size * aspect))
         size = (max(16, width), max(16, min(self._size, round(width / aspect))))
@@ -372,6 +417,22 @@ class PreviewRenderer:
         return file
 
 
+def studio_camera(studio, camera):
+    """A copy of a camera of the scene in the studio; None if it is neither perspective nor orthographic."""
+    seen = camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    matrix = seen.matrix_world.copy()
+    is_placed = all(math.isfinite(part) for row in matrix for part in row)
+    if seen.type != "CAMERA" or seen.data.type == "PANO" or not is_placed:
+        return None
+    data = seen.data.copy()
+    obj = studio.camera(data, matrix)
+    data.animation_data_clear()
+    data.dof.use_dof = False
+    data.clip_start, data.clip_end = data.clip_start * studio.scale, data.clip_end * studio.scale
+    data.ortho_scale *= studio.scale
+    return obj
+
+
 def _grouped(scene, boxes):
     """The boxes of the protocol's objects, and of those of Blender's that belong to none."""
     groups, members = {}, set()
@@ -383,7 +444,7 @@ def _grouped(scene, boxes):
     return groups | {name: box for name, box in boxes.items() if name not in members and name not in groups}
 
 
-def _labels(scene, boxes, whole):
+def _labels(scene, boxes, whole, first):
     """The centres of the largest objects of the protocol (lacking those, of Blender's), those that fill the picture
     left out."""
     tagged = {collection.name for collection in object_collections(scene)}
@@ -393,7 +454,7 @@ def _labels(scene, boxes, whole):
         for name, box in groups.items()
         if (name in tagged or not tagged) and whole.meets(box) and box.diagonal < 0.6 * whole.diagonal
     }
-    largest = sorted(small, key=lambda name: -small[name].diagonal)[:_LABELS]
+    largest = sorted(small, key=lambda name: (name not in first, -small[name].diagonal))[:_LABELS]
     return {name: small[name].centre for name in largest}
 
 
