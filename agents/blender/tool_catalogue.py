@@ -15,6 +15,7 @@ from agents.blender.tools import (
     render,
     scene_state,
     tag,
+    uv_preview,
     verify,
 )
 
@@ -25,6 +26,7 @@ TOOLS: tuple[BlenderTool, ...] = (
     scene_state.TOOL,
     *previews.TOOLS,
     material_preview.TOOL,
+    uv_preview.TOOL,
     motion_sheet.TOOL,
     execute.TOOL,
     tag.TOOL,

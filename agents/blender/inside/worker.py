@@ -27,6 +27,7 @@ TOOLS = {
     "group": ("group", "group"),
     "preview": ("preview.fixed_views", "preview"),
     "material_sheet": ("preview.material_sheet", "material_sheet"),
+    "uv_sheet": ("preview.uv_sheet", "uv_sheet"),
     "subject_mask": ("preview.subject_mask", "subject_mask"),
     "motion_sheet": ("motion.motion_sheet", "motion_sheet"),
     "scene_state": ("state.readout", "scene_state"),

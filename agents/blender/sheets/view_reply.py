@@ -19,6 +19,7 @@ Side = Annotated[int, Field(ge=16, le=_LARGEST)]
 Scale = Annotated[float, Field(gt=0, le=_FARTHEST)]
 Place = tuple[Pixel, Pixel]
 Corner = tuple[Metres, Metres, Metres]
+Part = Annotated[float, Field(ge=0, le=1.001)]
 Share = Annotated[float, Field(ge=-2, le=2)]
 Axis = tuple[Literal["X", "Y", "Z"], Share, Share, Share]
 """A world axis: its letter, and where it points in the picture: right, up, towards the viewer."""
@@ -93,6 +94,37 @@ class MaterialReply(Claim):
     title: Name
     scene: list[LitView] = Field(max_length=4)
     objects: list[LitObject] = Field(max_length=12)
+    notes: list[Note] = Field(max_length=_MOST_NOTES)
+
+
+class UvMesh(Claim):
+    """A mesh's UV map: files of its pictures, bounds, shares of its surface (``overlap``: of the map; None if it was
+    not measured), and from how many to how many tiles a metre has. ``missing``: it has no usable coordinates."""
+
+    name: Name
+    uv_map: Name
+    maps: Count
+    faces: Count
+    missing: bool
+    checker: _File
+    map: _File | None
+    alike: list[Name] = Field(max_length=8)
+    low: tuple[Metres, Metres] = (0.0, 0.0)
+    high: tuple[Metres, Metres] = (0.0, 0.0)
+    outside: Part = 0.0
+    stretched: Part = 0.0
+    collapsed: Part = 0.0
+    mirrored: Part = 0.0
+    overlap: Part | None = None
+    scale: tuple[Metres, Metres] = (0.0, 0.0)
+
+
+class UvReply(Claim):
+    """The UV maps of a scene, and the names of meshes ``without`` one."""
+
+    title: Name
+    meshes: list[UvMesh] = Field(max_length=8)
+    without: list[Name] = Field(max_length=64)
     notes: list[Note] = Field(max_length=_MOST_NOTES)
 
 

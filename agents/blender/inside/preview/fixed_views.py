@@ -66,7 +66,9 @@ def preview(arguments, report):
         camera = scene.camera if kind == SCENE else None
         turn = 0.0 if is_layout else turn_of(_root_of(objects).matrix_world)
         with renderer.cleaned_up():
-            views = list(renderer.fixed_views(report, len(VIEWS) + (camera is not None), views=turned_views(turn)))
+            views = list(
+                renderer.fixed_views(report, len(VIEWS) + (camera is not None), views=turned_views(turn))
+            )
             views += renderer.close_view([name for owners in wanted.values() for name in owners])
             if camera is not None:
                 report(len(views), len(views) + 1, "camera")
@@ -325,7 +327,7 @@ class PreviewRenderer:
             }
 
     def close_view(self, owners):
-        """The three-quarter picture of some objects (names) among all others; none if the fixed views show them well."""
+        """The three-quarter picture of some objects (names) among all others; none if they are large in all views."""
         mine = [piece for piece, _ in self._placed if piece.owner in owners]
         if not mine or BoundingBox.around(mine).diagonal > _SMALL * self.whole.diagonal:
             return

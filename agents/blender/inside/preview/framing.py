@@ -138,7 +138,9 @@ def turned_views(turn):
     if not turn:
         return VIEWS
     around = Matrix.Rotation(turn, 3, "Z")
-    return tuple((name, tuple(around @ Vector(towards)), tuple(around @ Vector(up))) for name, towards, up in VIEWS)
+    return tuple(
+        (name, tuple(around @ Vector(towards)), tuple(around @ Vector(up))) for name, towards, up in VIEWS
+    )
 
 
 def turn_of(matrix):

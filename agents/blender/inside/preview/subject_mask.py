@@ -11,7 +11,14 @@ from .fixed_views import studio_camera
 from .scene_copy import SceneCopy
 from .studio_scene import StudioScene, drawing_engine, tree_of
 
-_LEVELS = (0, 51, 102, 153, 204, 255)  # of a channel: far apart, so that rounding does not confuse two colours
+_LEVELS = (
+    0,
+    51,
+    102,
+    153,
+    204,
+    255,
+)  # of a channel: far apart, so that rounding does not confuse two colours
 _COLOURS = [(red, green, blue) for red in _LEVELS for green in _LEVELS for blue in _LEVELS]
 _REST = _COLOURS[-1]  # white: belongs to no object that is listed
 _MOST = len(_COLOURS) - 2  # black is what nothing covers

@@ -1,4 +1,4 @@
-"""The stills in neutral light: the file's own materials, whatever the scene's light, and nothing of the scene changed."""
+"""The stills in neutral light: the file's own materials, whatever the scene's light."""
 
 from __future__ import annotations
 
@@ -13,8 +13,6 @@ from agents.blender.tools import material_preview
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
-
     from live_session import LiveSession
 
     from agents.blender.tools.base import Result
@@ -41,9 +39,8 @@ for name in ('Chest 0', 'Chest 1', 'Chest 2', 'Shell'):
 
 
 @pytest.fixture(autouse=True)
-def _small(monkeypatch: pytest.MonkeyPatch) -> Iterator[None]:
+def _small(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(material_preview, "_PANEL", 64)
-    yield
 
 
 def pictures(result: Result) -> list[Image.Image]:
