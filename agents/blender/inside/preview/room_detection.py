@@ -18,7 +18,7 @@ _PART = 0.12 * REACH  # and of this size, under a roof, a part of a wall
 _FURNITURE = 0.45 * REACH  # larger objects can be a roof, and do not count as content of a room
 _ON_WALL = 0.04 * REACH  # a wall that is this close to the shell belongs to it
 _ABOVE_TOP = 0.005 * REACH
-_LOW = 0.08 * REACH  # a hollow that is no higher is the inside of a board or a shelf
+_LOW = 0.08 * REACH  # what has something so near above it is a leg, a post or in a shelf, and tells of no room
 _STEP = 1e-4 * REACH
 _MOST_FACES = 200_000  # of an object that rays are cast against
 _MOST_THINGS = 60
@@ -61,9 +61,9 @@ def find_room(studio, placed, boxes):
         return None
     rays = _Rays(studio, placed)
     tops = [_top(studio, box) for box in boxes if box.diagonal * studio.scale <= _FURNITURE]
-    tops = tops[:: max(1, len(tops) // _MOST_TOPS)]
+    tops = [top for top in tops[:: max(1, len(tops) // _MOST_TOPS)] if not rays.is_low(top)]
     grid = _grid(studio, placed)
-    within = [top for top in tops if rays.is_inside(top) and not rays.is_low(top)]
+    within = [top for top in tops if rays.is_inside(top)]
     if tops and len(within) < _SOME * len(tops):
         return _under_roof(rays, tops, grid)
     # A solid is not a room: if nothing is in it, only the fronts of faces count as walls.
