@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from agents.blender.sheets.view_reply import LitView
     from agents.blender.supervisor import Supervisor
 
-_PANEL, _COLUMNS = 320, 4  # pixels a side of an object's still
+_PANEL, _COLUMNS = 272, 4  # pixels a side of an object's still
 _BACKGROUND: contact_sheet.Colour = (206, 209, 214)
 _MOST_OBJECTS, _MOST_FRAMES = 12, 4
 _NAMED = 6

@@ -148,8 +148,11 @@ def _has_surface(owners):
 
 
 def _alike(groups):
-    """{name: those that have the same materials and as many objects, and are not shown}, the largest groups first."""
-    first, alike = {}, {}
+    """{name: those that have the same materials and as many parts, and are not shown}.
+
+    First those that show materials that none before has, the most at once before all others.
+    """
+    first, alike, seen = {}, {}, set()
     for name in sorted(groups, key=lambda name: -len(_materials_of(groups[name]))):
         materials = _materials_of(groups[name])
         look = (tuple(materials), len(groups[name])) if materials else name
@@ -158,7 +161,12 @@ def _alike(groups):
         else:
             first[look] = name
             alike[name] = []
-    return alike
+    new = {}
+    for name in alike:
+        materials = {*_materials_of(groups[name])}
+        new[name] = bool(materials - seen)
+        seen |= materials
+    return {name: alike[name] for name in sorted(alike, key=lambda name: not new[name])}
 
 
 def _materials_of(owners):
