@@ -45,7 +45,7 @@ class MaterialArguments(Arguments):
     )
     width: int = Field(default=960, ge=64, le=1536, description="Pixels, of the scene's picture.")
     seconds: float = Field(
-        default=90.0,
+        default=150.0,
         ge=1,
         le=3600,
         description="After so long no further still is begun; the reply says which.",

@@ -86,7 +86,9 @@ _ALIKE = """\
 The reply is one contact sheet: front, right, top and three-quarter view, each with a scale bar and the world's axes, \
 framed on the evaluated geometry at the frame (modifiers, simulations, instances), in one plain colour for each \
 material. The scene is not changed."""
-_OWN_AXES = "Front and right are its own: where it is turned about Z, the views turn with it, and the reply says so."
+_OWN_AXES = (
+    "Front and right are its own: where it is turned about Z, the views turn with it, and the reply says so."
+)
 
 
 def run_single_mesh(context: ToolContext, arguments: SingleMeshArguments, call: Call) -> Result:
@@ -158,9 +160,10 @@ def _across(view: str, preview: PreviewReply) -> str:
 
 
 def _sheet(kind: str, preview: PreviewReply, panels: list[contact_sheet.Panel]) -> Image.Image:
-    rows = {4: (2, 2), 5: (3, 2), 6: (3, 2, 1)}[len(panels)]
-    left = iter(panels)
-    blocks = [contact_sheet.grid([next(left) for _ in range(row)], row) for row in rows]
+    blocks = [contact_sheet.grid(panels, 2)]
+    if len(panels) > 4:
+        rows = (panels[:3], panels[3:5], panels[5:])
+        blocks = [contact_sheet.grid(row, len(row)) for row in rows if row]
     return contact_sheet.sheet(
         f"{kind.capitalize()}: {preview.title}",
         blocks,

@@ -138,7 +138,9 @@ def _animation(
             data["video"] = _video(renderer, cache, outcome, range(first, last + 1), video)
         except BlenderError as error:
             outcome.stopped = f"the video could not be made: {error}"
-    looked = {number: look_at(renderer.pictures, cache.path(number)) for number in _sampled(outcome.available)}
+    looked = {
+        number: look_at(renderer.pictures, cache.path(number)) for number in _sampled(outcome.available)
+    }
     pictures = list(looked.values())
     data["warnings"] = image_faults(pictures)
     data |= _measured(renderer, looked)
@@ -148,13 +150,17 @@ def _animation(
 
 def _measured(renderer: FrameRenderer, looked: dict[int, RenderedPicture]) -> dict[str, Any]:
     """The numbers of the pictures by frame; for the frame at which the scene stands, those of each object, too."""
-    data: dict[str, Any] = {"pictures": [{"frame": frame, **one.numbers.data} for frame, one in looked.items()]}
+    data: dict[str, Any] = {
+        "pictures": [{"frame": frame, **one.numbers.data} for frame, one in looked.items()]
+    }
     lines = [f"Frame {frame}: {one.numbers}." for frame, one in looked.items()]
     if renderer.at in looked:
         try:
             subjects = renderer.subjects(looked[renderer.at].image)
         except BlenderError as error:
-            lines.append(f"What each object has of the picture could not be measured: {str(error)[:200]}")
+            lines.append(
+                f"What each object has of the picture could not be measured: {str(error).partition(chr(10))[0][:200]}"
+            )
         else:
             data |= {"subjects": [one.data for one in subjects[:_LISTED]], "subjects_frame": renderer.at}
             lines += format_subjects(subjects, renderer.at)
