@@ -271,9 +271,10 @@ class RoleTools:
     @property
     def offered(self) -> tuple[Tool, ...]:
         """What the model is told of them."""
-        if self._role != coder.NAME or not self._run.options.stages or self._run.options.mode == "edit":
+        if not self._run.options.stages or self._run.options.mode == "edit":
             return self._run.tools.offered(self._names)
-        return self._run.tools.offered([name for name in self._names if coder.is_needed(name, self._stage)])
+        is_told = coder.is_needed if self._role == coder.NAME else coder.is_seen
+        return self._run.tools.offered([name for name in self._names if is_told(name, self._stage)])
 
     def use(self, call: ToolUse) -> ToolResult:
         """Calls one, for the model."""

@@ -40,9 +40,23 @@ _LEFT_OUT: dict[str, frozenset[str]] = {
 }
 
 
+_ONLY_IN: dict[str, tuple[str, ...]] = {
+    "blender_uv_preview": ("uv",),
+    "blender_material_preview": ("texture", "camera", "light"),
+}
+
+
 def is_needed(tool: str, stage: Stage) -> bool:
     """Whether a coder is told of a tool in a stage."""
+    if not is_seen(tool, stage):
+        return False
     return tool not in _ALWAYS_LEFT_OUT and tool not in _LEFT_OUT.get(stage, ())
+
+
+def is_seen(tool: str, stage: Stage) -> bool:
+    """Whether a stage has what a tool shows: UV maps and materials are looked at where they are made or filmed."""
+    stages = _ONLY_IN.get(tool)
+    return stages is None or stage in stages
 
 
 _BEGIN = """\

@@ -56,11 +56,9 @@ class MaterialArguments(Arguments):
 
 
 DESCRIPTION = """\
-See materials as they render: Cycles stills with the file's own shaders, procedural textures, bumps, glass and metal \
-included, in a neutral light that is not the scene's. So nothing has to be lit first, and the inside of a closed room \
-is bright, too. Shows the scene through its camera (lacking one, from a three-quarter view, rooms opened), and each \
-object alone with the names of its materials. Brightness and shadows say nothing of the scene's own light: \
-blender_render shows that. The scene is not changed."""
+See materials as they render: Cycles stills with the file's own shaders, textures, glass and metal included, in \
+neutral light that is not the scene's; closed rooms are bright, too. Shows the scene through its camera (lacking one, \
+from a three-quarter view), and each object alone. The scene is not changed."""
 
 
 def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Result:

@@ -77,18 +77,15 @@ class SceneLayoutArguments(LayoutArguments):
     subjects: list[Annotated[str, Field(min_length=1, max_length=200)]] = Field(
         default_factory=list[str],
         max_length=40,
-        description="Names of the objects that matter: they are labelled, and if they are small in the views, a view "
-        "more is close to them. By default all of the scene protocol but the ground's.",
+        description="Objects to label first, and to show closely if small.",
     )
 
 
 _ALIKE = """\
 The reply is one contact sheet: front, right, top and three-quarter view, each with a scale bar and the world's axes, \
-framed on the evaluated geometry at the frame (modifiers, simulations, instances), in one plain colour for each \
-material. The scene is not changed."""
-_OWN_AXES = (
-    "Front and right are its own: where it is turned about Z, the views turn with it, and the reply says so."
-)
+framed on the evaluated geometry at the frame (modifiers, simulations, instances), in plain \
+colours. The scene is not changed."""
+_OWN_AXES = "Front and right are its own."
 
 
 def run_single_mesh(context: ToolContext, arguments: SingleMeshArguments, call: Call) -> Result:

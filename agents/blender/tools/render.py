@@ -83,9 +83,8 @@ Render what the camera sees: a still (PNG), or an animation (PNG frames and an M
 stay as they are. Complete frames that already exist under the same `name`, made of the same scene with the same \
 settings, are kept, so a call that broke off continues where it stopped; frames of an earlier state are replaced. \
 Physics that is not baked is stepped from its first frame, never jumped; baking first is faster. With `time_budget` \
-(seconds) fewer samples are taken, and only as a last resort frames are left out; the reply says so. It also says how \
-much of a picture is black or burnt out, and how large and how bright each object is in it. Start with a small still \
-of few samples, and look at it. Returns the image, or frames from start, middle and end."""
+(seconds) fewer samples are taken, and only as a last resort frames are left out; the reply says so. Begin with a \
+small still, and look at it and its numbers. Returns the image, or frames from start, middle and end."""
 
 
 def run(context: ToolContext, arguments: RenderArguments, call: Call) -> Result:

@@ -37,11 +37,9 @@ class UvArguments(Arguments):
 
 
 DESCRIPTION = """\
-See UV maps. For each mesh with a map (at most eight; copies of one mesh once): a checker on it, whose squares are of \
-one size and square where the map is good, and the map itself: covered area blue, stretched yellow, overlapping red, \
-the tile from 0 to 1 outlined. In numbers: bounds, and the share of the surface that is stretched (twice as long one \
-way as the other), collapsed to nothing, mirrored, or outside the tile; the share of the map that overlaps; the scale \
-in tiles per metre. Names the meshes without a map. The scene is not changed."""
+See UV maps: for up to eight meshes a checker on each, and the map (stretched yellow, overlapping red, the tile from 0 \
+to 1 outlined), with bounds, scale, and the shares stretched, collapsed, mirrored, outside, overlapping. The scene is \
+not changed."""
 
 
 def run(context: ToolContext, arguments: UvArguments, call: Call) -> Result:
