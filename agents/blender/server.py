@@ -50,6 +50,8 @@ _HABITS = (
     ("blender_scene_state", "for numbers: positions, sizes, modifiers, caches"),
     ("blender_single_mesh_preview", "to see one mesh from all sides before it is used"),
     ("blender_scene_layout_preview", "to see the scene; use it after every step that changes what is seen"),
+    ("blender_material_preview", "to see materials as they render, in neutral light, before the scene has any"),
+    ("blender_uv_preview", "to see UV maps: a checker, bounds, stretch, overlap"),
     ("blender_trial", "to try physics over some frames before you bake it: numbers, pictures, what a bake will take"),
     ("blender_bake", "for physics, before you judge motion; never jump to a frame of an unbaked simulation"),
     ("blender_motion_sheet_preview", "to see and measure motion over time"),

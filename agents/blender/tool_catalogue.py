@@ -9,12 +9,14 @@ from agents.blender.tools import (
     execute,
     files,
     group,
+    material_preview,
     motion_sheet,
     previews,
     render,
     scene_state,
     tag,
     trial,
+    uv_preview,
     verify,
 )
 
@@ -24,6 +26,8 @@ if TYPE_CHECKING:
 TOOLS: tuple[BlenderTool, ...] = (
     scene_state.TOOL,
     *previews.TOOLS,
+    material_preview.TOOL,
+    uv_preview.TOOL,
     motion_sheet.TOOL,
     execute.TOOL,
     tag.TOOL,

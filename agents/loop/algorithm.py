@@ -40,7 +40,7 @@ def make(run: Run) -> RenderResult:
     told = format_plan(plan, run.options.prompt)
     text = told if staged else f"{_WITHOUT_STAGES}\n\n{told}"
     run.task = task = RunTask(text, plan, _actors(plan))
-    wanted = plan.stages if staged else ALL_AT_ONCE
+    wanted = stages_of(plan) if staged else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
     return finish(run, task, plan.render, last)
 
@@ -74,6 +74,12 @@ def result_so_far(run: Run) -> Path | None:
     """The file of the stage that was closed last."""
     closed = [stage.file for stage in run_state_after(run.journal.rows).stages if stage.state == "closed"]
     return run.root / closed[-1] if closed else None
+
+
+def stages_of(plan: ScenePlan) -> tuple[Stage, ...]:
+    """The stages to build: without the UV stage where no material has a texture, so that nothing needs coordinates."""
+    has_texture = any(planned.material and planned.material.texture.strip() for planned in plan.objects)
+    return tuple(stage for stage in plan.stages if has_texture or stage != "uv")
 
 
 def _actors(plan: ScenePlan) -> tuple[str, ...]:

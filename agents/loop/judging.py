@@ -9,25 +9,20 @@ from typing import TYPE_CHECKING, Any, cast
 from agents.loop.edit.baseline import new_findings
 from agents.loop.edit.declared_mechanisms import undeclared
 from agents.loop.events import Reviewed, Verified
-from agents.loop.run import RUNNER, VERIFIER, VERIFY
-from agents.plan.part import STAGES
+from agents.loop.evidence import evidence, moves
+from agents.loop.run import VERIFIER, VERIFY
 from agents.plan.tactical import Review
 from simworlds.llm.errors import Declined, Misfit
-from simworlds.llm.messages import Text
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Mapping, Sequence
+    from collections.abc import Callable, Sequence
 
     from agents.loop.run import Run
     from agents.loop.task import Finding, RunTask
     from agents.plan.part import Stage
     from agents.plan.tactical import Decision, TacticalPlan
     from agents.roles.reviewer import Reviewer
-    from simworlds.llm.messages import Block
 
-_MOST_ACTORS = 6
-_SEEN_BY_CAMERA: tuple[Stage, ...] = ("camera", "light")
-_STILL = {"kind": "still", "name": "look", "width": 480, "samples": 16, "denoise": True}
 _OFF = "The verifier is switched off in this run."
 
 
@@ -61,11 +56,6 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
     return VerifierVerdict(all(one["severity"] != "hard" for one in findings), text, tuple(findings))
 
 
-def moves(stage: Stage) -> bool:
-    """Whether things move from this stage on."""
-    return STAGES.index(stage) >= STAGES.index("motion")
-
-
 def _undecided(why: str, task: RunTask) -> VerifierVerdict:
     """A scene that cannot be judged blocks the stage, unless the file could not be judged before the edit either."""
     before = any(finding["rule"] == VERIFIER for finding in task.known)
@@ -93,28 +83,12 @@ def _listed(findings: Sequence[Finding]) -> str:
 # The reviewer
 
 
-def review(run: Run, reviewer: Reviewer, tactic: TacticalPlan, actors: Sequence[str]) -> Review:
+def review(run: Run, reviewer: Reviewer, tactic: TacticalPlan, task: RunTask) -> Review:
     """The reviewer's verdict. A reviewer that declines, or gives no valid answer, blocks."""
     try:
-        return reviewer.review(tactic, run.attempt or 1, evidence(run, tactic.stage, actors))
+        return reviewer.review(tactic, run.attempt or 1, evidence(run, tactic.stage, task))
     except (Declined, Misfit) as error:
         return Review(judgements=(), blocking=True, summary=f"There is no review: {error}"[:4000])
-
-
-def evidence(run: Run, stage: Stage, actors: Sequence[str]) -> list[Block | str]:
-    """What the reviewer sees of a stage: the layout, the readout, the motion, the camera's view."""
-    shown: list[Block | str] = []
-    calls: list[tuple[str, Mapping[str, Any]]] = [("blender_scene_layout_preview", {})]
-    if actors:
-        few = actors[:: max(1, -(-len(actors) // _MOST_ACTORS))]
-        calls.append(("blender_motion_sheet_preview", {"actors": list(few)}))
-    if stage in _SEEN_BY_CAMERA:
-        calls.append(("blender_render", _STILL))
-    calls.append(("blender_scene_state", {}))
-    for name, arguments in calls:
-        outcome = run.use(RUNNER, stage, name, arguments)
-        shown += [Text(f"{name}:"), *outcome.content]
-    return shown
 
 
 # Together

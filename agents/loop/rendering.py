@@ -9,7 +9,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.render.image_checks import look_at
+from agents.blender.render.image_checks import LARGEST_STILL, look_at
+from agents.loop.edit.comparison import compared
 from agents.loop.errors import RunError
 from agents.loop.events import FinalReviewed, SceneRendered
 from agents.loop.judging import note_verdict, verify
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from agents.plan.scene import RenderSettings
     from simworlds.llm.messages import Block
 
+LARGEST_FRAME = 1024  # pixels a side, of one of several frames
 _FRAMES_SHOWN = 5  # at 0, 25, 50, 75, 100 %
 _ENGINES = {"CYCLES": "cycles", "BLENDER_EEVEE": "eevee", "BLENDER_WORKBENCH": "workbench"}
 
@@ -84,12 +86,17 @@ def render(run: Run, plan: RenderSettings | None, number: int) -> RenderResult:
 def _pictures(paths: Sequence[Path]) -> tuple[tuple[Path, Picture], ...]:
     """Rendered frames with their pictures as models see them; Blender has written the files."""
     with closing(PictureDecoder(best_sandbox())) as decoder:
-        return tuple((path, Picture(look_at(decoder, path).png)) for path in paths)
+        return tuple(
+            (path, Picture(look_at(decoder, path, LARGEST_STILL if len(paths) == 1 else LARGEST_FRAME).png))
+            for path in paths
+        )
 
 
 def review(run: Run, task: RunTask, rendering: RenderResult, number: int) -> FinalReview:
     """The final reviewer's verdict. A reviewer that declines counts as accepting, and the summary says so."""
     content: list[Block | str] = [Text(rendering.text)]
+    if compared_with := _in_film(rendering, task):
+        content += compared(run, task, compared_with)
     for place, (path, picture) in enumerate(rendering.shown):
         content += [Text(f"Frame {path.stem} ({25 * place} %):"), picture]
     try:
@@ -98,6 +105,16 @@ def review(run: Run, task: RunTask, rendering: RenderResult, number: int) -> Fin
         review = FinalReview(verdict="accept", summary=f"There is no final review: {error}"[:4000])
     run.journal.note(FinalReviewed(round=number, review=review))
     return review
+
+
+def _in_film(rendering: RenderResult, task: RunTask) -> Picture | None:
+    """The picture of the frame that an edit is compared at; the first, if that was not rendered."""
+    if task.before is None and task.goal is None:
+        return None
+    name = f"{task.before_frame or 0:04d}"
+    path = next((one for one in rendering.frames if one.stem == name), rendering.frames[0])
+    known = dict(rendering.shown)
+    return known[path] if path in known else _pictures([path])[0][1]
 
 
 def fix(run: Run, task: RunTask, review: FinalReview, last: str) -> bool:

@@ -47,13 +47,18 @@ if TYPE_CHECKING:
 RUNNER, VERIFIER = "runner", "verifier"
 VERIFY = "blender_verify"
 CHECK = "blender_check"
+RENDER = "blender_render"
 START = "start"
+_KEPT_STILLS = 2
 _LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
 
 
 @dataclass
 class Run:
-    """What the loop works with. Two threads may call at the same time."""
+    """What the loop works with. Two threads may call at the same time.
+
+    ``stills``: the last pictures that the coder rendered in this attempt, each with what the tool said of it.
+    """
 
     root: Path
     options: Options
@@ -65,6 +70,7 @@ class Run:
     stop: threading.Event = field(default_factory=threading.Event)
     attempt: int | None = None
     task: RunTask | None = None
+    stills: list[tuple[str, Picture]] = field(default_factory=list["tuple[str, Picture]"])
     _began: float = field(default_factory=time.monotonic)
     _calls: Counter[tuple[str, str]] = field(default_factory=Counter[tuple[str, str]])
     _aligned: bool = False
@@ -221,6 +227,7 @@ class Run:
     def attempted(self, stage: Stage, attempt: int, code: Callable[[], WorkResult]) -> WorkResult:
         """Lets a coder work, and journals the beginning and end of the attempt."""
         self.attempt = attempt
+        self.stills.clear()
         about: dict[str, Any] = {"stage": stage, "attempt": attempt}
         self.journal.note(AttemptBegan(**about))
         worked = code()
@@ -264,9 +271,10 @@ class RoleTools:
     @property
     def offered(self) -> tuple[Tool, ...]:
         """What the model is told of them."""
-        if self._role != coder.NAME or not self._run.options.stages or self._run.options.mode == "edit":
+        if not self._run.options.stages or self._run.options.mode == "edit":
             return self._run.tools.offered(self._names)
-        return self._run.tools.offered([name for name in self._names if coder.is_needed(name, self._stage)])
+        is_told = coder.is_needed if self._role == coder.NAME else coder.is_seen
+        return self._run.tools.offered([name for name in self._names if is_told(name, self._stage)])
 
     def use(self, call: ToolUse) -> ToolResult:
         """Calls one, for the model."""
@@ -276,6 +284,9 @@ class RoleTools:
         task = self._run.task if call.name == VERIFY else None
         known = task.verification(self._stage) if task else None
         outcome = self._run.use(self._role, self._stage, call.name, call.input, known)
+        if self._role == coder.NAME and call.name == RENDER and not outcome.failed:
+            self._run.stills += [(outcome.text, picture) for picture in outcome.pictures[-_KEPT_STILLS:]]
+            del self._run.stills[:-_KEPT_STILLS]
         return ToolResult(call.id, outcome.content, outcome.failed)
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 from functools import partial
 from typing import TYPE_CHECKING, Literal
 
+from agents.loop.edit.comparison import references
 from agents.loop.errors import Aborted
 from agents.loop.events import Decided, StageMoved, TacticMade
-from agents.loop.judging import format_review, judge, moves, overruled, review, verify
+from agents.loop.judging import format_review, judge, overruled, review, verify
 from agents.roles.coder import Coder
 from agents.roles.reviewer import Reviewer
 
@@ -37,7 +38,7 @@ class StageLoop:
         self._task = task
         self._stage: Stage = stage
         self._before = before
-        self._coder = Coder(run.context, stage, task.plan_text, edit=task.edit)
+        self._coder = Coder(run.context, stage, task.plan_text, edit=task.edit, shown=references(task))
         self._reviewer = Reviewer(run.context, stage, task.plan_text, edit=task.edit)
         self._retries = self._replans = 0
         self._overruled = ""
@@ -79,13 +80,12 @@ class StageLoop:
 
     def _judged(self, attempt: int, tactic: TacticalPlan) -> tuple[VerifierVerdict, Review]:
         run, task, stage = self._run, self._task, self._stage
-        actors = task.actors if moves(stage) else ()
         return judge(
             run,
             stage,
             attempt,
             partial(verify, run, stage, task),
-            partial(review, run, self._reviewer, tactic, actors),
+            partial(review, run, self._reviewer, tactic, task),
         )
 
     def _decided(

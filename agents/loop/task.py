@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from agents.plan.edit import EditedActor
     from agents.plan.part import Stage
     from agents.plan.scene import ScenePlan
+    from simworlds.llm.messages import Picture
 
 Finding = Mapping[str, Any]
 """A finding of the verifier, as ``agents.protocol.report.json_report.as_json`` gives it."""
@@ -24,6 +25,7 @@ class RunTask:
     An ``edit`` has no scene plan; it is judged without what was ``known`` of the file before, and, unless the file is
     ``tagged`` (keeps the scene protocol), without the rules of its layout. ``actors`` are those that move;
     of an edit, ``declared`` says by what, and ``unplanned`` finds what has changed that its plan does not ask for.
+    ``before`` is a still of the file as it was, at ``before_frame``, and ``goal`` a picture of what it is to look like.
     """
 
     plan_text: str
@@ -34,6 +36,9 @@ class RunTask:
     known: tuple[Finding, ...] = ()
     declared: tuple[EditedActor, ...] = ()
     unplanned: Callable[[Stage], list[Finding]] | None = None
+    before: Picture | None = None
+    before_frame: int | None = None
+    goal: Picture | None = None
 
     def verification(self, stage: Stage) -> dict[str, Any]:
         """What ``blender_verify`` is asked at the end of a stage."""

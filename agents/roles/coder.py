@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from agents.plan.part import Stage
     from agents.plan.tactical import TacticalPlan
     from agents.roles.base import RoleContext
+    from simworlds.llm.messages import Block
 
 NAME = "coder"
 
@@ -42,9 +43,23 @@ _LEFT_OUT: dict[str, frozenset[str]] = {
 }
 
 
+_ONLY_IN: dict[str, tuple[str, ...]] = {
+    "blender_uv_preview": ("uv",),
+    "blender_material_preview": ("texture", "camera", "light"),
+}
+
+
 def is_needed(tool: str, stage: Stage) -> bool:
     """Whether a coder is told of a tool in a stage."""
+    if not is_seen(tool, stage):
+        return False
     return tool not in _ALWAYS_LEFT_OUT and tool not in _LEFT_OUT.get(stage, ())
+
+
+def is_seen(tool: str, stage: Stage) -> bool:
+    """Whether a stage has what a tool shows: UV maps and materials are looked at where they are made or filmed."""
+    stages = _ONLY_IN.get(tool)
+    return stages is None or stage in stages
 
 
 _BEGIN = """\
@@ -94,25 +109,34 @@ Mend just that; what moves must be baked again. End with a short report."""
 class Coder:
     """One stage's coder. Everything raises ModelError."""
 
-    def __init__(self, context: RoleContext, stage: Stage, plan: str, *, edit: bool = False) -> None:
-        """``plan`` is what the whole run is held to, in words."""
+    def __init__(
+        self,
+        context: RoleContext,
+        stage: Stage,
+        plan: str,
+        *,
+        edit: bool = False,
+        shown: Sequence[Block | str] = (),
+    ) -> None:
+        """``plan`` is what the whole run is held to, in words; ``shown`` are pictures to begin with."""
         self._stage = stage
         self._plan = plan
         self._talk = Conversation(
             context, NAME, system_prompt(NAME, stage, edit=edit), context.tools(NAME, stage)
         )
         self._tactic = ""
+        self._shown = shown
 
     def begin(self, tactic: TacticalPlan, state: str) -> WorkResult:
         """The first attempt."""
         self._tactic = plan_json(tactic)
         words = _BEGIN.format(plan=self._plan, stage=self._stage, tactic=self._tactic, state=state)
-        return self._work(words)
+        return self._work(words, shown=self._shown)
 
     def again(self, instructions: str, verified: str, reviewed: str) -> WorkResult:
         """A retry, in the scene as it stands."""
         words = _AGAIN.format(instructions=instructions, verified=verified, reviewed=reviewed)
-        return self._work(words, verified)
+        return self._work(words, open_findings=[verified])
 
     def replanned(self, tactic: TacticalPlan, state: str) -> WorkResult:
         """An attempt by a new plan, in the scene as it was before the stage."""
@@ -123,6 +147,8 @@ class Coder:
         """What the final reviewer wants mended."""
         return self._work(_FIX.format(plan=self._plan, instructions=instructions, state=state))
 
-    def _work(self, words: str, *open_findings: str) -> WorkResult:
+    def _work(
+        self, words: str, *, shown: Sequence[Block | str] = (), open_findings: Sequence[str] = ()
+    ) -> WorkResult:
         pinned: Sequence[str] = (self._plan, *filter(None, [self._tactic]), *open_findings)
-        return self._talk.work(self._stage, words, pinned=pinned)
+        return self._talk.work(self._stage, words, *shown, pinned=pinned)

@@ -50,7 +50,7 @@ class Views:
 
     def __init__(self, session: LiveSession, kind: str, name: str | None = None, **more: Any) -> None:
         folder = session.blender.folder
-        given = {"kind": kind, "name": name, "frame": None, "everything": False, "size": SIZE}
+        given = {"kind": kind, "name": name, "frame": None, "everything": False, "size": SIZE, "subjects": []}
         given |= {"folder": str(folder.workspace.mount), **more}
         self.data: dict[str, Any] = session.blender.call("preview", given, unread, timeout=120).value
         self.by_name: dict[str, dict[str, Any]] = {}

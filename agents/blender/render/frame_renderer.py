@@ -8,7 +8,8 @@ from contextlib import suppress
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.render.replies import RenderPlan, VideoFacts
+from agents.blender.render.picture_numbers import subjects_of
+from agents.blender.render.replies import RenderPlan, SubjectMask, VideoFacts
 from simworlds.sandbox.errors import BlenderError, Died, Interrupted, Lost, Refusal
 from simworlds.sandbox.hostile_ground import copy_to
 from simworlds.sandbox.replies import Reader, T, nothing
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from PIL import Image
+
+    from agents.blender.render.picture_numbers import SubjectNumbers
     from agents.blender.render.replies import Shot, UnbakedCache
     from agents.blender.supervisor import Supervisor
     from agents.blender.tools.base import Call
@@ -26,6 +30,7 @@ if TYPE_CHECKING:
 _STEP_SECONDS = 20.0  # of stepping through a simulation in one call
 _SHARE = 0.95  # of a frame's progress that its own rendering makes up
 _LONGEST = 400  # characters of the note about a lost Blender
+_MASK = 256  # pixels, of the longer side of the picture by which subjects are measured
 _PATIENCE = 10.0  # seconds: a frame that takes no longer is finished when the call is cancelled
 
 
@@ -78,6 +83,11 @@ class FrameRenderer:
         return self._plan
 
     @property
+    def at(self) -> int | None:
+        """The frame that was rendered last, at which the scene stands."""
+        return self._at
+
+    @property
     def unbaked(self) -> list[UnbakedCache]:
         """Unbaked simulations, because of which frames are stepped."""
         return self._plan.unbaked
@@ -126,6 +136,23 @@ class FrameRenderer:
         if (facts.frames, facts.width, facts.height) != wanted:
             raise Refusal(f"The video does not match its frames: it has {facts}, expected {wanted}.")
         return facts
+
+    def subjects(self, picture: Image.Image) -> list[SubjectNumbers]:
+        """What a picture of the frame that was rendered last shows of each object. Raises BlenderError."""
+        self._what = "the measuring of subjects"
+        scale = min(1.0, _MASK / max(self.shot.width, self.shot.height))
+        size = [max(8, round(side * scale)) for side in (self.shot.width, self.shot.height)]
+        workspace = self._blender.folder.workspace
+        asked = {"camera": self.shot.camera, "size": size, "folder": workspace.for_blender()}
+        mask = self._ask("subject_mask", asked, SubjectMask.model_validate)
+        if mask.file is None:
+            return []
+        try:
+            with workspace.open(mask.file) as file:
+                drawn = self.pictures.decode(file, mask.file, longest=_MASK, under=(0, 0, 0)).image
+        finally:
+            workspace.remove(mask.file)
+        return subjects_of(picture, drawn, {colour: name for name, colour in mask.subjects})
 
     @property
     def _next(self) -> int | None:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from typing import Any
+from typing import Annotated, Any
 
 from pydantic import Field
 
 from simworlds.sandbox.replies import Claim, Count, Frame, Name, Side, Text
 
 _MOST_BLOCKS = 200_000
+Level = Annotated[int, Field(ge=0, le=255)]
 
 
 class Shot(Claim):
@@ -62,3 +63,10 @@ class VideoFacts(Claim):
     fps: float = Field(gt=0, le=1e6)
     bytes: Count
     seconds: float = Field(ge=0)
+
+
+class SubjectMask(Claim):
+    """A picture in which each subject (name, colour) is flat; no ``file`` where the camera has no such view."""
+
+    file: Annotated[str, Field(pattern=r"^\.preview-\d{1,3}\.png$")] | None
+    subjects: list[tuple[Name, tuple[Level, Level, Level]]] = Field(max_length=256)

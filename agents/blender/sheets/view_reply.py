@@ -19,6 +19,7 @@ Side = Annotated[int, Field(ge=16, le=_LARGEST)]
 Scale = Annotated[float, Field(gt=0, le=_FARTHEST)]
 Place = tuple[Pixel, Pixel]
 Corner = tuple[Metres, Metres, Metres]
+Part = Annotated[float, Field(ge=0, le=1.001)]
 Share = Annotated[float, Field(ge=-2, le=2)]
 Axis = tuple[Literal["X", "Y", "Z"], Share, Share, Share]
 """A world axis: its letter, and where it points in the picture: right, up, towards the viewer."""
@@ -49,7 +50,8 @@ class CloseUp(Claim):
 
 
 class PreviewReply(Claim):
-    """A preview: ``low`` and ``high`` are the corners of what is framed."""
+    """A preview: ``low`` and ``high`` are the corners of what is framed; ``turned``: by how many degrees about the
+    vertical the views are, along the subject's own axes."""
 
     title: Name
     frame: Frame
@@ -59,12 +61,71 @@ class PreviewReply(Claim):
     views: list[DrawnView] = Field(min_length=1, max_length=6)
     notes: list[Note] = Field(max_length=_MOST_NOTES)
     engine: Name
+    turned: float = Field(default=0.0, ge=-360, le=360)
 
     @property
     def size(self) -> Corner:
         """The framed extent along the axes."""
         (x, y, z), (right, back, top) = self.low, self.high
         return right - x, back - y, top - z
+
+
+class LitView(DrawnView):
+    """The scene in neutral light at a ``frame``."""
+
+    frame: Frame
+
+
+class LitObject(Claim):
+    """An object alone in neutral light: its ``materials``, which others are ``alike`` and so not shown, and which of
+    its parts are ``bare``: without a material."""
+
+    name: Name
+    file: _File
+    metres_per_pixel: Scale
+    materials: list[Name] = Field(max_length=20)
+    alike: list[Name] = Field(max_length=20)
+    bare: list[Name] = Field(max_length=20)
+
+
+class MaterialReply(Claim):
+    """Stills in neutral light."""
+
+    title: Name
+    scene: list[LitView] = Field(max_length=4)
+    objects: list[LitObject] = Field(max_length=12)
+    notes: list[Note] = Field(max_length=_MOST_NOTES)
+
+
+class UvMesh(Claim):
+    """A mesh's UV map: files of its pictures, bounds, shares of its surface (``overlap``: of the map; None if it was
+    not measured), and from how many to how many tiles a metre has. ``missing``: it has no usable coordinates."""
+
+    name: Name
+    uv_map: Name
+    maps: Count
+    faces: Count
+    missing: bool
+    checker: _File
+    map: _File | None
+    alike: list[Name] = Field(max_length=8)
+    low: tuple[Metres, Metres] = (0.0, 0.0)
+    high: tuple[Metres, Metres] = (0.0, 0.0)
+    outside: Part = 0.0
+    stretched: Part = 0.0
+    collapsed: Part = 0.0
+    mirrored: Part = 0.0
+    overlap: Part | None = None
+    scale: tuple[Metres, Metres] = (0.0, 0.0)
+
+
+class UvReply(Claim):
+    """The UV maps of a scene, and the names of meshes ``without`` one."""
+
+    title: Name
+    meshes: list[UvMesh] = Field(max_length=8)
+    without: list[Name] = Field(max_length=64)
+    notes: list[Note] = Field(max_length=_MOST_NOTES)
 
 
 class FindingsReply(Claim):

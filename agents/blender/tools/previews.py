@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Annotated
 
 from PIL import Image
 from pydantic import Field
@@ -17,8 +17,6 @@ from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, Tool
 from agents.blender.tools.preview_files import new_preview
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-
     from agents.blender.sheets.view_reply import DrawnView
     from agents.blender.supervisor import Supervisor
 
@@ -76,11 +74,18 @@ class SystemLayoutArguments(LayoutArguments):
 class SceneLayoutArguments(LayoutArguments):
     """The arguments of ``blender_scene_layout_preview``."""
 
+    subjects: list[Annotated[str, Field(min_length=1, max_length=200)]] = Field(
+        default_factory=list[str],
+        max_length=40,
+        description="Objects to label first, and to show closely if small.",
+    )
+
 
 _ALIKE = """\
 The reply is one contact sheet: front, right, top and three-quarter view, each with a scale bar and the world's axes, \
-framed on the evaluated geometry at the frame (modifiers, simulations, instances), in the materials' colours. The \
-scene is not changed."""
+framed on the evaluated geometry at the frame (modifiers, simulations, instances), in plain \
+colours. The scene is not changed."""
+_OWN_AXES = "Front and right are its own."
 
 
 def run_single_mesh(context: ToolContext, arguments: SingleMeshArguments, call: Call) -> Result:
@@ -112,6 +117,7 @@ def _preview(
         "name": name,
         "frame": arguments.frame,
         "everything": isinstance(arguments, LayoutArguments) and arguments.everything,
+        "subjects": arguments.subjects if isinstance(arguments, SceneLayoutArguments) else [],
         "folder": folder.workspace.for_blender(),
         "size": PANEL,
     }
@@ -141,30 +147,38 @@ def _panel(blender: Supervisor, view: DrawnView, preview: PreviewReply) -> conta
         contact_sheet.draw_scale_bar(picture, view.metres_per_pixel)
     contact_sheet.draw_labels(picture, view.labels)
     contact_sheet.draw_axes(picture, view.axes)
-    return contact_sheet.Panel(picture, view.name, view.lens or _across(view.name, preview.size))
+    return contact_sheet.Panel(picture, view.name, view.lens or _across(view.name, preview))
 
 
-def _across(view: str, size: Sequence[float]) -> str:
-    """The extent of the framed geometry along the axes that a view shows without foreshortening."""
-    axes = {"front": "XZ", "right": "YZ", "top": "XY"}.get(view, "")
-    return " · ".join(f"{letter} {format_length(size['XYZ'.index(letter)])}" for letter in axes)
+def _across(view: str, preview: PreviewReply) -> str:
+    """The extent of the framed geometry along the world's axes that a view shows without foreshortening."""
+    axes = {"front": "XZ", "right": "YZ", "top": "XY"}.get(view, "") if not preview.turned else ""
+    return " · ".join(f"{letter} {format_length(preview.size['XYZ'.index(letter)])}" for letter in axes)
 
 
 def _sheet(kind: str, preview: PreviewReply, panels: list[contact_sheet.Panel]) -> Image.Image:
-    blocks = [contact_sheet.grid(panels[:4], 2)]
+    blocks = [contact_sheet.grid(panels, 2)]
     if len(panels) > 4:
-        blocks = [contact_sheet.grid(panels[:3], 3), contact_sheet.grid(panels[3:], 2)]
+        rows = (panels[:3], panels[3:5], panels[5:])
+        blocks = [contact_sheet.grid(row, len(row)) for row in rows if row]
     return contact_sheet.sheet(
         f"{kind.capitalize()}: {preview.title}",
         blocks,
         subtitle=f"frame {preview.frame} · {_size_of(preview)} · {format_count(preview.objects, 'object')}",
-        remarks=_cut_away(preview),
+        remarks=[*_turned(preview), *_cut_away(preview)],
         notes=preview.notes,
     )
 
 
 def _size_of(preview: PreviewReply) -> str:
     return " × ".join(format_length(edge) for edge in preview.size)
+
+
+def _turned(preview: PreviewReply) -> list[str]:
+    """A line on views that are not along the world's axes."""
+    if not preview.turned:
+        return []
+    return [f"Seen along its own axes: it is turned by {preview.turned:g}° about Z."]
 
 
 def _cut_away(preview: PreviewReply) -> list[str]:
@@ -178,6 +192,7 @@ def _text(kind: str, preview: PreviewReply, file: str) -> str:
     lines = [
         f"{preview.title} ({kind}), frame {preview.frame}: {format_count(preview.objects, 'object')}, "
         f"{_size_of(preview)} (x × y × z), from ({low}) to ({high}).",
+        *_turned(preview),
         *_cut_away(preview),
         *(f"- {note}" for note in preview.notes),
         f"Saved as {file}.",
@@ -188,7 +203,7 @@ def _text(kind: str, preview: PreviewReply, file: str) -> str:
 SINGLE_MESH = BlenderTool(
     "blender_single_mesh_preview",
     "See one mesh",
-    f"See one object with geometry (mesh, curve, text, …), alone. {_ALIKE}",
+    f"See one object with geometry (mesh, curve, text, …), alone. {_ALIKE} {_OWN_AXES}",
     SingleMeshArguments,
     run_single_mesh,
     read_only=True,
@@ -196,7 +211,7 @@ SINGLE_MESH = BlenderTool(
 OBJECT = BlenderTool(
     "blender_object_preview",
     "See one object with all its meshes",
-    f"See one object of the scene protocol (L3), alone, with all its meshes. {_ALIKE}",
+    f"See one object of the scene protocol (L3), alone, with all its meshes. {_ALIKE} {_OWN_AXES}",
     ObjectArguments,
     run_object,
     read_only=True,

@@ -9,7 +9,8 @@ from pydantic import Field, model_validator
 from agents.blender.formatting import format_count, format_list
 from agents.blender.render.frame_cache import FrameCache
 from agents.blender.render.frame_renderer import FrameRenderer
-from agents.blender.render.image_checks import RenderedPicture, image_faults, look_at
+from agents.blender.render.image_checks import LARGEST_STILL, RenderedPicture, image_faults, look_at
+from agents.blender.render.picture_numbers import format_subjects
 from agents.blender.render.render_budget import RenderBudget
 from agents.blender.render.render_loop import RenderOutcome, StillStore, render_frames
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
@@ -82,8 +83,8 @@ Render what the camera sees: a still (PNG), or an animation (PNG frames and an M
 stay as they are. Complete frames that already exist under the same `name`, made of the same scene with the same \
 settings, are kept, so a call that broke off continues where it stopped; frames of an earlier state are replaced. \
 Physics that is not baked is stepped from its first frame, never jumped; baking first is faster. With `time_budget` \
-(seconds) fewer samples are taken, and only as a last resort frames are left out; the reply says so. Start with a \
-small still of few samples, and look at it. Returns the image, or frames from start, middle and end."""
+(seconds) fewer samples are taken, and only as a last resort frames are left out; the reply says so. Begin with a \
+small still, and look at it and its numbers. Returns the image, or frames from start, middle and end."""
 
 
 def run(context: ToolContext, arguments: RenderArguments, call: Call) -> Result:
@@ -112,8 +113,9 @@ def _still(renderer: FrameRenderer, arguments: RenderArguments, call: Call, path
     rendered = store.get(frame)
     data = _data(renderer, arguments, outcome, rendered.samples if rendered else None)
     data.update(path=str(path), frame=frame)
-    pictures = [look_at(renderer.pictures, path)]
+    pictures = [look_at(renderer.pictures, path, LARGEST_STILL)]
     data["warnings"] = image_faults(pictures)
+    data |= _measured(renderer, {frame: pictures[0]})
     return Result(_text(renderer, data, outcome), data, _shown(pictures))
 
 
@@ -135,10 +137,33 @@ def _animation(
             data["video"] = _video(renderer, cache, outcome, range(first, last + 1), video)
         except BlenderError as error:
             outcome.stopped = f"the video could not be made: {error}"
-    pictures = [look_at(renderer.pictures, cache.path(number)) for number in _sampled(outcome.available)]
+    looked = {
+        number: look_at(renderer.pictures, cache.path(number)) for number in _sampled(outcome.available)
+    }
+    pictures = list(looked.values())
     data["warnings"] = image_faults(pictures)
+    data |= _measured(renderer, looked)
     data["complete"] = not outcome.stopped
     return Result(_text(renderer, data, outcome), data, _shown(pictures), failed=bool(outcome.stopped))
+
+
+def _measured(renderer: FrameRenderer, looked: dict[int, RenderedPicture]) -> dict[str, Any]:
+    """The numbers of the pictures by frame; for the frame at which the scene stands, those of each object, too."""
+    data: dict[str, Any] = {
+        "pictures": [{"frame": frame, **one.numbers.data} for frame, one in looked.items()]
+    }
+    lines = [f"Frame {frame}: {one.numbers}." for frame, one in looked.items()]
+    if renderer.at in looked:
+        try:
+            subjects = renderer.subjects(looked[renderer.at].image)
+        except BlenderError as error:
+            lines.append(
+                f"What each object has of the picture could not be measured: {str(error).partition(chr(10))[0][:200]}"
+            )
+        else:
+            data |= {"subjects": [one.data for one in subjects[:_LISTED]], "subjects_frame": renderer.at}
+            lines += format_subjects(subjects, renderer.at)
+    return {**data, "measured": lines}
 
 
 def _shown(pictures: list[RenderedPicture]) -> tuple[SavedImage, ...]:
@@ -221,6 +246,7 @@ def _text(renderer: FrameRenderer, data: dict[str, Any], outcome: RenderOutcome)
         lines.append(f"- To keep the time budget, {count} left out: {_format_frames(outcome.dropped)}.")
     if data["unbaked"]:
         lines.append(f"- Not baked, so stepped from the first frame: {format_list(data['unbaked'], _NAMED)}.")
+    lines += [f"- {line}" for line in data.pop("measured")]
     lines += [f"- {note}" for note in renderer.notes]
     lines += [f"- **{warning}**" for warning in data["warnings"]]
     return "\n".join(lines)

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from agents.loop.algorithm import ALL_AT_ONCE, build, finish
 from agents.loop.edit.inputs import picture
 from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
 from agents.loop.events import PlanMade, ReferenceKept
+from agents.loop.evidence import still
 from agents.loop.judging import verify
-from agents.loop.run import RUNNER, START, plan_file
+from agents.loop.run import RENDER, RUNNER, START, plan_file
 from agents.loop.task import RunTask
 from agents.roles.planner import Planner, format_edit_plan
 from simworlds.llm.messages import Picture
@@ -38,7 +39,7 @@ def edit(run: Run) -> RenderResult:
     plan = planner.edit(options.prompt, state, before.names, seen.pictures, reference)
     run.write("plan.json", plan_file(plan))
     run.journal.note(PlanMade(edit=plan))
-    task = _task(run, plan, before)
+    task = replace(_task(run, plan, before), goal=reference, **_still_before(run))
     wanted = plan.stages if options.stages else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
     rendering = finish(run, task, plan.render, last)
@@ -55,6 +56,14 @@ def _opened(run: Run) -> Blocks:
         raise Unusable(f"{file} cannot be edited: {opened.text}")
     run.save(_FIRST, START, run.checkpoints)
     return blocks(run, _FIRST)
+
+
+def _still_before(run: Run) -> dict[str, Any]:
+    """A still of the file as it is, and its frame; nothing if it cannot be rendered, for want of a camera say."""
+    outcome = run.use(RUNNER, _FIRST, RENDER, still("before", None))
+    if outcome.failed or not outcome.pictures:
+        return {}
+    return {"before": outcome.pictures[0], "before_frame": outcome.data["frame"]}
 
 
 def _reference(run: Run) -> Picture | None:

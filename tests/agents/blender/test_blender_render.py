@@ -525,6 +525,53 @@ def test_one_frame_is_made_however_short_the_time(session: LiveSession) -> None:
     assert found.data["video"]["frames"] == 5
 
 
+def test_a_still_is_told_in_numbers(session: LiveSession) -> None:
+    session.run(
+        SCENE
+        + "bpy.ops.mesh.primitive_cube_add(size=.5, location=(0, 3, 0)); bpy.context.object.name = 'Hidden'"
+    )
+    found = session.use(TOOL, None, **SMALL)
+    (picture,) = found.data["pictures"]
+    assert picture["frame"] == 1
+    assert picture["black"] == pytest.approx(63 / 64, abs=0.01)  # the cube is 1 m in a view of 8 × 8 m
+    assert picture["burnt_out"] == picture["middle"] == 0
+    assert picture["bright"] == pytest.approx(0, abs=0.01)
+    subjects = {one["name"]: one for one in found.data["subjects"]}
+    assert subjects["Cube"]["share"] == pytest.approx(1 / 64, abs=0.003)
+    assert subjects["Cube"]["brightness"] == pytest.approx(0.3, abs=0.05)  # of pure red
+    assert subjects["Hidden"]["share"] == 0
+    assert "shows nothing of Hidden" in found.text
+    assert "98 % black" in found.text
+
+
+def test_what_is_burnt_out_is_told(session: LiveSession) -> None:
+    session.run(SCENE + "glow.inputs['Color'].default_value = (9, 9, 9, 1); cube.scale = (4, 1, 8)")
+    found = session.use(TOOL, None, **SMALL)
+    assert found.data["pictures"][0]["burnt_out"] == pytest.approx(0.5, abs=0.03)
+    assert found.data["subjects"][0]["brightness"] == pytest.approx(1, abs=0.02)
+
+
+def test_subjects_are_the_objects_of_the_protocol(session: LiveSession) -> None:
+    session.run(
+        SCENE + "bpy.ops.mesh.primitive_cube_add(size=1, location=(2, 0, 0))\n"
+        "pair = bpy.data.collections.new('Pair'); pair['protocol_role'] = 'object'\n"
+        "scene.collection.children.link(pair)\n"
+        "for one in (cube, bpy.context.object):\n"
+        "    for old in list(one.users_collection): old.objects.unlink(one)\n"
+        "    pair.objects.link(one)"
+    )
+    found = session.use(TOOL, None, **SMALL)
+    assert [one["name"] for one in found.data["subjects"]] == ["Pair"]
+    assert found.data["subjects"][0]["share"] == pytest.approx(2 / 64, abs=0.005)
+
+
+def test_a_film_is_told_in_numbers_at_its_start_middle_and_end(session: LiveSession) -> None:
+    session.run(MOVING)
+    found = session.use(TOOL, None, **FILM)
+    assert [one["frame"] for one in found.data["pictures"]] == [1, 3, 5]
+    assert found.data["subjects_frame"] == 5
+
+
 # Pictures for a model
 
 

@@ -12,8 +12,8 @@ import pytest
 from fake_messages_api import FakeMessagesAPI, Reply
 
 from agents.blender.blender_sessions import SessionSetup
-from agents.blender.tools import previews
-from agents.loop import answer_source, judging
+from agents.blender.tools import material_preview, previews, uv_preview
+from agents.loop import answer_source, evidence
 from agents.loop.journal import NAME, Row, read_rows
 from agents.loop.options import Options, RunLimits
 from agents.loop.session import Ended, RunSession, Stop, begin, resume
@@ -34,7 +34,10 @@ OnRow = Callable[[Mapping[str, Any]], object]
 def make_small(patch: pytest.MonkeyPatch) -> None:
     """Pictures of few pixels, and no pauses before a model is asked again."""
     patch.setattr(previews, "PANEL", 48)
-    patch.setattr(judging, "_STILL", {"kind": "still", "name": "look", "width": 48, "samples": 1})
+    patch.setattr(evidence, "WIDTH", 64)
+    patch.setattr(evidence, "SAMPLES", 1)
+    patch.setattr(material_preview, "_PANEL", 48)
+    patch.setattr(uv_preview, "_PANEL", 48)
     patch.setattr(answer_source, "connect", lambda *given, **_: connect(*given, pause=lambda seconds: None))
 
 

@@ -47,7 +47,14 @@ def falling() -> Team:
     return Team(
         plan=crates.falling(),
         code=crates.CODE | {"modeling": crates.HIGH},
-        coder={"motion": (run(crates.FAKED), DONE, run(crates.BODIES), call("blender_bake"), DONE)},
+        coder={
+            "motion": (run(crates.FAKED), DONE, run(crates.BODIES), call("blender_bake"), DONE),
+            "light": (
+                run(crates.CODE["light"]),
+                call("blender_render", width=64, samples=1, name="mine"),
+                DONE,
+            ),
+        },
     )
 
 

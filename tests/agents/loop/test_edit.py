@@ -10,7 +10,7 @@ import crates
 import pytest
 from PIL import Image
 from run_sessions import answered, asked_of, scenes, sit
-from team import DONE, Team, reply, run, words_of
+from team import DONE, Team, reply, run, whose, words_of
 
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.errors import Unusable
@@ -232,6 +232,26 @@ def test_the_planner_sees_the_scene_and_the_reference_at_a_size_that_models_see(
     kept = taller.the("reference")["path"]
     with Image.open(taller.root / kept) as picture:
         assert max(picture.size) == 1568
+
+
+def test_all_but_the_planner_see_the_file_as_it_was_beside_what_it_is_now(taller: Played) -> None:
+    coder, reviewer = (
+        next(one for one in taller.requests if whose(one) == (role, "modeling"))
+        for role in ("coder", "reviewer")
+    )
+    final = next(one for one in taller.requests if whose(one)[0] == "final_reviewer")
+    assert "before the edit:" in words_of(coder)
+    assert "What the result should look like:" in words_of(coder)
+    for request in (reviewer, final):
+        assert "PL between now and before the edit: " in words_of(request)
+        assert "PL between now and wanted: " in words_of(request)
+
+
+def test_what_is_compared_is_rendered_at_one_size_and_frame(taller: Played) -> None:
+    before, *present = [row["input"] for row in taller.of("tool.called", name="blender_render")][:2]
+    (frame,) = {row["data"]["frame"] for row in taller.of("tool.answered", name="blender_render")[:2]}
+    assert before["name"] == "before"
+    assert {**before, "name": "present", "frame": frame} == present[0]
 
 
 # Faked physics

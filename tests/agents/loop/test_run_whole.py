@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from PIL import Image
@@ -140,6 +140,38 @@ def test_what_falls_is_shown_as_a_video(falling: Played) -> None:
     assert (falling.root / "video.mp4").read_bytes()[4:8] == b"ftyp"
     rendered = falling.the("rendered")
     assert (rendered["kind"], rendered["frames"], len(rendered["pictures"])) == ("animation", 20, 5)
+
+
+def shown_by(played: Played, stage: str, tool: str, **about: Any) -> list[dict[str, Any]]:
+    """What a tool was asked for the reviewer of a stage's first attempt."""
+    rows = played.of("tool.called", role="runner", stage=stage, name=tool, **about)
+    return [row["input"] for row in rows]
+
+
+def test_motion_is_shown_by_the_phases_of_the_plan(falling: Played) -> None:
+    (sheet,) = shown_by(falling, "motion", "blender_motion_sheet_preview", attempt=1)
+    assert sheet["actors"] == ["Crate"]
+    assert [phase["name"] for phase in sheet["phases"]] == ["falls", "lies"]
+
+
+def test_the_camera_is_judged_in_neutral_light_and_light_at_three_frames(falling: Played) -> None:
+    (lit,) = shown_by(falling, "camera", "blender_material_preview")
+    first, peak, last = lit["frames"]
+    assert (first, last) == (1, 20)
+    assert 5 <= peak <= 12, "it is fastest just before it lands"
+    looks = [
+        asked["frame"] for asked in shown_by(falling, "light", "blender_render") if asked["name"] != "mine"
+    ]
+    assert looks == [first, peak, last]
+
+
+def test_the_reviewer_gets_the_stills_that_the_coder_made(falling: Played) -> None:
+    told = [json.dumps(one["messages"]) for one in falling.requests if whose(one) == ("reviewer", "light")]
+    assert told
+    assert all(text.count("A still of the coder's own") == 1 for text in told)
+    others = [json.dumps(one["messages"]) for one in falling.requests if whose(one) == ("reviewer", "camera")]
+    assert others
+    assert not any("A still of the coder's own" in text for text in others)
 
 
 def test_who_judges_motion_sees_it(falling: Played) -> None:

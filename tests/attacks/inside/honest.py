@@ -91,6 +91,26 @@ def on_preview(arguments):
     }
 
 
+def on_material_sheet(arguments):
+    shown = {**view(arguments["folder"], 0, "three-quarter"), "frame": 1}
+    alone = {"name": "Cube", "file": view(arguments["folder"], 1, "x")["file"], "metres_per_pixel": 0.1}
+    alone |= {"materials": ["Clay"], "alike": ["Box"], "bare": []}
+    return {"title": "Scene", "scene": [shown], "objects": [alone], "notes": ["a note"]}
+
+
+def on_uv_sheet(arguments):
+    files = [view(arguments["folder"], number, "x")["file"] for number in (0, 1)]
+    mesh = {"name": "Cube", "uv_map": "UVMap", "maps": 1, "faces": 6, "missing": False, "alike": []}
+    mesh |= {"checker": files[0], "map": files[1], "low": [0.0, 0.0], "high": [1.0, 1.0], "scale": [1.0, 1.0]}
+    mesh |= {"outside": 0.0, "stretched": 0.1, "collapsed": 0.0, "mirrored": 0.0, "overlap": 0.2}
+    return {"title": "Scene", "meshes": [mesh], "without": ["Bare"], "notes": []}
+
+
+def on_subject_mask(arguments):
+    leave(os.path.join(arguments["folder"], ".preview-0.png"), png(*arguments["size"]))
+    return {"file": ".preview-0.png", "subjects": [["Cube", [0, 0, 51]]]}
+
+
 def on_motion_sheet(arguments):
     os.makedirs(arguments["folder"], exist_ok=True)
     shots = []

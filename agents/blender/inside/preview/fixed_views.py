@@ -11,10 +11,22 @@ from mathutils import Matrix
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.names import listed, nearest, quoted
-from ..blend.protocol_tags import OBJECT, ROLE, SYSTEM, object_collections
+from ..blend.protocol_tags import GROUND, OBJECT, ROLE, ROOT, SYSTEM, object_collections
 from ..physics import stepped_frames
 from ..physics.caches import unbaked
-from .framing import CLOSE, LOOSE, VIEWS, WIDE, BoundingBox, boxes_of, camera_rotation, choose_framed, fit
+from .framing import (
+    CLOSE,
+    LOOSE,
+    VIEWS,
+    WIDE,
+    BoundingBox,
+    boxes_of,
+    camera_rotation,
+    choose_framed,
+    fit,
+    turn_of,
+    turned_views,
+)
 from .room_cutaway import RoomCutaway
 from .room_detection import find_room, large_pieces
 from .scene_copy import DRAWABLE, SceneCopy
@@ -24,6 +36,8 @@ MESH, SCENE = "mesh", "scene"  # kinds of subjects, besides OBJECT and SYSTEM
 _NAMED = 6  # in a note; the rest are counted
 _OUTLINE = 6000  # points from which the framing is chosen
 _LABELS = 14
+_LABELLED = {"top", "three-quarter"}
+_SMALL = 0.4  # share of what is framed: of smaller subjects there is a close view
 _SHADOWED = 300_000  # faces; of more, shadows take seconds
 _SCATTERED = 12  # faces of dots and strands cost this many times as much as a solid's
 _IN_ROOM = 0.4  # slant of the light in a room, low so that the walls' shadows do not cover its content
@@ -36,19 +50,27 @@ _CAMERA_WIDER = 2  # times a panel that the camera's picture may be wide
 def preview(arguments, report):
     """Renders pictures of ``kind`` (mesh, object, system, scene) ``name`` at ``frame`` (None: the current one).
 
-    ``everything``: frame grounds and skies as well. The pictures are left in ``folder``, larger than their ``size``, to
+    ``everything``: frame grounds and skies as well. ``subjects``: names of objects, of the protocol's or of Blender's,
+    that the scene is about; none: all but grounds. If they are small in the views, one view more is close to them. One
+    mesh or object is seen along its own axes. The pictures are left in ``folder``, larger than their ``size``, to
     which the caller shrinks them. Returns what the preview's text needs, with the names of the files.
     """
     scene, kind, notes = bpy.context.scene, arguments["kind"], []
     title, objects = _subject(scene, kind, arguments.get("name"), notes)
     engine = drawing_engine(notes)
-    with _at(scene, arguments.get("frame"), notes), StudioScene(engine) as studio:
+    with at_frame(scene, arguments.get("frame"), notes), StudioScene(engine) as studio:
         subject = copy_of(studio, kind, title, objects, notes)
         renderer = PreviewRenderer(studio, subject, arguments["folder"], arguments["size"])
-        renderer.set_up(kind in {SYSTEM, SCENE}, arguments["everything"], notes)
+        is_layout = kind in {SYSTEM, SCENE}
+        wanted = _subjects(scene, subject, arguments["subjects"], notes) if kind == SCENE else {}
+        renderer.set_up(is_layout, arguments["everything"], notes, labelled=wanted)
         camera = scene.camera if kind == SCENE else None
+        turn = 0.0 if is_layout else turn_of(_root_of(objects).matrix_world)
         with renderer.cleaned_up():
-            views = list(renderer.fixed_views(report, len(VIEWS) + (camera is not None)))
+            views = list(
+                renderer.fixed_views(report, len(VIEWS) + (camera is not None), views=turned_views(turn))
+            )
+            views += renderer.close_view([name for owners in wanted.values() for name in owners])
             if camera is not None:
                 report(len(views), len(views) + 1, "camera")
                 views += renderer.camera_view(camera, scene.render, notes)
@@ -62,10 +84,30 @@ def preview(arguments, report):
             "views": views,
             "notes": notes,
             "engine": engine,
+            "turned": round(math.degrees(turn), 1),
         }
 
 
 # The subject
+
+
+def _root_of(objects):
+    """The root of an object of the protocol; lacking that, the first of Blender's."""
+    return next((obj for obj in objects if obj.get(ROOT)), objects[0])
+
+
+def _subjects(scene, subject, names, notes):
+    """{name: the drawn objects of it}: of these names, or of all the protocol's objects but those of the ground."""
+    drawn = {piece.owner for piece in subject.pieces}
+    tagged = {one.name: {obj.name for obj in one.all_objects} & drawn for one in object_collections(scene)}
+    if names:
+        known = {name: {name} for name in drawn} | tagged
+        if unknown := [name for name in names if not known.get(name)]:
+            notes.append(f"Nothing to see of {_listed(unknown)}.")
+        return {name: known[name] for name in names if known.get(name)}
+    ground = scene.collection.children_recursive
+    ground = {child.name for one in ground if one.name == GROUND for child in one.children_recursive}
+    return {name: owners for name, owners in tagged.items() if owners and name not in ground}
 
 
 def _subject(scene, kind, name, notes):
@@ -105,7 +147,7 @@ def _listed(names):
 
 
 @contextlib.contextmanager
-def _at(scene, frame, notes):
+def at_frame(scene, frame, notes):
     """Takes the scene to a frame and back; leaves it where it is if the jump would spoil a simulation."""
     here, part = scene.frame_current, scene.frame_subframe
     if frame is None or frame == here:
@@ -191,14 +233,16 @@ class PreviewRenderer:
     """Renders the pictures of a scene copy. ``whole``: the box that is framed, in metres of the world; ``away``: how
     far cameras stand from it, in units of the studio scene."""
 
-    def __init__(self, studio, subject, folder, size):
+    def __init__(self, studio, subject, folder, size, *, first=0):
+        """``first``: the number of the first picture's file."""
         self._studio, self._subject, self._folder, self._size = studio, subject, folder, size
-        self._files = 0
+        self._first = self._files = first
 
-    def set_up(self, is_layout, everything, notes, around=()):
+    def set_up(self, is_layout, everything, notes, *, around=(), labelled=()):
         """Chooses the framing and fills the studio scene; a layout does not frame what is far too large or far away.
 
         ``around``: names of objects to be framed, if any of them can be seen, instead of all; no room is opened then.
+        ``labelled``: names that are labelled before all others.
         """
         boxes = boxes_of(self._subject.pieces)
         wanted = {name: boxes[name] for name in around if name in boxes} or boxes
@@ -218,20 +262,21 @@ class PreviewRenderer:
         framed_pieces = [piece for piece in self._subject.pieces if piece.owner in set(framed)]
         most = max(8, _OUTLINE // len(framed_pieces))
         self._outline = [place for piece in framed_pieces for place in piece.outline(most)]
-        self._labels = _labels(bpy.context.scene, boxes, self.whole) if is_layout else {}
+        self._labels = _labels(bpy.context.scene, boxes, self.whole, labelled) if is_layout else {}
         studio = self._studio
         studio.aim(self.whole.centre, across)
         pieces = self._subject.pieces
         large = large_pieces(studio, pieces) if is_layout and not around else []
         placed = [(piece, studio.add(piece.data, piece.matrix)) for piece in large]
         self._owners = {obj: piece.owner for piece, obj in placed}
-        self._room = find_room(studio, placed, boxes.values())
+        self._placed = list(placed)
+        self._room = find_room(studio, placed, _grouped(bpy.context.scene, boxes).values())
         self._opening = RoomCutaway(studio, self._room)
         if self._opening.fault:
             notes.append(f"Rooms are shown with all their walls: {self._opening.fault}.")
         for piece in pieces:
             if piece not in large:
-                studio.add(piece.data, piece.matrix)
+                self._placed.append((piece, studio.add(piece.data, piece.matrix)))
         self._faces = sum(
             len(getattr(piece.data, "polygons", ())) * (1 if piece.is_solid else _SCATTERED)
             for piece in pieces
@@ -243,28 +288,28 @@ class PreviewRenderer:
         self.away = min(2 * REACH + reach, _FARTHEST)
         self._camera.data.clip_end = 2 * self.away
 
+    @property
+    def files(self):
+        """The number of the next picture's file."""
+        return self._files
+
     @contextlib.contextmanager
     def cleaned_up(self):
         """Removes the pictures rendered so far if a later one fails."""
         try:
             yield
         except BaseException:
-            for number in range(self._files):
+            for number in range(self._first, self._files):
                 with contextlib.suppress(OSError):
                     os.remove(os.path.join(self._folder, _FILE.format(number)))
             raise
 
-    def fixed_views(self, report, total, marks=()):
+    def fixed_views(self, report, total, marks=(), views=VIEWS):
         """The pictures from the fixed sides; with ``marks``, where in them these places of the world are."""
-        for number, (name, towards, up) in enumerate(VIEWS):
+        for number, (name, towards, up) in enumerate(views):
             report(number, total, name)
             rotation = camera_rotation(towards, up)
-            middle, across = fit(self._outline, rotation, self._margin)
-            place = self._studio.placed(Matrix.Translation(middle)).translation
-            matrix = rotation.to_4x4()
-            matrix.translation = place + rotation.col[2] * self.away
-            self._camera.matrix_world = matrix
-            self._camera.data.ortho_scale = across * self._studio.scale
+            middle, across = self._aim(self._outline, rotation, self._margin)
             with self._opening.towards(rotation) as cut:
                 file = self._render(self._camera, (self._size, self._size), self._slant(towards, cut))
             yield {
@@ -274,7 +319,7 @@ class PreviewRenderer:
                 "metres_per_pixel": across / self._size,
                 "axes": _axes(rotation),
                 "cut_away": sorted({self._owners[obj] for obj in cut}),
-                "labels": self._label_pixels(rotation, middle, across) if name == "top" else [],
+                "labels": self._label_pixels(rotation, middle, across) if name in _LABELLED else [],
                 **(
                     {"marks": [self._pixel_of(mark, rotation, middle, across) for mark in marks]}
                     if marks
@@ -283,26 +328,30 @@ class PreviewRenderer:
                 "ground": self._size * (0.5 + middle.z / across) if not towards[2] else None,
             }
 
+    def close_view(self, owners):
+        """The three-quarter picture of some objects (names) among all others; none if they are large in all views."""
+        mine = [piece for piece, _ in self._placed if piece.owner in owners]
+        if not mine or BoundingBox.around(mine).diagonal > _SMALL * self.whole.diagonal:
+            return
+        name, towards, up = next(view for view in VIEWS if view[0] == "three-quarter")
+        most = max(8, _OUTLINE // len(mine))
+        whole, self._outline = self._outline, [place for piece in mine for place in piece.outline(most)]
+        margin, self._margin = self._margin, LOOSE
+        try:
+            (view,) = self.fixed_views(lambda *_: None, 1, views=((name, towards, up),))
+        finally:
+            self._outline, self._margin = whole, margin
+        yield {**view, "name": "subjects"}
+
     def camera_view(self, camera, render, notes):
         """The picture through a camera of the scene; none, and a note, if it cannot be rendered."""
-        seen = camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
-        matrix = seen.matrix_world.copy()
-        if (
-            seen.type != "CAMERA"
-            or seen.data.type == "PANO"
-            or not all(math.isfinite(part) for row in matrix for part in row)
-        ):
+        obj = studio_camera(self._studio, camera)
+        if obj is None:
             notes.append(
                 f"The scene's camera {camera.name!r} is neither perspective nor orthographic, so its view is not shown."
             )
             return
-        data = seen.data.copy()
-        obj = self._studio.camera(data, matrix)
-        data.animation_data_clear()
-        data.dof.use_dof = False
-        scale = self._studio.scale
-        data.clip_start, data.clip_end = data.clip_start * scale, data.clip_end * scale
-        data.ortho_scale *= scale
+        data = obj.data
         aspect = (render.resolution_x * render.pixel_aspect_x) / (render.resolution_y * render.pixel_aspect_y)
         width = min(self._size * _CAMERA_WIDER, round(self._size * aspect))
         size = (max(16, width), max(16, min(self._size, round(width / aspect))))
@@ -314,12 +363,39 @@ class PreviewRenderer:
             "file": file,
             "size": list(size),
             "metres_per_pixel": None,
-            "axes": _axes(matrix.to_3x3().normalized()),
+            "axes": [],  # a picture through a camera is to show what the camera sees, and nothing over it
             "cut_away": [],
             "labels": [],
             "ground": None,
             "lens": lens,
         }
+
+    def _aim(self, outline, rotation, margin):
+        """Turns the camera to points of the world; returns the middle of its picture and the width, in metres."""
+        middle, across = fit(outline, rotation, margin)
+        matrix = rotation.to_4x4()
+        matrix.translation = (
+            self._studio.placed(Matrix.Translation(middle)).translation + rotation.col[2] * self.away
+        )
+        self._camera.matrix_world = matrix
+        self._camera.data.ortho_scale = across * self._studio.scale
+        return middle, across
+
+    def alone(self, owners, towards, side):
+        """The picture, ``side`` pixels wide, of some objects (names) without all others: (file, metres a pixel)."""
+        mine = [(piece, obj) for piece, obj in self._placed if piece.owner in owners]
+        others = [obj for piece, obj in self._placed if piece.owner not in owners and not obj.hide_render]
+        most = max(8, _OUTLINE // max(1, len(mine)))
+        rotation = camera_rotation(towards, (0, 0, 1))
+        outline = [place for piece, _ in mine for place in piece.outline(most)]
+        _, across = self._aim(outline, rotation, CLOSE)
+        for obj in others:
+            obj.hide_render = True
+        try:
+            return self._render(self._camera, (side, side), 1.0), across / side
+        finally:
+            for obj in others:
+                obj.hide_render = False
 
     def _label_pixels(self, rotation, middle, across):
         """[name, x, y] of what is labelled, in pixels from the upper left."""
@@ -345,19 +421,44 @@ class PreviewRenderer:
         return file
 
 
-def _labels(scene, boxes, whole):
+def studio_camera(studio, camera):
+    """A copy of a camera of the scene in the studio; None if it is neither perspective nor orthographic."""
+    seen = camera.evaluated_get(bpy.context.evaluated_depsgraph_get())
+    matrix = seen.matrix_world.copy()
+    is_placed = all(math.isfinite(part) for row in matrix for part in row)
+    if seen.type != "CAMERA" or seen.data.type == "PANO" or not is_placed:
+        return None
+    data = seen.data.copy()
+    obj = studio.camera(data, matrix)
+    data.animation_data_clear()
+    data.dof.use_dof = False
+    data.clip_start, data.clip_end = data.clip_start * studio.scale, data.clip_end * studio.scale
+    data.ortho_scale *= studio.scale
+    return obj
+
+
+def _grouped(scene, boxes):
+    """The boxes of the protocol's objects, and of those of Blender's that belong to none."""
+    groups, members = {}, set()
+    for collection in object_collections(scene):
+        own = {obj.name for obj in collection.all_objects} & boxes.keys()
+        if own:
+            groups[collection.name] = BoundingBox.around(boxes[name] for name in own)
+            members |= own
+    return groups | {name: box for name, box in boxes.items() if name not in members and name not in groups}
+
+
+def _labels(scene, boxes, whole, first):
     """The centres of the largest objects of the protocol (lacking those, of Blender's), those that fill the picture
     left out."""
-    groups = {}
-    for collection in object_collections(scene):
-        members = [boxes[obj.name] for obj in collection.all_objects if obj.name in boxes]
-        if members:
-            groups[collection.name] = BoundingBox.around(members)
-    groups = groups or boxes
+    tagged = {collection.name for collection in object_collections(scene)}
+    groups = _grouped(scene, boxes)
     small = {
-        name: box for name, box in groups.items() if whole.meets(box) and box.diagonal < 0.6 * whole.diagonal
+        name: box
+        for name, box in groups.items()
+        if (name in tagged or not tagged) and whole.meets(box) and box.diagonal < 0.6 * whole.diagonal
     }
-    largest = sorted(small, key=lambda name: -small[name].diagonal)[:_LABELS]
+    largest = sorted(small, key=lambda name: (name not in first, -small[name].diagonal))[:_LABELS]
     return {name: small[name].centre for name in largest}
 
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Camera directions and framing: what of the world a picture shows."""
 
+import math
 import statistics
 
 from mathutils import Matrix, Vector
@@ -16,6 +17,8 @@ CLOSE, LOOSE, WIDE = 1.06, 1.25, 1.7  # size of the picture in sizes of what is 
 _FOOT = 0.09  # of the picture's height: kept free for the scale bar
 _GROUND_TIMES, _SKY_TIMES, _FAR_TIMES = 1.7, 8.0, 6.0  # against what is framed
 _FLAT = 0.05
+_UPRIGHT = 0.3  # how much of an axis is level, below which it says nothing of the turn
+_TURNED = 0.01  # radians
 
 
 class BoundingBox:
@@ -128,6 +131,26 @@ def camera_rotation(towards, up):
     z = Vector(towards).normalized()
     x = Vector(up).cross(z).normalized()
     return Matrix((x, z.cross(x), z)).transposed()
+
+
+def turned_views(turn):
+    """The fixed views, turned about the vertical by so much (radians)."""
+    if not turn:
+        return VIEWS
+    around = Matrix.Rotation(turn, 3, "Z")
+    return tuple(
+        (name, tuple(around @ Vector(towards)), tuple(around @ Vector(up))) for name, towards, up in VIEWS
+    )
+
+
+def turn_of(matrix):
+    """By how much an object is turned about the vertical, in radians: along its X axis, or, if that is upright, Y."""
+    along_x, along_y, _ = matrix.to_3x3().normalized().transposed()
+    if math.hypot(along_x.x, along_x.y) > _UPRIGHT:
+        turn = math.atan2(along_x.y, along_x.x)
+    else:
+        turn = math.atan2(-along_y.x, along_y.y)
+    return turn if abs(turn) > _TURNED and math.isfinite(turn) else 0.0
 
 
 def fit(points, rotation, margin):

@@ -16,8 +16,11 @@ from .studio_scene import REACH
 _WALL = 0.3 * REACH  # an object of this size can be a wall
 _PART = 0.12 * REACH  # and of this size, under a roof, a part of a wall
 _FURNITURE = 0.45 * REACH  # larger objects can be a roof, and do not count as content of a room
-_ON_WALL = 0.04 * REACH  # what is this close to the shell belongs to it
+_ON_WALL = 0.04 * REACH  # a wall that is this close to the shell belongs to it
 _ABOVE_TOP = 0.005 * REACH
+_LOW = (
+    0.08 * REACH
+)  # what has something so near above it is a leg, a post or in a shelf, and tells of no room
 _STEP = 1e-4 * REACH
 _MOST_FACES = 200_000  # of an object that rays are cast against
 _MOST_THINGS = 60
@@ -60,7 +63,7 @@ def find_room(studio, placed, boxes):
         return None
     rays = _Rays(studio, placed)
     tops = [_top(studio, box) for box in boxes if box.diagonal * studio.scale <= _FURNITURE]
-    tops = tops[:: max(1, len(tops) // _MOST_TOPS)]
+    tops = [top for top in tops[:: max(1, len(tops) // _MOST_TOPS)] if not rays.is_low(top)]
     grid = _grid(studio, placed)
     within = [top for top in tops if rays.is_inside(top)]
     if tops and len(within) < _SOME * len(tops):
@@ -101,6 +104,11 @@ class _Rays:
             return sum(meets(direction, _PART) for direction in _AROUND) >= 8
         return sum(meets(direction, _WALL) for direction in _AROUND) >= 9
 
+    def is_low(self, place):
+        """Whether something is right above."""
+        hits = self._hits(place, _UP[0])
+        return bool(hits) and hits[0][1] < _LOW
+
     def outermost(self, inside):
         """The objects that rays from inside mostly hit last."""
         met, last = {}, {}
@@ -115,9 +123,8 @@ class _Rays:
                         first.setdefault(name, distance)
                 for name, distance in first.items():
                     met[name] = met.get(name, 0) + 1
-                    last[name] = last.get(name, 0) + (
-                        name == hits[-1][0] or distance > hits[-1][1] - _ON_WALL
-                    )
+                    is_wall = self._sizes[name] >= _WALL and distance > hits[-1][1] - _ON_WALL
+                    last[name] = last.get(name, 0) + (name == hits[-1][0] or is_wall)
         return [self._objects[name] for name in met if last[name] >= 0.5 * met[name]]
 
     def roof(self, place):
@@ -147,7 +154,7 @@ class _Rays:
 
 def _is_castable(piece):
     mesh = piece.data
-    if not piece.is_solid or piece.is_liquid or not isinstance(mesh, bpy.types.Mesh):
+    if not piece.is_solid or piece.is_liquid or piece.is_helper or not isinstance(mesh, bpy.types.Mesh):
         return False
     return len(mesh.polygons) <= _MOST_FACES
 

@@ -33,6 +33,7 @@ class Piece:
 
     is_solid = True  # False for smoke, strands, dots
     is_liquid = False
+    is_helper = False  # a fluid's domain, or what is only outlined in the viewport
 
     def __init__(self, owner, data, matrix, corners, *, exactly=True):
         self.owner, self.data, self.matrix = owner, data, matrix
@@ -151,6 +152,7 @@ class SceneCopy:
 
     def _add(self, piece, obj):
         piece.is_liquid = _shows_liquid(obj)
+        piece.is_helper = domain_of(obj) is not None or obj.display_type in {"WIRE", "BOUNDS"}
         self.pieces.append(piece)
 
     def _copy_data(self, obj):
@@ -211,6 +213,9 @@ class SceneCopy:
 
     def _colour(self, mesh, obj):
         slots = obj.material_slots
+        if self._studio.keeps_materials and obj.type != _GREASE_PENCIL:
+            _keep_materials(mesh, slots)
+            return
         for at in range(max(1, len(mesh.materials))):
             material = mesh.materials[at] if at < len(mesh.materials) else None
             if at < len(slots) and slots[at].link == "OBJECT":
@@ -275,6 +280,13 @@ class SceneCopy:
         if _is_finite(corners):
             self.pieces.append(Piece(obj.original.name, mesh, matrix, corners))
             self.pieces[-1].is_solid = False
+
+
+def _keep_materials(mesh, slots):
+    """Gives a copy the file's own materials, also those that belong to the object instead of its mesh."""
+    for at, own in enumerate(list(mesh.materials)):
+        material = slots[at].material if at < len(slots) and slots[at].link == "OBJECT" else own
+        mesh.materials[at] = material.original if material else None
 
 
 def _metaballs(layer):

@@ -30,7 +30,12 @@ def drawing_engine(notes):
 
 
 class StudioScene:
-    """The temporary scene, used in ``with``: everything made for it is removed at the end, also after errors."""
+    """The temporary scene, used in ``with``: everything made for it is removed at the end, also after errors.
+
+    ``keeps_materials``: what is copied into it keeps its own materials, instead of one colour or image for each.
+    """
+
+    keeps_materials = False
 
     def __init__(self, engine):
         self.engine = engine
@@ -45,7 +50,7 @@ class StudioScene:
             undo.enter_context(without_render_result())
             undo.callback(self._remove)
             self.scene = self.owned(bpy.data.scenes.new(_NAME))
-            self._set_up()
+            self.set_up()
             self._undo = undo.pop_all()
         return self
 
@@ -124,11 +129,15 @@ class StudioScene:
         try:
             if os.path.lexists(path):
                 os.remove(path)
-            bpy.ops.render.render(write_still=True, scene=self.scene.name)
+            self.draw()
         except (OSError, RuntimeError) as error:
             raise Refused(f"The picture could not be rendered: {str(error).strip()[:300]}") from None
         if not os.path.isfile(path):
             raise Refused("The picture could not be rendered: the engine wrote no file.")
+
+    def draw(self):
+        """Lets the engine write the picture. Raises RuntimeError."""
+        bpy.ops.render.render(write_still=True, scene=self.scene.name)
 
     def camera(self, data=None, matrix=None):
         """Adds a camera, of new or given camera ``data``."""
@@ -139,7 +148,8 @@ class StudioScene:
             obj.matrix_world = (self._here @ matrix).normalized()
         return obj
 
-    def _set_up(self):
+    def set_up(self):
+        """Sets the engine, its light and the form of the pictures."""
         scene = self.scene
         render = scene.render
         render.engine = self.engine
@@ -191,7 +201,8 @@ def _light_workbench(scene):
     shading.show_xray = False
 
 
-def _tree_of(material):
+def tree_of(material):
+    """The nodes of a material or world."""
     if not material.use_nodes:  # always on since 5.0
         material.use_nodes = True
     return material.node_tree
@@ -199,7 +210,7 @@ def _tree_of(material):
 
 def _add_image(material, surface):
     """Adds the image of a PreviewMaterial to a material; returns the node."""
-    tree = _tree_of(material)
+    tree = tree_of(material)
     picture = tree.nodes.new("ShaderNodeTexImage")
     picture.image = surface.image
     if surface.uv_map:
@@ -212,7 +223,7 @@ def _add_image(material, surface):
 
 def _make_emissive(material, surface, picture):
     """Makes a material emit its colour, darker where the surface turns away: it needs no light and few samples."""
-    tree = _tree_of(material)
+    tree = tree_of(material)
     output = tree.get_output_node("ALL")
     light, clear, mix = (
         tree.nodes.new(f"ShaderNode{kind}") for kind in ("Emission", "BsdfTransparent", "MixShader")

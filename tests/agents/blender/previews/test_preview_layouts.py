@@ -174,3 +174,83 @@ def test_the_scenes_camera_has_a_picture_of_its_own(session: LiveSession) -> Non
     assert is_coloured(views.middle("camera 'Eye'"), "red")
     # 36 mm wide, 50 mm away: at 4.5 m, 3.24 m wide.
     assert views.share("camera 'Eye'", "red") == pytest.approx(1 / 3.24 * min(1, 4 / 3.24), rel=0.15)
+
+
+def test_a_table_is_no_room_for_what_it_is_made_of(session: LiveSession) -> None:
+    legs = "\n".join(
+        f"box('Leg {x} {y}', ({x * 0.6}, {y * 0.3}, .35), (.06, .06, .7))" for x in (-1, 1) for y in (-1, 1)
+    )
+    build(
+        session,
+        f"box('Top', (0, 0, .72), (1.4, .8, .05))\n{legs}\nbox('Gift', (.5, .2, .845), (.2, .2, .2))\n"
+        "box('Floor', (0, 0, -.05), (4, 4, .1))",
+    )
+    views = Views(session, "scene")
+    assert [view["cut_away"] for view in views.data["views"]] == [[]] * len(views.data["views"])
+
+
+HOUSE_OUTDOORS = """
+walls = [box('South', (0, -2, 1), (4, .2, 2)), box('North', (0, 2, 1), (4, .2, 2)),
+         box('West', (-2, 0, 1), (.2, 4, 2)), box('East', (2, 0, 1), (.2, 4, 2)), box('Roof', (0, 0, 2.1), (5, 5, .2))]
+inner = [box(f'Beam {at}', (at * .5 - 1, 0, .5), (.2, .2, .6)) for at in range(5)]
+collection('House', 'object', *walls, *inner)
+for at, (x, y) in enumerate(((-5, -4), (5, -4), (-5, 4), (5, 4), (0, 6))):
+    trunk, crown = box(f'Trunk {at}', (x, y, 1), (.4, .4, 2)), box(f'Crown {at}', (x, y, 2.5), (1.5, 1.5, 1.5))
+    collection(f'Tree {at}', 'object', trunk, crown)
+"""
+
+
+def test_a_house_among_trees_keeps_its_roof(session: LiveSession) -> None:
+    build(session, HOUSE_OUTDOORS)
+    views = Views(session, "scene")
+    assert [view["cut_away"] for view in views.data["views"]] == [[]] * len(views.data["views"])
+
+
+def test_what_hangs_on_a_wall_is_not_cut_away_with_it(session: LiveSession) -> None:
+    build(session, room(THICK) + "\nbox('Television', (0, -1.95, 1.3), (1.1, .1, .7)).parent = house")
+    views = Views(session, "scene")
+    assert "South" in views.by_name["front"]["cut_away"]
+    assert all("Television" not in view["cut_away"] for view in views.data["views"])
+
+
+def test_a_domain_is_no_room(session: LiveSession) -> None:
+    build(
+        session,
+        "for at in range(4): box(f'Chest {at}', (at - 1.5, 0, .3), (.6, .6, .6), (.8, 0, 0))\n"
+        "domain = box('Domain', (0, 0, 1.25), (5, 5, 2.5))\n"
+        "made = domain.modifiers.new('Fluid', 'FLUID'); made.fluid_type = 'DOMAIN'\n"
+        "made.domain_settings.domain_type = 'LIQUID'\n",
+    )
+    assert all("Domain" not in view["cut_away"] for view in Views(session, "scene").data["views"])
+
+
+def test_small_subjects_get_a_view_of_their_own_and_their_names_come_first(session: LiveSession) -> None:
+    tree = "box(f'T{at}', (at % 5 * 9, at // 5 * 9, 2), (3, 3, 4))"
+    crowd = f"for at in range(20): collection(f'Tree {{at}}', 'object', {tree})"
+    build(
+        session,
+        f"{crowd}\ncollection('Mug', 'object', box('Mug mesh', (13, 13, .1), (.1, .1, .2), (.8, 0, 0)))",
+    )
+    views = Views(session, "scene", subjects=["Mug"])
+    assert "subjects" in views.by_name
+    assert views.share("subjects", "red") > 0.1 > views.share("three-quarter", "red")
+    assert "Mug" in {name for name, *_ in views.by_name["top"]["labels"]}
+    assert "subjects" not in Views(session, "scene", subjects=[f"Tree {at}" for at in range(20)]).by_name
+
+
+def test_names_of_subjects_that_are_not_there_are_told(session: LiveSession) -> None:
+    build(session, "box('Mug', (0, 0, 0))")
+    result = session.use(previews.SCENE_LAYOUT, subjects=["Jug"])
+    assert "Nothing to see of 'Jug'" in result.text
+
+
+def test_the_camera_sees_no_axes(session: LiveSession) -> None:
+    build(
+        session,
+        "box('Mug', (0, 0, 0)); bpy.ops.object.camera_add(location=(0, -6, 0), rotation=(math.pi / 2, 0, 0))\n"
+        "bpy.context.scene.camera = bpy.context.object",
+    )
+    views = Views(session, "scene")
+    (through,) = (view for view in views.data["views"] if view["name"].startswith("camera"))
+    assert through["axes"] == []
+    assert views.by_name["front"]["axes"]

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from preview_views import Views, build
 
-from agents.blender.tools import previews
+from agents.blender.tools import material_preview, previews
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -74,6 +74,8 @@ def test_no_preview_leaves_a_trace(session: LiveSession) -> None:
     session.use(previews.SCENE_LAYOUT)
     assert census(session) == before
     session.use(previews.SINGLE_MESH, object="Table", frame=9)
+    assert census(session) == before
+    session.use(material_preview.TOOL, frames=[9], width=64)
     assert census(session) == before
     session.run("bpy.data.objects['Table'].location.x += 1e-3")
     assert census(session) != before, "the census sees nothing"

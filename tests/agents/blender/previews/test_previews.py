@@ -109,7 +109,8 @@ def test_the_evaluated_geometry_is_framed(session: LiveSession, code: str, exten
     build(session, code)
     views = Views(session, "mesh", "It")
     assert views.extent == pytest.approx(extent, abs=0.02 * max(extent))
-    assert max(views.seen("top")) == pytest.approx(max(extent[:2]), rel=0.04)
+    wide = 1 if views.data["turned"] == pytest.approx(45) else max(extent[:2])  # a box, along its own axes
+    assert max(views.seen("top")) == pytest.approx(wide, rel=0.04)
 
 
 def test_particles_and_hair_are_seen_as_far_as_they_reach(session: LiveSession) -> None:
@@ -295,3 +296,20 @@ def test_cycles_draws_where_there_is_no_graphics_driver(own_session: LiveSession
     assert "Workbench cannot draw" in " ".join(views.data["notes"])
     assert views.seen("front") == pytest.approx((1, 2), abs=0.06)
     assert is_coloured(views.middle("front"), "red")
+
+
+@pytest.mark.parametrize("turn", [0, 90, 150])
+def test_an_object_is_seen_along_its_own_axes(session: LiveSession, turn: float) -> None:
+    build(
+        session,
+        "root = bpy.data.objects.new('TV', None); root['is_object_root'] = True\n"
+        "case, screen = box('Case', (0, .06, 0), (1, .1, .6)), box('Screen', (0, 0, 0), (.9, .02, .5), (.8, 0, 0))\n"
+        "case.parent = screen.parent = root\n"
+        f"collection('Television', 'object', root, case, screen); root.rotation_euler.z = math.radians({turn})\n"
+        "bpy.context.view_layer.update()",
+    )
+    views = Views(session, "object", "Television")
+    assert views.share("front", "red") > 0.3
+    assert views.share("right", "red") < 0.05
+    assert views.data["turned"] == pytest.approx(turn)
+    assert ("turned by" in session.use(previews.OBJECT, object="Television").text) == bool(turn)

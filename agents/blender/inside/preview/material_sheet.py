@@ -1,0 +1,175 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Stills of the scene and of each object with their own materials, in light that is not the scene's.
+
+Nothing of the scene changes: Cycles renders copies of the geometry in a temporary scene.
+"""
+
+import time
+
+import bpy
+
+from simworlds.sandbox.inside.refusal import Refused
+
+from ..blend.names import nearest, quoted
+from ..blend.protocol_tags import object_collections
+from .fixed_views import SCENE, PreviewRenderer, at_frame, copy_of, note_missing
+from .framing import VIEWS
+from .lit_studio import LitStudio
+from .scene_copy import DRAWABLE
+
+_THREE_QUARTER = next(view for view in VIEWS if view[0] == "three-quarter")
+OBJECTS = "objects"
+_MOST_OBJECTS = 12
+_NAMED = 6
+_LISTED = 20
+
+
+def material_sheet(arguments, report):
+    """Renders stills into ``folder``: the scene at each of ``frames`` (none: the current one), and objects alone.
+
+    ``objects``: names of the protocol's objects (lacking those, of Blender's); none: all, alike ones once. ``show``:
+    "all", "scene" or "objects". ``size``: (of the scene's picture, of an object's), in pixels. After ``seconds`` no
+    further still is begun. Returns ``scene`` and ``objects``, with the names of the files, and ``notes``.
+    """
+    scene = bpy.context.scene
+    frames = arguments["frames"] or [scene.frame_current]
+    groups = {} if arguments["show"] == SCENE else _groups(scene, arguments["objects"])
+    sheet = _Sheet(arguments, report, len(frames) + len(groups))
+    for frame in frames[: 1 if arguments["show"] == OBJECTS else None]:
+        sheet.take(scene, frame, groups if frame == frames[0] else {})
+    return {
+        "title": scene.name,
+        "scene": sheet.scene,
+        "objects": sheet.objects,
+        "notes": list(dict.fromkeys(sheet.notes)),
+    }
+
+
+class _Sheet:
+    """Collects the stills of a call: ``scene`` and ``objects``, as the caller gets them, and ``notes``."""
+
+    def __init__(self, arguments, report, total):
+        self._arguments, self._report, self._total = arguments, report, total
+        self._ends = time.monotonic() + arguments["seconds"]
+        self._files = self._done = 0
+        self.scene, self.objects, self.notes = [], [], []
+
+    def take(self, scene, frame, groups):
+        """The still of the scene at a frame, and those of ``groups`` (names of objects, by title)."""
+        if self.scene and self._is_late:
+            self.notes.append(f"Not shown, for want of time: frame {frame}.")
+            return
+        width, side = self._arguments["size"]
+        with at_frame(scene, frame, self.notes), LitStudio(scene.frame_current) as studio:
+            subject = copy_of(studio, SCENE, scene.name, None, self.notes)
+            camera = scene.camera
+            renderer = PreviewRenderer(
+                studio, subject, self._arguments["folder"], width // 2 if camera else width, first=self._files
+            )
+            renderer.set_up(True, False, [])
+            with renderer.cleaned_up():
+                if self._arguments["show"] != OBJECTS:
+                    self._take_scene(scene, renderer, camera)
+                self._take_objects(renderer, _present(groups, subject, self.notes), side)
+            self._files = renderer.files
+            if frame == self.scene[0]["frame"] if self.scene else True:
+                note_missing(subject, self.notes)
+
+    def _take_scene(self, scene, renderer, camera):
+        self._say(f"frame {scene.frame_current}")
+        views = list(renderer.camera_view(camera, scene.render, self.notes)) if camera else []
+        views = views or list(renderer.fixed_views(lambda *_: None, 1, views=(_THREE_QUARTER,)))
+        self.scene += [{**view, "frame": scene.frame_current} for view in views]
+
+    def _take_objects(self, renderer, groups, side):
+        alike = _alike(groups)
+        late = []
+        for name, others in alike.items():
+            owners = groups[name]
+            if len(self.objects) == _MOST_OBJECTS or (self.objects and self._is_late):
+                late.append(name)
+                continue
+            self._say(name)
+            file, scale = renderer.alone(owners, _THREE_QUARTER[1], side)
+            self.objects.append(
+                {
+                    "name": name,
+                    "file": file,
+                    "metres_per_pixel": scale,
+                    "materials": _materials_of(owners)[:_LISTED],
+                    "alike": others[:_LISTED],
+                    "bare": sorted(owner for owner in owners if not _materials_of({owner}))[:_LISTED],
+                }
+            )
+        if late:
+            self.notes.append(f"Not shown alone: {quoted(late, _NAMED)}. Name them as objects to see them.")
+
+    @property
+    def _is_late(self):
+        return time.monotonic() > self._ends
+
+    def _say(self, what):
+        self._report(self._done, self._total, what)
+        self._done += 1
+
+
+def _groups(scene, names):
+    """{title: names of Blender's objects}: of the protocol's objects, or of those with these names. Raises Refused."""
+    tagged = {one.name: {obj.name for obj in one.all_objects} for one in object_collections(scene)}
+    collections = {
+        one.name: {obj.name for obj in one.all_objects} for one in scene.collection.children_recursive
+    }
+    single = {obj.name: {obj.name} for obj in scene.objects}
+    if not names:
+        return tagged or single
+    known = single | collections | tagged
+    for name in names:
+        if name not in known:
+            near = nearest(name, list(known), 4)
+            raise Refused(
+                f"There is no object {name!r} in the scene {scene.name!r}."
+                + (f" Nearest: {quoted(near, 4)}." if near else "")
+            )
+    return {name: known[name] for name in names}
+
+
+def _present(groups, subject, notes):
+    """The groups without what is not drawn; of those of which nothing is left, a note."""
+    drawn = {piece.owner for piece in subject.pieces}
+    present = {name: owners & drawn for name, owners in groups.items()}
+    named = [name for name, owners in present.items() if not owners and _has_surface(groups[name])]
+    if named:
+        notes.append(f"Nothing to see of {quoted(named, _NAMED)}.")
+    return {name: owners for name, owners in present.items() if owners}
+
+
+def _has_surface(owners):
+    return any(bpy.data.objects[owner].type in DRAWABLE for owner in owners)
+
+
+def _alike(groups):
+    """{name: those that have the same materials and as many parts, and are not shown}.
+
+    First those that show materials that none before has, the most at once before all others.
+    """
+    first, alike, seen = {}, {}, set()
+    for name in sorted(groups, key=lambda name: -len(_materials_of(groups[name]))):
+        materials = _materials_of(groups[name])
+        look = (tuple(materials), len(groups[name])) if materials else name
+        if look in first:
+            alike[first[look]].append(name)
+        else:
+            first[look] = name
+            alike[name] = []
+    new = {}
+    for name in alike:
+        materials = {*_materials_of(groups[name])}
+        new[name] = bool(materials - seen)
+        seen |= materials
+    return {name: alike[name] for name in sorted(alike, key=lambda name: not new[name])}
+
+
+def _materials_of(owners):
+    """The names of the materials of objects."""
+    slots = (slot for owner in owners for slot in bpy.data.objects[owner].material_slots)
+    return sorted({slot.material.name for slot in slots if slot.material})

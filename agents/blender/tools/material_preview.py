@@ -1,0 +1,146 @@
+"""``blender_material_preview``: lit stills of the scene and its objects, in their own materials."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Annotated, Literal
+
+from PIL import Image
+from pydantic import Field
+
+from agents.blender.formatting import format_list
+from agents.blender.sheets import contact_sheet
+from agents.blender.sheets.view_reply import LitObject, MaterialReply
+from agents.blender.sheets.worker_pictures import taken_picture
+from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
+from agents.blender.tools.preview_files import new_preview
+from simworlds.sandbox.replies import Frame
+
+if TYPE_CHECKING:
+    from agents.blender.sheets.view_reply import LitView
+    from agents.blender.supervisor import Supervisor
+
+_PANEL, _COLUMNS = 272, 4  # pixels a side of an object's still
+_BACKGROUND: contact_sheet.Colour = (206, 209, 214)
+_MOST_OBJECTS, _MOST_FRAMES = 12, 4
+_NAMED = 6
+_Name = Annotated[str, Field(min_length=1, max_length=200)]
+
+
+class MaterialArguments(Arguments):
+    """The arguments of ``blender_material_preview``."""
+
+    show: Literal["all", "scene", "objects"] = Field(
+        default="all", description="The scene's picture, each object alone, or both."
+    )
+    objects: list[_Name] = Field(
+        default_factory=list[_Name],
+        max_length=_MOST_OBJECTS,
+        description="Names of collections tagged protocol_role='object', or of objects; by default all, those with "
+        "the same materials once.",
+    )
+    frames: list[Frame] = Field(
+        default_factory=list[Frame],
+        max_length=_MOST_FRAMES,
+        description="Frames at which the scene is shown; by default the current one. Objects are shown at the first.",
+    )
+    width: int = Field(default=960, ge=64, le=1536, description="Pixels, of the scene's picture.")
+    seconds: float = Field(
+        default=150.0,
+        ge=1,
+        le=3600,
+        description="After so long no further still is begun; the reply says which.",
+    )
+    timeout: float = Field(
+        default=400.0, ge=1, le=3600, description="Seconds after which Blender is stopped."
+    )
+
+
+DESCRIPTION = """\
+See materials as they render: Cycles stills with the file's own shaders, textures, glass and metal included, in \
+neutral light that is not the scene's; closed rooms are bright, too. Shows the scene through its camera (lacking one, \
+from a three-quarter view), and each object alone. The scene is not changed."""
+
+
+def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Result:
+    """Renders the stills, and puts those of objects on a sheet. Raises BlenderError."""
+    blender, folder = context.blender, context.blender.folder
+    request = {
+        "show": arguments.show,
+        "objects": arguments.objects,
+        "frames": list(dict.fromkeys(arguments.frames)),
+        "folder": folder.workspace.for_blender(),
+        "size": [arguments.width, _PANEL],
+        "seconds": arguments.seconds,
+    }
+    reply = blender.call(
+        "material_sheet",
+        request,
+        MaterialReply.model_validate,
+        timeout=arguments.timeout,
+        progress=call.progress,
+        cancelled=call.cancelled,
+    )
+    shown = reply.value
+    images = [_scene_picture(blender, view) for view in shown.scene]
+    if shown.objects:
+        images.append(new_preview(folder, "materials-objects", contact_sheet.to_png(_sheet(blender, shown))))
+    data = shown.model_dump(include={"title": True, "notes": True})
+    data["objects"] = [
+        one.model_dump(include={"name", "materials", "alike", "bare"}) for one in shown.objects
+    ]
+    data["frames"] = [view.frame for view in shown.scene]
+    data["files"] = [str(image.path.relative_to(folder.root)) for image in images]
+    data["seconds"] = round(reply.seconds, 2)
+    return Result(_text(shown, data["files"]), data, tuple(images))
+
+
+def _scene_picture(blender: Supervisor, view: LitView) -> SavedImage:
+    picture = taken_picture(blender, view.file, _BACKGROUND).resize(view.size, Image.Resampling.LANCZOS)
+    return new_preview(blender.folder, f"materials-frame-{view.frame}", contact_sheet.to_png(picture))
+
+
+def _sheet(blender: Supervisor, shown: MaterialReply) -> Image.Image:
+    panels: list[contact_sheet.Panel] = []
+    for one in shown.objects:
+        picture = taken_picture(blender, one.file, _BACKGROUND)
+        contact_sheet.draw_scale_bar(picture, one.metres_per_pixel)
+        panels.append(contact_sheet.Panel(picture, one.name, format_list(one.materials, 2) or "no material"))
+    return contact_sheet.sheet(
+        "Materials",
+        [contact_sheet.grid(panels, min(_COLUMNS, len(panels)))],
+        subtitle="each object alone, in neutral light",
+        remarks=[f"As {one.name}: {format_list(one.alike, _NAMED)}." for one in shown.objects if one.alike],
+        notes=shown.notes,
+    )
+
+
+def _text(shown: MaterialReply, files: list[str]) -> str:
+    lines = ["In neutral light, not the scene's:"]
+    lines += [f"- frame {view.frame}, {_seen_by(view)}" for view in shown.scene]
+    lines += [_line(one) for one in shown.objects]
+    lines += [f"- {note}" for note in shown.notes]
+    return "\n".join([*lines, f"Saved as {format_list(files, len(files))}."])
+
+
+def _seen_by(view: LitView) -> str:
+    cut = f"; cut away to see inside: {format_list(view.cut_away, _NAMED)}" if view.cut_away else ""
+    return f"{view.name}{cut}"
+
+
+def _line(one: LitObject) -> str:
+    parts = [f"- {one.name}: {format_list(one.materials, _NAMED) or 'no material'}"]
+    if one.bare and one.materials:
+        parts.append(f"**without a material**: {format_list(one.bare, _NAMED)}")
+    if one.alike:
+        parts.append(f"the same on {format_list(one.alike, _NAMED)}")
+    return "; ".join(parts)
+
+
+TOOL = BlenderTool(
+    "blender_material_preview",
+    "See materials in neutral light",
+    DESCRIPTION,
+    MaterialArguments,
+    run,
+    read_only=True,
+)

@@ -1,0 +1,165 @@
+"""What the reviewer is shown of a stage, so that it sees what it is to judge."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING, Any
+
+from agents.loop.edit.comparison import compared
+from agents.loop.run import RENDER, RUNNER
+from agents.plan.part import STAGES
+from simworlds.llm.messages import Picture, Text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping, Sequence
+
+    from agents.loop.run import Run
+    from agents.loop.task import RunTask
+    from agents.plan.motion import MotionPhase
+    from agents.plan.part import Stage
+    from simworlds.llm.messages import Block
+
+WIDTH, SAMPLES = 960, 16  # of stills
+_SECONDS = 60  # for each
+_MOST_ACTORS, _MOST_PHASES, _MOST_SHEETS = 8, 24, 6  # of a motion sheet; sheets of a stage
+_MOST_SUBJECTS = 40
+_LAYOUT, _MATERIALS, _UV = "blender_scene_layout_preview", "blender_material_preview", "blender_uv_preview"
+_MOTION, _STATE = "blender_motion_sheet_preview", "blender_scene_state"
+
+
+def moves(stage: Stage) -> bool:
+    """Whether things move from this stage on."""
+    return STAGES.index(stage) >= STAGES.index("motion")
+
+
+def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
+    """The layout, then what the stage is about, then the coder's own stills and the readout.
+
+    Materials are lit by a light of their own; what the camera sees is lit so until the scene has its light, and then
+    rendered at the first frame, at that of the fastest motion, and at the last. Of an edit, the file as it was stands
+    beside the file as it is.
+    """
+    shown = _Shown(run, stage)
+    shown.take(_LAYOUT, _layout(task))
+    if stage == "uv":
+        shown.take(_UV, {})
+    if stage == "texture" or not run.options.stages:
+        shown.take(_MATERIALS, {"width": WIDTH})
+    peak: int | None = None
+    if moves(stage) and task.actors:
+        phases = task.plan.motion.phases if task.plan is not None and stage == "motion" else ()
+        sheets = motion_sheets(task.actors, phases)
+        peaks = [_peak(shown.take(_MOTION, sheet)) for sheet in sheets]
+        peak = max(peaks, default=(0.0, None), key=lambda found: found[0])[1]
+    if task.edit:
+        shown.blocks += edit_comparison(run, stage, task)
+    elif stage == "camera":
+        shown.take(_MATERIALS, {"show": "scene", "width": WIDTH, "frames": _telling_frames(task, peak)})
+    elif stage == "light":
+        for frame in _telling_frames(task, peak):
+            shown.take(RENDER, still(f"look-{frame}", frame))
+    shown.blocks += _coders_stills(run)
+    shown.take(_STATE, {})
+    return shown.blocks
+
+
+class _Shown:
+    """Collects what the tools show."""
+
+    def __init__(self, run: Run, stage: Stage) -> None:
+        self._run = run
+        self._stage: Stage = stage
+        self.blocks: list[Block | str] = []
+
+    def take(self, name: str, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
+        """Shows what a call gives; returns it as data."""
+        outcome = self._run.use(RUNNER, self._stage, name, arguments)
+        self.blocks += [Text(f"{name}:"), *outcome.content]
+        return outcome.data
+
+
+def still(name: str, frame: int | None) -> dict[str, Any]:
+    """The arguments of a still that is to be judged."""
+    asked = {"kind": "still", "name": name, "width": WIDTH, "samples": SAMPLES, "denoise": True}
+    return {**asked, "time_budget": _SECONDS} | ({} if frame is None else {"frame": frame})
+
+
+def _layout(task: RunTask) -> dict[str, Any]:
+    subjects = (*task.plan.camera.subjects, *task.actors) if task.plan is not None else ()
+    return {"subjects": list(dict.fromkeys(subjects))[:_MOST_SUBJECTS]} if subjects else {}
+
+
+def motion_sheets(actors: Sequence[str], phases: Iterable[MotionPhase]) -> list[dict[str, Any]]:
+    """Arguments of motion sheets that show all actors, by the plan's phases.
+
+    One sheet's phases must not overlap: actors share a sheet as far as theirs do not. What would need too many sheets
+    is shown without phases.
+    """
+    by_actor: dict[str, set[tuple[int, int, str]]] = {actor: set() for actor in actors}
+    for phase in phases:
+        if phase.actor in by_actor and phase.end > phase.start:
+            by_actor[phase.actor].add((phase.start, phase.end, phase.name))
+    sheets: list[tuple[list[str], set[tuple[int, int, str]]]] = []
+    for actor, planned in by_actor.items():
+        own = planned if _is_in_a_row(planned) else set[tuple[int, int, str]]()
+        fitting = (
+            sheet
+            for sheet in sheets
+            if len(sheet[0]) < _MOST_ACTORS and bool(own) == bool(sheet[1]) and _is_in_a_row(sheet[1] | own)
+        )
+        sheet = next(fitting, None)
+        if sheet is None:
+            sheet = ([], set())
+            sheets.append(sheet)
+        sheet[0].append(actor)
+        sheet[1].update(own)
+    if len(sheets) > _MOST_SHEETS:
+        most = _MOST_ACTORS * _MOST_SHEETS
+        few = list(actors)[:: max(1, -(-len(actors) // most))]
+        return [{"actors": few[at : at + _MOST_ACTORS]} for at in range(0, len(few), _MOST_ACTORS)]
+    return [
+        {"actors": names}
+        | ({"phases": [{"name": name, "start": a, "end": b} for a, b, name in sorted(own)]} if own else {})
+        for names, own in sheets
+    ]
+
+
+def _is_in_a_row(phases: set[tuple[int, int, str]]) -> bool:
+    """Whether none begins before another ends."""
+    ordered = sorted(phases)
+    return len(ordered) <= _MOST_PHASES and all(one[1] <= two[0] for one, two in itertools.pairwise(ordered))
+
+
+def _peak(motion: Mapping[str, Any]) -> tuple[float, int | None]:
+    """The highest speed on a motion sheet, and its frame."""
+    rows = [phase for actor in motion.get("actors", ()) for phase in actor.get("phases", ())]
+    found = [(row["peak_speed"], row["peak_frame"]) for row in rows if row.get("peak_frame") is not None]
+    return max(found, default=(0.0, None))
+
+
+def _telling_frames(task: RunTask, peak: int | None) -> list[int]:
+    """The first frame, that of the fastest motion, and the last; of a still, the first."""
+    if task.plan is None or task.plan.render.kind == "still":
+        return [task.plan.frame_start] if task.plan is not None else []
+    first, last = task.plan.frame_start, task.plan.frame_end
+    middle = peak if peak is not None and first < peak < last else (first + last) // 2
+    return sorted({first, middle, last})
+
+
+def _coders_stills(run: Run) -> list[Block | str]:
+    """The last pictures that the coder rendered in this attempt."""
+    return [
+        block
+        for text, picture in run.stills
+        for block in (Text(f"A still of the coder's own, made while it worked. {text}"), picture)
+    ]
+
+
+def edit_comparison(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
+    """The file as it was, as it is, and as it is to be, at one size; nothing where there is nothing to compare with."""
+    if task.before is None and task.goal is None:
+        return []
+    outcome = run.use(RUNNER, stage, RENDER, still("present", task.before_frame))
+    now = next((block for block in outcome.content if isinstance(block, Picture)), None)
+    words = [Text(f"{RENDER}, the scene as it is now:"), *(b for b in outcome.content if isinstance(b, Text))]
+    return [*words, *(compared(run, task, now) if now is not None else ())]

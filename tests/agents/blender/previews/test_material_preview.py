@@ -1,0 +1,124 @@
+"""The stills in neutral light: the file's own materials, whatever the scene's light."""
+
+from __future__ import annotations
+
+import io
+from typing import TYPE_CHECKING
+
+import pytest
+from PIL import Image
+from preview_views import build
+
+from agents.blender.tools import material_preview
+from simworlds.sandbox.errors import Refusal
+
+if TYPE_CHECKING:
+    from live_session import LiveSession
+
+    from agents.blender.tools.base import Result
+
+pytestmark = pytest.mark.blender
+
+# Two boxes with a procedural pattern, one without a material, in a closed room without a lamp.
+CLOSED_ROOM = """
+for at, x in enumerate((-1, 0, 1)):
+    box(f'Chest {at}', (1.3 * x, 0, .5), (1, 1, 1))
+material = bpy.data.materials.new('Checks'); material.use_nodes = True
+tree = material.node_tree
+checks, place = tree.nodes.new('ShaderNodeTexChecker'), tree.nodes.new('ShaderNodeTexCoord')
+checks.inputs['Color1'].default_value, checks.inputs['Color2'].default_value = (.8, 0, 0, 1), (0, 0, .8, 1)
+checks.inputs['Scale'].default_value = 2
+tree.links.new(place.outputs['Object'], checks.inputs['Vector'])
+tree.links.new(checks.outputs['Color'], tree.nodes['Principled BSDF'].inputs['Base Color'])
+for at in (0, 1):
+    bpy.data.objects[f'Chest {at}'].data.materials.append(material)
+box('Shell', (0, 0, 1.25), (4.4, 4.4, 2.5), (.6, .6, .6))
+for name in ('Chest 0', 'Chest 1', 'Chest 2', 'Shell'):
+    collection(f'The {name}', 'object', bpy.data.objects[name])
+"""
+
+
+@pytest.fixture(autouse=True)
+def _small(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(material_preview, "_PANEL", 64)
+
+
+def pictures(result: Result) -> list[Image.Image]:
+    return [Image.open(io.BytesIO(image.png)).convert("RGB") for image in result.pictures]
+
+
+def share(picture: Image.Image, colour: str) -> float:
+    """The share of a picture that is red or blue."""
+    at = "RGB".index(colour)
+    strong = [max(others) * 1.5 < own for own, *others in _by_channel(picture, at)]
+    return sum(strong) / len(strong)
+
+
+def _by_channel(picture: Image.Image, first: int) -> list[tuple[int, ...]]:
+    data = picture.tobytes()
+    rows = [data[at : at + 3] for at in range(0, len(data), 3)]
+    return [(row[first], *(row[at] for at in range(3) if at != first)) for row in rows]
+
+
+def test_shows_procedural_textures_in_a_closed_room_without_a_lamp(session: LiveSession) -> None:
+    build(session, CLOSED_ROOM)
+    result = session.use(material_preview.TOOL, show="scene", width=96)
+    (whole,) = pictures(result)
+    assert share(whole, "R") > 0.01
+    assert share(whole, "B") > 0.01
+    data = whole.convert("L").tobytes()
+    assert sum(data) / len(data) > 70, "the room is dark"
+    assert "Shell" in result.text, "what was cut away is not named"
+
+
+def test_shows_each_look_once_and_names_what_has_no_material(session: LiveSession) -> None:
+    build(session, CLOSED_ROOM)
+    result = session.use(material_preview.TOOL, show="objects")
+    shown = {one["name"]: one for one in result.data["objects"]}
+    assert shown.keys() == {"The Chest 0", "The Chest 2", "The Shell"}
+    assert shown["The Chest 0"]["materials"] == ["Checks"]
+    assert shown["The Chest 0"]["alike"] == ["The Chest 1"]
+    assert shown["The Chest 2"]["bare"] == ["Chest 2"]
+    assert "The Chest 2: no material" in result.text
+
+
+def test_an_object_of_choice_is_alone_in_its_picture(session: LiveSession) -> None:
+    build(session, CLOSED_ROOM)
+    result = session.use(material_preview.TOOL, show="objects", objects=["The Chest 2"])
+    (sheet,) = pictures(result)
+    assert share(sheet, "R") == share(sheet, "B") == 0
+    assert [one["name"] for one in result.data["objects"]] == ["The Chest 2"]
+
+
+def test_shows_the_scene_at_frames_through_its_camera(session: LiveSession) -> None:
+    build(
+        session,
+        "ball = box('Ball', (0, 0, 0), rgb=(.8, 0, 0))\n"
+        "ball.keyframe_insert('location', frame=1); ball.location.x = 50; ball.keyframe_insert('location', frame=9)\n"
+        "bpy.ops.object.camera_add(location=(0, -6, 0), rotation=(math.pi / 2, 0, 0))\n"
+        "scene = bpy.context.scene; scene.camera = bpy.context.object; scene.frame_set(1)\n"
+        "scene.render.resolution_x, scene.render.resolution_y = 64, 32\n"
+        "box('Far', (0, 90, 0))",
+    )
+    result = session.use(material_preview.TOOL, show="scene", frames=[1, 9], width=64)
+    first, last = pictures(result)
+    assert first.size == last.size == (64, 32)
+    assert share(first, "R") > 0.02
+    assert share(last, "R") == 0
+    assert session.run("bpy.context.scene.frame_current") == 1
+
+
+def test_an_unknown_name_is_refused_with_the_nearest(session: LiveSession) -> None:
+    build(session, CLOSED_ROOM)
+    with pytest.raises(Refusal, match="Nearest: 'The Chest 2'"):
+        session.use(material_preview.TOOL, objects=["The Chest 9", "The Chest 2"])
+
+
+def test_time_that_is_over_leaves_out_stills_and_says_which(session: LiveSession) -> None:
+    build(session, CLOSED_ROOM)
+    result = session.use(
+        material_preview.TOOL, show="objects", seconds=1, objects=["The Chest 0", "The Shell"]
+    )
+    left = {"The Chest 0", "The Shell"} - {one["name"] for one in result.data["objects"]}
+    assert all(repr(name) in result.text for name in left)
+    assert len(left) < 2, "nothing is shown at all"
