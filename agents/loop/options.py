@@ -19,7 +19,8 @@ class Options(BaseModel):
 
     ``origin``: where answers come from: a live model, a ``session`` (its name) written by hand, or the ``replay`` of
     another run (its folder). ``file``, ``reference``: what is edited, and a picture of what it should be.
-    ``verifier``, ``stages``: False leaves that out (the paper's ablations).
+    ``verifier``, ``stages``: False leaves that out (the paper's ablations). ``early``: the scene is delivered as each
+    stage closes, and a draft before the film; runs that were begun without it go on without it.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -40,6 +41,7 @@ class Options(BaseModel):
     samples: int | None = Field(default=None, ge=1)
     verifier: bool = True
     stages: bool = True
+    early: bool = True
 
     def model_of(self, role: str) -> str:
         """The model that answers for a role."""

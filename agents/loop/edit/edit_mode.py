@@ -52,7 +52,7 @@ def _opened(run: Run) -> Blocks:
     opened = run.use(RUNNER, _FIRST, "blender_load", {"path": str(file)})
     if opened.failed:
         raise Unusable(f"{file} cannot be edited: {opened.text}")
-    run.save(_FIRST, START, run.checkpoints)
+    run.save(_FIRST, START)
     return blocks(run, _FIRST)
 
 

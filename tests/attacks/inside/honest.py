@@ -189,6 +189,8 @@ def on_save(arguments):
         "objects": 1,
         "packed": [],
         "rescued": [],
+        "unused": [],
+        "loose": [],
         "files": [],
         "external": [],
         "caches": [],
