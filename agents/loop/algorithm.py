@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from agents.loop.errors import NotSaved
 from agents.loop.events import PlanMade, StageMoved
-from agents.loop.rendering import fix, render, review
+from agents.loop.rendering import LastStage
 from agents.loop.run import START, plan_file
 from agents.loop.stage import StageLoop
 from agents.loop.task import RunTask
@@ -41,7 +41,7 @@ def make(run: Run) -> RenderResult:
     run.task = task = RunTask(text, plan, _actors(plan))
     wanted = plan.stages if staged else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
-    return finish(run, task, plan.render, last)
+    return finish(run, planner, task, plan.render, last)
 
 
 def build(run: Run, planner: Planner, task: RunTask, wanted: Sequence[Stage]) -> str:
@@ -61,12 +61,9 @@ def build(run: Run, planner: Planner, task: RunTask, wanted: Sequence[Stage]) ->
     return last
 
 
-def finish(run: Run, task: RunTask, plan: RenderSettings | None, last: str) -> RenderResult:
+def finish(run: Run, planner: Planner, task: RunTask, plan: RenderSettings | None, last: str) -> RenderResult:
     """Renders the scene, has it reviewed, fixes it once if needed, and saves it. Raises RunError, ModelError."""
-    rendering = render(run, plan, 1)
-    verdict = review(run, task, rendering, 1)
-    if verdict.verdict == "needs_fix" and fix(run, task, verdict, last):
-        rendering = render(run, plan, 2)
+    rendering = LastStage(run, planner, task, plan, last).finish()
     run.deliver("render", verify=True)
     return rendering
 

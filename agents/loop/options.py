@@ -11,6 +11,7 @@ Mode = Literal["make", "edit"]
 Origin = Literal["live", "session", "replay"]
 
 DEFAULT_MODEL = "claude-opus-5-5"  # the newest of the paper's line: one strong model for all roles
+BEFORE_DRAFTS = {"early": False, "planner_looks": False}  # in records that are older than these options
 ROLES = ("planner", "coder", "reviewer", "final_reviewer")
 
 
@@ -20,7 +21,8 @@ class Options(BaseModel):
     ``origin``: where answers come from: a live model, a ``session`` (its name) written by hand, or the ``replay`` of
     another run (its folder). ``file``, ``reference``: what is edited, and a picture of what it should be.
     ``verifier``, ``stages``: False leaves that out (the paper's ablations). ``early``: the scene is delivered as each
-    stage closes, and a draft before the film; runs that were begun without it go on without it.
+    stage closes, and a draft before the film; ``planner_looks``: the planner decides on that draft. Runs that were
+    begun without these go on without them.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -42,6 +44,7 @@ class Options(BaseModel):
     verifier: bool = True
     stages: bool = True
     early: bool = True
+    planner_looks: bool = True
 
     def model_of(self, role: str) -> str:
         """The model that answers for a role."""
@@ -60,9 +63,11 @@ class Options(BaseModel):
 
 
 class RunLimits(BaseModel):
-    """What one session may use: dollars (over the whole run), and minutes."""
+    """What one session may use: dollars (over the whole run), and minutes; how films are rendered from now on."""
 
     model_config = ConfigDict(frozen=True)
 
     max_cost: float | None = Field(default=None, ge=0)
     max_minutes: float | None = Field(default=None, gt=0)
+    render_minutes: float | None = Field(default=None, gt=0)
+    samples: int | None = Field(default=None, ge=1)

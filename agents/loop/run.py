@@ -88,6 +88,18 @@ class Run:
         )
 
     @property
+    def render_minutes(self) -> float | None:
+        """How long a film may take: what was said last, as the run began or was resumed."""
+        said: float | None = self.journal.last("render_minutes")
+        return said or self.options.render_minutes
+
+    @property
+    def samples(self) -> int | None:
+        """The samples of a film, instead of the plan's: what was said last."""
+        said: int | None = self.journal.last("render_samples")
+        return said or self.options.samples
+
+    @property
     def checkpoints(self) -> Path:
         """The folder of the stages' files, which tools can only read."""
         return self.root / "checkpoints"
@@ -188,21 +200,23 @@ class Run:
             raise RunError(f"{path} cannot be written: {error.strerror or error}.") from error
         return name
 
-    def _recalled(self, answered: ToolAnswered) -> ToolOutcome:
-        """What a call came to. Raises NoRun."""
-        if answered.content is None:
-            raise NoRun(f"{self.journal.path}, row {answered.i}: not a valid 'tool.answered' row.")
+    def picture(self, name: str) -> bytes:
+        """A picture that was kept. Raises NoRun."""
         try:
-            content = tuple(
-                part
-                if isinstance(part, Text)
-                else Picture((self.root / part.path).read_bytes(), part.media_type)
-                for part in answered.content
-            )
+            return (self.root / name).read_bytes()
         except OSError as error:
             raise NoRun(
                 f"{error.filename}, a picture of an earlier answer, cannot be read: {error.strerror}."
             ) from error
+
+    def _recalled(self, answered: ToolAnswered) -> ToolOutcome:
+        """What a call came to. Raises NoRun."""
+        if answered.content is None:
+            raise NoRun(f"{self.journal.path}, row {answered.i}: not a valid 'tool.answered' row.")
+        content = tuple(
+            part if isinstance(part, Text) else Picture(self.picture(part.path), part.media_type)
+            for part in answered.content
+        )
         return ToolOutcome(content, answered.data, answered.failed, answered.seconds or 0.0)
 
     # The scene

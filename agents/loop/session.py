@@ -19,7 +19,7 @@ from agents.loop.edit.inputs import check_inputs
 from agents.loop.errors import Aborted, NoRun, RunError, Stopping, Unusable
 from agents.loop.events import RunBegan, RunEnded, SessionBegan
 from agents.loop.journal import NAME, Journal
-from agents.loop.options import ROLES, Options, RunLimits
+from agents.loop.options import BEFORE_DRAFTS, ROLES, Options, RunLimits
 from agents.loop.reducer import read_run_state
 from agents.loop.run import SCENE, Run
 from agents.loop.tool_client import ToolClient
@@ -176,7 +176,10 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
             options=options.model_dump(mode="json"),
         )
     )
-    journal.append(SessionBegan(pid=os.getpid()))
+    limits = session.limits
+    journal.append(
+        SessionBegan(pid=os.getpid(), render_minutes=limits.render_minutes, render_samples=limits.samples)
+    )
     (root / "checkpoints").mkdir(exist_ok=True)
     setup = SessionSetup(
         best_sandbox(options.sandbox),
@@ -208,7 +211,7 @@ def _options(journal: Journal) -> Options:
             f"{journal.path} does not say what the run is: it was killed before it began. Start a new run."
         )
     try:
-        return Options.model_validate({"early": False, **began.options})
+        return Options.model_validate({**BEFORE_DRAFTS, **began.options})
     except ValidationError as error:
         raise NoRun(f"{journal.path} does not say what the run is to do: {error}") from error
 

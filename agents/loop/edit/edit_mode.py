@@ -40,7 +40,7 @@ def edit(run: Run) -> RenderResult:
     task = _task(run, plan, before)
     wanted = plan.stages if options.stages else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
-    rendering = finish(run, task, plan.render, last)
+    rendering = finish(run, planner, task, plan.render, last)
     run.journal.note(compared(before, blocks(run, "render"), plan))
     return rendering
 

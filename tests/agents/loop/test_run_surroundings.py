@@ -25,12 +25,12 @@ pytestmark = pytest.mark.blender
 # A fluid whose folder of frames has a deeper one in it than is taken along: such a scene cannot be saved.
 DEEP = """
 import os
-folder = bpy.path.abspath("//caches/Tank/" + "deeper/" * 70)
+folder = bpy.path.abspath("//Tank/" + "deeper/" * 63)
 os.makedirs(folder)
 open(folder + "frame", "w").close()
 domain = bpy.data.objects["Planks"].modifiers.new("Tank", "FLUID")
 domain.fluid_type = "DOMAIN"
-domain.domain_settings.cache_directory = "//caches/Tank"
+domain.domain_settings.cache_directory = "//Tank"
 """
 FLAT = """
 import bpy

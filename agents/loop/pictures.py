@@ -1,0 +1,32 @@
+"""Rendered files of a run: their pictures as models see them, and their place in the run's folder."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from contextlib import closing
+from typing import TYPE_CHECKING
+
+from agents.blender.render.image_checks import look_at
+from simworlds.llm.messages import Picture
+from simworlds.sandbox.confined_command import best_sandbox
+from simworlds.sandbox.picture_decoder import PictureDecoder
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+
+def pictures_of(paths: Sequence[Path]) -> tuple[tuple[Path, Picture], ...]:
+    """Rendered frames with their pictures as models see them; Blender has written the files."""
+    with closing(PictureDecoder(best_sandbox())) as decoder:
+        return tuple((path, Picture(look_at(decoder, path).png)) for path in paths)
+
+
+def link(made: Path, result: Path) -> None:
+    """Puts a file into a place in the run's folder as well."""
+    result.unlink(missing_ok=True)
+    try:
+        os.link(made, result)
+    except OSError:
+        shutil.copyfile(made, result)
