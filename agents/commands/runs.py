@@ -246,6 +246,7 @@ def _work(
     from agents.loop.reducer import read_run_state  # noqa: PLC0415
     from agents.loop.session import RunSession, Stop  # noqa: PLC0415
     from agents.views.live_view import RunView, make_view  # noqa: PLC0415
+    from agents.views.report.early import ReportWriter  # noqa: PLC0415
     from agents.views.report.page import write_report  # noqa: PLC0415
 
     stop = Stop(threading.Event())
@@ -253,7 +254,8 @@ def _work(
         before = read_run_state(root)
         watched = RunView(before) if given["quiet"] else make_view(sys.stderr, str(root), before)
         with watched as view, _signals(stop):
-            ended = work(RunSession(_limited(given, render=render), view, stop))
+            watcher = ReportWriter(view, root)
+            ended = work(RunSession(_limited(given, render=render), watcher, stop))
         report = write_report(root)
     except RunError as error:
         click.echo(f"Error: {error}", err=True)

@@ -11,9 +11,11 @@ import teams
 from run_sessions import answered, asked_of, go_on, seat, sit
 from team import DONE, Team, call, run, whose
 
+from agents.loop import draft
 from agents.loop.film_settings import FilmSettings, FrameTime, fitted
 from agents.loop.options import RunLimits
 from agents.loop.reducer import read_run_state
+from agents.plan.scene import RenderSettings
 from agents.views.report.page import write_report
 
 if TYPE_CHECKING:
@@ -71,6 +73,11 @@ def test_two_frames_tell_what_samples_cost(
     few: tuple[int, float], more: tuple[int, float], cost: float
 ) -> None:
     assert FrameTime.of(few, more).seconds(64) == pytest.approx(cost)
+
+
+def test_a_film_planned_in_eevee_is_drawn_by_what_drew_its_stills() -> None:
+    assert draft.asked_of(RenderSettings(kind="animation", engine="BLENDER_EEVEE")) == {}
+    assert draft.asked_of(RenderSettings(kind="animation", engine="CYCLES")) == {"engine": "cycles", "denoise": True}
 
 
 # In a run
