@@ -30,7 +30,7 @@ _PREVIEW_FRAMES = 40
 _PREVIEW_SECONDS = 60.0
 _ENGINES = {"CYCLES": "cycles", "BLENDER_WORKBENCH": "workbench"}
 _FITTED = """\
-Before the film, these are frames of it at {shares} % of its length, at its size, samples and denoising.
+Frames of the film at {shares} % of its length, with its own size, samples and denoising.
 The film: {film}. It takes about {minutes:.0f} min; {most:g} min are allowed."""
 
 

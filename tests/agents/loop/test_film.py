@@ -77,7 +77,10 @@ def test_two_frames_tell_what_samples_cost(
 
 def test_a_film_planned_in_eevee_is_drawn_by_what_drew_its_stills() -> None:
     assert draft.asked_of(RenderSettings(kind="animation", engine="BLENDER_EEVEE")) == {}
-    assert draft.asked_of(RenderSettings(kind="animation", engine="CYCLES")) == {"engine": "cycles", "denoise": True}
+    assert draft.asked_of(RenderSettings(kind="animation", engine="CYCLES")) == {
+        "engine": "cycles",
+        "denoise": True,
+    }
 
 
 # In a run
@@ -115,7 +118,7 @@ def test_before_a_film_frames_are_timed_and_shown_as_the_film_will_be(drafted: P
     asked = renders(drafted)
     timing, stills, preview, film = asked[:2], asked[2:7], asked[7], asked[-1]
     assert [one["samples"] for one in timing] == [4, 6]
-    assert [one["frame"] for one in stills] == [1, 2, 2, 3, 4]
+    assert [one["frame"] for one in stills] == [1, 2, 3, 3, 4]
     kind = ("engine", "denoise", "width", "height", "samples")
     assert {tuple(one[name] for name in kind) for one in (*stills, film)} == {("cycles", True, 64, 36, 6)}
     assert (preview["kind"], film["kind"], film["time_budget"]) == ("animation", "animation", 300)
@@ -124,7 +127,9 @@ def test_before_a_film_frames_are_timed_and_shown_as_the_film_will_be(drafted: P
 
 @pytest.mark.blender
 def test_the_planner_sees_the_stills_once_and_may_have_something_mended(drafted: Played) -> None:
-    (asked,) = [one for one in drafted.requests if whose(one) == ("planner", "render")]
+    asked_for = [whose(one) for one in drafted.requests]
+    assert asked_for.count(("planner", "render")) == 1, asked_for
+    asked = drafted.requests[asked_for.index(("planner", "render"))]
     last = json.dumps(asked["messages"][-1])
     assert last.count('"type": "image"') == 5
     assert "4 frames, 64×36, 6 samples" in json.dumps(asked["messages"][-1], ensure_ascii=False)
