@@ -22,8 +22,8 @@ ifneq ($(wildcard /etc/ssl/certs/ca-certificates.crt),)
 export UV_SYSTEM_CERTS ?= 1
 endif
 
-# One more than there are cores, as most tests wait for a Blender now and then.
-TEST_PROCESSES ?= $(shell python3 -c 'import os; print(min(len(os.sched_getaffinity(0)) + 1, 8))')
+# More than there are cores, as many tests wait: for a Blender to start or to end, for a limit to be reached.
+TEST_PROCESSES ?= $(shell python3 -c 'import os; print(min(2 * len(os.sched_getaffinity(0)), 8))')
 
 .DEFAULT_GOAL := help
 .PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures lock clean
@@ -42,7 +42,7 @@ kb: $(STAMP) ## Build the knowledge base of BLENDER=5.1 [MANUAL= GUIDES= BLENDER
 	  $(if $(REQUIRE),--require "$(REQUIRE)") $(KB_ARGS)
 
 test: $(STAMP) ## Run the tests, a file at a time on each core [PYTEST_ARGS=]
-	@$(PY) -m pytest --numprocesses=$(TEST_PROCESSES) --dist=loadfile $(PYTEST_ARGS)
+	@$(PY) -m pytest --numprocesses=$(TEST_PROCESSES) --dist=loadfile --no-loadscope-reorder $(PYTEST_ARGS)
 
 test-fast: $(STAMP) ## Run the tests that need no Blender, in under a minute [PYTEST_ARGS=]
 	@$(PY) -m pytest --numprocesses=2 --dist=loadfile -m "not blender and not corpora and not slow" $(PYTEST_ARGS)

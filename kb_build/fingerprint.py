@@ -85,7 +85,11 @@ def extractor_digest() -> str:
 @cache
 def reader_digest() -> str:
     """Digest of the code and packages that turn sources into pages."""
-    files = [*(_PACKAGE / "pages" / "readers").rglob("*.py"), _PACKAGE / "records.py"]
+    files = [
+        *(_PACKAGE / "pages" / "readers").rglob("*.py"),
+        _PACKAGE / "docutils_states.py",
+        _PACKAGE / "records.py",
+    ]
     return _digest([_code(files), _versions(_READERS)])
 
 

@@ -16,6 +16,7 @@ from kb_check.rule import all_rules
 from kb_check.salvage import salvage
 from kb_check.script import Script
 from kb_serve.reader import BaseReader
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Mapping
@@ -50,9 +51,9 @@ class Checker:
     def __init__(self, base: Path) -> None:
         self._reader = BaseReader(base)
         self._symbols = BaseSymbols(base)
-        self.api = Api(self._symbols)
         self.names = KnownNames(self._reader)
-        self.version = tuple(int(part) for part in self._reader.meta["blender"].split(".")[:3])
+        self.api = Api(self._symbols, self.names)
+        self.version = version_key(self._reader.meta["blender"])
 
     def read(self, code: str) -> Read:
         """Reads a script. Nothing is imported or run; bad input of every kind ends in a finding."""

@@ -42,6 +42,7 @@ _STDIN_NAME = "<stdin>"
 @click.option("--fix", is_flag=True, help="Apply the fixes that are sure.")
 @click.option("--diff", is_flag=True, help="Print what --fix would change, and change nothing.")
 @click.option("--unsafe-fixes", is_flag=True, help="With --fix and --diff: the other fixes, too.")
+@click.option("--no-gitignore", is_flag=True, help="In folders: check what git leaves out, too.")
 @click.option("--jobs", type=click.IntRange(1, 256), help="Number of processes. Default: one a core.")
 @click.option("--no-cache", is_flag=True, help="Check everything again.")
 def check(paths: tuple[Path, ...], form: str | None, **choices: Any) -> None:
@@ -191,7 +192,8 @@ def _groups(
     from kb_check.source import MOST_BYTES  # noqa: PLC0415
 
     named = [path for path in paths if str(path) != _STDIN]
-    found = find_files(named, configuration.exclude, configuration.folder)
+    gitignore = configuration.gitignore and not choices["no_gitignore"]
+    found = find_files(named, configuration.exclude, configuration.folder, gitignore=gitignore)
     faults += found.faults
     groups = load(found.groups, faults)
     if len(named) < len(paths):

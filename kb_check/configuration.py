@@ -25,7 +25,7 @@ class BadConfiguration(UserError):  # noqa: N818 - reads as the state it names
 
 @dataclass(frozen=True, slots=True)
 class Configuration:
-    """What is checked. Patterns are below ``folder``.
+    """What is checked. Patterns are below ``folder``; ``gitignore``: in folders, what git leaves out is left out.
 
     ``rules`` are those that are asked (all, if empty), ``ignore`` those that are not; ``per_file_ignores`` are more of
     them by pattern. ``fail_on`` is the least severity that makes the command fail.
@@ -36,6 +36,7 @@ class Configuration:
     rules: tuple[str, ...] = ()
     ignore: tuple[str, ...] = ()
     exclude: tuple[str, ...] = ()
+    gitignore: bool = True
     per_file_ignores: tuple[tuple[str, tuple[str, ...]], ...] = ()
     severity: tuple[tuple[str, Severity], ...] = ()
     fail_on: Severity = "error"
@@ -106,6 +107,12 @@ def _texts(value: Any, where: str) -> tuple[str, ...]:
     raise BadConfiguration(f"{where} must be a list of texts.")
 
 
+def _truth(value: Any, where: str) -> bool:
+    if isinstance(value, bool):
+        return value
+    raise BadConfiguration(f"{where} must be true or false.")
+
+
 def _versions(value: Any, where: str) -> tuple[str, ...]:
     return tuple(value.split(",")) if isinstance(value, str) else _texts(value, where)
 
@@ -141,6 +148,7 @@ _KEYS: Mapping[str, Callable[[Any, str], Any]] = {
     "rules": _rules,
     "ignore": _rules,
     "exclude": _texts,
+    "gitignore": _truth,
     "per-file-ignores": _rules_by_pattern,
     "severity": _severities,
     "fail-on": _severity,

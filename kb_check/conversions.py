@@ -54,7 +54,7 @@ _ITEM_WORDS = {"boolean": "bool", "int": "int", "float": "float"}
 # Documented types that surely refuse others: what each takes. ``bool`` takes anything, as Python does.
 _DOCUMENTED = {"str": frozenset({"str"}), "string": frozenset({"str"}), "float": _NUMBERS, "int": _NUMBERS}
 # Arrays whose size is not the one that RNA declares.
-_CHANGING = frozenset({"bpy.types.FModifierGenerator.coefficients", "bpy.types.MeshPolygon.vertices"})
+CHANGING_ARRAYS = frozenset({"bpy.types.FModifierGenerator.coefficients", "bpy.types.MeshPolygon.vertices"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,7 +121,7 @@ def _pointer_misfit(script: Script, taker: Taker, kind: Type, given: str) -> Mis
 
 
 def _array_misfit(script: Script, taker: Taker, node: ast.expr, sizes: tuple[int, ...]) -> Misfit | None:
-    changing = not all(sizes) or taker.path in _CHANGING
+    changing = not all(sizes) or taker.path in CHANGING_ARRAYS
     many = "a sequence of" if changing else " × ".join(map(str, sizes))
     takes = f"{many} {_ITEM_WORDS.get(taker.kind, taker.kind)}s"
     if (parts := items(script, node)) is not None:

@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from kb_check.gitignore import GitIgnore
 from kb_check.source import NOTEBOOK
 from simworlds.errors import UserError
 
@@ -45,18 +46,21 @@ class FoundFiles:
     faults: list[str] = field(default_factory=list)
 
 
-def find_files(paths: Iterable[Path], exclude: Sequence[str] = (), top: Path | None = None) -> FoundFiles:
+def find_files(
+    paths: Iterable[Path], exclude: Sequence[str] = (), top: Path | None = None, *, gitignore: bool = True
+) -> FoundFiles:
     """The Python files and notebooks at and below ``paths``, by package.
 
-    ``exclude`` are patterns of names or of paths below ``top``. Links are followed where they are named, not where
-    they are found; so are hidden files, environments and the like. Raises UserError for far too many files.
+    ``exclude`` are patterns of names or of paths below ``top``. ``gitignore``: what git leaves out is left out. Links
+    are followed where they are named, not where they are found; so are hidden files, environments and what git leaves
+    out. Raises UserError for far too many files.
     """
     excluded = _Excluded(exclude, (top or Path()).absolute())
     found = FoundFiles()
     wanted: dict[Path, Path] = {}  # as it is → as it is shown
     for path in paths:
         if path.is_dir():
-            below = list(_below(path, excluded))
+            below = list(_below(path, excluded, GitIgnore(path) if gitignore else None))
             if not below:
                 found.faults.append(f"There are no Python files in {path}.")
         elif path.is_file():
@@ -91,7 +95,7 @@ def _grouped(wanted: dict[Path, Path], excluded: _Excluded) -> Iterator[FileGrou
         yield FileGroup((*files, *others[:_MOST_FILES]))
 
 
-def _below(folder: Path, excluded: _Excluded) -> Iterator[Path]:
+def _below(folder: Path, excluded: _Excluded, ignored: GitIgnore | None = None) -> Iterator[Path]:
     """The files below a folder, sorted; what cannot be listed is passed over."""
     for here, folders, names in os.walk(folder):
         inside = Path(here)
@@ -100,6 +104,7 @@ def _below(folder: Path, excluded: _Excluded) -> Iterator[Path]:
             for name in folders
             if not name.startswith(".") and name not in _PASSED_OVER and not excluded.has(inside / name)
             and not (inside / name / "pyvenv.cfg").exists()
+            and not (ignored is not None and ignored.leaves_out(inside / name, is_folder=True))
         )  # fmt: skip
         for name in sorted(names):
             path = inside / name
@@ -108,6 +113,7 @@ def _below(folder: Path, excluded: _Excluded) -> Iterator[Path]:
                 and not name.startswith(".")
                 and path.is_file()
                 and not excluded.has(path)
+                and not (ignored is not None and ignored.leaves_out(path, is_folder=False))
             ):
                 yield path
 

@@ -4,19 +4,19 @@ from __future__ import annotations
 
 import difflib
 import shutil
-from bisect import bisect_left, insort
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kb_check.salvage import parses
 from kb_check.source import Source, split_lines
+from kb_check.text_edits import Text, apart
 from simworlds.files import staged_file
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable
     from pathlib import Path
 
-    from kb_check.findings import Edit, Finding, Span
+    from kb_check.findings import Finding
 
 
 @dataclass(frozen=True, slots=True)
@@ -37,25 +37,16 @@ def apply_fixes(source: Source, findings: Iterable[Finding], *, unsafe: bool = F
 
     Nothing is changed in a notebook, in what could not be read, and where the result would not parse.
     """
-    text = source.text
+    nothing = Fixed(source.text, 0)
     if source.cells or source.fault:
-        return Fixed(text, 0)
-    offsets = _Offsets(text)
-    newline = "\r\n" if "\r\n" in text[: text.find("\n") + 1] else "\n"
-    chosen: list[tuple[int, int, str]] = []
-    count = 0
-    for finding in findings:
-        if finding.fix is None or not is_fixable(finding, unsafe=unsafe):
-            continue
-        edits = [offsets.replacement(edit, newline) for edit in finding.fix.edits]
-        if edits and not any(_overlaps(edit, chosen) for edit in edits):
-            for edit in edits:
-                insort(chosen, edit)
-            count += 1
-    if not chosen:
-        return Fixed(text, 0)
-    changed = "".join(_replaced(text, chosen))
-    return Fixed(changed, count) if changed != text and parses(changed) else Fixed(text, 0)
+        return nothing
+    text = Text.original(source.text)
+    fixes = [each.fix for each in findings if each.fix is not None and is_fixable(each, unsafe=unsafe)]
+    chosen = list(apart(text, fixes, lambda fix: fix.edits))
+    newline = "\r\n" if "\r\n" in source.text[: source.text.find("\n") + 1] else "\n"
+    edits = (replace(edit, text=edit.text.replace("\n", newline)) for fix in chosen for edit in fix.edits)
+    changed = text.edited(edits).code
+    return Fixed(changed, len(chosen)) if changed != source.text and parses(changed) else nothing
 
 
 def write_fixed(path: Path, before: bytes, after: bytes) -> None:
@@ -74,41 +65,3 @@ def unified_diff(name: str, before: str, after: str) -> str:
     return "".join(
         line if line.endswith("\n") else f"{line}\n\\ No newline at end of file\n" for line in lines
     )
-
-
-class _Offsets:
-    def __init__(self, text: str) -> None:
-        self._starts = [0]
-        for line in split_lines(text):
-            self._starts.append(self._starts[-1] + len(line))
-
-    def replacement(self, edit: Edit, newline: str) -> tuple[int, int, str]:
-        start, end = self._range(edit.span)
-        return start, end, edit.text.replace("\n", newline)
-
-    def _range(self, span: Span) -> tuple[int, int]:
-        return self._at(span.line, span.column), self._at(span.end_line, span.end_column)
-
-    def _at(self, line: int, column: int) -> int:
-        if line > len(self._starts):
-            return self._starts[-1]
-        return min(self._starts[line - 1] + column, self._starts[-1])
-
-
-def _overlaps(edit: tuple[int, int, str], chosen: list[tuple[int, int, str]]) -> bool:
-    """Whether an edit touches what one of the chosen replaces; they are sorted, and apart."""
-    start, end, _ = edit
-    place = bisect_left(chosen, edit)
-    return any(
-        (start, end) == other[:2] or (start < other[1] and other[0] < end)
-        for other in chosen[max(place - 1, 0) : place + 1]
-    )
-
-
-def _replaced(text: str, edits: list[tuple[int, int, str]]) -> Iterator[str]:
-    place = 0
-    for start, end, new in edits:
-        yield text[place:start]
-        yield new
-        place = end
-    yield text[place:]

@@ -43,6 +43,7 @@ class KnownNames:
         self.reader = reader
         self._lookup = RemovedSymbolLookup(reader)
         self._notes = Notes(reader)
+        self._members: dict[tuple[str, str], RemovedSymbol | None] = {}
 
     @property
     def version(self) -> str:
@@ -53,6 +54,25 @@ class KnownNames:
         """Whether another Blender has a member that this one lacks; an operator may be named by its path."""
         path = name if name.startswith("bpy.ops.") else f"{owner}.{name}"
         return self._lookup.of_path(path) is not None
+
+    def had(self, owner: str, name: str) -> bool:
+        """Whether a class or module, or one of its bases, has a member in another Blender that it lacks in this one."""
+        return self._member(owner, name) is not None
+
+    def successor(self, owner: str, name: str) -> str:
+        """The path that surely takes the place of such a member with no other change; empty for none."""
+        removed = self._member(owner, name)
+        return self._removed(for_reading(removed)).replacement if removed else ""
+
+    def _member(self, owner: str, name: str) -> RemovedSymbol | None:
+        key = owner, name
+        if key not in self._members:
+            self._members[key] = self._lookup.of_member(owner, name)
+        return self._members[key]
+
+    def is_nowhere(self, name: str) -> bool:
+        """Whether nothing in this Blender is called so."""
+        return not self.reader.rows("SELECT 1 FROM symbols WHERE name = ? LIMIT 1", name)
 
     def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
         """A member that a class or module lacks; ``reading`` unless it is assigned to."""

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+from pathlib import PurePath
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import ANY
@@ -34,18 +36,25 @@ class Package:
     def has(self, owners: Iterable[str], name: str, *, computed: bool = True) -> bool:
         """Whether a file registers that name for one of the owners, for their bases, or for what derives from them.
 
-        ``computed``: an operator whose name a file puts together may be any.
+        ``computed``: a name that a file puts together may be any.
         """
         if name in self._operators or name in self._possible:
             return True
-        holders = self._classes.get(name, set()) | self._classes.get(ANY, set())
+        holders = self._classes.get(name, set()) | (self._classes.get(ANY, set()) if computed else set())
         return any(self._gives(owner, name, holders, computed=computed) for owner in owners)
 
     def _gives(self, owner: str, name: str, holders: Iterable[str], *, computed: bool) -> bool:
         if owner.startswith("bpy.ops"):
             return (computed and ANY in self._operators) or f"{owner}.{name}" in self._operators
         if owner == "bpy.types":
-            return not self._types.isdisjoint((name, ANY))
+            return name in self._types or (computed and ANY in self._types)
         return any(
             cls == ANY or self._api.descends(owner, cls) or self._api.descends(cls, owner) for cls in holders
         )
+
+
+def paths_in_package(names: Iterable[str]) -> dict[str, str]:
+    """Name of a file → its path from the folder that holds the package on, as its modules import each other."""
+    places = {name: PurePath(os.path.realpath(name)) for name in names}
+    top = PurePath(os.path.commonpath([place.parent for place in places.values()])).parent
+    return {name: place.relative_to(top).as_posix() for name, place in places.items()}

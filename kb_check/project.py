@@ -2,15 +2,14 @@
 
 from __future__ import annotations
 
-import os
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from multiprocessing.connection import wait
-from pathlib import PurePath
 from typing import TYPE_CHECKING, cast
 
 from kb_check.cache import result_key
 from kb_check.findings import Finding, Span
+from kb_check.package import paths_in_package
 from kb_check.reading import read_source
 from simworlds.forked import can_fork, forked
 
@@ -154,21 +153,16 @@ def _check_all(base: Path, groups: Sequence[Group], numbers: Iterable[int]) -> I
 def check_group(checker: Checker, group: Group) -> list[list[Finding]]:
     """The findings of each file; none for those that are not wanted."""
     sources = [read_source(file.data, file.name) for file in group]
-    paths = _module_paths(group)
-    found = checker.read_files({path: source.text for path, source in zip(paths, sources, strict=True)})
-    reads = [found[path] for path in paths]
+    paths = paths_in_package(file.name for file in group)
+    found = checker.read_files(
+        {paths[file.name]: source.text for file, source in zip(group, sources, strict=True)}
+    )
+    reads = [found[paths[file.name]] for file in group]
     package = checker.package(reads)
     return [
         [*_fault(source), *checker.check(read, package)] if file.wanted else []
         for file, source, read in zip(group, sources, reads, strict=True)
     ]
-
-
-def _module_paths(group: Group) -> list[str]:
-    """The files' paths from the folder that holds their package, as its modules import each other."""
-    places = [PurePath(os.path.realpath(file.name)) for file in group]
-    top = PurePath(os.path.commonpath([place.parent for place in places])).parent
-    return [place.relative_to(top).as_posix() for place in places]
 
 
 def _fault(source: Source) -> Iterator[Finding]:

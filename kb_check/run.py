@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from kb_check.findings import Finding
     from kb_check.project import Group, Project
 
-_MOST_ROUNDS = 5  # of fixes: one may make way for the next
+MOST_ROUNDS = 5  # of fixes: one may make way for the next
 
 Progress = "Callable[[int, int], None]"
 
@@ -57,7 +57,7 @@ class Run:
 
     def fix(self, *, unsafe: bool) -> None:
         """Applies fixes, in memory, until none is left or the rounds are over."""
-        for _ in range(_MOST_ROUNDS):
+        for _ in range(MOST_ROUNDS):
             results = self.project.check(self.groups)
             changed = False
             for number, (group, result) in enumerate(zip(self.groups, results, strict=True)):

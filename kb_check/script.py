@@ -63,8 +63,33 @@ class Script:
             lacking = row.missing and not row.symbols and not row.possible
             if row.kind == "value" and row.value in self.own_identifiers:
                 continue
-            if lacking and row.sure and not row.guarded and not self._is_given(row):
+            if lacking and not row.guarded and (row.sure or self._is_former(row)) and not self._is_given(row):
                 yield row
+
+    def _is_former(self, row: Resolution) -> bool:
+        """Whether a name is one that the likely class of a value has lost, and that nothing in this Blender has."""
+        return (
+            row.kind in {"attribute", "store", "text", "button"}
+            and row.value not in self._own_names
+            and all(self.names.had(owner, row.value) for owner in row.missing)
+            and self.names.is_nowhere(row.value)
+        )
+
+    @cached_property
+    def _own_names(self) -> frozenset[str]:
+        """The names that the script gives to its classes and their instances."""
+        found: set[str] = set()
+        for node in self.nodes:
+            match node:
+                case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
+                    found.add(name)
+                case ast.Name(id=name, ctx=ast.Store()):
+                    found.add(name)
+                case ast.Attribute(value=ast.Name(id="self"), attr=name, ctx=ast.Store()):
+                    found.add(name)
+                case _:
+                    pass
+        return frozenset(found)
 
     def _is_given(self, row: Resolution) -> bool:
         """Whether the package has it. A name that is put together is hardly one that Blender has lost."""

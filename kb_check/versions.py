@@ -12,7 +12,7 @@ from kb_check.run import Run
 from kb_serve.bases import Bases
 from kb_serve.reader import BaseReader
 from simworlds.errors import UserError
-from simworlds.releases import minor_of
+from simworlds.releases import minor_of, version_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -191,13 +191,9 @@ def base_files(versions: Iterable[str], home: Path) -> dict[str, Path]:
         raise UserError("Give at least one version of Blender, as 4.2,5.1.")
     bases = Bases(home)
     try:
-        return {version: bases.file(version) for version in sorted(wanted, key=_numbers)}
+        return {version: bases.file(version) for version in sorted(wanted, key=version_key)}
     finally:
         bases.close()
-
-
-def _numbers(version: str) -> tuple[int, ...]:
-    return tuple(int(part) for part in version.split("."))
 
 
 def _ranges(chosen: Sequence[str], known: Sequence[str]) -> str:

@@ -46,11 +46,6 @@ def _version_of(executable: Path) -> str | None:
     return match[1] if match else None
 
 
-def numbers(version: str) -> tuple[int, ...]:
-    """``"5.1.2"`` → ``(5, 1, 2)``, for comparing versions; text without numbers gives ()."""
-    return tuple(int(number) for number in re.findall(r"\d+", version)[:3])
-
-
 def minor(version: str) -> str:
     """``"5.1.2"`` → ``"5.1"``."""
     return ".".join(version.split(".")[:2])

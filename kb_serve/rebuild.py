@@ -19,7 +19,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NoReturn
 
 from kb_serve.errors import KBServeError
-from kb_serve.in_use import minor, numbers
+from kb_serve.in_use import minor
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping, Sequence
@@ -90,7 +91,7 @@ class Upkeep:
         if minor(in_use) in built:
             meta = self.bases.pick(minor(in_use)).meta
             return meta if _newer(in_use, meta.get("blender", "")) else None
-        older = [version for version in built if numbers(version) < numbers(in_use)]
+        older = [version for version in built if version_key(version) < version_key(in_use)]
         return self.bases.pick(older[-1]).meta if older else None
 
     def _build(self, in_use: str, meta: Mapping[str, str]) -> None:
@@ -115,7 +116,7 @@ class Upkeep:
 
 
 def _newer(in_use: str, have: str) -> bool:
-    return bool(numbers(have)) and numbers(in_use) > numbers(have)
+    return bool(version_key(have)) and version_key(in_use) > version_key(have)
 
 
 def _as_before(meta: Mapping[str, str], version: str) -> list[str]:

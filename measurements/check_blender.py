@@ -5,6 +5,9 @@ other version from 4.2 on whose base lies beside it. A finding is true if ``brok
 and Blender, when it runs the row's code, says what the row says; a comparison that never holds if Blender's own
 enumeration lacks the value. Every other error is counted as false. Warnings of
 other rules, and notes, are counted alone.
+
+This project's own scripts that run inside Blender, in the folders called ``inside``, are checked too. They run in every
+version, which the tests prove: whatever is found there is false.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ from kb_build.base_file import read_meta
 from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
 from measurements.report import ReportPart, TargetFigure
-from measurements.setting import say
+from measurements.setting import REPO, say
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -46,7 +49,13 @@ _HEADER = (
     "other warnings",
     "notes",
 )
-_ADDONS = ("addons", "addons_core")
+_PARTS = (
+    "simworlds",
+    "kb_build",
+    "kb_check",
+    "agents",
+    "bench",
+)  # of the project that have packages in Blender
 _MARK = "ANSWERS:"
 _SECONDS = 120
 # Runs in Blender: each text of code, from one state, and what it ends in.
@@ -108,6 +117,30 @@ def check_all(checker: Checker, folder: Path) -> Iterator[tuple[str, list[Findin
             yield path, checker.check(read, package), codes[name].count("\n")
 
 
+def inside_packages(repo: Path = REPO) -> Iterator[dict[str, Path]]:
+    """This project's packages that run inside Blender: path in the repository → file."""
+    for part in _PARTS:
+        for folder in sorted((repo / part).rglob("inside")):
+            yield {path.relative_to(repo).as_posix(): path for path in sorted(folder.rglob("*.py"))}
+
+
+def check_inside(checker: Checker, repo: Path = REPO) -> tuple[list[str], int]:
+    """The errors, and comparisons that never hold, in these packages, and the number of their files."""
+    wrong: list[str] = []
+    count = 0
+    for files in inside_packages(repo):
+        reads = checker.read_files({name: path.read_text(encoding="utf-8") for name, path in files.items()})
+        package = checker.package(reads.values())
+        count += len(files)
+        for name, read in reads.items():
+            wrong += [
+                f"{name}:{one.span.line}: {one.rule}: {one.message}"
+                for one in checker.check(read, package)
+                if one.severity == "error" or one.rule == "never-true"
+            ]
+    return wrong, count
+
+
 def ask_blender(executable: str, codes: Iterable[str]) -> dict[str, str]:
     """What Blender says to pieces of code, the error that each ends in ("" for none); {} if it cannot be run."""
     wanted = list(dict.fromkeys(codes))
@@ -148,7 +181,8 @@ def measure(setting: Setting) -> ReportPart:
     rows: list[tuple[str, ...]] = []
     skipped: list[str] = []
     false: list[str] = []
-    seconds, lines = 0.0, 0
+    own: list[str] = []
+    seconds, lines, own_files = 0.0, 0, 0
     for base in bases:
         meta = read_meta(base)
         runtime: Mapping[str, str] = json.loads(meta["runtime"])
@@ -160,19 +194,23 @@ def measure(setting: Setting) -> ReportPart:
         began = time.process_time()
         with Checker(base) as checker:
             results = list(check_all(checker, folder))
-        if base == setting.base:
-            seconds, lines = time.process_time() - began, sum(count for _, _, count in results)
+            if base == setting.base:
+                seconds, lines = time.process_time() - began, sum(count for _, _, count in results)
+                own, own_files = check_inside(checker)
         executable = runtime.get("executable") or sys.executable
         row, wrong = _judged(results, executable if Path(executable).exists() else sys.executable)
         rows.append((meta["minor"], *row))
         false += [f"{meta['minor']}: {text}" for text in wrong]
     figures = (
         TargetFigure("check_false", len(false), "errors and comparisons not proven, all versions"),
+        TargetFigure("check_inside", len(own), f"{own_files} files"),
         TargetFigure("check_all", seconds, f"{lines:,} lines, one process"),
         TargetFigure("check_speed", 1e6 * seconds / max(1, lines), "the same, a thousand lines"),
     )
     table = Table("Findings in Blender's own scripts", _HEADER, tuple(rows))
-    return ReportPart("check_blender", figures if rows else (), (table,), tuple(skipped), {"false": false})
+    return ReportPart(
+        "check_blender", figures if rows else (), (table,), tuple(skipped), {"false": false, "inside": own}
+    )
 
 
 def _minor(base: Path) -> tuple[int, ...]:

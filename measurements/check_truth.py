@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
 from kb_check.checker import Checker
-from kb_check.migrate.text import Text
+from kb_check.fixes import is_fixable
+from kb_check.run import MOST_ROUNDS
+from kb_check.text_edits import Text, apart
 from measurements.report import ReportPart, TargetFigure
 from measurements.scripts.truth import FOLDER, SETS, Truth, read_truth, run
 from measurements.setting import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable
 
     from kb_check.findings import Finding
     from measurements.setting import Setting
@@ -89,26 +91,37 @@ def judge(counts: Counts, name: str, code: str, findings: Iterable[Finding], tru
                 counts.unjudged += 1
 
 
-def judge_fixes(counts: Counts, name: str, code: str, findings: Sequence[Finding]) -> None:
+def mend(checker: Checker, code: str) -> tuple[Text, list[int]]:
+    """A script after its sure fixes, round by round as ``--fix`` applies them, and the line of each as it then is."""
+    text, mended = Text.original(code), list[int]()
+    for _ in range(MOST_ROUNDS):
+        sure = [finding for finding in checker.check(text.code) if is_fixable(finding, unsafe=False)]
+        chosen = list(apart(text, sure, lambda finding: finding.fix.edits if finding.fix else ()))
+        if not chosen:
+            break
+        mended += [text.origin(finding.span.line) for finding in chosen]
+        text = text.edited(edit for finding in chosen if finding.fix for edit in finding.fix.edits)
+    now = {origin: line for line, origin in reversed([*enumerate(text.origins, 1)])}
+    return text, [now[line] for line in mended]
+
+
+def judge_fixes(counts: Counts, name: str, code: str, checker: Checker) -> None:
     """Applies the sure fixes of a script and runs it: whether the statements that were mended run.
 
-    A statement of which more was found than can be mended is no proof of either.
+    A statement in which the checker then still finds an error is no proof of either.
     """
-    sure = [finding for finding in findings if finding.fix is not None and finding.fix.sure]
-    edits = {edit for finding in sure if finding.fix for edit in finding.fix.edits}
-    if not sure:
+    text, mended = mend(checker, code)
+    if not mended:
         return
-    mended = Text.original(code).edited(edits).code
-    truth, statements = run(mended, name), Statements(mended)
+    truth, statements = run(text.code, name), Statements(text.code)
     failed = {statements.first_line(error.line) for error in truth.errors if error.kind == "api"}
-    others = {
+    left = {
         statements.first_line(finding.span.line)
-        for finding in findings
-        if finding.severity == "error" and finding not in sure
+        for finding in checker.check(text.code)
+        if finding.severity == "error"
     }
-    for finding in sure:
-        line = statements.first_line(finding.span.line)
-        if line not in others and (line in truth.ran or line in failed):
+    for line in map(statements.first_line, mended):
+        if line not in left and (line in truth.ran or line in failed):
             counts.fixes += 1
             counts.fixed += line not in failed
 
@@ -124,7 +137,7 @@ def compare(setting: Setting, *, fixes: bool) -> dict[str, Counts]:
             counts = found[name.partition("/")[0]]
             judge(counts, name, code, [each for each in findings if each.severity == "error"], truth)
             if fixes:
-                judge_fixes(counts, name, code, findings)
+                judge_fixes(counts, name, code, checker)
     return found
 
 

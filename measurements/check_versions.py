@@ -4,7 +4,9 @@
 Blender's scripts. *Symbols*: the older base says which symbol a place stands for, and this Blender lacks it; it is
 found if the check reports the line of one of its places. *Names, of any type*, without the type flow: an attribute of
 the older base's that no symbol of this one is called, and that the package does not define itself. Places that this
-Blender does not reach (``bpy.app.version``), or that are ready for a missing name, do not count.
+Blender does not reach (``bpy.app.version``), or that are ready for a missing name, do not count; nor does what this
+Blender finds there otherwise, or what the package itself registers. One cause is one finding: a member that went with
+its class is found where the line is reported from which the script has the instance.
 """
 
 from __future__ import annotations
@@ -18,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
 from kb_build.base_file import read_meta
+from kb_build.flow.types import Instance
 from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
 from kb_check.migrate.place import version_of
@@ -47,6 +50,14 @@ class Drift:
     names: dict[str, list[Place]] = field(default_factory=lambda: defaultdict(list))
     places: dict[Place, set[str]] = field(default_factory=lambda: defaultdict(set))
     reported: set[Place] = field(default_factory=set[Place])
+    with_class: dict[Place, set[str]] = field(default_factory=lambda: defaultdict(set))
+    sources: dict[tuple[str, str], list[Place]] = field(default_factory=lambda: defaultdict(list))
+
+    def is_found(self, place: Place) -> bool:
+        """Whether a place is reported, or went with a class and the script is told so where it gets an instance."""
+        return place in self.reported or any(
+            not self.reported.isdisjoint(self.sources[place[0], cls]) for cls in self.with_class[place]
+        )
 
     @property
     def names_found(self) -> set[str]:
@@ -64,7 +75,7 @@ class Drift:
     @property
     def places_found(self) -> set[Place]:
         """The places of removed symbols that are reported."""
-        return self.reported & set(self.places)
+        return {place for place in self.places if self.is_found(place)}
 
 
 def drift(older: Checker, newer: Checker, folder: Path) -> Drift:
@@ -79,7 +90,13 @@ def drift(older: Checker, newer: Checker, folder: Path) -> Drift:
             f"bpy.types.{node.name}"
             for read in before.values() for node in ast.walk(read.tree) if isinstance(node, ast.ClassDef)
         }  # fmt: skip
-        registered = {name for read in before.values() for _, name in read.analysis.registered}
+        registered = {
+            name
+            for reads in (before, after)
+            for read in reads.values()
+            for _, name in read.analysis.registered
+        }
+        operators = {path for read in before.values() for path in read.analysis.own_operators}
         package = newer.package(after.values())
         for name, read in after.items():
             path = files[name].relative_to(folder).as_posix()
@@ -96,6 +113,7 @@ def drift(older: Checker, newer: Checker, folder: Path) -> Drift:
                 if (node.lineno, node.col_offset) not in guarded:
                     found.names[node.attr].append((path, node.end_lineno or node.lineno))
             reached = {node.lineno for node in read.analysis.types}
+            there = {_position(row) for row in _rows(read) if row.symbols}
             for row in _rows(before[name]):
                 if row.kind in _JUDGED and row.symbols and not row.guarded and row.node.lineno in reached:
                     paths = [_path(row, one) for one in row.symbols]
@@ -104,8 +122,17 @@ def drift(older: Checker, newer: Checker, folder: Path) -> Drift:
                         all(_is_gone(newer, one) for one in paths)
                         and not own_class
                         and row.value not in registered
+                        and operators.isdisjoint(paths)
+                        and _position(row) not in there
                     ):
                         found.places[path, row.node.end_lineno].update(paths)
+                        found.with_class[path, row.node.end_lineno].update(
+                            owner for one in paths if not newer.api.is_class(owner := one.rpartition(".")[0])
+                        )
+            for row in _rows(before[name]):
+                kind = before[name].analysis.types.get(row.node)
+                if row.symbols and isinstance(kind, Instance):
+                    found.sources[path, kind.cls].append((path, row.node.lineno))
     return found
 
 
@@ -128,7 +155,7 @@ def measure(setting: Setting) -> ReportPart:
         found = drift(older, newer, folder)
         minor = newer.names.version
     symbols = found.symbols()
-    unseen = sorted(symbol for symbol, places in symbols.items() if found.reported.isdisjoint(places))
+    unseen = sorted(symbol for symbol, places in symbols.items() if not any(map(found.is_found, places)))
     missed = sorted(set(found.names) - found.names_found)
     open_places = [f"{path}:{line}" for path, line in sorted(set(found.places) - found.places_found)]
     rows = (
@@ -171,6 +198,10 @@ def _own_names(tree: ast.AST) -> Iterator[str]:
 def _rows(read: Read) -> Iterator[Any]:
     """The parts of a script that stand for something, where they have a place in it."""
     return (row for row in read.analysis.resolutions.values() if hasattr(row.node, "lineno"))
+
+
+def _position(row: Resolution) -> tuple[str, int, int]:
+    return row.kind, getattr(row.node, "lineno", 0), getattr(row.node, "end_col_offset", 0)
 
 
 def _path(row: Resolution, symbol: str) -> str:

@@ -13,11 +13,12 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
-from kb_build.versions.paths import split_path, version_key
+from kb_build.versions.paths import split_path
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import BaseReader
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import QUERIES
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -27,6 +27,7 @@ from kb_build.base_file import read_meta
 from kb_build.flow.symbols import BaseSymbols
 from kb_build.usage.scripts import blender_scripts, read_script
 from kb_check.checker import Checker
+from kb_check.salvage import parses
 from measurements.planted_places import Place, Places
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
@@ -129,7 +130,7 @@ class _Planter:
                     continue
                 of_symbol[name] += 1
                 code = _changed(scripts[script], made)
-                if _parses(code):
+                if parses(code):
                     done.add((script, made))
                     yield Planted(kind, script, code, made.line, made.text.strip())
 
@@ -308,14 +309,6 @@ def _changed(code: str, change: _Change) -> str:
     before, behind = lines[first - 1][:left], lines[last - 1][right:]
     lines[first - 1 : last] = [before + change.text.encode() + behind]
     return b"".join(lines).decode()
-
-
-def _parses(code: str) -> bool:
-    try:
-        ast.parse(code)
-    except (SyntaxError, ValueError):
-        return False
-    return True
 
 
 def found(checker: Checker, planted: Planted, before: Counter[tuple[str, str]]) -> bool:

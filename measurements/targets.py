@@ -121,6 +121,7 @@ _ROWS = (
     ),
     Target("flow_speed", "types flow through 1,000 lines", "ms", 150),
     Target("check_false", "Blender's own scripts: findings that Blender does not prove", "count", 0),
+    Target("check_inside", "own scripts that run inside Blender: findings", "count", 0),
     Target("check_all", "checking all of them", "s", 25),
     Target("check_speed", "checking 1,000 of their lines", "ms", 150),
     Target(
@@ -136,6 +137,14 @@ _ROWS = (
     Target("check_fixes", "… sure fixes after which the statement runs", "share", 0.95, True),
     Target("planted", "mistakes planted in Blender's own scripts: found", "share", 0.92, True),
     Target("check_drift", "names in an older Blender's scripts that are gone: found", "share", 0.95, True),
+    Target(
+        "migrate_predicted",
+        "an older Blender's add-ons: whether they run in a newer one, predicted",
+        "share",
+        0.95,
+        True,
+    ),
+    Target("migrate_broken", "… that run there, and do not after migrating", "count", 0),
     Target("worker_start", "Blender's start to its first reply", "s", 2),
     Target("mcp_start", "simworlds mcp: start to first blender_execute", "s", 2),
     Target("preflight", "pre-flight of 100 lines, beside execution: p50", "ms", 30),

@@ -20,6 +20,7 @@ from kb_build.schema import open_read_only
 from kb_build.usage.scripts import blender_scripts, read_script
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from kb_build.flow.analysis import Analysis
@@ -49,7 +50,7 @@ def measure(setting: Setting) -> ReportPart:
         )
     counts: Counter[str] = Counter()
     lines, took = 0, 0.0
-    version = tuple(int(part) for part in meta["blender"].split("."))
+    version = version_key(meta["blender"])
     with closing(BaseSymbols(setting.base)) as symbols:
         api = Api(symbols)
         analyse("import bpy\nbpy.context.object.modifiers.new('x', 'CLOTH').settings", api, version)

@@ -45,6 +45,11 @@ def minor_of(version: str) -> str:
     return f"{int(match[1])}.{int(match[2])}"
 
 
+def version_key(version: str) -> tuple[int, ...]:
+    """``"5.1.2"`` → ``(5, 1, 2)``, for comparing versions; text without numbers gives ()."""
+    return tuple(int(number) for number in re.findall(r"\d+", version)[:3])
+
+
 def same_version(asked: str, real: str) -> bool:
     """Whether ``real`` is what was asked for: the same minor version, and the same patch if one is named."""
     if minor_of(asked) != minor_of(real):

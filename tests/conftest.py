@@ -14,6 +14,8 @@ from places import REPO
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from built_base import Built
+
     from kb_build.blender.extract_reader import Extract
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
@@ -32,7 +34,7 @@ def _readable_mktemp(self: pytest.TempPathFactory, basename: str, numbered: bool
 pytest.TempPathFactory.mktemp = _readable_mktemp
 
 # What tests get from a Blender, or from the documentation sources, by asking for a fixture.
-_OF_BLENDER = frozenset({"base", "extract", "kb", "reader"})
+_OF_BLENDER = frozenset({"base", "built_once", "extract", "kb", "reader", "small"})
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -43,6 +45,18 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
             item.add_marker(pytest.mark.blender)
         if "corpora" in names:
             item.add_marker(pytest.mark.corpora)
+    if "PYTEST_XDIST_WORKER" in os.environ:
+        _begin_with_long_files(items)
+
+
+def _begin_with_long_files(items: list[pytest.Item]) -> None:
+    """Moves the files that `make test-fast` has nothing or little of to the front.
+
+    What is left for the end then takes moments, and no process works alone on a long file while others wait.
+    """
+    marks = ("blender", "corpora", "slow")
+    long = {item.path for item in items if any(item.get_closest_marker(mark) for mark in marks)}
+    items.sort(key=lambda item: item.path not in long)
 
 
 @pytest.fixture(scope="session")
@@ -55,21 +69,38 @@ def corpora() -> Path:
 
 
 @pytest.fixture(scope="session")
-def base(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """The file of a real base of this environment's Blender, with the miniature documentation's pages.
+def built_once(tmp_path_factory: pytest.TempPathFactory) -> Built:
+    """What ``base`` is in: its home, and the miniature documentation that it was built from. Never write to it."""
+    from built_base import build_miniature
 
-    Its home folder is ``base.parent.parent``. Never write to it.
-    """
-    from kb_build.pipeline import BuildOptions, build
     from simworlds.sandbox.runtime import installed_bpy
 
     if installed_bpy() is None:
         pytest.skip("there is no Blender in this environment")
-    mini = REPO / "tests" / "corpora_mini"
-    options = BuildOptions(manual=mini / "manual", guides=mini / "guides", offline=True)
-    return made_once(
-        tmp_path_factory, "base", lambda folder: build(None, options=options, home=folder / "home").path
-    )
+    return made_once(tmp_path_factory, "built", build_miniature)
+
+
+@pytest.fixture(scope="session")
+def base(built_once: Built) -> Path:
+    """The file of a real base of this environment's Blender, with the miniature documentation's pages.
+
+    Its home folder is ``base.parent.parent``. Never write to it.
+    """
+    return built_once.path
+
+
+@pytest.fixture(scope="session")
+def _small_once(built_once: Built, tmp_path_factory: pytest.TempPathFactory) -> Built:
+    return made_once(tmp_path_factory, "small", lambda folder: built_once.copy(folder).rebuilt_small())
+
+
+@pytest.fixture
+def small(_small_once: Built, tmp_path: Path) -> Built:
+    """A base of one's own like ``base``, of few symbols: for tests that build again.
+
+    A build in its home asks Blender only if it is forced to.
+    """
+    return _small_once.copy(tmp_path)
 
 
 @pytest.fixture(scope="session")

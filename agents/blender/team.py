@@ -13,7 +13,8 @@ from mcp.shared.exceptions import MCPError
 
 from agents.blender import plan_check
 from agents.plan.part import STAGES
-from agents.roles.prompts import protocol_text, role_text, shapes_text, stage_text, team_text
+from agents.protocol.guide import rules_guide
+from agents.roles.prompts import protocol_text, role_text, shapes_text, stage_text, system_prompt, team_text
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -56,6 +57,7 @@ def _everything(*, edit: bool) -> str:
         team_text(edit=edit),
         *(role_text(role, edit=edit) for role in ("planner", "coder", "reviewer", "final_reviewer")),
         protocol_text(),
+        rules_guide(),
         shapes_text("planner", edit=edit),
         *(stage_text(stage, edit=edit) for stage in STAGES),
     )
@@ -72,9 +74,7 @@ def _edit_scene(instruction: str, file: str = "") -> str:
 
 def _plan(prompt: str) -> str:
     return _joined(
-        role_text("planner"),
-        protocol_text(),
-        shapes_text("planner"),
+        *system_prompt("planner"),
         f"# The request\n\nWrite the scene plan for this, check it with `{plan_check.NAME}`, fix it until it is "
         f"valid, and show it. Build nothing yet.\n\n{prompt}",
     )
@@ -82,10 +82,7 @@ def _plan(prompt: str) -> str:
 
 def _stage(stage: Stage) -> str:
     return _joined(
-        role_text("coder"),
-        protocol_text(),
-        shapes_text("coder"),
-        stage_text(stage),
+        *system_prompt("coder", stage),
         f"# The request\n\nBuild the stage {stage} of our scene plan in the open scene. First plan it in a few "
         "lines: what to do, and how to tell that it is done.",
     )
@@ -93,10 +90,7 @@ def _stage(stage: Stage) -> str:
 
 def _review(stage: Stage) -> str:
     return _joined(
-        role_text("reviewer"),
-        protocol_text(),
-        shapes_text("reviewer"),
-        stage_text(stage),
+        *system_prompt("reviewer", stage),
         f"# The request\n\nReview the stage {stage} in the open scene. Without a tactical plan, work out what its "
         "questions would be. Also call blender_verify, and add its hard findings to your review.",
     )

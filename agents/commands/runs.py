@@ -42,7 +42,21 @@ _limits = _options(
     click.option("--quiet", is_flag=True, help="Print only the outcome."),
 )
 _model = _options(
-    click.option("--model", metavar="NAME", help="The model for all roles.  [default: claude-opus-5-5]"),
+    click.option(
+        "--provider",
+        type=click.Choice(["anthropic", "openai"]),
+        default="anthropic",
+        show_default=True,
+        help="The API: Messages, or chat completions as of OpenAI, Ollama, vLLM.",
+    ),
+    click.option(
+        "--model",
+        metavar="NAME",
+        help="The model for all roles.  [default: claude-opus-5-5, or gpt-5.5 of openai]",
+    ),
+    click.option(
+        "--price", metavar="IN/OUT", help="Dollars per million tokens, of models that are in no list."
+    ),
     click.option(
         "--role-model", multiple=True, metavar="ROLE=NAME", help=f"Another model for {', '.join(_ROLES)}."
     ),
@@ -88,8 +102,9 @@ _ablations = _options(
 def make(prompt: str, **given: Any) -> None:
     """Make a scene from a sentence: a .blend with baked physics, a video and a report.
 
-    Asks a language model (ANTHROPIC_API_KEY; ANTHROPIC_BASE_URL for another server that speaks its API). Without a
-    key, try 'simworlds demo'. Exit code 0: done. 1: a stage could not be closed. 2: it failed. 3: it was stopped, and
+    Asks a language model (ANTHROPIC_API_KEY; ANTHROPIC_BASE_URL for another server that speaks its API; with
+    --provider openai, OPENAI_API_KEY and OPENAI_BASE_URL, of which a server of your own needs only the second). Without
+    a key, try 'simworlds demo'. Exit code 0: done. 1: a stage could not be closed. 2: it failed. 3: it was stopped, and
     can be resumed.
     """
     _begin({"prompt": prompt, **_of_model(given)}, given)
@@ -195,7 +210,7 @@ def show(run: Path, *, report: bool) -> None:
 
 
 def _of_model(given: dict[str, Any]) -> dict[str, Any]:
-    asked: dict[str, Any] = {} if given["model"] is None else {"model": given["model"]}
+    asked = {name: given[name] for name in ("provider", "model", "price") if given[name] is not None}
     models = dict(one.partition("=")[::2] for one in given["role_model"])
     for role, name in models.items():
         if role not in _ROLES or not name:

@@ -37,7 +37,8 @@ def make(run: Run) -> RenderResult:
     run.write("plan.json", plan_file(plan))
     run.journal.note(PlanMade(plan=plan))
     staged = run.options.stages
-    text = format_plan(plan) if staged else f"{_WITHOUT_STAGES}\n\n{format_plan(plan)}"
+    told = format_plan(plan, run.options.prompt)
+    text = told if staged else f"{_WITHOUT_STAGES}\n\n{told}"
     run.task = task = RunTask(text, plan, _actors(plan))
     wanted = plan.stages if staged else ALL_AT_ONCE
     last = build(run, planner, task, wanted)

@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, Any
 
 from agents.loop.errors import NoRun
 from agents.loop.journal import NAME, read_rows
-from simworlds.llm.claude import Claude
+from simworlds.llm.attempts import Settings
+from simworlds.llm.providers import connect
 from simworlds.llm.recorded import Recorded, Recording, read_turns
 from simworlds.llm.spending import Metered
 
@@ -90,9 +91,9 @@ def _source(
                 live.spending.before_retry(retry)
                 live.tell(retry)
 
-            claude = Claude(tell=on_retry, pause=live.pause)
-            live.closing.callback(claude.close)
-            return Metered(claude, live.spending)
+            model = connect(options.provider, Settings(prices=options.prices), on_retry, pause=live.pause)
+            live.closing.callback(model.close)
+            return Metered(model, live.spending)
 
 
 def transcripts() -> list[str]:

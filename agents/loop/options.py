@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Literal
+from typing import Any, Literal
 
-from pydantic import BaseModel, ConfigDict, Field
+from pydantic import BaseModel, ConfigDict, Field, field_validator, model_validator
+
+from simworlds.llm.prices import Prices, read_price
+from simworlds.llm.providers import DEFAULT_MODELS, ProviderName
 
 Mode = Literal["make", "edit"]
 Origin = Literal["live", "session", "replay"]
 
-DEFAULT_MODEL = "claude-opus-5-5"  # the newest of the paper's line: one strong model for all roles
 BEFORE_DRAFTS = {"early": False, "planner_looks": False}  # in records that are older than these options
 ROLES = ("planner", "coder", "reviewer", "final_reviewer")
 
@@ -20,9 +22,10 @@ class Options(BaseModel):
 
     ``origin``: where answers come from: a live model, a ``session`` (its name) written by hand, or the ``replay`` of
     another run (its folder). ``file``, ``reference``: what is edited, and a picture of what it should be.
-    ``verifier``, ``stages``: False leaves that out (the paper's ablations). ``early``: the scene is delivered as each
-    stage closes, and a draft before the film; ``planner_looks``: the planner decides on that draft. Runs that were
-    begun without these go on without them.
+    ``provider``: the API that live models are reached by. ``price``: IN/OUT in dollars per million tokens, of models
+    without a list price. ``verifier``, ``stages``: False leaves that out (the paper's ablations). ``early``: the scene
+    is delivered as each stage closes, and a draft before the film; ``planner_looks``: the planner decides on that
+    draft. Runs that were begun without these go on without them.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -33,7 +36,9 @@ class Options(BaseModel):
     reference: Path | None = None
     origin: Origin = "live"
     source: str = ""
-    model: str = DEFAULT_MODEL
+    provider: ProviderName = "anthropic"
+    model: str = ""
+    price: str | None = None
     models: dict[str, str] = Field(default_factory=dict[str, str])
     blender: str | None = None
     blender_exe: Path | None = None
@@ -45,6 +50,30 @@ class Options(BaseModel):
     stages: bool = True
     early: bool = True
     planner_looks: bool = True
+
+    @model_validator(mode="before")
+    @classmethod
+    def _default_model(cls, given: Any) -> Any:
+        if isinstance(given, dict) and not given.get("model"):
+            provider = given.get("provider", "anthropic")
+            return {**given, "model": DEFAULT_MODELS.get(provider, "")}
+        return given
+
+    @field_validator("price")
+    @classmethod
+    def _readable_price(cls, price: str | None) -> str | None:
+        if price is not None:
+            read_price(price)
+        return price
+
+    @property
+    def prices(self) -> Prices:
+        """The prices in use: the list's, and ``price`` for models that are not in it."""
+        if self.price is None:
+            return Prices()
+        given, listed = read_price(self.price), Prices()
+        names = (self.model, *self.models.values())
+        return Prices({name: given for name in names if listed.of(name) is None})
 
     def model_of(self, role: str) -> str:
         """The model that answers for a role."""

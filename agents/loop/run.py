@@ -292,7 +292,10 @@ class Run:
 
 
 class RoleTools:
-    """The tools of one role in one stage: the coder has all, the reviewer those that only read (paper, "Agents")."""
+    """The tools of one role in one stage: the coder has all, the reviewer those that only read (paper, "Agents").
+
+    The coder is told of those that its stage needs.
+    """
 
     def __init__(self, run: Run, role: str, stage: Stage) -> None:
         self._run = run
@@ -313,7 +316,9 @@ class RoleTools:
     @property
     def offered(self) -> tuple[Tool, ...]:
         """What the model is told of them."""
-        return self._run.tools.offered(self._names)
+        if self._role != coder.NAME or not self._run.options.stages or self._run.options.mode == "edit":
+            return self._run.tools.offered(self._names)
+        return self._run.tools.offered([name for name in self._names if coder.is_needed(name, self._stage)])
 
     def use(self, call: ToolUse) -> ToolResult:
         """Calls one, for the model."""

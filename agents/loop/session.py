@@ -191,7 +191,9 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
     )
     with ExitStack() as stack:
         pause = stop.event.wait  # asked to stop, nobody waits for an overloaded server
-        live = LiveOptions(Spending(session.limits.max_cost), _retrying(session), pause, stack)
+        live = LiveOptions(
+            Spending(session.limits.max_cost, options.prices), _retrying(session), pause, stack
+        )
         model = make_model(root, options, journal, live)
         tools = stack.enter_context(ToolClient(setup, _same_blender(options), session.watcher.progress))
         stop.tools = tools

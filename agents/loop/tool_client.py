@@ -23,6 +23,7 @@ from agents.blender.docs_client import DocsClient
 from agents.blender.server import make_server
 from agents.loop.errors import RunError, Stopping
 from simworlds.llm.messages import Picture, Text, Tool
+from simworlds.schemas.json_schema import lean_arguments
 
 if TYPE_CHECKING:
     import threading
@@ -107,7 +108,7 @@ class ToolClient:
     def offered(self, names: Sequence[str]) -> tuple[Tool, ...]:
         """The tools of these names, as a model is told of them."""
         found = (self._tools[name] for name in names)
-        return tuple(Tool(one.name, one.description or "", dict(one.input_schema)) for one in found)
+        return tuple(Tool(one.name, one.description or "", lean_arguments(one.input_schema)) for one in found)
 
     def is_read_only(self, name: str) -> bool:
         """Whether a tool leaves the scene as it is; unknown tools do."""

@@ -28,17 +28,30 @@ _KINDS: tuple[tuple[str, dict[Any, str]], ...] = (
 _UNITS = {tolerance.name: tolerance.metadata["unit"] for tolerance in fields(TOLERANCES)}
 
 
-def guide() -> str:
-    """The whole protocol, as Markdown."""
+def guide(*, with_relations: bool = True) -> str:
+    """The protocol's words, as Markdown: levels, tags and relations; without the latter, which of them are contacts."""
     return "\n\n".join(
         [
             "# The scene protocol",
-            "Units are metres; Z is up; the front of an object, and of the world, is −Y. The rules below judge the "
-            "scene by measurements of its evaluated geometry.",
+            "Units are metres; Z is up; the front of an object, and of the world, is −Y. Rules judge the scene by "
+            "measurements of its evaluated geometry.",
             _levels(),
             _tags(),
-            _relations(),
-            _rules(),
+            _relations() if with_relations else _contacts(),
+        ]
+    )
+
+
+def rules_guide(stage: Stage | None = None, *, edit: bool = False) -> str:
+    """The rules that judge a stage (None: all), each in a sentence, with its tolerances."""
+    share, most = format_tolerance("contact_share"), format_tolerance("contact_most")
+    return "\n".join(
+        [
+            "## Rules",
+            f"ε is {format_tolerance('contact')} or {share} of the smaller object's diagonal, at most {most}; noise is "
+            f"{format_tolerance('penetration')} or {format_tolerance('penetration_share')} of the smallest dimension. "
+            "In brackets: tolerances, which a plan may tighten by name. Rules are hard unless marked (soft).",
+            *_listed(rules_of(stage, edit=edit) if stage else RULES),
         ]
     )
 
@@ -83,16 +96,17 @@ def _carrier(tag: vocabulary.CustomProperty) -> str:
     return "L3" if tag.on_role == "object" else _CARRIERS[tag.owner]
 
 
-def _relations() -> str:
+def _contacts() -> str:
     contacts = ", ".join(kind.__name__ for kind in relations.CONTACTS)
-    return "\n".join(
-        [
-            "## Relations of a plan",
-            f"Each joins objects, or their parts as `Object/Part`. {contacts} declare a contact, as "
-            f"`{vocabulary.CONTACT_WITH}` does. For moving objects, a relation must hold at the first or last frame.",
-            *map(_relation, get_args(get_args(relations.Relation)[0])),
-        ]
+    return (
+        "## Relations of a plan\n"
+        f"Each joins objects, or their parts as `Object/Part`. {contacts} declare a contact, as "
+        f"`{vocabulary.CONTACT_WITH}` does. For moving objects, a relation must hold at the first or last frame."
     )
+
+
+def _relations() -> str:
+    return "\n".join([_contacts(), *map(_relation, get_args(get_args(relations.Relation)[0]))])
 
 
 def _relation(kind: type[relations.RelationPart]) -> str:
@@ -107,19 +121,6 @@ def _relation(kind: type[relations.RelationPart]) -> str:
     ]
     meaning = " ".join((kind.__doc__ or "").split("\n\n")[0].replace("``", "`").split())
     return f"- {names}({', '.join(members)}): {meaning}"
-
-
-def _rules() -> str:
-    share, most = format_tolerance("contact_share"), format_tolerance("contact_most")
-    return "\n".join(
-        [
-            "## Rules",
-            f"ε is {format_tolerance('contact')} or {share} of the smaller object's diagonal, at most {most}; noise is "
-            f"{format_tolerance('penetration')} or {format_tolerance('penetration_share')} of the smallest dimension. "
-            "In brackets: tolerances, which a plan may tighten by name. Rules are hard unless marked (soft).",
-            *_listed(RULES),
-        ]
-    )
 
 
 def _listed(rules: Iterable[Rule]) -> Iterator[str]:

@@ -6,11 +6,13 @@ import json
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any, Literal, Protocol, TypeVar
 
+from pydantic import BaseModel
+
 from simworlds.llm import tokens
 from simworlds.llm.context import ContextLimits, fit
 from simworlds.llm.errors import CutShort, Declined, Misfit
 from simworlds.llm.messages import Ask, Text, ToolResult, user
-from simworlds.llm.structured import ask_for, complaint, read
+from simworlds.llm.structured import ask_for, complaint, fits, form_of, read
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping, Sequence
@@ -19,7 +21,7 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Block, Message, Model, Tool, ToolUse, Turn
     from simworlds.llm.structured import AnswerReader
 
-T = TypeVar("T")
+M = TypeVar("M", bound=BaseModel)
 
 MAX_CALLS = 80  # of one attempt
 _SAME_CALLS = (
@@ -102,10 +104,17 @@ class Conversation:
         last = next((one for one in reversed(self._messages) if one.role == "assistant"), None)
         return "\n".join(block.text for block in last.content if isinstance(block, Text)) if last else ""
 
-    def data(self, stage: str, reader: AnswerReader[T], *said: Block | str, pinned: Sequence[str] = ()) -> T:
-        """Asks for JSON that ``reader`` takes. What did not fit is not kept. Raises Misfit, ModelError."""
+    def data(
+        self,
+        stage: str,
+        shape: type[M],
+        *said: Block | str,
+        reader: AnswerReader[M] | None = None,
+        pinned: Sequence[str] = (),
+    ) -> M:
+        """Asks for JSON of a shape that ``reader`` takes. What did not fit is not kept. Raises Misfit, ModelError."""
         self._hear(said, pinned)
-        return self._read_on(stage, reader, self._messages)
+        return self._read_on(stage, shape, reader or fits(shape), self._messages)
 
     def work(self, stage: str, *said: Block | str, pinned: Sequence[str] = ()) -> WorkResult:
         """Lets the model work with its tools until it says something without calling any. Raises ModelError."""
@@ -136,23 +145,31 @@ class Conversation:
                 )
 
     def work_then_data(
-        self, stage: str, reader: AnswerReader[T], *said: Block | str, pinned: Sequence[str] = ()
-    ) -> T:
-        """As ``work``; the last words are to be JSON that ``reader`` takes. Raises Misfit, ModelError."""
+        self,
+        stage: str,
+        shape: type[M],
+        *said: Block | str,
+        reader: AnswerReader[M],
+        pinned: Sequence[str] = (),
+    ) -> M:
+        """As ``work``; the last words are to be JSON of a shape that ``reader`` takes. Raises Misfit, ModelError."""
         worked = self.work(stage, *said, pinned=pinned)
         if worked.how != "done" or worked.turn is None:
             if worked.how == "refused":
                 raise Declined(worked.said, _sure(worked.turn))
             self._hear(("That is enough. Give your answer now, as the JSON that is asked for.",), pinned)
-            return self._read_on(stage, reader, self._messages)
+            return self._read_on(stage, shape, reader, self._messages)
         try:
             return read(worked.said, reader)
         except Misfit as misfit:
             whole, self._messages = self._messages, self._messages[:-1]
-            return self._read_on(stage, reader, (*whole, complaint(worked.turn, misfit)))
+            return self._read_on(stage, shape, reader, (*whole, complaint(worked.turn, misfit)))
 
-    def _read_on(self, stage: str, reader: AnswerReader[T], messages: tuple[Message, ...]) -> T:
-        found = ask_for(self._context, self._ask(stage, messages), reader, tries=_TRIES, on_text=self._say)
+    def _read_on(
+        self, stage: str, shape: type[M], reader: AnswerReader[M], messages: tuple[Message, ...]
+    ) -> M:
+        ask, form = self._ask(stage, messages), form_of(shape)
+        found = ask_for(self._context, ask, reader, tries=_TRIES, on_text=self._say, form=form)
         self._messages = (*self._messages, replace(found.turn, content=_words(found.turn)).message())
         return found.value
 
@@ -185,7 +202,7 @@ class Conversation:
     def _used(self, call: ToolUse, repeats: _Repeats) -> ToolResult:
         assert self._tools is not None
         self._context.safe()
-        result = self._tools.use(call)
+        result = self._tools.use(call) if not call.fault else _unreadable(call)
         times = repeats.count(call, result)
         if times < _SAME_CALLS:
             return result
@@ -214,6 +231,11 @@ class _Repeats:
 def _words(turn: Turn) -> tuple[Block, ...]:
     """The turn without calls, which nobody answers."""
     return tuple(block for block in turn.content if block.type != "tool_use")
+
+
+def _unreadable(call: ToolUse) -> ToolResult:
+    text = f"{call.name or 'The tool'} was not called. {call.fault} Send the whole call again."
+    return ToolResult(call.id, (Text(text),), failed=True)
 
 
 def _sure(turn: Turn | None) -> Turn:

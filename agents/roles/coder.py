@@ -15,6 +15,35 @@ if TYPE_CHECKING:
     from agents.roles.base import RoleContext
 
 NAME = "coder"
+
+# What a coder is not told of in a stage, since nothing in it needs that; called all the same, it works. The loop saves
+# and loads by itself, and blender_group sets an object's tags too.
+_ALWAYS_LEFT_OUT = frozenset({"blender_save", "blender_load", "blender_tag_object"})
+_LEFT_OUT: dict[str, frozenset[str]] = {
+    "modeling": frozenset({"blender_motion_sheet_preview", "blender_bake", "blender_render"}),
+    "uv": frozenset(
+        {
+            "blender_motion_sheet_preview",
+            "blender_bake",
+            "blender_group",
+            "blender_system_layout_preview",
+            "blender_render",
+        }
+    ),
+    "texture": frozenset({"blender_motion_sheet_preview", "blender_bake", "blender_group"}),
+    "deformation_setup": frozenset({"blender_single_mesh_preview", "blender_render"}),
+    "motion": frozenset({"blender_single_mesh_preview", "blender_system_layout_preview"}),
+    "camera": frozenset({"blender_single_mesh_preview", "blender_bake", "blender_group"}),
+    "light": frozenset({"blender_single_mesh_preview", "blender_bake", "blender_group"}),
+    "render": frozenset({"blender_single_mesh_preview", "blender_system_layout_preview"}),
+}
+
+
+def is_needed(tool: str, stage: Stage) -> bool:
+    """Whether a coder is told of a tool in a stage."""
+    return tool not in _ALWAYS_LEFT_OUT and tool not in _LEFT_OUT.get(stage, ())
+
+
 _BEGIN = """\
 {plan}
 

@@ -7,7 +7,6 @@ from typing import TYPE_CHECKING
 from agents.plan.tactical import FinalReview
 from agents.roles.base import Conversation
 from agents.roles.prompts import system_prompt
-from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -27,4 +26,4 @@ def final_review(
 ) -> FinalReview:
     """The verdict on frames of the rendering. Raises ModelError; Misfit when no answer fits."""
     talk = Conversation(context, NAME, system_prompt(NAME, edit=edit))
-    return talk.data("render", fits(FinalReview), _LOOK.format(plan=plan), *shown)
+    return talk.data("render", FinalReview, _LOOK.format(plan=plan), *shown)

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.plan.check import read_plan
 from agents.plan.edit import EditPlan, unknown_targets
+from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FilmDecision, TacticalPlan
 from agents.roles.base import Conversation, plan_json
 from agents.roles.prompts import system_prompt
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence, Set
 
     from agents.plan.part import Stage
-    from agents.plan.scene import ScenePlan
     from agents.roles.base import RoleContext
     from simworlds.llm.messages import Block, Picture
 
@@ -70,7 +70,7 @@ class Planner:
 
     def strategic(self, prompt: str) -> ScenePlan:
         """The scene plan, which contradicts itself nowhere."""
-        plan = self._talk.data("", _sound_plan, _STRATEGIC.format(prompt=prompt))
+        plan = self._talk.data("", ScenePlan, _STRATEGIC.format(prompt=prompt), reader=_sound_plan)
         self._plan = (self._talk.said,)
         return plan
 
@@ -96,7 +96,7 @@ class Planner:
         said: list[Picture | str] = [_EDIT.format(prompt=prompt, state=state), *seen]
         if reference is not None:
             said += [_REFERENCE, reference]
-        plan = self._talk.data("", reader, *said)
+        plan = self._talk.data("", EditPlan, *said, reader=reader)
         self._plan = (self._talk.said,)
         return plan
 
@@ -110,7 +110,7 @@ class Planner:
             return plan, problems
 
         words = _TACTICAL.format(stage=stage, why=f"{why.rstrip()} " if why else "", state=state)
-        return self._talk.data(stage, reader, words, pinned=self._plan)
+        return self._talk.data(stage, TacticalPlan, words, reader=reader, pinned=self._plan)
 
     def decide(  # noqa: PLR0913 - all that is known of an attempt
         self, stage: Stage, attempt: int, *, how: str, report: str, verified: str, reviewed: str, left: str
@@ -125,11 +125,11 @@ class Planner:
             reviewed=reviewed,
             left=left,
         )
-        return self._talk.data(stage, fits(Decision), words, pinned=(*self._plan, verified))
+        return self._talk.data(stage, Decision, words, pinned=(*self._plan, verified))
 
     def before_film(self, shown: Sequence[Block]) -> FilmDecision:
         """Whether the film is rendered at once, or something is mended before; ``shown``: words and stills."""
-        return self._talk.data("render", fits(FilmDecision), _FILM, *shown, pinned=self._plan)
+        return self._talk.data("render", FilmDecision, _FILM, *shown, pinned=self._plan)
 
 
 def _sound_plan(data: Any) -> tuple[ScenePlan | None, Sequence[object]]:
@@ -138,9 +138,9 @@ def _sound_plan(data: Any) -> tuple[ScenePlan | None, Sequence[object]]:
     return read_plan(data)
 
 
-def format_plan(plan: ScenePlan) -> str:
-    """The scene plan as every other role reads it."""
-    return f"The scene plan:\n{plan_json(plan)}"
+def format_plan(plan: ScenePlan, prompt: str) -> str:
+    """The request and the scene plan as every other role reads them."""
+    return f"The request: {prompt}\n\nThe scene plan:\n{plan_json(plan)}"
 
 
 def format_edit_plan(plan: EditPlan, prompt: str, known: Sequence[str] = ()) -> str:

@@ -16,7 +16,7 @@ from agents.plan.edit import EditPlan
 from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
-from agents.protocol.guide import format_stage_rules, guide
+from agents.protocol.guide import format_stage_rules, guide, rules_guide
 from simworlds.schemas.notation import shape_of
 
 if TYPE_CHECKING:
@@ -26,11 +26,11 @@ Role = Literal["planner", "coder", "reviewer", "final_reviewer"]
 ROLES: tuple[Role, ...] = ("planner", "coder", "reviewer", "final_reviewer")
 
 FOLDER = Path(__file__).with_name("prompts")
-# What a role reads or answers, beside the plan of the whole.
-_SHAPES: dict[Role, tuple[type[BaseModel], ...]] = {
+# What a role answers; the planner also writes the plan of the whole. What is read explains itself.
+_ANSWERS: dict[Role, tuple[type[BaseModel], ...]] = {
     "planner": (TacticalPlan, Decision),
-    "coder": (TacticalPlan,),
-    "reviewer": (TacticalPlan, Review),
+    "coder": (),
+    "reviewer": (Review,),
     "final_reviewer": (FinalReview,),
 }
 _SECTION = re.compile(r"^(?=## )", re.MULTILINE)
@@ -41,10 +41,22 @@ _HOLE = re.compile(r"\{\{(\w+)\}\}")
 def system_prompt(role: Role, stage: Stage | None = None, *, edit: bool = False) -> tuple[str, ...]:
     """The parts of a role's system prompt, from what all runs share to what only this stage has.
 
-    ``stage`` is for roles that work on a single one; ``edit``: a file is edited, no scene is made.
+    Each role gets what it needs: the planner the whole protocol and the shapes of plans, the coder the protocol with
+    the rules of its stage, reviewers the shape of their answer. ``stage`` is for roles that work on a single one;
+    ``edit``: a file is edited, no scene is made.
     """
-    parts = [role_text(role, edit=edit), protocol_text(), shapes_text(role, edit=edit)]
-    return tuple([*parts, stage_text(stage, edit=edit)] if stage else parts)
+    parts = [role_text(role, edit=edit)]
+    if role == "planner":
+        parts += [protocol_text(), rules_guide()]
+    if role == "coder":
+        parts.append(guide(with_relations=False))
+    if _ANSWERS[role]:
+        parts.append(shapes_text(role, edit=edit))
+    if stage and role == "coder":
+        parts.append(rules_guide(stage, edit=edit))
+    if stage:
+        parts.append(stage_text(stage, edit=edit))
+    return tuple(parts)
 
 
 @cache
@@ -73,10 +85,11 @@ def stage_title(stage: Stage) -> str:
 
 @cache
 def shapes_text(role: Role, *, edit: bool = False) -> str:
-    """The shapes of the plans that a role reads and of what it answers, without what the protocol's guide tells."""
-    told = shape_of(EditPlan if edit else ScenePlan, *_SHAPES[role], before=protocol_text())
+    """The shapes of what a role answers, without what the protocol's guide tells."""
+    plans = (EditPlan if edit else ScenePlan,) if role == "planner" else ()
+    told = shape_of(*plans, *_ANSWERS[role], before=protocol_text() if plans else "")
     return (
-        "# Shapes of plans and answers\n\n"
+        "# Shapes of answers\n\n"
         "JSON, written as types: `name?` may be left out and is then the value behind `=`, or null; what stands behind "
         f"`//` is its meaning. No other fields are taken.\n\n```\n{told}\n```"
     )
@@ -84,7 +97,7 @@ def shapes_text(role: Role, *, edit: bool = False) -> str:
 
 @cache
 def protocol_text() -> str:
-    """The documentation of the scene protocol, which all roles share."""
+    """The words of the scene protocol: levels, tags, relations."""
     return guide()
 
 

@@ -48,4 +48,6 @@ class Reviewer:
             return review, problems
 
         words = _LOOK.format(plan=self._plan, attempt=attempt, stage=self._stage, tactic=plan_json(tactic))
-        return self._talk.work_then_data(self._stage, reader, words, *evidence, pinned=(self._plan,))
+        return self._talk.work_then_data(
+            self._stage, Review, words, *evidence, reader=reader, pinned=(self._plan,)
+        )

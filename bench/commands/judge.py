@@ -52,10 +52,10 @@ def judge(frames: tuple[Path, ...], **given: Any) -> None:
     Exit code 0: judged, whatever the score. 2: not judged; the reason is printed.
     """
     from bench.judge.errors import NotJudged  # noqa: PLC0415 - not for --help
-    from bench.judge.providers import DEFAULTS  # noqa: PLC0415
+    from simworlds.llm.providers import DEFAULT_MODELS  # noqa: PLC0415
 
     given["price"] = price_of(given["price"])
-    given["model"] = given["model"] or DEFAULTS[given["provider"]]
+    given["model"] = given["model"] or DEFAULT_MODELS[given["provider"]]
     given["cache"] = judge_cache(given["cache"])
     wanted = _request(frames, given)
     if (frames and wanted is None) or not (frames or given["dry_run"]):

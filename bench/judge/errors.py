@@ -19,8 +19,6 @@ Reason = Literal[
     "malformed",  # all answers were invalid
 ]
 
-NO_OPENAI_PACKAGE = "The openai package is not installed. Install it with: pip install 'simworlds[openai]'"
-
 
 class NotJudged(Exception):  # noqa: N818 - reads as the state it names
     """There is no judgement; the message says why and what to do. ``spent``: what it cost nevertheless."""

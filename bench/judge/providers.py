@@ -8,10 +8,13 @@ from dataclasses import replace
 from importlib.util import find_spec
 from typing import TYPE_CHECKING
 
-from bench.judge.errors import NO_OPENAI_PACKAGE, NotJudged
+from bench.judge.errors import NotJudged
+from simworlds.llm.attempts import Settings
 from simworlds.llm.errors import Rejected
 from simworlds.llm.messages import Text
+from simworlds.llm.openai_chat import NO_PACKAGE
 from simworlds.llm.prices import Prices
+from simworlds.llm.providers import DEFAULT_MODELS, PROVIDERS, connect
 from simworlds.llm.spending import Metered, Spending
 
 if TYPE_CHECKING:
@@ -21,12 +24,16 @@ if TYPE_CHECKING:
     from simworlds.llm.prices import Price
     from simworlds.llm.retries import Retry
 
-# One strong vision model of each: the newest of the line that builds the scenes, and the paper's own judge.
-DEFAULTS = {"anthropic": "claude-opus-5-5", "openai": "gpt-5.5"}
+
+_STRUCTURED = ("openai",)  # providers with structured outputs
 
 
 class JudgeProvider:
-    """A Model for structured answers: the input of its call to the Ask's one tool becomes the text of its turn."""
+    """A Model for structured answers: what an Ask's one tool takes is the form of the answer.
+
+    Where the API has structured outputs, they hold the model to it; else the input of its call becomes the text of the
+    turn.
+    """
 
     def __init__(
         self,
@@ -59,7 +66,11 @@ class JudgeProvider:
         """The turn, see Model. Raises ModelError, NotJudged."""
         self.ready()
         assert self._connected is not None
-        return _as_text(self._connected.answer(replace(ask, model=self.model), on_text))
+        ask = replace(ask, model=self.model)
+        if self.name in _STRUCTURED:
+            (form,) = ask.tools
+            ask = replace(ask, tools=(), form=form)
+        return _as_text(self._connected.answer(ask, on_text))
 
 
 def provider_of(  # noqa: PLR0913
@@ -76,26 +87,20 @@ def provider_of(  # noqa: PLR0913
     ``base_url``: another server with the provider's API. ``max_cost``: US dollars, over all questions. ``price``: of a
     model without a list price. ``tell`` is called on retries. Raises NotJudged, ValueError.
     """
-    if name not in DEFAULTS:
-        raise ValueError(f"There is no provider {name!r}. Choose {' or '.join(DEFAULTS)}.")
-    chosen = model or DEFAULTS[name]
+    if name not in PROVIDERS:
+        raise ValueError(f"There is no provider {name!r}. Choose {' or '.join(PROVIDERS)}.")
+    chosen = model or DEFAULT_MODELS[name]
     prices = Prices({chosen: price} if price else None)
-    spending = Spending(max_cost, prices)
-
-    def anthropic() -> Model:
-        from simworlds.llm.claude import Claude, Settings  # noqa: PLC0415 - loads the package
-
-        return Claude(Settings(base_url=base_url, prices=prices), tell)
-
-    def openai() -> Model:
-        from bench.judge.openai_chat import OpenAIChat  # noqa: PLC0415
-
-        return OpenAIChat(base_url, prices)
-
+    settings = Settings(base_url=base_url, prices=prices)
     if name == "openai" and find_spec("openai") is None:
-        raise NotJudged("not set up", NO_OPENAI_PACKAGE)
-    connect = {"anthropic": anthropic, "openai": openai}[name]
-    return JudgeProvider(name, chosen, connect, spending=spending, prices=prices)
+        raise NotJudged("not set up", NO_PACKAGE)
+    return JudgeProvider(
+        name,
+        chosen,
+        lambda: connect(name, settings, tell),
+        spending=Spending(max_cost, prices),
+        prices=prices,
+    )
 
 
 def _as_text(turn: Turn) -> Turn:

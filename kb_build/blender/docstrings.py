@@ -15,6 +15,7 @@ from docutils.frontend import get_default_settings
 from docutils.parsers.rst import Directive, Parser, directives, roles
 from docutils.utils import new_document
 
+from kb_build.docutils_states import states_when_entered
 from kb_build.records import Default, EnumItem, Parameter
 
 if TYPE_CHECKING:
@@ -386,7 +387,8 @@ def parse_docstring(text: str, signature: str = "") -> Docstring:
     body, slots = _bmesh_results(body) if text.startswith("BMeshOpFunc ") else (body, ())
     parser, settings = _parser()
     document = new_document("docstring", settings)
-    parser.parse(_SPHINX.sub(rf"\1{_OWN}", body), document)
+    with states_when_entered():
+        parser.parse(_SPHINX.sub(rf"\1{_OWN}", body), document)
     parsed = _overloaded(document.children, calls or [signature], slots)
     constructor = next((member.docstring for member in parsed.members if member.name == "__init__"), None)
     if constructor and not parsed.signature:

@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 MOST_CHARACTERS = 2_000_000
 MOST_STEPS = 4_000_000  # expressions that are read, some more than once
 _STEPS_PER_CHARACTER = 4
-_ROUNDS = 3
+_ROUNDS = 3  # in which a function is read for what its module and its class bind
+_MOST_ROUNDS = 6  # in which it is read for what calls pass
 _DEEPEST_IMPORT = 20  # files that import each other are read within each other
 
 
@@ -55,7 +56,7 @@ class Analyzer(Statements):
         """Reads every module, then every function with what it is known to receive."""
         for file in self.sources:
             self.read_file(file)
-        for _ in range(_ROUNDS):
+        for _ in range(_MOST_ROUNDS):
             if not self._read_functions():
                 break
 
@@ -91,9 +92,10 @@ class Analyzer(Statements):
         for number in sorted(range(len(self.functions)), key=self._turn):
             function = self.functions[number]
             file = function.file
-            if file is None or not file.complete or function.runs >= _ROUNDS:
+            if file is None or not file.complete or function.runs >= _MOST_ROUNDS:
                 continue
-            if not function.stale and function.seen == self.stamp(function):
+            settled = function.runs >= _ROUNDS or function.seen == self.stamp(function)
+            if settled and not function.stale:
                 continue
             found = True
             self.depth, self.steps_left = 0, file.steps_left

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 from kb_build.flow.facts import (
     CLASS_OF_VALUE,
@@ -70,11 +70,27 @@ class Member:
     type: Type
 
 
-class Api:
-    """The types of one Blender's API. What is there is kept; names that are not would be without end."""
+class FormerNames(Protocol):
+    """What became of members that other Blenders have."""
 
-    def __init__(self, symbols: Symbols) -> None:
+    def had(self, owner: str, name: str) -> bool:
+        """Whether a class or module of another Blender has a member that it lacks in this one."""
+        ...
+
+    def successor(self, owner: str, name: str) -> str:
+        """The path that surely takes the place of such a member with no other change; empty for none."""
+        ...
+
+
+class Api:
+    """The types of one Blender's API. What is there is kept; names that are not would be without end.
+
+    With ``former`` a name that is gone has the type of what took its place: what a script does with it can be judged.
+    """
+
+    def __init__(self, symbols: Symbols, former: FormerNames | None = None) -> None:
         self.symbols = symbols
+        self._former = former
         self._own: dict[str, dict[str, Symbol]] = {}
         self._sockets: dict[str, tuple[Symbol, ...]] = {}
         self._lineages: dict[str, tuple[str, ...]] = {}
@@ -183,6 +199,16 @@ class Api:
             if found:
                 self._below[key] = found
         return found
+
+    def had(self, cls: str, name: str) -> bool:
+        """Whether a class had, or gets, a member in another Blender that it lacks in this one."""
+        return self._former is not None and self._former.had(cls, name)
+
+    def successor_type(self, owner: str, name: str) -> Type:
+        """The type of what took the place of a member that a class or module lacks; UNKNOWN if that is not sure."""
+        path = self._former.successor(owner, name) if self._former else ""
+        symbol = self.symbols.symbol(path) if path else None
+        return self._type_of(symbol) if symbol else UNKNOWN
 
     def _type_of(self, symbol: Symbol) -> Type:  # noqa: PLR0911 - one return a kind
         path = symbol.path

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST_RUN
-from kb_build.flow.facts import BMESH_RESULTS, OPEN_CALLS, T
+from kb_build.flow.facts import BMESH_RESULTS, NAME_OF_PROPERTY, OPEN_CALLS, VERSION, T
 from kb_build.flow.narrowing import Narrowing
 from kb_build.flow.types import (
     BOOL,
@@ -62,7 +62,7 @@ _ITERATORS = {
 }  # fmt: skip
 _PLAIN_RESULTS: dict[str, Type] = {
     "len": INT, "int": INT, "float": FLOAT, "str": STR, "bool": BOOL, "repr": STR, "isinstance": BOOL,
-    "hasattr": BOOL, "any": BOOL, "all": BOOL, "callable": BOOL, "print": NONE,
+    "any": BOOL, "all": BOOL, "callable": BOOL, "print": NONE,
 }  # fmt: skip
 _STRING_RESULTS: dict[str, Type] = {
     "split": Sequence("list", STR), "rsplit": Sequence("list", STR), "splitlines": Sequence("list", STR),
@@ -169,7 +169,7 @@ class Calls(Narrowing):
         is_open = symbol.path in OPEN_CALLS or any(_is_open(parameter) for parameter in symbol.parameters)
         for keyword, _ in keywords:
             name = keyword.arg
-            if name is None:
+            if name is None or (name == NAME_OF_PROPERTY and symbol.owner == "bpy.props"):
                 continue
             if parameter := parameters.get(name):
                 self.resolve(keyword, "keyword", name, (f"{symbol.path}({name})",))
@@ -411,8 +411,9 @@ class Calls(Narrowing):
             case "map" if len(arguments) == 2:
                 return Sequence("iterator", self._applied(arguments[0], arguments[1], keep=False))
             case "min" | "max":
-                self._key(keywords, first)
-                return self.iterated(first) if len(arguments) == 1 else union(arguments)
+                compared = self.iterated(first) if len(arguments) == 1 else union(arguments)
+                self._key(keywords, compared)
+                return compared
             case "abs":
                 return Plain(first.kind) if isinstance(first, Plain) else UNKNOWN
             case "round":
@@ -433,6 +434,9 @@ class Calls(Narrowing):
                 declared = self.is_declared(node.args[2])
                 self.register(first, literal_text(arguments[1]) or ANY, arguments[2], declared=declared)
                 return NONE
+            case "hasattr":
+                text = literal_text(arguments[1]) if len(arguments) == 2 else None
+                return Plain("bool", True, VERSION) if text and self.has(first, text) else BOOL
             case "getattr" | "delattr":
                 return self._named_attribute(node, arguments)
             case "dict":
@@ -440,10 +444,10 @@ class Calls(Narrowing):
             case _:
                 return UNKNOWN
 
-    def _key(self, keywords: list[tuple[ast.keyword, Type]], values: Type) -> None:
+    def _key(self, keywords: list[tuple[ast.keyword, Type]], value: Type) -> None:
         for keyword, kind in keywords:
             if keyword.arg == "key" and isinstance(kind, LocalFunction):
-                self._pass(kind.number, [self.iterated(values)], {})
+                self._pass(kind.number, [value], {})
 
     def _applied(self, function: Type, values: Type, *, keep: bool) -> Type:
         element = self.iterated(values)

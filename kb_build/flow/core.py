@@ -129,11 +129,12 @@ class Core:
         possible: Sequence[str] = (),
         *,
         sure: bool = True,
+        guarded: bool = False,
     ) -> None:
         """Records what a part of the script stands for; a later reading of the same part replaces it."""
         self.resolutions[node] = Resolution(
             node, kind, value, _once(symbols), _once(missing), _once(possible),
-            sure and not self.guessing, self.tolerant > 0, self.statement,
+            sure and not self.guessing, guarded or self.tolerant > 0 or self.scope.state.doubts(), self.statement,
         )  # fmt: skip
 
     # What a script adds to the API.

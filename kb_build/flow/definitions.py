@@ -21,7 +21,8 @@ class FunctionDefinition:
 
     ``received`` joins what calls pass as far as it is known; ``unknown`` names the parameters for which some pass
     something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
-    ``used`` are the attributes that it reads from each name, once they were asked for. ``file`` is where it stands.
+    ``used`` are the attributes that it reads from each name, ``asks_version`` whether it looks at Blender's version,
+    once they were asked for. ``file`` is where it stands.
     """
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -38,6 +39,7 @@ class FunctionDefinition:
     stale: bool = True
     seen: tuple[int, int] = (-1, -1)
     used: dict[str, set[str]] | None = None
+    asks_version: bool | None = None
     file: SourceFile | None = None
 
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import ast
+import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import DEEPEST, StepsExhausted
-from kb_build.flow.facts import MORE_VALUES, VERSION, T
+from kb_build.flow.facts import MORE_VALUES, PRODUCTS, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import State, chain_text
 from kb_build.flow.types import (
@@ -17,6 +18,7 @@ from kb_build.flow.types import (
     STR,
     UNKNOWN,
     Builtin,
+    ClassObject,
     Instance,
     LocalFunction,
     Mapping,
@@ -35,6 +37,7 @@ from kb_build.flow.types import (
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from collections.abc import Sequence as Rows
 
 _BUILTINS = frozenset(
     (  # noqa: SIM905
@@ -50,6 +53,10 @@ _MATH = frozenset(
 _VECTOR = "mathutils.Vector"
 _NUMBERS = frozenset({"bool", "int", "float"})
 _LONGEST_LITERAL = 64
+_COMPARISONS: dict[type[ast.cmpop], Callable[[list[int], list[int]], bool]] = {
+    ast.Lt: op.lt, ast.LtE: op.le, ast.Gt: op.gt, ast.GtE: op.ge, ast.Eq: op.eq, ast.NotEq: op.ne,
+}  # fmt: skip
+_MINOR = 2  # numbers of a version that tell what its API is
 _FEWEST_VALUES = 2  # of an enumeration that can be judged
 
 
@@ -93,14 +100,16 @@ class Expressions(Members):
         found = self.attribute(owner, node.attr)
         if found.symbols or found.possible or (found.missing and known is None):
             missing = found.missing if known is None else ()
+            doubted = bool(self.scope.state.doubted) and self.scope.state.doubts(chain_text(node.value))
             self.resolve(
-                node, "attribute", node.attr, found.symbols, missing, found.possible, sure=found.sure
-            )
+                node, "attribute", node.attr, found.symbols, missing, found.possible,
+                sure=found.sure, guarded=doubted,
+            )  # fmt: skip
         if known is not None:
             return known
         kind = found.type
         if self.version and found.symbols == [VERSION]:
-            return Tuple(tuple(Plain("int", part) for part in self.version))
+            return Tuple(tuple(Plain("int", part, VERSION) for part in self.version))
         return kind
 
     def _subscript(self, node: ast.Subscript) -> Type:
@@ -188,7 +197,25 @@ class Expressions(Members):
 
     def _binary(self, node: ast.BinOp) -> Type:
         left, right = self.evaluate(node.left), self.evaluate(node.right)
-        return _operation(left, right, node.op)
+        return self.operation(node, left, right)
+
+    def operation(self, node: ast.BinOp | ast.AugAssign, left: Type, right: Type) -> Type:
+        """What an operation gives; a product that mathutils refuses is recorded."""
+        operator = node.op
+        if isinstance(operator, (ast.Mult, ast.MatMult)) and is_math(left) and is_math(right):
+            sign = "*" if isinstance(operator, ast.Mult) else "@"
+            self.resolutions.pop(node, None)
+            assert isinstance(left, Instance)
+            assert isinstance(right, Instance)
+            pair = left.cls, right.cls
+            # In place, the result must be of the same kind.
+            taken = PRODUCTS[sign] if isinstance(node, ast.BinOp) else PRODUCTS["*"]
+            if pair not in taken:
+                self.resolve(node, "product", sign, missing=pair, sure=left.sure and right.sure)
+                if pair not in PRODUCTS["@"]:
+                    return UNKNOWN
+                operator = ast.MatMult()  # which is meant
+        return _operation(left, right, operator)
 
     def _unary(self, node: ast.UnaryOp) -> Type:
         operand = self.evaluate(node.operand)
@@ -211,17 +238,57 @@ class Expressions(Members):
                 self.check_value(left, right_node, "compared")
                 if isinstance(operator, (ast.Eq, ast.NotEq)):
                     self.check_value(right, left_node, "compared")
-            if isinstance(left, Tuple) and isinstance(right, Tuple) and len(node.ops) == 1:
-                result = _compared(left, right, operator)
+            if len(node.ops) == 1:
+                result = self._decided_here(left, operator, right, right_node)
             left, left_node = right, right_node
         return result
+
+    def _decided_here(self, left: Type, operator: ast.cmpop, right: Type, right_node: ast.expr) -> Type:
+        """The value of a comparison, where this Blender's version or what it has decides it."""
+        if isinstance(left, Tuple) and isinstance(right, Tuple):
+            return _compared(left.items, right.items, operator)
+        if isinstance(left, Plain) and isinstance(right, Plain) and VERSION in {left.source, right.source}:
+            return _compared((left,), (right,), operator)
+        text = literal_text(left)
+        if text is None or not isinstance(operator, (ast.In, ast.NotIn)):
+            return BOOL
+        there = self._is_listed(text, right_node)
+        return BOOL if there is None else Plain("bool", there == isinstance(operator, ast.In), VERSION)
+
+    def _is_listed(self, name: str, node: ast.expr) -> bool | None:
+        """Whether ``bpy.types.Scene.bl_rna.properties`` or ``dir(bpy.types)`` lists a name; None for what is not sure.
+
+        ``node`` was evaluated.
+        """
+        match node:
+            case ast.Attribute(
+                attr="properties" | "functions", value=ast.Attribute(attr="bl_rna", value=owner)
+            ):
+                kind = self.types.get(owner, UNKNOWN)
+                if isinstance(kind, Instance) and not (kind.sure and not self.guessing):
+                    return None
+                cls = kind.cls if isinstance(kind, (Instance, ClassObject)) else ""
+                wanted = "property" if node.attr == "properties" else "function"
+                member = self.api.member(cls, name) if cls else None
+                if member is not None:
+                    return member.symbol.kind == wanted
+                is_known = self.api.is_class(cls) and not self.is_open(cls)
+                added = is_known and (self.is_registered(cls, name) or self.api.below(cls, name))
+                return False if is_known and not added else None
+            case ast.Call(func=ast.Name(id="dir"), args=[owner]):
+                return self.has(self.types.get(owner, UNKNOWN), name) or None
+            case _:
+                return None
 
     def _boolean(self, node: ast.BoolOp) -> Type:
         before = self.scope.state
         kinds: list[Type] = []
         holds = isinstance(node.op, ast.And)
+        settles = Plain("bool", not holds, VERSION)  # what follows it is for other versions
         for place, value in enumerate(node.values):
             kinds.append(self.evaluate(value))
+            if kinds[-1] == settles:
+                break
             if place < len(node.values) - 1:
                 if place == 0:
                     self.scope.state = before.copy()
@@ -229,10 +296,14 @@ class Expressions(Members):
         assigned = {name: kind for name, kind in self.scope.state.names.items() if name not in before.names}
         self.scope.state = before
         before.names.update(assigned)
+        if kinds[-1] == settles:
+            return settles
+        open_kinds = [kind for kind in kinds if not is_decided(kind)]
+        if not open_kinds:
+            return kinds[-1]
         if holds:
-            never = Plain("bool", False, VERSION)
-            return never if never in kinds else kinds[-1]
-        return union([*(without_none(kind) for kind in kinds[:-1]), kinds[-1]])
+            return BOOL if is_decided(kinds[-1]) else kinds[-1]
+        return union([*(without_none(kind) for kind in open_kinds[:-1]), open_kinds[-1]])
 
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
@@ -403,24 +474,27 @@ def _constants(node: ast.expr) -> list[ast.Constant]:
     return []
 
 
-def _compared(left: Tuple, right: Tuple, operator: ast.cmpop) -> Type:
-    """The comparison of two tuples of numbers: how scripts ask for Blender's version."""
-    first = [literal(kind) for kind in left.items]
-    second = [literal(kind) for kind in right.items]
+def is_decided(kind: Type) -> bool:
+    """Whether a truth value is decided by the Blender that the script is read for."""
+    return isinstance(kind, Plain) and kind.source == VERSION and isinstance(kind.value, bool)
+
+
+def _compared(left: Rows[Type], right: Rows[Type], operator: ast.cmpop) -> Type:
+    """The comparison of two rows of numbers: how scripts ask for Blender's version."""
+    first = [literal(kind) for kind in left]
+    second = [literal(kind) for kind in right]
     if not all(isinstance(value, int) for value in (*first, *second)):
         return BOOL
     ours, theirs = [int(v) for v in first if v is not None], [int(v) for v in second if v is not None]
-    match operator:
-        case ast.Lt():
-            return Plain("bool", ours < theirs, VERSION)
-        case ast.LtE():
-            return Plain("bool", ours <= theirs, VERSION)
-        case ast.Gt():
-            return Plain("bool", ours > theirs, VERSION)
-        case ast.GtE():
-            return Plain("bool", ours >= theirs, VERSION)
-        case _:
-            return BOOL
+    compare = _COMPARISONS.get(type(operator))
+    if compare is None or (isinstance(operator, (ast.Eq, ast.NotEq)) and len(ours) > _MINOR):
+        return BOOL
+    return Plain("bool", compare(ours, theirs), VERSION)
+
+
+def is_math(kind: Type) -> bool:
+    """Whether a type is one of mathutils' values that can be multiplied."""
+    return isinstance(kind, Instance) and kind.cls in _MATH
 
 
 def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa: PLR0911, PLR0912 - one return a rule

@@ -79,14 +79,19 @@ SOMETIMES = {
 }  # fmt: skip
 
 # Values that work and are not listed: batch_for_shader hands its type on to gpu.types.GPUBatch, which has two more; the
-# display without a colour configuration is called NONE.
+# display without a colour configuration is called NONE; a liquid's domain makes particles of types of their own.
 MORE_VALUES = {
+    "bpy.types.ParticleSettings.type": (
+        "FLIP", "SPRAY", "FOAM", "BUBBLE", "TRACER", "SPRAYFOAM", "SPRAYBUBBLE", "FOAMBUBBLE", "SPRAYFOAMBUBBLE",
+    ),
     "gpu_extras.batch.batch_for_shader(type)": ("LINE_LOOP", "TRI_FAN"),
     "bpy.types.ColorManagedDisplaySettings.display_device": ("NONE",),
-}
+}  # fmt: skip
 
 # Functions that take keywords which their signatures do not list.
 OPEN_CALLS = frozenset({"bpy.types.Context.temp_override"})
+# The keyword that all of bpy.props take and none lists: the property's own name, which registering fills in.
+NAME_OF_PROPERTY = "attr"
 
 # What the entries of a result of bmesh.ops hold, by the beginning of their names.
 BMESH_RESULTS = {
@@ -121,6 +126,18 @@ MATH_OF_SUBTYPE = {
     "TRANSLATION": "Vector", "XYZ": "Vector", "DIRECTION": "Vector", "VELOCITY": "Vector", "ACCELERATION": "Vector",
     "XYZ_LENGTH": "Vector", "COORDINATES": "Vector", "EULER": "Euler", "QUATERNION": "Quaternion",
     "MATRIX": "Matrix", "COLOR": "Color", "COLOR_GAMMA": "Color",
+}  # fmt: skip
+
+# What mathutils multiplies, of two of its own values, by each operator; it refuses the other pairs.
+_BY_ITEM = frozenset(
+    (f"mathutils.{name}", f"mathutils.{name}") for name in ("Matrix", "Quaternion", "Vector")
+)
+PRODUCTS = {
+    "*": _BY_ITEM,
+    "@": _BY_ITEM | {
+        ("mathutils.Matrix", "mathutils.Vector"), ("mathutils.Vector", "mathutils.Matrix"),
+        ("mathutils.Quaternion", "mathutils.Vector"),
+    },
 }  # fmt: skip
 
 # Members of ``bpy.context`` whose class only an editor tells: name → class; with brackets, a list of them.

@@ -79,9 +79,16 @@ class Members(Core):
         """An attribute of a value."""
         found = Lookup()
         if isinstance(kind, Union):
+            lost: list[Type] = []
             for member in kind.members:
                 if not isinstance(member, NoneValue):
+                    lacking, known = len(found.missing), len(found.types)
                     self._read(member, name, found)
+                    if len(found.missing) > lacking:
+                        lost += found.types[known:]
+                        del found.types[known:]
+            if not (found.symbols or found.possible):  # else who goes on has a member that has it
+                found.types += lost
         else:
             self._read(kind, name, found)
         if not found.types:
@@ -114,14 +121,16 @@ class Members(Core):
             return
         if (
             not _is_pythons(name)
-            and not self._is_open(kind.cls)
+            and not self.is_open(kind.cls)
             and not self.is_there_at_times(f"{kind.cls}.{name}")
         ):
             found.missing.append(kind.cls)
             found.sure = found.sure and kind.cls not in DERIVED_BY_SCRIPTS
+            found.types.append(self._held(self.api.successor_type(kind.cls, name), kind, name))
+            return
         found.types.append(UNKNOWN)
 
-    def _is_open(self, cls: str) -> bool:
+    def is_open(self, cls: str) -> bool:
         """Whether instances of a class have members that its symbols do not tell."""
         symbol = self.api.symbols.symbol(cls)
         if symbol is None or symbol.kind != "class" or symbol.group in {"ui", "operator"} or _half_known(cls):
@@ -141,6 +150,30 @@ class Members(Core):
         if isinstance(kind, Collection):
             return replace(kind, owner=owner)
         return self.api.as_held_by(kind, owner, name)
+
+    def is_registered(self, cls: str, name: str) -> bool:
+        """Whether the script gives a property of this name to a class of the API, or may."""
+        return self._registered(cls, name) is not None
+
+    def has(self, kind: Type, name: str) -> bool:  # noqa: PLR0911 - one return a type
+        """Whether a value surely has an attribute, as long as it is not None, in this Blender."""
+        match kind:
+            case Instance():
+                if not kind.sure or self.guessing:
+                    return False
+                member = self.api.member(kind.cls, name)
+                return member is not None and member.symbol.kind != "context"
+            case Module():
+                return self.api.member(kind.path, name) is not None
+            case ClassObject():
+                member = self.api.member(kind.cls, name)
+                return member is not None and isinstance(member.type, Function)
+            case Collection():
+                return self.api.member(kind.container, name) is not None
+            case Union():
+                return all(self.has(member, name) for member in kind.members)
+            case _:
+                return False
 
     def _registered(self, cls: str, name: str) -> Type | None:
         """A property that the script gives to a class of the API."""
@@ -163,7 +196,8 @@ class Members(Core):
         if kind.container == GROUPS and name in _GROUP_METHODS:
             found.types.append(Builtin(name, kind))  # not every Blender documents them
             return
-        found.missing.append(kind.path or kind.container)
+        if not _is_pythons(name):
+            found.missing.append(kind.path or kind.container)
         found.types.append(UNKNOWN)
 
     def _of_module(self, kind: Module, name: str, found: Lookup) -> None:
@@ -177,6 +211,8 @@ class Members(Core):
             known = nested is not None or name.startswith("_") or path in self.own_operators
             if not known and not _half_known(kind.path) and not self.is_there_at_times(path):
                 found.missing.append(kind.path)
+                found.types.append(self.api.successor_type(kind.path, name))
+                return
             found.types.append(UNKNOWN)
             return
         found.symbols.append(member.symbol.path)
@@ -204,7 +240,7 @@ class Members(Core):
             )
             return
         found.types.append(self._registered(kind.cls, name) or UNKNOWN)
-        if not _is_pythons(name) and not hasattr(type, name) and not self._is_open(kind.cls):
+        if not _is_pythons(name) and not hasattr(type, name) and not self.is_open(kind.cls):
             found.missing.append(kind.cls)
 
     def _of_operator(self, kind: Operator, name: str, found: Lookup) -> None:

@@ -44,18 +44,31 @@ class Narrowing(Expressions):
                     self.narrow(value, holds=False)
             case ast.BoolOp(op=ast.Or()) if holds:
                 self._any_of(test.values)
-            case ast.Name() | ast.Attribute():
+            case ast.Name() | ast.Attribute() | ast.NamedExpr():
                 if holds:
-                    self._without_none(test)
-            case ast.NamedExpr():
-                if holds:
-                    self._without_none(test.target)
+                    self._without_none(test.target if isinstance(test, ast.NamedExpr) else test)
+                self._answered(test, holds=holds)
             case ast.Compare(ops=[operator], comparators=[right]):
                 self._comparison(test.left, operator, right, holds=holds)
-            case ast.Call(func=ast.Name(id=name)) if holds:
-                self._asked(name, test)
+            case ast.Call(func=ast.Name(id=name)):
+                if name in {"hasattr", "getattr"}:
+                    self._has(test, holds=holds)
+                elif holds:
+                    self._is_instance(name, test)
             case _:
                 pass
+
+    def _answered(self, node: ast.expr, *, holds: bool) -> None:
+        """Narrows by the ``hasattr`` or ``getattr`` whose answer a name, or an expression, is."""
+        if isinstance(node, ast.NamedExpr):
+            node = node.value
+        asked = self.scope.asked_by(node.id) if isinstance(node, ast.Name) else node
+        if isinstance(asked, ast.Call):
+            self.narrow(asked, holds=holds)
+
+    def _doubt(self, text: str) -> None:
+        if text:
+            self.scope.state.doubted |= {text}
 
     def _type_of(self, node: ast.expr) -> Type:
         return self.types.get(node, UNKNOWN)
@@ -96,6 +109,8 @@ class Narrowing(Expressions):
         if isinstance(right, ast.Constant) and right.value is None:
             if not positive:
                 self._without_none(left.target if isinstance(left, ast.NamedExpr) else left)
+            else:
+                self._answered(left, holds=False)
             return
         if not positive or not isinstance(left, ast.Attribute) or left.attr not in DISCRIMINANTS:
             return
@@ -127,26 +142,36 @@ class Narrowing(Expressions):
         if found and (result := union(found)) is not UNKNOWN:
             self._know(node, result)
 
-    def _asked(self, name: str, call: ast.Call) -> None:
-        """``isinstance(x, y)`` and ``hasattr(x, "y")``."""
-        if len(call.args) != 2:
+    def _is_instance(self, name: str, call: ast.Call) -> None:
+        """``isinstance(x, y)``."""
+        if name != "isinstance" or len(call.args) != 2:
             return
         subject, answer = call.args
-        if name == "isinstance":
-            wanted = self._type_of(answer)
-            kinds = wanted.items if isinstance(wanted, Tuple) else members(wanted)
-            found = [self._instance(kind) for kind in kinds]
-            if UNKNOWN not in found:
-                self._know(subject, union(found))
-            elif chain_text(subject):
-                self._know(subject, UNKNOWN)
-        elif name == "hasattr" and (attribute := literal_text(self._type_of(answer))):
-            text = chain_text(subject)
-            owner = self._type_of(subject)
-            if text and owner is not UNKNOWN and owner is not NONE:
-                found_type = self.attribute(owner, attribute)
-                if found_type.missing or found_type.possible:
-                    self.scope.state.chains[f"{text}.{attribute}"] = found_type.type
+        wanted = self._type_of(answer)
+        kinds = wanted.items if isinstance(wanted, Tuple) else members(wanted)
+        found = [self._instance(kind) for kind in kinds]
+        if UNKNOWN not in found:
+            self._know(subject, union(found))
+        elif chain_text(subject):
+            self._know(subject, UNKNOWN)
+
+    def _has(self, call: ast.Call, *, holds: bool) -> None:
+        """``hasattr(x, "y")``, and ``getattr(x, "y", None)`` as a condition."""
+        if len(call.args) < 2:
+            return
+        subject, answer = call.args[:2]
+        text, attribute = chain_text(subject), literal_text(self._type_of(answer))
+        if not holds:
+            self._doubt(text)
+            return
+        owner = self._type_of(subject)
+        if not text or not attribute or owner is UNKNOWN or owner is NONE:
+            return
+        found = self.attribute(owner, attribute)
+        if found.missing or found.possible:
+            self.scope.state.chains[f"{text}.{attribute}"] = found.type
+        if found.missing:
+            self._doubt(text)
 
     @staticmethod
     def _instance(kind: Type) -> Type:

@@ -23,6 +23,7 @@ from kb_build.flow.types import Sequence as ListType
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+EVERYTHING = "*"  # a chain that stands for all of them
 _DEEPEST_CHAIN = 8
 _NESTED = (ListType, Tuple, Mapping, Union, Instance, Function, Builtin, LocalFunction)
 
@@ -34,14 +35,23 @@ def kept(kind: Type) -> Type:
 
 @dataclass(slots=True)
 class State:
-    """What is known at one place of one scope: of names, and of chains (``context.object``) by their text."""
+    """What is known at one place of one scope: of names, and of chains (``context.object``) by their text.
+
+    ``doubted`` are names and chains of which the script has found here that they lack a member, as those of another
+    Blender do: what it reads from them is not for this one.
+    """
 
     names: dict[str, Type] = field(default_factory=dict[str, Type])
     chains: dict[str, Type] = field(default_factory=dict[str, Type])
+    doubted: frozenset[str] = frozenset()
 
     def copy(self) -> State:
         """The same, to be changed on its own."""
-        return State(self.names.copy(), self.chains.copy())
+        return State(self.names.copy(), self.chains.copy(), self.doubted)
+
+    def doubts(self, text: str = EVERYTHING) -> bool:
+        """Whether what is read here, or from this chain, may be for another Blender."""
+        return bool(self.doubted) and (text in self.doubted or EVERYTHING in self.doubted)
 
 
 def joined(states: Sequence[State]) -> State:
@@ -53,7 +63,7 @@ def joined(states: Sequence[State]) -> State:
         for name, kind in other.names.items():
             names[name] = join(names[name], kind) if name in names else kind
         chains = {text: kind for text, kind in chains.items() if other.chains.get(text) == kind}
-    return State(names, dict(chains))
+    return State(names, dict(chains), frozenset.intersection(*(state.doubted for state in states)))
 
 
 @dataclass(slots=True)
@@ -66,7 +76,10 @@ class Loop:
 
 @dataclass(slots=True)
 class Scope:
-    """A module, a function or a class. ``ever`` joins all that a name was bound to: what other scopes see."""
+    """A module, a function or a class. ``ever`` joins all that a name was bound to: what other scopes see.
+
+    ``asked`` are the names that hold what ``hasattr`` or ``getattr`` said, with the expression.
+    """
 
     parent: Scope | None = None
     is_class: bool = False
@@ -74,6 +87,7 @@ class Scope:
     state: State = field(default_factory=State)
     ever: dict[str, Type] = field(default_factory=dict[str, Type])
     elsewhere: set[str] = field(default_factory=set[str])
+    asked: dict[str, ast.expr] = field(default_factory=dict[str, ast.expr])
     changes: int = 0
 
     def lookup(self, name: str) -> Type | None:
@@ -88,6 +102,15 @@ class Scope:
                 found = scope.ever.get(name)
                 if found is not None:
                     return found
+            scope = scope.parent
+        return None
+
+    def asked_by(self, name: str) -> ast.expr | None:
+        """The ``hasattr`` or ``getattr`` whose answer a name holds here."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.asked or name in scope.ever:
+                return scope.asked.get(name)
             scope = scope.parent
         return None
 

@@ -10,8 +10,9 @@ from kb_build.flow.annotations import annotated
 from kb_build.flow.calls import Calls
 from kb_build.flow.core import ANY
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
-from kb_build.flow.facts import PARAMETERS, VERSION, T
-from kb_build.flow.scopes import Loop, Scope, State, chain_text, joined
+from kb_build.flow.expressions import is_decided, is_math
+from kb_build.flow.facts import PARAMETERS, T
+from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
 from kb_build.flow.types import (
     NONE,
     STR,
@@ -132,11 +133,16 @@ class Statements(Calls):
         if found.symbols or found.missing or found.possible:
             missing = () if is_expected else found.missing
             self.resolve(
-                target, "store", target.attr, found.symbols, missing, found.possible, sure=found.sure
-            )
+                target, "store", target.attr, found.symbols, missing, found.possible,
+                sure=found.sure, guarded=self.scope.state.doubts(chain_text(target.value)),
+            )  # fmt: skip
         if found.symbols and value is not None:
             self.check_value(found.type, value)
-        if text and isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance):
+        converts = is_math(kind) and is_math(found.type)  # a vector, given to a colour, becomes a colour
+        holds = (
+            isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts
+        )
+        if text and holds:
             self.scope.state.chains[text] = kind
 
     def _store_on_instance(self, owner: LocalInstance, name: str, kind: Type) -> None:
@@ -151,7 +157,21 @@ class Statements(Calls):
         kind = self.evaluate(node.value)
         for target in node.targets:
             self.bind_target(target, kind, node.value)
+            if isinstance(target, ast.Name):
+                self._note_asked(target.id, node.value)
         return True
+
+    def _note_asked(self, name: str, value: ast.expr) -> None:
+        """Notes ``name = hasattr(owner, "member")`` and ``name = getattr(owner, "member", default)``."""
+        self.scope.asked.pop(name, None)
+        match value:
+            case (
+                ast.Call(func=ast.Name(id="hasattr"), args=[_, _])
+                | ast.Call(func=ast.Name(id="getattr"), args=[_, _, _])
+            ):
+                self.scope.asked[name] = value
+            case _:
+                pass
 
     def _assign_annotated(self, node: ast.AnnAssign) -> bool:
         kind = self.evaluate(node.value) if node.value is not None else UNKNOWN
@@ -167,6 +187,8 @@ class Statements(Calls):
     def _assign_augmented(self, node: ast.AugAssign) -> bool:
         right = self.evaluate(node.value)
         before = self.evaluate(node.target)
+        if isinstance(node.op, (ast.Mult, ast.MatMult)) and is_math(before) and is_math(right):
+            before = self.operation(node, before, right)
         if isinstance(node.target, ast.Name):
             grown = isinstance(before, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple))
             if grown:
@@ -192,16 +214,34 @@ class Statements(Calls):
     def _if(self, node: ast.If) -> bool:
         test = self.evaluate(node.test)
         # Only another version's code is left out: a switch may be set by whoever reads the script.
-        truth = literal(test) if isinstance(test, Plain) and test.source == VERSION else None
+        truth = literal(test) if is_decided(test) else None
         before = self.scope.state
+        asks = truth is None and self._asks_version(node.test)
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
             if isinstance(truth, bool) and truth is not holds:
                 continue
             self.scope.state = before.copy()
             self.narrow(node.test, holds=holds)
+            if asks:
+                self.scope.state.doubted |= {EVERYTHING}
             ways.append(self._way(self.scope.state, body))
-        return self._meet(ways, before)
+        reached = self._meet(ways, before)
+        if None not in ways:
+            self.scope.state.doubted = before.doubted
+        return reached
+
+    def _asks_version(self, test: ast.expr) -> bool:
+        """Whether a condition asks for Blender's version by a function of the script, whose answer is not known."""
+        for node in ast.walk(test):
+            kind = self.types.get(node.func) if isinstance(node, ast.Call) else None
+            if isinstance(kind, LocalFunction):
+                function = self.functions[kind.number]
+                if function.asks_version is None:
+                    function.asks_version = _reads_version(function.node)
+                if function.asks_version:
+                    return True
+        return False
 
     def _loop(self, body: Rows[ast.stmt], orelse: Rows[ast.stmt], enter: Callable[[], None]) -> bool:
         """Reads a loop's body twice, so that what one turn binds is known in the next."""
@@ -277,7 +317,10 @@ class Statements(Calls):
                 self.evaluate(handler.type)
             if handler.name:
                 self.scope.bind(handler.name, UNKNOWN)
+            # What is done where a name is lacking may be for another Blender.
+            self.tolerant += _forgives(handler)
             ways.append(self._way(self.scope.state, handler.body))
+            self.tolerant -= _forgives(handler)
         reached = self._meet(ways, within.copy())
         return self.read_body(node.finalbody) and reached
 
@@ -446,6 +489,8 @@ class Statements(Calls):
                 if isinstance(kind, LocalClass) and kind.number != number and number < _MOST_CLASSES:
                     self.derived.setdefault(kind.number, []).append(number)
         scope = Scope(self.scope, is_class=True, cls=number)
+        scope.state.chains = dict(self.scope.state.chains)
+        scope.state.doubted = self.scope.state.doubted
         outer, self.scope = self.scope, scope
         try:
             self.read_body(node.body)
@@ -583,7 +628,8 @@ class Statements(Calls):
         if function.used is None:
             function.used = _used_names(function.node)
         for attribute in function.used.get(name, ()):
-            if not attribute or not (self.api.member(cls, attribute) or self.api.below(cls, attribute)):
+            known = attribute and (self.api.member(cls, attribute) or self.api.below(cls, attribute))
+            if not known and not (attribute and self.api.had(cls, attribute)):
                 return UNKNOWN
         return Instance(cls, sure=False)
 
@@ -660,6 +706,17 @@ def _used_names(function: ast.AST) -> dict[str, set[str]]:
         if isinstance(node, (ast.Attribute, ast.Subscript)) and isinstance(node.value, ast.Name):
             used.setdefault(node.value.id, set()).add(node.attr if isinstance(node, ast.Attribute) else "")
     return used
+
+
+def _reads_version(function: ast.AST) -> bool:
+    """Whether a function looks at ``app.version``."""
+    return any(
+        isinstance(node, ast.Attribute)
+        and node.attr == "version"
+        and isinstance(node.value, (ast.Attribute, ast.Name))
+        and (node.value.attr if isinstance(node.value, ast.Attribute) else node.value.id) == "app"
+        for node in ast.walk(function)
+    )
 
 
 def _differs(before: State, after: State) -> bool:

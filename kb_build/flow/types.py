@@ -298,7 +298,8 @@ class Resolution:
     ``keyword`` (ast.keyword), ``value`` (a literal given to an enumeration), ``compared`` (a literal that
     one is compared with), ``item`` (ast.Subscript, or the literal key
     of a call to ``get``), ``text`` (a literal that names a property: ``keyframe_insert("location")``), ``button`` (a
-    literal that names the property or the operator that a layout shows).
+    literal that names the property or the operator that a layout shows), ``product`` (a multiplication that mathutils
+    refuses: ``missing`` are the classes of its two sides).
     """
 
     node: ast.AST

@@ -18,6 +18,7 @@ from kb_build.usage.examples import Example, Uses, uses_in
 from kb_build.usage.scripts import read_script
 from simworlds.files import remove_unfinished_files, staged_file
 from simworlds.forked import beside
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Sequence
@@ -74,20 +75,16 @@ def script_usage(
         yield result
 
 
-def _numbers(version: str) -> tuple[int, ...]:
-    return tuple(int(part) for part in version.split(".") if part.isdigit())
-
-
 def _read(symbols: Sequence[Symbol], scripts: Iterable[Script], version: str) -> Usage:
     api = Api(SymbolList(symbols))
-    numbers = _numbers(version)
+    numbers = version_key(version)
     return merged(uses_in(read_script(s.path), s.name, api, numbers, s.cost) for s in scripts)
 
 
 def page_usage(symbols: Sequence[Symbol], pages: Iterable[Page], version: str) -> Usage:
     """The uses in the code of the guides."""
     api = Api(SymbolList(symbols))
-    numbers = _numbers(version)
+    numbers = version_key(version)
     return merged(
         uses_in(code, page.slug, api, numbers, _GUIDE_COST)
         for page in pages

@@ -18,9 +18,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kb_build.errors import StoreError
-from kb_build.versions.paths import split_path, version_key
+from kb_build.versions.paths import split_path
 from simworlds.errors import UserError
-from simworlds.releases import minor_of
+from simworlds.releases import minor_of, version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator

@@ -10,10 +10,9 @@ from kb_build.blender.extractor import extract_api
 from kb_build.errors import ExtractError, KBBuildError, StoreError
 from kb_build.versions.history import ApiHistory, history_paths, is_from_stubs
 from kb_build.versions.history_merge import merge_versions
-from kb_build.versions.paths import version_key
 from simworlds.errors import UserError
 from simworlds.files import staged_file
-from simworlds.releases import minor_of
+from simworlds.releases import minor_of, version_key
 from simworlds.sandbox.runtime import find_runtime
 from simworlds.terminal.progress import silent
 

@@ -6,8 +6,8 @@ from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.versions.history import SHARED, ApiHistory, is_from_stubs
-from kb_build.versions.paths import split_path, version_key
-from simworlds.releases import minor_of
+from kb_build.versions.paths import split_path
+from simworlds.releases import minor_of, version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping

@@ -1,15 +1,10 @@
-"""Paths of the history taken apart, and versions as numbers."""
+"""Paths of the history taken apart."""
 
 from __future__ import annotations
 
 import re
 
 _PATH = re.compile(r'(.*)\.(inputs|outputs)\["(.*)"\]|(.*)\(([^()]*)\)', re.DOTALL)
-
-
-def version_key(version: str) -> tuple[int, ...]:
-    """For sorting versions as numbers."""
-    return tuple(int(part) for part in version.split("."))
 
 
 def split_path(path: str) -> tuple[str, str, str]:

@@ -14,7 +14,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kb_build.errors import StoreError
-from kb_build.versions.paths import joined_path, split_path, version_key
+from kb_build.versions.paths import joined_path, split_path
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from kb_check.migrate.change import Change, Version
     from kb_check.migrate.place import Place
-    from kb_check.migrate.text import Text
+    from kb_check.text_edits import Text
 
 _BLOCKS = ("body", "orelse", "finalbody", "handlers", "cases")
 _OPENS = (
@@ -81,11 +81,9 @@ def _covers(place: Place, node: ast.AST, span: Span) -> bool:
 
 def can_be_guarded(place: Place, change: Change) -> bool:
     """Whether the old form can stay beside the new one."""
-    if not place.bpy:
-        return False
     for edit in change.edits:
         statement = innermost(place, edit.span)
-        if statement is None:
+        if statement is None or not place.knows_bpy(statement):
             return False
         if not _alone(place, statement) and _expression(place, statement, edit.span) is None:
             return False

@@ -171,15 +171,24 @@ class Place:
             return Edit(here, "")
         return Edit(span, "") if self.script.text(skipped).strip() == "," else None
 
-    @cached_property
+    @property
     def bpy(self) -> str:
         """The name by which the script's own top level knows ``bpy``; empty if it does not."""
+        return self._bpy_import[0]
+
+    def knows_bpy(self, statement: ast.stmt) -> bool:
+        """Whether a statement stands below the import that brings ``bpy``."""
+        return bool(self.bpy) and statement.lineno > self._bpy_import[1]
+
+    @cached_property
+    def _bpy_import(self) -> tuple[str, int]:
+        """The name of ``bpy`` at the top level, and the line of its import."""
         for node in self.script.tree.body:
             if isinstance(node, ast.Import):
                 for alias in node.names:
                     if alias.name == "bpy" or (alias.name.startswith("bpy.") and not alias.asname):
-                        return alias.asname or "bpy"
-        return ""
+                        return alias.asname or "bpy", node.lineno
+        return "", 0
 
     def add_import(self, line: str) -> tuple[Edit, ...]:
         """The edit that adds an import below the script's first one; none where it is there already."""

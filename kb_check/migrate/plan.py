@@ -2,11 +2,7 @@
 
 from __future__ import annotations
 
-import ast
-import os
-import warnings
 from dataclasses import dataclass, field, replace
-from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Span
@@ -14,8 +10,10 @@ from kb_check.migrate.change import Change, Decision, Done
 from kb_check.migrate.guards import can_be_guarded, guarded_edits, innermost, plain_edits
 from kb_check.migrate.place import Place, version_of
 from kb_check.migrate.rewrite import all_rewrites
-from kb_check.migrate.text import Taken, Text
 from kb_check.migrate.version_tests import reaches
+from kb_check.package import paths_in_package
+from kb_check.salvage import parses
+from kb_check.text_edits import Text, apart
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -82,7 +80,7 @@ class Migrator:
         """Reads all files anew: what one says about types holds in the others, too."""
         states = list(states)
         texts = {**beside, **{state.file.name: state.text.code for state in states}}
-        paths = _paths_in_package(texts)
+        paths = paths_in_package(texts)
         if len(texts) == 1:
             reads = {path: self._target.read(texts[name]) for name, path in paths.items()}
         else:
@@ -105,9 +103,8 @@ class Migrator:
         if state.reading.error is not None or not state.reading.analysis.complete:
             return False
         place = Place(self._target.script(state.reading, package), state.findings, written_for)
-        chosen = [
-            change for change in _apart(state.text, self._proposals(place)) if change.since <= place.target
-        ]
+        proposals = apart(state.text, self._proposals(place), lambda change: change.edits)
+        chosen = [change for change in proposals if change.since <= place.target]
         guarded: list[Change] = []
         plain: list[Change] = []
         for change in chosen:
@@ -129,7 +126,7 @@ class Migrator:
                 [*edits, *{edit: None for change in chosen for edit in change.additions}]
             )
 
-        chosen = _largest(changes, lambda some: _parses(made(some).code))
+        chosen = _largest(changes, lambda some: parses(made(some).code))
         new = made(chosen)
         if new.code == state.text.code:
             return False
@@ -224,13 +221,6 @@ class _State:
         return self.read
 
 
-def _paths_in_package(names: Iterable[str]) -> dict[str, str]:
-    """Name of a file → its path from the folder of its package on, with slashes."""
-    whole = {name: PurePath(Path(name).absolute()) for name in names}
-    top = PurePath(os.path.commonpath([path.parent for path in whole.values()])).parent
-    return {name: path.relative_to(top).as_posix() for name, path in whole.items()}
-
-
 def _version(checker: Checker) -> Version:
     return checker.version[0], checker.version[1]
 
@@ -239,17 +229,6 @@ def _errors(checker: Checker, codes: Sequence[str]) -> list[list[Finding]]:
     reads = [checker.read(code) for code in codes]
     package = checker.package(reads)
     return [[one for one in checker.check(read, package) if one.severity == "error"] for read in reads]
-
-
-def _apart(text: Text, changes: Iterable[Change]) -> Iterator[Change]:
-    """The changes that share no text: the first ones win."""
-    taken = Taken()
-    for change in changes:
-        spans = [text.offsets(edit.span) for edit in change.edits]
-        if spans and all(map(taken.is_free, spans)):
-            for span in spans:
-                taken.add(span)
-            yield change
 
 
 def _largest(changes: Sequence[Change], holds: Callable[[Sequence[Change]], bool]) -> list[Change]:
@@ -269,16 +248,6 @@ def _largest(changes: Sequence[Change], holds: Callable[[Sequence[Change]], bool
         return halves if holds(halves) else []
 
     return among(changes)
-
-
-def _parses(code: str) -> bool:
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            ast.parse(code)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return False
-    return True
 
 
 def _told(text: Text, change: Change, *, guarded: bool) -> Done:

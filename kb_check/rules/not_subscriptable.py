@@ -34,6 +34,7 @@ from kb_build.flow.types import (
     Type,
     members,
 )
+from kb_check.conversions import CHANGING_ARRAYS
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.literals import number
 from kb_check.rule import Rule
@@ -180,7 +181,9 @@ def _length(script: Script, node: ast.Subscript, cls: str) -> int:
         return _LENGTHS[cls]
     row = script.analysis.resolutions.get(node.value)
     symbol = script.api.symbols.symbol(row.symbols[0]) if row is not None and len(row.symbols) == 1 else None
-    return symbol.array[0] if symbol and symbol.array and cls != "mathutils.Matrix" else 0
+    if symbol is None or symbol.path in CHANGING_ARRAYS or cls == "mathutils.Matrix":
+        return 0
+    return symbol.array[0] if symbol.array else 0
 
 
 def _is_text(key: Type | None) -> bool:

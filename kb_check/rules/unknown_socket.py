@@ -25,13 +25,17 @@ if TYPE_CHECKING:
 
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("item"):
-        node = row.missing[0]
-        if any(script.names.still_works(f'{node}.{side}["{row.value}"]') for side in ("inputs", "outputs")):
+        if any(_still_works(script, node, row.value) for node in row.missing):
             continue
+        node = row.missing[0]
         names = [s.name for side in ("inputs", "outputs") for _, _, s in script.api.sockets(node, side)]
         yield lacking_finding(
             script, RULE.id, row, script.names.socket(node, row.value, dict.fromkeys(names))
         )
+
+
+def _still_works(script: Script, node: str, name: str) -> bool:
+    return any(script.names.still_works(f'{node}.{side}["{name}"]') for side in ("inputs", "outputs"))
 
 
 RULE = Rule("unknown-socket", "error", "A socket that the node does not have", _check)

@@ -28,11 +28,12 @@ class Picture:
 
 @dataclass(frozen=True, slots=True)
 class ToolUse:
-    """The model calls a tool."""
+    """The model calls a tool. ``fault``: why the call cannot be made, where its arguments could not be read."""
 
     id: str
     name: str
     input: dict[str, Any]
+    fault: str = ""
     type: Literal["tool_use"] = "tool_use"
 
 
@@ -84,7 +85,8 @@ class Ask:
     """One request. ``stage`` is a label to count by (``""`` outside of any).
 
     ``system`` holds the parts of the system prompt in order. Within one conversation, it and ``tools`` stay the same:
-    models with a memory of their thinking, and the prompt cache, rely on that.
+    models with a memory of their thinking, and the prompt cache, rely on that. ``form``: what the answer has to be, as
+    the name, description and schema of a JSON object; APIs with structured outputs hold the model to it.
     """
 
     role: str
@@ -94,6 +96,7 @@ class Ask:
     messages: tuple[Message, ...]
     tools: tuple[Tool, ...] = ()
     max_tokens: int = 16_000
+    form: Tool | None = None
 
 
 @dataclass(frozen=True, slots=True)

@@ -11,6 +11,8 @@ import base64
 import re
 from typing import TYPE_CHECKING, Any, cast
 
+from anthropic import transform_schema
+
 from simworlds.llm.messages import Ask, Block, Kept, Message, Picture, Text, ToolResult, ToolUse
 
 if TYPE_CHECKING:
@@ -51,6 +53,9 @@ def params_of(ask: Ask) -> MessageCreateParamsBase:
         ]
         tools[-1]["cache_control"] = _MARK
         params["tools"] = cast("list[ToolParam]", tools)
+    if ask.form:
+        schema = transform_schema(ask.form.schema)
+        params["output_config"] = {"format": {"type": "json_schema", "schema": schema}}
     if _THINKS.search(ask.model):
         params["thinking"] = {"type": "adaptive", "display": "summarized"}
     return params

@@ -3,41 +3,18 @@
 from __future__ import annotations
 
 import email.utils
-import json
 import time
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-import httpx2
-from anthropic import AnthropicError, APIStatusError
-
 from simworlds.llm.messages import Usage
-from simworlds.llm.stream import BrokenStream
 
 if TYPE_CHECKING:
     import random
+    from collections.abc import Mapping
 
     from simworlds.llm.messages import Ask
 
-FAULTS = (
-    AnthropicError,
-    httpx2.HTTPError,
-    httpx2.StreamError,
-    httpx2.InvalidURL,  # a redirection to nowhere
-    json.JSONDecodeError,
-    UnicodeDecodeError,
-    BrokenStream,
-)
-"""What a request can raise through a fault of the server; ``is_lasting`` tells those not worth a retry."""
-
-_LASTING = (
-    "invalid_request_error",
-    "authentication_error",
-    "billing_error",
-    "permission_error",
-    "not_found_error",
-    "request_too_large",
-)
 _LONGEST_WORDS = 300
 
 
@@ -79,28 +56,16 @@ class Retry:
         return f"{self.why}; asking again in {self.pause:.0f} s"
 
 
-def is_lasting(error: Exception) -> bool:
-    """Whether a fault of ``FAULTS`` would occur again."""
-    if not isinstance(error, APIStatusError):
-        return False
-    if is_midstream(error):
-        return error.type in _LASTING
-    should_retry = error.response.headers.get("x-should-retry")
+def is_passing(status: int, headers: Mapping[str, str]) -> bool:
+    """Whether an error reply with this status may be another at the next attempt."""
+    should_retry = headers.get("x-should-retry")
     if should_retry in ("true", "false"):
-        return should_retry == "false"
-    return not (error.status_code in (408, 409, 429) or error.status_code >= 500)
+        return should_retry == "true"
+    return status in (408, 409, 429) or status >= 500
 
 
-def is_midstream(error: APIStatusError) -> bool:
-    """Whether the server failed after it had begun to answer; ``error.type`` says how, the status does not."""
-    return error.response.is_success
-
-
-def requested_pause(error: Exception) -> float:
+def requested_pause(headers: Mapping[str, str]) -> float:
     """The seconds that the server asks to wait; 0 if it does not."""
-    if not isinstance(error, APIStatusError):
-        return 0.0
-    headers = error.response.headers
     for name, scale in (("retry-after-ms", 0.001), ("retry-after", 1.0)):
         try:
             seconds = float(headers.get(name, "")) * scale
@@ -114,16 +79,6 @@ def requested_pause(error: Exception) -> float:
     return max(0.0, until.timestamp() - time.time())
 
 
-def describe_fault(error: Exception) -> str:
-    """Describes a fault in one line."""
-    if isinstance(error, APIStatusError):
-        words = error.api_message or error.message
-        status = f"the server broke off with {error.type}:" if is_midstream(error) else error.status_code
-        text = f"{status} {words}"
-    elif isinstance(error, BrokenStream):
-        text = f"the answer is incomplete: {error}"
-    else:
-        # The package hides what the network raised behind its own words.
-        cause = (isinstance(error, AnthropicError) and error.__cause__) or error
-        text = f"{type(cause).__name__}: {cause}" if str(cause) else type(cause).__name__
-    return " ".join(text.split())[:_LONGEST_WORDS]
+def one_line(words: str) -> str:
+    """Words of a server as one line of limited length."""
+    return " ".join(words.split())[:_LONGEST_WORDS]

@@ -1,7 +1,8 @@
 """Structured answers: JSON that fits a schema, however the model wraps it.
 
 The JSON may be bare, in a fence, or in prose. It has to be strict JSON (no comments, no NaN, no repeated name) and to
-fit the schema without coercion. Other answers are sent back with what is wrong, a few times.
+fit the schema without coercion. Other answers are sent back with what is wrong, a few times, and are then held to the
+schema where the API has structured outputs. The first is free: another form in one conversation costs the prompt cache.
 """
 
 from __future__ import annotations
@@ -13,8 +14,9 @@ from typing import TYPE_CHECKING, Any, Generic, TypeAlias, TypeVar
 
 from pydantic import BaseModel, ValidationError
 
-from simworlds.llm.errors import CutShort, Misfit
-from simworlds.llm.messages import Text, ToolResult, user
+from simworlds.llm.errors import CutShort, Misfit, Rejected, TooLong
+from simworlds.llm.messages import Text, Tool, ToolResult, user
+from simworlds.schemas.json_schema import schema_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
@@ -43,22 +45,25 @@ class StructuredAnswer(Generic[T]):
     tries: int
 
 
-def ask_for(
+def ask_for(  # noqa: PLR0913
     model: Model,
     ask: Ask,
     reader: AnswerReader[T],
     *,
     tries: int = 3,
     on_text: Callable[[str], object] | None = None,
+    form: Tool | None = None,
 ) -> StructuredAnswer[T]:
     """Asks until ``reader`` accepts the answer, at most ``tries`` times.
 
+    ``form``: what answers are held to after one that did not fit; a server that does not take it is asked without.
     Raises Misfit (or CutShort) if it never does, and what the model raises.
     """
-    messages = ask.messages
+    messages, is_held = ask.messages, False
     for left in reversed(range(tries)):
         try:
-            turn = model.answer(replace(ask, messages=messages), on_text)
+            asked = replace(ask, messages=messages)
+            turn, is_taken = _answer(model, asked, form if is_held else None, on_text)
         except CutShort as cut:
             if not left:
                 raise
@@ -72,7 +77,30 @@ def ask_for(
             if not left:
                 raise
             messages = (*messages, turn.message(), complaint(turn, misfit))
+            is_held = is_held or form is not None
+            form = form if is_taken else None
     raise ValueError(f"tries must be at least 1, not {tries}.")
+
+
+def form_of(shape: type[BaseModel]) -> Tool:
+    """A pydantic model as the form of an answer."""
+    return Tool(shape.__name__, "", schema_of(shape))
+
+
+def _answer(
+    model: Model, ask: Ask, form: Tool | None, on_text: Callable[[str], object] | None
+) -> tuple[Turn, bool]:
+    """The turn, and whether the server takes the form. Schemas that one API takes are too large for another."""
+    if form is None:
+        return model.answer(ask, on_text), True
+    try:
+        return model.answer(replace(ask, form=form), on_text), True
+    except TooLong:
+        raise
+    except Rejected as error:
+        if error.status not in (400, 422):
+            raise
+        return model.answer(ask, on_text), False
 
 
 def fits(shape: type[M]) -> AnswerReader[M]:

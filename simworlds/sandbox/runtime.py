@@ -89,14 +89,18 @@ def run_script(  # noqa: PLR0913 - what is run, and how
 ) -> None:
     """Runs ``script`` with ``args`` in Blender's interpreter; its output goes to the file ``log``.
 
-    The process gets none of the environment's secrets and no settings of the user's Blender. It is killed with its
-    children after ``timeout`` seconds or on Ctrl-C. Raises ProgramFailed with the end of its output.
+    The process gets none of the environment's secrets and no settings of the user's Blender; its temporary files go
+    when it ends. It is killed with its children after ``timeout`` seconds or on Ctrl-C. Raises ProgramFailed with the
+    end of its output.
     """
     log.parent.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(prefix="simworlds-") as settings:
         command = runtime.command(script.absolute(), args)
         try:
-            run_group(command, environment=clean_environment(Path(settings)), timeout=timeout, log=log)
+            # A Blender that is killed leaves its temporary folder: in this one, it goes with it.
+            temporary = dict.fromkeys(("TMPDIR", "TEMP", "TMP"), settings)
+            environment = clean_environment(Path(settings)) | temporary
+            run_group(command, environment=environment, timeout=timeout, log=log)
         except CommandFailed as error:
             raise ProgramFailed(
                 f"Blender {runtime.version} ({runtime.executable}) did not finish {name or script.name}: {error}. "

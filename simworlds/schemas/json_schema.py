@@ -54,6 +54,26 @@ def lean_schema_of(model: type[BaseModel]) -> dict[str, Any]:
     return cast("dict[str, Any]", _lean(schema_of(model), set()))
 
 
+def lean_arguments(schema: Mapping[str, Any]) -> dict[str, Any]:
+    """A JSON Schema of arguments that are checked elsewhere, as a model needs it: null is not named where an argument
+    may be left out.
+    """
+    return cast("dict[str, Any]", _not_null(_lean(schema, set())))
+
+
+def _not_null(schema: Any) -> Any:
+    if isinstance(schema, list):
+        return [_not_null(item) for item in cast("list[Any]", schema)]
+    if not isinstance(schema, dict):
+        return schema
+    kept = {key: _not_null(value) for key, value in cast("dict[str, Any]", schema).items()}
+    choices = [one for one in kept.get("anyOf", ()) if one != {"type": "null"}]
+    if len(choices) == 1:
+        del kept["anyOf"]
+        kept |= choices[0]
+    return kept
+
+
 def _lean(schema: Any, described: set[str]) -> Any:
     if isinstance(schema, list):
         return [_lean(item, described) for item in cast("list[Any]", schema)]

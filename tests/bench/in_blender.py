@@ -33,7 +33,8 @@ def run(script: str, place: Path) -> dict[str, Any]:
     result = place / "result.json"
     done = subprocess.run(
         [sys.executable, "-P", str(HERE / script), str(place), str(result)],
-        env=clean_environment(place / "settings") | {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(HERE)},
+        env=clean_environment(place / "settings")
+        | {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(HERE), "TMPDIR": str(place)},
         capture_output=True,
         text=True,
         check=False,

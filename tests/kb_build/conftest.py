@@ -1,19 +1,16 @@
-"""A base that is built once, by real Blender, from the miniature documentation."""
+"""A base of one's own, copied from the one that is built once."""
 
 from __future__ import annotations
 
-import shutil
 from importlib import metadata
 from typing import TYPE_CHECKING
 
 import pytest
-from built_base import MINIATURE, Built
-from made_once import made_once
-
-from kb_build.pipeline import BuildOptions, build
 
 if TYPE_CHECKING:
     from pathlib import Path
+
+    from built_base import Built
 
 
 @pytest.fixture(scope="session")
@@ -23,20 +20,6 @@ def blender_version() -> str:
         return metadata.version("bpy")
     except metadata.PackageNotFoundError:
         pytest.skip("this environment has no bpy")
-
-
-@pytest.fixture(scope="session")
-def built_once(tmp_path_factory: pytest.TempPathFactory, blender_version: str) -> Built:
-    minor = ".".join(blender_version.split(".")[:2])
-
-    def make(folder: Path) -> Built:
-        corpora = folder / "corpora"
-        shutil.copytree(MINIATURE / "manual", corpora / f"manual-{minor}-rst")
-        shutil.copytree(MINIATURE / "guides", corpora / f"api-guides-{minor}-rst")
-        options = BuildOptions(corpora=corpora, offline=True)
-        return Built(folder / "home", corpora, build(None, options=options, home=folder / "home"))
-
-    return made_once(tmp_path_factory, "built", make)
 
 
 @pytest.fixture

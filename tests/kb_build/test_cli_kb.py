@@ -56,21 +56,21 @@ def read_some(descriptor: int) -> bytes:
 
 
 @pytest.mark.blender
-def test_a_piped_build_prints_steps_to_stderr_and_the_outcome_to_stdout(built: Built) -> None:
-    (built.home / "kb").rename(built.home / "old")
-    done = run(built.home, "kb", "build", "--offline", corpora=built.corpora)
+def test_a_piped_build_prints_steps_to_stderr_and_the_outcome_to_stdout(small: Built) -> None:
+    (small.home / "kb").rename(small.home / "old")
+    done = run(small.home, "kb", "build", "--offline", corpora=small.corpora)
     assert done.returncode == 0
-    assert done.stdout.startswith(f"Built the knowledge base of Blender {built.report.version} in ")
-    assert str(built.path) in done.stdout
+    assert done.stdout.startswith(f"Built the knowledge base of Blender {small.report.version} in ")
+    assert str(small.path) in done.stdout
     assert "manual" in done.stdout
     assert "Writing" in done.stderr
     assert "\x1b" not in done.stdout + done.stderr
 
 
 @pytest.mark.blender
-def test_a_build_on_a_terminal_draws_its_progress_and_wipes_it_off(built: Built) -> None:
-    (built.home / "kb").rename(built.home / "old")
-    code, sent = run_on_terminal(built.home, "kb", "build", "--offline", corpora=built.corpora)
+def test_a_build_on_a_terminal_draws_its_progress_and_wipes_it_off(small: Built) -> None:
+    (small.home / "kb").rename(small.home / "old")
+    code, sent = run_on_terminal(small.home, "kb", "build", "--offline", corpora=small.corpora)
     assert code == 0
     assert b"Writing" in sent
     assert b"\x1b[2K" in sent
@@ -79,31 +79,31 @@ def test_a_build_on_a_terminal_draws_its_progress_and_wipes_it_off(built: Built)
 
 
 @pytest.mark.blender
-def test_a_build_with_nothing_to_do_says_so_and_shows_no_progress(built: Built) -> None:
-    done = run(built.home, "kb", "build", built.minor, "--offline", corpora=built.corpora)
+def test_a_build_with_nothing_to_do_says_so_and_shows_no_progress(small: Built) -> None:
+    done = run(small.home, "kb", "build", small.minor, "--offline", corpora=small.corpora)
     assert done.returncode == 0
     assert done.stdout.startswith("Nothing has changed")
     assert done.stderr == ""
 
 
 @pytest.mark.blender
-def test_missing_sources_are_the_last_thing_that_a_build_says(built: Built, tmp_path: Path) -> None:
+def test_missing_sources_are_the_last_thing_that_a_build_says(small: Built, tmp_path: Path) -> None:
     (tmp_path / "none").mkdir()
-    done = run(built.home, "kb", "build", "--offline", corpora=tmp_path / "none")
+    done = run(small.home, "kb", "build", "--offline", corpora=tmp_path / "none")
     assert done.returncode == 0
     warnings = done.stderr.splitlines()[-2:]
     assert warnings[0].startswith("WARNING: no manual of Blender")
     assert warnings[1].startswith("WARNING: no API guides of Blender")
-    information = run(built.home, "kb", "info", built.minor).stdout
+    information = run(small.home, "kb", "info", small.minor).stdout
     assert information.count("MISSING") == 2
-    assert "(missing: manual, guides)" in run(built.home, "kb", "info").stdout
+    assert "(missing: manual, guides)" in run(small.home, "kb", "info").stdout
 
 
 @pytest.mark.blender
-def test_a_required_source_that_is_missing_ends_with_code_2(built: Built, tmp_path: Path) -> None:
+def test_a_required_source_that_is_missing_ends_with_code_2(small: Built, tmp_path: Path) -> None:
     (tmp_path / "none").mkdir()
     words = ("kb", "build", "--offline", "--require", "manual,guides")
-    done = run(built.home, *words, corpora=tmp_path / "none")
+    done = run(small.home, *words, corpora=tmp_path / "none")
     assert done.returncode == 2
     assert done.stdout == ""
     assert done.stderr.startswith("Error: no manual of Blender")
@@ -132,12 +132,12 @@ def test_info_tells_what_is_in_a_base(built: Built) -> None:
 
 
 @pytest.mark.blender
-def test_info_of_a_damaged_base_says_what_to_do(built: Built) -> None:
-    built.path.write_bytes(b"SQLite format 3\x00" + b"\x07" * 5000)
-    done = run(built.home, "kb", "info", built.minor)
+def test_info_of_a_damaged_base_says_what_to_do(small: Built) -> None:
+    small.path.write_bytes(b"SQLite format 3\x00" + b"\x07" * 5000)
+    done = run(small.home, "kb", "info", small.minor)
     assert done.returncode == 2
     assert "simworlds kb build --force" in done.stdout
-    assert "unreadable" in run(built.home, "kb", "info").stdout
+    assert "unreadable" in run(small.home, "kb", "info").stdout
 
 
 @pytest.mark.blender
@@ -155,10 +155,10 @@ def test_verify_passes_a_sound_base_and_fails_a_damaged_one(built: Built) -> Non
 
 
 @pytest.mark.blender
-def test_verify_prints_its_findings_as_json(built: Built, tmp_path: Path) -> None:
+def test_verify_prints_its_findings_as_json(small: Built, tmp_path: Path) -> None:
     reference = tmp_path / "list.txt"
     reference.write_text("bpy.types.Mesh\nbpy.types.Nobody\n")
-    done = run(built.home, "kb", "verify", str(built.path), "--reference", str(reference), "--json")
+    done = run(small.home, "kb", "verify", str(small.path), "--reference", str(reference), "--json")
     assert done.returncode == 1
     found = json.loads(done.stdout)
     assert found["sound"] is False
@@ -169,21 +169,21 @@ def test_verify_prints_its_findings_as_json(built: Built, tmp_path: Path) -> Non
 
 
 @pytest.mark.blender
-def test_two_blenders_are_compared(built: Built) -> None:
+def test_two_blenders_are_compared(small: Built) -> None:
     """A program that passes an altered copy of this Blender's own description off as another Blender's."""
-    extract = next((built.home / "extracts").glob("*.jsonl"))
-    other = built.home / "blender"
+    extract = next((small.home / "extracts").glob("*.jsonl"))
+    other = small.home / "blender"
     other.write_text(
         '#!/bin/sh\n[ "$1" = --version ] && echo "Blender 4.9.1" && exit\nfor word; do last=$word; done\n'
         f'sed -e \'s/bpy.types.Mesh.vertices/bpy.types.Mesh.corners/g\' -e \'s/"version":"[0-9.]*"/'
         f'"version":"4.9.1"/\' {extract} > "$last"\n'
     )
     other.chmod(0o755)
-    words = ("kb", "diff", str(other), built.report.version, "--prefix", "bpy.types.Mesh")
-    text = run(built.home, *words).stdout
-    assert text.startswith(f"# Blender 4.9.1 → {built.report.version}")
+    words = ("kb", "diff", str(other), small.report.version, "--prefix", "bpy.types.Mesh")
+    text = run(small.home, *words).stdout
+    assert text.startswith(f"# Blender 4.9.1 → {small.report.version}")
     assert "`corners`" in text[text.index("## Removed") : text.index("## Added")]
-    found = json.loads(run(built.home, *words, "--json").stdout)
+    found = json.loads(run(small.home, *words, "--json").stdout)
     assert [one["path"] for one in found["removed"]] == ["bpy.types.Mesh.corners"]
     assert [one["path"] for one in found["added"]] == ["bpy.types.Mesh.vertices"]
     assert found["changed"] == []

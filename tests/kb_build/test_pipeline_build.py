@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+import shutil
 import sqlite3
 from contextlib import closing
 from dataclasses import replace
@@ -66,35 +67,35 @@ def test_a_base_names_its_sources(built: Built, blender_version: str) -> None:
     assert any(slug.startswith("troubleshooting/") for slug in json.loads(meta["page_warnings"]))
 
 
-def test_nothing_is_done_when_nothing_has_changed(built: Built) -> None:
-    before = stamp(built.path)
-    report = build(None, options=built.options, home=built.home)
+def test_nothing_is_done_when_nothing_has_changed(small: Built) -> None:
+    before = stamp(small.path)
+    report = build(None, options=small.options, home=small.home)
     assert not report.built
-    assert report.meta["fingerprint"] == built.report.meta["fingerprint"]
-    assert stamp(built.path) == before
+    assert report.meta["fingerprint"] == small.report.meta["fingerprint"]
+    assert stamp(small.path) == before
 
 
-def test_a_changed_page_makes_a_new_base_without_asking_blender_again(built: Built) -> None:
-    extract = next((built.home / "extracts").glob("*.jsonl"))
+def test_a_changed_page_makes_a_new_base_without_asking_blender_again(small: Built) -> None:
+    extract = next((small.home / "extracts").glob("*.jsonl"))
     before = stamp(extract)
-    page = built.corpora / f"manual-{built.minor}-rst" / "physics" / "index.rst"
+    page = small.corpora / f"manual-{small.minor}-rst" / "physics" / "index.rst"
     page.write_text(page.read_text() + "\nWobbling jelly is simulated, too.\n")
-    report = build(None, options=built.options, home=built.home)
+    report = build(None, options=small.options, home=small.home)
     assert report.built
-    records = rows(built.path, "SELECT slug, record FROM pages")
+    records = rows(small.path, "SELECT slug, record FROM pages")
     assert [slug for slug, record in records if "Wobbling jelly" in page_from_json(unpack(record)).text] == [
         "physics/index"
     ]
     assert stamp(extract) == before
 
 
-def test_pages_are_not_read_again_when_only_an_option_changes(built: Built) -> None:
-    kept = {path: stamp(path) for path in (built.home / "cache" / "pages").iterdir()}
+def test_pages_are_not_read_again_when_only_an_option_changes(small: Built) -> None:
+    kept = {path: stamp(path) for path in (small.home / "cache" / "pages").iterdir()}
     assert len(kept) == 2
-    report = build(None, options=replace(built.options, summaries="none"), home=built.home)
+    report = build(None, options=replace(small.options, summaries="none"), home=small.home)
     assert report.built
-    assert rows(built.path, "SELECT count(*) FROM pages WHERE summary != ''") == [(0,)]
-    assert {path: stamp(path) for path in (built.home / "cache" / "pages").iterdir()} == kept
+    assert rows(small.path, "SELECT count(*) FROM pages WHERE summary != ''") == [(0,)]
+    assert {path: stamp(path) for path in (small.home / "cache" / "pages").iterdir()} == kept
 
 
 def test_force_builds_again_what_has_not_changed(built: Built) -> None:
@@ -105,25 +106,25 @@ def test_force_builds_again_what_has_not_changed(built: Built) -> None:
     assert stamp(built.path) != before
 
 
-def test_a_damaged_base_is_built_again(built: Built) -> None:
-    data = built.path.read_bytes()
-    built.path.write_bytes(data[: len(data) // 2])
-    assert build(None, options=built.options, home=built.home).built
-    assert built.path.stat().st_size > len(data) // 2
+def test_a_damaged_base_is_built_again(small: Built) -> None:
+    data = small.path.read_bytes()
+    small.path.write_bytes(data[: len(data) // 2])
+    assert build(None, options=small.options, home=small.home).built
+    assert small.path.stat().st_size > len(data) // 2
 
 
-def test_damaged_pages_in_the_cache_are_read_again(built: Built) -> None:
-    for path in (built.home / "cache" / "pages").iterdir():
+def test_damaged_pages_in_the_cache_are_read_again(small: Built) -> None:
+    for path in (small.home / "cache" / "pages").iterdir():
         path.write_bytes(path.read_bytes()[:100])
-    built.path.unlink()
-    report = build(None, options=built.options, home=built.home)
-    assert json.loads(report.meta["counts"]) == json.loads(built.report.meta["counts"])
+    small.path.unlink()
+    report = build(None, options=small.options, home=small.home)
+    assert json.loads(report.meta["counts"]) == json.loads(small.report.meta["counts"])
 
 
-def test_a_missing_source_is_named_in_the_report_and_in_the_base(built: Built) -> None:
-    guides = built.corpora / f"api-guides-{built.minor}-rst"
-    guides.rename(built.corpora / "elsewhere")
-    report = build(None, options=built.options, home=built.home)
+def test_a_missing_source_is_named_in_the_report_and_in_the_base(small: Built) -> None:
+    guides = small.corpora / f"api-guides-{small.minor}-rst"
+    guides.rename(small.corpora / "elsewhere")
+    report = build(None, options=small.options, home=small.home)
     assert report.built
     assert [one.role for one in report.missing] == ["guides"]
     assert any("--guides PATH" in warning for warning in report.warnings)
@@ -132,50 +133,52 @@ def test_a_missing_source_is_named_in_the_report_and_in_the_base(built: Built) -
     assert recorded[0]["reason"] == report.missing[0].reason
 
 
-def test_a_required_source_that_is_missing_is_an_error_and_the_old_base_stands(built: Built) -> None:
-    before = stamp(built.path)
-    (built.corpora / f"manual-{built.minor}-rst").rename(built.corpora / "elsewhere")
+def test_a_required_source_that_is_missing_is_an_error_and_the_old_base_stands(small: Built) -> None:
+    before = stamp(small.path)
+    (small.corpora / f"manual-{small.minor}-rst").rename(small.corpora / "elsewhere")
     with pytest.raises(SourceError, match="required"):
-        build(None, options=replace(built.options, require=frozenset({"manual"})), home=built.home)
-    assert stamp(built.path) == before
+        build(None, options=replace(small.options, require=frozenset({"manual"})), home=small.home)
+    assert stamp(small.path) == before
 
 
-def test_a_manual_of_another_version_is_taken_by_path_and_said_so(built: Built) -> None:
-    other = built.corpora / "manual-4.4-rst"
-    (built.corpora / f"manual-{built.minor}-rst").rename(other)
-    report = build(None, options=replace(built.options, manual=other), home=built.home)
+def test_a_manual_of_another_version_is_taken_by_path_and_said_so(small: Built) -> None:
+    other = small.corpora / "manual-4.4-rst"
+    (small.corpora / f"manual-{small.minor}-rst").rename(other)
+    report = build(None, options=replace(small.options, manual=other), home=small.home)
     assert any("is of Blender 4.4" in warning for warning in report.warnings)
     manual = next(one for one in json.loads(report.meta["sources"]) if one["role"] == "manual")
     assert (manual["version"], manual["given"]) == ("4.4", True)
-    assert rows(built.path, "SELECT DISTINCT version FROM pages WHERE source = 'manual'") == [("4.4",)]
+    assert rows(small.path, "SELECT DISTINCT version FROM pages WHERE source = 'manual'") == [("4.4",)]
 
 
-def test_a_base_can_be_built_without_pages_into_any_file(built: Built, tmp_path: Path) -> None:
+def test_a_base_can_be_built_without_pages_into_any_file(small: Built, tmp_path: Path) -> None:
     output = tmp_path / "else" / "where.sqlite"
     options = BuildOptions(pages=False, output=output)
-    report = build(built.minor, options=options, home=built.home)
+    report = build(small.minor, options=options, home=small.home)
     assert report.path == output
     assert rows(output, "SELECT DISTINCT source FROM pages") == [("template",)]
     assert json.loads(report.meta["missing"]) == []
-    assert not build(built.minor, options=options, home=built.home).built
+    assert not build(small.minor, options=options, home=small.home).built
 
 
-def test_of_two_pages_with_one_name_the_manuals_is_kept_and_the_other_named(built: Built) -> None:
-    guides = built.corpora / f"api-guides-{built.minor}-rst"
+def test_of_two_pages_with_one_name_the_manuals_is_kept_and_the_other_named(small: Built) -> None:
+    guides = small.corpora / f"api-guides-{small.minor}-rst"
     (guides / "index.rst").write_text("Guides\n======\n\n.. toctree::\n\n   info_overview\n   info_traps\n")
-    report = build(None, options=built.options, home=built.home)
-    assert rows(built.path, "SELECT source FROM pages WHERE slug = 'index'") == [("manual",)]
+    report = build(None, options=small.options, home=small.home)
+    assert rows(small.path, "SELECT source FROM pages WHERE slug = 'index'") == [("manual",)]
     assert any("two pages are called index" in warning for warning in report.warnings)
 
 
 @pytest.mark.corpora
 def test_the_real_manual_and_guides_are_built_whole(
-    corpora: Path, built: Built, tmp_path: Path, blender_version: str
+    corpora: Path, built_once: Built, tmp_path: Path, blender_version: str
 ) -> None:
     if not blender_version.startswith("5.1."):
         pytest.skip("the sources here are of Blender 5.1")
     options = BuildOptions(corpora=corpora, offline=True, require=frozenset({"manual", "guides"}))
-    report = build("5.1", options=options, home=tmp_path / "home")
+    home = tmp_path / "home"
+    shutil.copytree(built_once.home / "extracts", home / "extracts")
+    report = build("5.1", options=options, home=home)
     counts = json.loads(report.meta["counts"])
     assert counts["pages"]["manual"] >= 2190
     assert counts["pages"]["guide"] >= 14

@@ -10,11 +10,15 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from places import REPO
 
 from kb_serve.knowledge_base import KnowledgeBase
+
+if TYPE_CHECKING:
+    from built_base import Built
 
 QUERY = "ClothSettings.quality"
 
@@ -39,7 +43,9 @@ pytestmark = pytest.mark.blender
 @pytest.fixture
 def old(base: Path, tmp_path: Path) -> Path:
     """A base that answers, in a folder of its own."""
-    return Path(shutil.copy(base, tmp_path / "blender-5.1.sqlite"))
+    folder = tmp_path / "old"
+    folder.mkdir()
+    return Path(shutil.copy(base, folder / base.name))
 
 
 def start(base: Path, target: Path, limit: int | None = None) -> subprocess.Popen[str]:
@@ -79,10 +85,10 @@ def test_a_writer_that_is_killed_leaves_the_old_base_whole(base: Path, old: Path
         assert_stands(old, before)
 
 
-@pytest.mark.parametrize("limit", [4_096, 15_000_000])
-def test_a_disk_that_is_full_is_named_and_the_old_base_stands(base: Path, old: Path, limit: int) -> None:
+@pytest.mark.parametrize("limit", [4_096, 400_000])
+def test_a_disk_that_is_full_is_named_and_the_old_base_stands(small: Built, old: Path, limit: int) -> None:
     before = old.read_bytes()
-    with start(base, old, limit) as process:
+    with start(small.path, old, limit) as process:
         _, errors = process.communicate()
     assert process.returncode == 1
     assert errors.startswith("StoreError: ")

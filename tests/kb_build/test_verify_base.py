@@ -46,6 +46,10 @@ def test_a_base_as_it_was_built_is_sound(built: Built) -> None:
     assert looked_at["index"] > 10_000
 
 
+def test_a_base_of_a_few_symbols_is_sound(small: Built) -> None:
+    assert faults(verify_base(small.path)) == {}
+
+
 def test_pages_that_blender_names_and_the_manual_lacks_are_listed_without_being_faults(built: Built) -> None:
     notes = next(check.notes for check in verify_base(built.path).checks if check.name == "links")
     assert any("which the manual lacks" in note for note in notes)
@@ -86,20 +90,20 @@ def test_pages_that_blender_names_and_the_manual_lacks_are_listed_without_being_
         ("UPDATE meta SET value = '{}' WHERE name = 'counts'", "counts", "could not be checked"),
     ],
 )
-def test_damage_is_found_and_named(built: Built, damage: str, check: str, named: str) -> None:
-    alter(built.path, damage)
-    found = verify_base(built.path)
+def test_damage_is_found_and_named(small: Built, damage: str, check: str, named: str) -> None:
+    alter(small.path, damage)
+    found = verify_base(small.path)
     assert not found.sound
     assert any(named in fault for fault in faults(found)[check])
     assert "FAULT" in "\n".join(found.lines())
 
 
-def test_overwritten_bytes_are_found(built: Built) -> None:
-    with built.path.open("r+b") as file:
+def test_overwritten_bytes_are_found(small: Built) -> None:
+    with small.path.open("r+b") as file:
         for place in range(200_000, 2_000_000, 100_000):
             file.seek(place)
             file.write(b"\xff" * 600)
-    found = verify_base(built.path)
+    found = verify_base(small.path)
     assert not found.sound
     assert "file" in faults(found)
 
@@ -127,17 +131,17 @@ def test_a_file_that_is_not_a_base_is_refused(tmp_path: Path, content: bytes | N
         ("PRAGMA application_id = 1", "not a knowledge base"),
     ],
 )
-def test_bases_of_another_make_are_refused(built: Built, damage: str, message: str) -> None:
-    alter(built.path, damage)
+def test_bases_of_another_make_are_refused(small: Built, damage: str, message: str) -> None:
+    alter(small.path, damage)
     with pytest.raises(StoreError, match=message):
-        verify_base(built.path)
+        verify_base(small.path)
 
 
-def test_a_truncated_base_is_refused(built: Built) -> None:
-    data = built.path.read_bytes()
-    built.path.write_bytes(data[: len(data) - 3 * 4096])
+def test_a_truncated_base_is_refused(small: Built) -> None:
+    data = small.path.read_bytes()
+    small.path.write_bytes(data[: len(data) - 3 * 4096])
     with pytest.raises(StoreError, match="not readable as a knowledge base"):
-        verify_base(built.path)
+        verify_base(small.path)
 
 
 def test_a_list_of_identifiers_is_resolved_and_the_rest_explained(built: Built, tmp_path: Path) -> None:
@@ -165,7 +169,7 @@ def test_a_list_of_identifiers_is_resolved_and_the_rest_explained(built: Built, 
     assert "3 of 9 identifiers resolve exactly (33.33%" in "\n".join(found.lines())
 
 
-def test_a_sphinx_inventory_is_a_reference_too(built: Built, tmp_path: Path) -> None:
+def test_a_sphinx_inventory_is_a_reference_too(small: Built, tmp_path: Path) -> None:
     path = inventory(
         tmp_path / "objects.inv",
         "bpy.types.Mesh py:class 1 bpy.types.Mesh.html#$ -",
@@ -173,7 +177,7 @@ def test_a_sphinx_inventory_is_a_reference_too(built: Built, tmp_path: Path) -> 
         "bpy.ops.mesh.bevel py:function 1 bpy.ops.mesh.html#$ -",
         "info quickstart std:label -1 info_quickstart.html#x Quickstart",
     )
-    found = verify_base(built.path, path)
+    found = verify_base(small.path, path)
     assert found.sound
     assert found.reference is not None
     assert (found.reference.exact, found.reference.total) == (3, 3)
@@ -228,8 +232,8 @@ def test_identifiers_of_this_versions_reference_resolve(built: Built, tmp_path: 
 @pytest.mark.parametrize(
     "content", [b"two words\n", b"\xff\xfe\x00", b"# Sphinx inventory version 2\n#\n#\n#\nno"]
 )
-def test_a_reference_of_an_unknown_format_is_refused(built: Built, tmp_path: Path, content: bytes) -> None:
+def test_a_reference_of_an_unknown_format_is_refused(small: Built, tmp_path: Path, content: bytes) -> None:
     reference = tmp_path / "reference"
     reference.write_bytes(content)
     with pytest.raises(KBBuildError, match="neither a Sphinx inventory nor a list"):
-        verify_base(built.path, reference)
+        verify_base(small.path, reference)

@@ -8,7 +8,14 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_check.checker import Checker
-from measurements.check_blender import ask_blender, broken_rows, check_all, packages, proof_of
+from measurements.check_blender import (
+    ask_blender,
+    broken_rows,
+    check_all,
+    check_inside,
+    packages,
+    proof_of,
+)
 from simworlds.sandbox.runtime import installed_bpy
 
 if TYPE_CHECKING:
@@ -54,3 +61,24 @@ def test_a_finding_is_proven_by_what_blender_says(base: Path, tmp_path: Path) ->
 
 def test_a_blender_that_cannot_be_run_says_nothing(tmp_path: Path) -> None:
     assert ask_blender(str(tmp_path / "python"), ["1"]) == {}
+
+
+def test_own_scripts_that_run_inside_blender_have_no_error(base: Path, tmp_path: Path) -> None:
+    path = tmp_path / "agents" / "x" / "inside" / "a.py"
+    path.parent.mkdir(parents=True)
+    path.write_text("import bpy\nbpy.context.scene.frame_strat\n", encoding="utf-8")
+    with Checker(base) as checker:
+        wrong, count = check_inside(checker)
+        planted, _ = check_inside(checker, tmp_path)
+    assert wrong == []
+    assert count > 50
+    assert [text.partition(": ")[0] for text in planted] == ["agents/x/inside/a.py:2"]
+
+
+def test_a_call_in_an_operator_is_proven_by_running_one() -> None:
+    if installed_bpy() is None:
+        pytest.skip("there is no Blender in this environment")
+    rows = [row for row in broken_rows() if row.symbol.endswith("report(message)")]
+    assert (
+        ask_blender(sys.executable, (row.code for row in rows)) == {row.code: row.says for row in rows} != {}
+    )

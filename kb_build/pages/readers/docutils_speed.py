@@ -1,45 +1,37 @@
-"""docutils without the work that it repeats for every nested block."""
+"""docutils and Sphinx without the work that they repeat for every page and every nested block."""
 
 from __future__ import annotations
 
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
+from unittest import mock
 
-from docutils.statemachine import State
+import sphinx.util.docutils
+from docutils.utils import DependencyList
+
+from kb_build.docutils_states import states_when_entered
 
 if TYPE_CHECKING:
-    from collections.abc import Generator
-
-    Transitions = dict[str, tuple[Any, Any, str]]
+    from collections.abc import Callable, Generator
 
 
 @contextmanager
-def shared_transitions() -> Generator[None]:
-    """Within this context docutils works out each state's table of transitions once per class.
+def less_repeated() -> Generator[None]:
+    """Within this context states are made when needed, and the settings of pages are worked out once.
 
-    It does so for all 15 states at every list, definition and directive body otherwise, from constants of the
-    class: a quarter of the time that the manual takes to parse. Only the methods have to be bound anew.
+    Else docutils makes all states for every list, definition and directive, and Sphinx a parser of command-line
+    options for every page: together a third of the time that the manual takes to parse.
     """
-    original = State.make_transitions
-    tables: dict[tuple[type[State[Any]], int], tuple[Any, list[str], list[tuple[str, Any, str, str]]]] = {}
+    original: Callable[..., Any] = getattr(sphinx.util.docutils, "_get_settings")  # noqa: B009 - private
+    known: list[Any] = []
 
-    def make_transitions(self: State[Any], name_list: Any) -> tuple[list[str], Transitions]:
-        # The list is kept in the table, so that its id stays its own.
-        key = (type(self), id(name_list))
-        table = tables.get(key)
-        if table is None:
-            names, transitions = original(self, name_list)
-            rows = [
-                (name, pattern, method.__name__, state)
-                for name, (pattern, method, state) in transitions.items()
-            ]
-            table = tables[key] = (name_list, names, rows)
-        return table[1], {
-            name: (pattern, getattr(self, method), state) for name, pattern, method, state in table[2]
-        }
+    def get_settings(*components: Any, **given: Any) -> Any:
+        # Within one application its parser and its settings are always the same.
+        if not known:
+            known.append(original(*components, **given))
+        settings = known[0].copy()
+        settings.record_dependencies = DependencyList()
+        return settings
 
-    State.make_transitions = make_transitions
-    try:
+    with states_when_entered(), mock.patch.object(sphinx.util.docutils, "_get_settings", get_settings):
         yield
-    finally:
-        State.make_transitions = original

@@ -20,7 +20,7 @@ from sphinx.util.logging import WarningLogRecordTranslator, WarningSuppressor
 from kb_build.errors import SourceError
 from kb_build.pages.readers.assemble import MOST_WARNINGS, ROOT, PageText, assemble
 from kb_build.pages.readers.blender_markup import accept_unknown, note_names
-from kb_build.pages.readers.docutils_speed import shared_transitions
+from kb_build.pages.readers.docutils_speed import less_repeated
 from kb_build.pages.readers.sphinx_builder import PagesBuilder, drop_needless_work, plain_page
 from kb_build.pages.readers.workers import PageBudget, read_elsewhere
 from simworlds.folder_files import FolderLimits, list_files, read_file
@@ -144,7 +144,7 @@ def _copy(folder: Path, copy: Path) -> _Sources:
 
 
 def _build(sources: _Sources, scratch: Path, wanted: _Wanted) -> list[PageText]:
-    with patch_docutils(), docutils_namespace(), shared_transitions(), _paused_collector():
+    with patch_docutils(), docutils_namespace(), less_repeated(), _paused_collector():
         try:
             app = Sphinx(
                 srcdir=sources.folder,

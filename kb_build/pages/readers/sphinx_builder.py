@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 from docutils import nodes
 from sphinx.builders import Builder
+from sphinx.environment.collectors.asset import ImageCollector
 from sphinx.transforms import SphinxTransform
 
 from kb_build.pages.readers import blender_markup
@@ -201,6 +202,11 @@ def drop_needless_work(app: Sphinx) -> None:
     """Take out of a configured application what costs time and leaves no trace in the text."""
     # Numbers of sections and figures. Sphinx goes down all tables of contents for them, however deep.
     app.events.listeners.pop("env-get-updated", None)
+    # Looks for each picture's file, once for every language.
+    listeners = app.events.listeners["doctree-read"]
+    listeners[:] = [
+        each for each in listeners if not isinstance(getattr(each.handler, "__self__", None), ImageCollector)
+    ]
     registry = app.registry
     registry.transforms[:] = [each for each in registry.transforms if each.__name__ not in _NEEDLESS]
     registry.post_transforms[:] = [

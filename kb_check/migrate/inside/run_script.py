@@ -23,6 +23,8 @@ def main(arguments):
     facts["scene"] = scene_facts()
     with open(out, "w", encoding="utf-8") as file:
         json.dump(facts, file)
+    # Some Blenders never end where classes are left registered, and there is nothing left to do.
+    os._exit(0)
 
 
 def _run(script):
@@ -44,8 +46,15 @@ def _run(script):
 
 def _register(folder):
     """Registers the add-on in a folder, as Blender does when it is enabled, and takes it off again."""
+    import addon_utils  # found once bpy was imported
+
     above, name = os.path.split(os.path.abspath(folder))
+    # Blender's own add-on of that name may be enabled: it makes room.
+    addon_utils.disable(name)
+    for module in [module for module in sys.modules if module == name or module.startswith(name + ".")]:
+        del sys.modules[module]
     sys.path.insert(0, above)
+    bpy.context.preferences.addons.new().module = name  # its own preferences, which it may ask for
     module = importlib.import_module(name)
     module.register()
     module.unregister()

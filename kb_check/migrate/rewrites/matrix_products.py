@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import PRODUCTS
 from kb_check.findings import Edit
 from kb_check.migrate.change import Change
 from kb_check.migrate.rewrite import Rewrite
@@ -17,11 +18,8 @@ if TYPE_CHECKING:
 _SINCE = (2, 80)
 _SOURCE = "release notes 2.80: Python API"
 _REASON = "Matrices, quaternions and vectors are multiplied with @ since 2.80; * is item by item."
-_MATRIX, _QUATERNION, _VECTOR = "mathutils.Matrix", "mathutils.Quaternion", "mathutils.Vector"
-# Pairs for which Blender refuses ``*``.
-_REFUSED = {(_MATRIX, _VECTOR), (_VECTOR, _MATRIX), (_QUATERNION, _VECTOR)}
-# Pairs for which both work, with another meaning: only old code can mean a product.
-_CHANGED = {(_MATRIX, _MATRIX), (_QUATERNION, _QUATERNION), (_VECTOR, _VECTOR)}
+# Pairs for which Blender refuses ``*``. For the others both work, with another meaning: only old code means a product.
+_REFUSED = PRODUCTS["@"] - PRODUCTS["*"]
 
 
 def _propose(place: Place) -> Iterator[Change]:
@@ -42,7 +40,7 @@ def _propose(place: Place) -> Iterator[Change]:
 
 
 def _is_product(place: Place, left: ast.expr, right: ast.expr) -> bool:
-    for one, other in _REFUSED | _CHANGED:
+    for one, other in PRODUCTS["@"]:
         if place.is_a(left, one) and place.is_a(right, other):
             return (one, other) in _REFUSED or place.written_for < _SINCE
     return False

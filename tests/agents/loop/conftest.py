@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 import teams
 from commands import Command
+from made_once import made_once
 from run_sessions import answered, asked_of, sit
 from team import Team
 
@@ -48,32 +49,38 @@ def command(home: Path) -> Iterator[Callable[..., Command]]:
         one.kill()
 
 
+def _play(home: Path, folder: Path, team: Team, *faults: object, **options: object) -> Played:
+    with answered(home, team) as server:
+        server.fail("POST /v1/messages", *faults)  # type: ignore[arg-type]
+        played = sit(folder / "run", **options)
+        return replace(played, requests=asked_of(server))
+
+
 @pytest.fixture(scope="session")
 def play(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Callable[..., Played]:
     """Plays a team's run, for all tests that ask for it."""
 
     def play(team: Team, *faults: object, **options: object) -> Played:
-        with answered(home, team) as server:
-            server.fail("POST /v1/messages", *faults)  # type: ignore[arg-type]
-            played = sit(tmp_path_factory.mktemp("played") / "run", **options)
-            return replace(played, requests=asked_of(server))
+        return _play(home, tmp_path_factory.mktemp("played"), team, *faults, **options)
 
     return play
 
 
 @pytest.fixture(scope="session")
-def mended(play: Callable[..., Played]) -> Played:
-    """A run in which much is sent back, and mended."""
-    return play(teams.mended())
+def mended(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Played:
+    """A run in which much is sent back, and mended. Never go on with it, or write to it: others read it."""
+    return made_once(tmp_path_factory, "mended", lambda folder: _play(home, folder, teams.mended()))
 
 
 @pytest.fixture(scope="session")
-def falling(play: Callable[..., Played]) -> Played:
-    """A crate that falls: faked at first, then simulated."""
-    return play(teams.falling())
+def falling(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Played:
+    """A crate that falls: faked at first, then simulated. Never write to it."""
+    return made_once(tmp_path_factory, "falling", lambda folder: _play(home, folder, teams.falling()))
 
 
 @pytest.fixture(scope="session")
-def troubled(play: Callable[..., Played]) -> Played:
-    """A run in which models and server do all that they should not, and which ends well."""
-    return play(teams.troubled(), *teams.outages())
+def troubled(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Played:
+    """A run in which models and server do all that they should not, and which ends well. Never write to it."""
+    return made_once(
+        tmp_path_factory, "troubled", lambda folder: _play(home, folder, teams.troubled(), *teams.outages())
+    )

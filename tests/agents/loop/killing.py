@@ -1,4 +1,4 @@
-"""Sessions that are killed at the first event at which none was killed before: by turns before and behind it."""
+"""Sessions that are killed at the first event of each kind: by turns before and behind it."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 
 Event = tuple[Any, ...]
+Kind = tuple[str, str | None, str | None]
 _SECONDS = 240.0
 
 
@@ -45,8 +46,21 @@ def events(rows: Iterable[Mapping[str, Any]]) -> list[Event]:
     return found
 
 
-def killed_at_every_event(root: Path, home: Path, url: str, **options: Any) -> list[tuple[Event, str]]:
-    """Plays a run to its end; (event, "before" or "behind") of every death."""
+def kinds(rows: Iterable[Mapping[str, Any]]) -> list[Kind]:
+    """What happens in each row, whenever it does: its type, whose call or question it is, and of which tool."""
+    asked: dict[int, str] = {}
+    found: list[Kind] = []
+    for row in rows:
+        kind = row["type"]
+        if kind == "model.asked":
+            asked[row["n"]] = row["role"]
+        role = asked[row["n"]] if kind == "model.answered" else row.get("role")
+        found.append((kind, role, row.get("name") if kind.startswith("tool.") else None))
+    return found
+
+
+def killed_at_every_kind(root: Path, home: Path, url: str, **options: Any) -> list[tuple[Kind, str]]:
+    """Plays a run to its end; (kind of event, "before" or "behind") of every death."""
     context = multiprocessing.get_context("forkserver")
     context.set_forkserver_preload([__name__])  # so that a session need not import everything anew
     deaths = root.with_name("deaths.jsonl")
@@ -62,33 +76,34 @@ def killed_at_every_event(root: Path, home: Path, url: str, **options: Any) -> l
         assert process.exitcode in (0, -signal.SIGKILL), f"session {number} ended with {process.exitcode}"
         if process.exitcode == 0:
             break
-    return [(tuple(event), where) for event, where in _died(deaths)]
+    return _died(deaths)
 
 
-def _died(deaths: Path) -> list[tuple[list[Any], str]]:
-    return [json.loads(line) for line in deaths.read_text().splitlines()]
+def _died(deaths: Path) -> list[tuple[Kind, str]]:
+    rows = [json.loads(line) for line in deaths.read_text().splitlines()]
+    return [((kind[0], kind[1], kind[2]), where) for kind, where in rows]
 
 
 def _sit(root: Path, home: Path, url: str, deaths: Path, options: dict[str, Any]) -> None:
     before = _died(deaths)
-    past = {tuple(event) for event, _ in before}
+    past = {kind for kind, _ in before}
 
-    def die(event: Event, where: str) -> None:
+    def die(kind: Kind, where: str) -> None:
         with deaths.open("a") as file:
-            file.write(json.dumps([event, where]) + "\n")
+            file.write(json.dumps([kind, where]) + "\n")
         os.kill(os.getpid(), signal.SIGKILL)
 
     write = Journal.append_row
 
     def append(journal: Journal, row: Mapping[str, Any]) -> None:
-        known = events(journal.rows)
-        (*_, event) = events([*journal.rows, row])
-        new = event not in known and event not in past
+        known = kinds(journal.rows)
+        (*_, kind) = kinds([*journal.rows, row])
+        new = kind not in known and kind not in past
         if new and len(before) % 2:
-            die(event, "before")
+            die(kind, "before")
         write(journal, row)
         if new:
-            die(event, "behind")
+            die(kind, "behind")
 
     with ExitStack() as stack:
         patch = stack.enter_context(at_home(home))

@@ -18,7 +18,7 @@ from agents.loop.journal import NAME, Row, read_rows
 from agents.loop.options import Options, RunLimits
 from agents.loop.session import Ended, RunSession, Stop, begin, resume
 from agents.loop.tool_client import ToolClient
-from simworlds.llm.claude import Claude
+from simworlds.llm.providers import connect
 from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ def make_small(patch: pytest.MonkeyPatch) -> None:
     """Pictures of few pixels, and no pauses before a model is asked again."""
     patch.setattr(previews, "PANEL", 48)
     patch.setattr(judging, "_STILL", {"kind": "still", "name": "look", "width": 48, "samples": 1})
-    patch.setattr(answer_source, "Claude", lambda **given: Claude(**{**given, "pause": lambda seconds: None}))
+    patch.setattr(answer_source, "connect", lambda *given, **_: connect(*given, pause=lambda seconds: None))
 
 
 @contextmanager
@@ -43,7 +43,10 @@ def at_home(home: Path) -> Iterator[pytest.MonkeyPatch]:
     """A home, small pictures, nobody who answers."""
     with pytest.MonkeyPatch.context() as patch:
         patch.setenv("SIMWORLDS_HOME", str(home))
-        for name in ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN", "ANTHROPIC_BASE_URL"):
+        for name in (
+            *("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN", "ANTHROPIC_BASE_URL"),
+            *("OPENAI_API_KEY", "OPENAI_BASE_URL"),
+        ):
             patch.delenv(name, raising=False)
         make_small(patch)
         yield patch
@@ -58,11 +61,15 @@ def answered(home: Path, team: Callable[[dict[str, Any]], Reply]) -> Iterator[Fa
         yield api
 
 
+def only_look(row: Mapping[str, Any]) -> None:
+    """What an onlooker does at a row, if it is not told otherwise."""
+
+
 @dataclass
 class Onlooker:
     """Keeps what it is told; ``on_row`` may act on it."""
 
-    on_row: OnRow = lambda row: None
+    on_row: OnRow = only_look
     rows: list[Row] = field(default_factory=list)
     heard: list[tuple[str, str]] = field(default_factory=list)
 
@@ -104,9 +111,7 @@ class Played:
         return [(row["stage"], row["taken"]) for row in self.of("decided")]
 
 
-def seat(
-    limits: RunLimits | None = None, stop: Stop | None = None, on_row: OnRow = lambda row: None
-) -> RunSession:
+def seat(limits: RunLimits | None = None, stop: Stop | None = None, on_row: OnRow = only_look) -> RunSession:
     return RunSession(limits or RunLimits(), Onlooker(on_row), stop or Stop(threading.Event()))
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import subprocess
 import sys
 from typing import TYPE_CHECKING
@@ -19,6 +18,8 @@ from simworlds.sandbox.runtime import clean_environment, installed_bpy
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
+
+    from built_base import Built
 
 pytestmark = pytest.mark.blender
 
@@ -148,19 +149,15 @@ def test_what_a_command_draws_on_a_terminal_steers_nothing(name: str, place: Pat
     assert steering(printed, is_terminal=True) == []
 
 
-def test_pages_steer_nothing(place: Path, tmp_path: Path) -> None:
+def test_pages_steer_nothing(place: Path, small: Built) -> None:
     """A base is built from hostile pages, asked, inspected and checked."""
-    mini = REPO / "tests" / "corpora_mini"
-    shutil.copytree(mini / "manual", tmp_path / "manual")
-    (tmp_path / "manual" / f"{NAME}.rst").write_text(
-        f"{HOSTILE}\n{'=' * 90}\n\nCloth {HOSTILE}\n\n:ref:`{HOSTILE}`\n"
-    )
-    index = tmp_path / "manual" / "index.rst"
+    manual = small.corpora / f"manual-{small.minor}-rst"
+    (manual / f"{NAME}.rst").write_text(f"{HOSTILE}\n{'=' * 90}\n\nCloth {HOSTILE}\n\n:ref:`{HOSTILE}`\n")
+    index = manual / "index.rst"
     index.write_text(f"{index.read_text()}\n\n{HOSTILE} `page <evil:{HOSTILE}>`__\n")
-    sources = ("--manual", str(tmp_path / "manual"), "--guides", str(mini / "guides"), "--offline")
-    given = environment(place, SIMWORLDS_HOME=str(tmp_path / "home"))
+    given = environment(place, SIMWORLDS_HOME=str(small.home), SIMWORLDS_CORPORA=str(small.corpora))
     for words in (
-        ("kb", "build", *sources),
+        ("kb", "build", "--offline"),
         ("docs", "evil"),
         ("docs", "evil live", "--json"),
         ("kb", "info"),
@@ -168,6 +165,7 @@ def test_pages_steer_nothing(place: Path, tmp_path: Path) -> None:
         done = subprocess.run([*COMMAND, *words], env=given, capture_output=True, check=False, timeout=280)
         printed = (done.stdout + done.stderr).decode()
         assert done.returncode in (0, 1), printed
+        assert words[1] != "build" or "Built the knowledge base" in printed
         assert steering(printed) == []
     printed = on_terminal([*COMMAND, "docs", "evil"], given)
     assert "evil" in printed

@@ -108,10 +108,13 @@ def test_demo_without_a_name_lists_the_demos(alone: None) -> None:
     assert "Hand-written transcripts" in result.stdout
 
 
-def test_resume_of_a_finished_run_says_where_its_result_is(mended: Played, alone: None) -> None:
-    result = said("resume", mended.root)
+def test_resume_of_a_finished_run_says_where_its_result_is(
+    mended: Played, tmp_path: Path, alone: None
+) -> None:
+    root = shutil.copytree(mended.root, tmp_path / "run")
+    result = said("resume", root)
     assert result.exit_code == 0
-    assert str(mended.root / "scene.blend") in result.stdout
+    assert str(root / "scene.blend") in result.stdout
 
 
 def test_show_tells_how_a_run_stands(mended: Played, alone: None) -> None:
@@ -121,10 +124,12 @@ def test_show_tells_how_a_run_stands(mended: Played, alone: None) -> None:
         assert words in result.stdout
 
 
-def test_show_writes_the_report_anew(mended: Played, alone: None) -> None:
-    result = said("show", mended.root, "--report")
+def test_show_writes_the_report_anew(mended: Played, tmp_path: Path, alone: None) -> None:
+    root = shutil.copytree(mended.root, tmp_path / "run")
+    (root / "report.html").unlink(missing_ok=True)
+    result = said("show", root, "--report")
     assert result.exit_code == 0
-    assert (mended.root / "report.html").exists()
+    assert (root / "report.html").exists()
 
 
 BROKEN = {

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import re
 import sys
 from dataclasses import fields
@@ -11,6 +12,7 @@ from typing import TYPE_CHECKING, Any, get_args
 import pytest
 
 from agents.blender import docs_client, plan_check
+from agents.blender.server import entry
 from agents.blender.tool_catalogue import TOOLS
 from agents.plan import relations
 from agents.plan.edit import EditPlan
@@ -18,15 +20,19 @@ from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
 from agents.protocol import vocabulary
-from agents.protocol.guide import format_tolerance
+from agents.protocol.guide import format_tolerance, rules_guide
 from agents.protocol.rules.catalogue import RULES, select_rules
 from agents.protocol.rules_by_stage import rules_of
 from agents.protocol.tolerances import TOLERANCES
 from agents.roles import prompts
+from agents.roles.coder import is_needed
 from agents.roles.prompts import FOLDER, ROLES, Role, protocol_text, system_prompt, team_text
 from simworlds.llm.tokens import of_text
+from simworlds.schemas.json_schema import lean_arguments
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from pydantic import BaseModel
 
 ALL = [(role, stage, edit) for role, stage, edit in product(ROLES, (None, *STAGES), (False, True))]
@@ -72,14 +78,39 @@ def test_parts_come_from_what_is_shared_to_what_is_the_stages_own(
     role: Role, stage: Stage | None, edit: bool
 ) -> None:
     parts = system_prompt(role, stage, edit=edit)
-    assert parts[1] == protocol_text()
-    assert parts[:3] == system_prompt(role, edit=edit), "the prompt cache finds them again"
+    shared = system_prompt(role, edit=edit)
+    assert parts[: len(shared)] == shared, "the prompt cache finds them again"
     assert all(part.strip() == part and part for part in parts)
-    assert len(parts) == (3 if stage is None else 4)
+    assert len(parts) - len(shared) == (0 if stage is None else 2 if role == "coder" else 1)
+
+
+def test_a_coder_hears_of_the_rules_that_judge_its_stage_and_a_planner_of_all() -> None:
+    modeling, motion = (whole("coder", stage) for stage in ("modeling", "motion"))
+    timing = next(rule for rule in RULES if rule.id == "T1")
+    sentence = timing.about.partition(". ")[0].removesuffix(".")
+    assert sentence in whole("planner")
+    assert sentence in motion
+    assert sentence not in modeling
+    assert "- V1 " in modeling
+    assert "- V1 " not in whole("reviewer", "modeling")
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_a_role_is_told_what_it_needs_and_no_more(stage: Stage) -> None:
+    tools = [entry(tool) for tool in TOOLS]
+
+    def size(needed: Callable[[str], bool]) -> int:
+        told = [(tool.description, lean_arguments(tool.input_schema)) for tool in tools if needed(tool.name)]
+        return sum(len(words or "") + len(json.dumps(schema)) for words, schema in told)
+
+    coder = len(whole("coder", stage)) + size(lambda name: is_needed(name, stage))
+    reviewer = len(whole("reviewer", stage)) + size(lambda name: "preview" in name or "state" in name)
+    assert coder < 29_000
+    assert reviewer < 14_000
 
 
 def test_the_protocol_names_every_rule_tolerance_tag_and_relation() -> None:
-    text = protocol_text()
+    text = f"{protocol_text()}\n{rules_guide()}"
     for rule in RULES:
         sentence = rule.about.partition(". ")[0].removesuffix(".")
         soft = " (soft)" if rule.severity == "soft" else ""
@@ -104,8 +135,8 @@ def _kind(model: type[BaseModel]) -> str:
 
 
 def test_epsilon_and_noise_are_told_as_they_are() -> None:
-    assert "ε is 2 mm or 0.5 % of the smaller object's diagonal, at most 10 mm" in protocol_text()
-    assert "noise is 1 mm or 1 % of the smallest dimension" in protocol_text()
+    assert "ε is 2 mm or 0.5 % of the smaller object's diagonal, at most 10 mm" in rules_guide()
+    assert "noise is 1 mm or 1 % of the smallest dimension" in rules_guide()
 
 
 @pytest.mark.parametrize(("role", "edit", "model"), ANSWERS)
@@ -123,12 +154,6 @@ def test_a_role_is_told_every_field_of_what_it_answers(
             assert re.search(rf"^  {field}{mark}: ", block[0], re.MULTILINE), f"{name}.{field}"
             for choice in told.get("enum", ()):
                 assert f'"{choice}"' in block[0]
-
-
-@pytest.mark.parametrize("role", ROLES)
-def test_every_role_can_read_the_plan(role: Role) -> None:
-    assert "\nScenePlan {" in prompts.shapes_text(role)
-    assert "\nEditPlan {" in prompts.shapes_text(role, edit=True)
 
 
 @pytest.mark.parametrize("role", [*ROLES, "team"])
@@ -172,7 +197,7 @@ def test_only_the_coder_hears_of_code_and_nobody_of_how_the_api_is_spelled() -> 
 
 
 def test_prompts_stay_short() -> None:
-    rows = {"the protocol": of_text(protocol_text())}
+    rows = {"the protocol": of_text(protocol_text()) + of_text(rules_guide())}
     rows |= {f"stage {stage}": of_text(prompts.stage_text(stage)) for stage in STAGES}
     rows |= {f"{role}, whole": sum(map(of_text, system_prompt(role, "motion"))) for role in ROLES}
     rows |= {f"{role}, edit": sum(map(of_text, system_prompt(role, "motion", edit=True))) for role in ROLES}

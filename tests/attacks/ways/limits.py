@@ -188,7 +188,7 @@ WAYS = (
     ),
     _disk(
         "many-bytes-in-many-calls",
-        *(f"open('b{number}', 'wb').write(bytes(12 << 20)) and None" for number in range(30)),
+        *(f"open('b{number}', 'wb').write(bytes(36 << 20)) and None" for number in range(10)),
         "sum(os.path.getsize(name) for name in os.listdir()) > 264 << 20",
     ),
     _disk(

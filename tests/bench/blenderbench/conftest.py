@@ -29,7 +29,7 @@ def mini(tmp_path_factory: pytest.TempPathFactory) -> TaskSet:
     result = place / "result.json"
     done = subprocess.run(
         [sys.executable, "-P", str(HERE / "inside" / "mini_set.py"), str(place / "set"), str(result)],
-        env=clean_environment(place / "settings") | {"PYTHONDONTWRITEBYTECODE": "1"},
+        env=clean_environment(place / "settings") | {"PYTHONDONTWRITEBYTECODE": "1", "TMPDIR": str(place)},
         capture_output=True,
         text=True,
         check=False,

@@ -11,10 +11,10 @@ from fake_chat_api import FakeChatAPI, Said
 from fake_messages_api import FakeMessagesAPI, Reply
 from PIL import Image, PngImagePlugin
 
-from bench.judge.openai_chat import OpenAIChat
 from bench.judge.providers import JudgeProvider
-from simworlds.llm.claude import Claude, Settings
-from simworlds.llm.prices import Prices
+from simworlds.llm.attempts import Settings
+from simworlds.llm.claude import Claude
+from simworlds.llm.openai_chat import OpenAIChat
 from simworlds.llm.retries import RetryPolicy
 from simworlds.llm.spending import Spending
 
@@ -149,9 +149,11 @@ class OpenAI:
     def __init__(self) -> None:
         self.server = FakeChatAPI(self._answer)
         self.script = Script()
+        self.pauses: list[float] = []
 
     def provider(self, *, model: str = "", max_cost: float | None = None, tries: int = 4) -> JudgeProvider:
-        connect = lambda: OpenAIChat(self.server.base_url, Prices(), retries=tries - 1)  # noqa: E731
+        settings = Settings(api_key="key", base_url=self.server.base_url, patience=RetryPolicy(tries=tries))
+        connect = lambda: OpenAIChat(settings, pause=self.pauses.append)  # noqa: E731
         return JudgeProvider(self.name, model or self.model, connect, spending=Spending(max_cost))
 
     def fail(self, *faults: Any) -> None:

@@ -264,7 +264,7 @@ def test_without_a_key_it_says_which(frames, monkeypatch, name, key):
 @pytest.mark.parametrize("key", ["clé", "two\nlines"])
 def test_an_invalid_key_is_not_sent(monkeypatch, key):
     monkeypatch.setenv("OPENAI_API_KEY", key)
-    with pytest.raises(NotJudged, match="OPENAI_API_KEY has characters that are not allowed"):
+    with pytest.raises(NotJudged, match="OPENAI_API_KEY contains characters that are not allowed"):
         provider_of("openai").ready()
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
 from collections import Counter
@@ -64,7 +65,8 @@ def ask_blender(script: str, folder: Path, claims: object = None) -> dict[str, o
     program, asked, told = folder / "ask.py", folder / "asked.json", folder / "told.json"
     program.write_text(script)
     asked.write_text(json.dumps(claims))
-    subprocess.run([sys.executable, str(program), str(asked), str(told)], check=True, capture_output=True)
+    words = [sys.executable, str(program), str(asked), str(told)]
+    subprocess.run(words, env=os.environ | {"TMPDIR": str(folder)}, check=True, capture_output=True)
     return json.loads(told.read_text())
 
 

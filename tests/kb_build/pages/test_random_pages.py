@@ -13,7 +13,7 @@ from kb_build.pages.readers.html import read_html
 from kb_build.pages.readers.rst import read_rst
 from kb_build.pages.readers.workers import PageBudget
 
-BUDGET = PageBudget(cpu_seconds=5, memory=512 << 20)
+BUDGET = PageBudget(cpu_seconds=2, memory=512 << 20)
 NAMES = st.sampled_from(["a", "b", "page", "index", "tärget", "x y", ""])
 MARKS = "` |a| * ``x [1]_ a_ :ref:`page` :doc:`index` \\ &lt; <!-- ]]> |version| :kbd:`a` `a_<b>`__"
 TEXTS = st.one_of(st.text(max_size=30), st.sampled_from(MARKS.split()))

@@ -10,8 +10,9 @@ import pytest
 
 from kb_build.errors import StoreError
 from kb_build.versions.history import ApiHistory
-from kb_build.versions.paths import joined_path, split_path, version_key
+from kb_build.versions.paths import joined_path, split_path
 from kb_build.versions.successors import Succession, Successors, load_successors
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from pathlib import Path

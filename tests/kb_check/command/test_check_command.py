@@ -323,12 +323,12 @@ def test_nothing_in_a_file_steers_the_terminal(command: Command) -> None:
     command.write("\x1b[31mevil.py", code)
     for form in ([], ["--json"], ["--github"], ["--diff"], ["--sarif"]):
         assert not steering(command(*form).out)
-    printed = on_terminal([*SIMWORLDS, str(command.folder)], command.environment)
+    printed = on_terminal([*SIMWORLDS, "check", str(command.folder)], command.environment)
     assert "draw_type" in printed
     assert not steering(printed, is_terminal=True)
 
 
 def test_a_terminal_has_colours(command: Command) -> None:
     path = command.write("a.py", WRONG)
-    printed = on_terminal([*SIMWORLDS, str(path)], command.environment)
+    printed = on_terminal([*SIMWORLDS, "check", str(path)], command.environment)
     assert "\x1b[1;31merror[unknown-attribute]\x1b[0m" in printed

@@ -96,3 +96,48 @@ def test_what_has_nothing_to_check_is_said(tree: Path) -> None:
 def test_pipes_are_not_read(tree: Path) -> None:
     os.mkfifo(tree / "scripts" / "pipe.py")
     assert groups(tree, "scripts") == [["scripts/e.py"], ["scripts/f.py"]]
+
+
+def ignoring(tree: Path, text: str, folder: str = ".") -> None:
+    (tree / folder / ".gitignore").write_text(text)
+
+
+def test_what_git_leaves_out_of_a_folder_is_left_out(tree: Path) -> None:
+    ignoring(tree, "# made\nscripts/\n*.ipynb\n!/addon/c.ipynb\nloose*\n!loose.py\n")
+    ignoring(tree, "/sub\n", "addon")
+    assert groups(tree) == [
+        ["(addon/sub/b.py)", "addon/__init__.py", "addon/a.py"],
+        ["addon/c.ipynb"],
+        ["extension/d.py"],
+        ["loose.py"],
+    ]
+    found = find_files([tree], gitignore=False)
+    assert {"e.py", "b.py", "note.ipynb"} <= {
+        file.path.name for group in found.groups for file in group.files if file.wanted
+    }
+
+
+def test_what_is_named_is_checked_though_git_leaves_it_out(tree: Path) -> None:
+    ignoring(tree, "*\n")
+    assert groups(tree, "scripts") == [["scripts/e.py"], ["scripts/f.py"]]
+    assert groups(tree, "loose.py") == [["loose.py"]]
+
+
+def test_files_above_count_within_a_repository_only(tree: Path) -> None:
+    ignoring(tree, "e.py\n")
+    assert groups(tree, "scripts") == [["scripts/f.py"]]
+    (tree / ".git" / "a.py").unlink()
+    (tree / ".git").rmdir()
+    assert groups(tree, "scripts") == [["scripts/e.py"], ["scripts/f.py"]]
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["!\n[z-a]\n\\\n[\n/\n//\n", "*a" * 40 + "b\n", "a/**/" * 40 + "b\n", "\x00\udcff\n", "a" * (1 << 21)],
+)
+def test_a_gitignore_of_any_kind_leaves_out_nothing_else(tree: Path, text: str) -> None:
+    (tree / ".gitignore").write_bytes(text.encode(errors="surrogateescape"))
+    deep = tree / "/".join("a" * 60)
+    deep.mkdir(parents=True)
+    (deep / ("a" * 200 + ".py")).touch()
+    assert len(groups(tree, "scripts", "a")) == 3

@@ -21,14 +21,12 @@ def finding(line: int, column: int) -> Finding:
 
 
 @pytest.mark.parametrize(
-    ("text", "findings"),
-    [
-        ("x\n" * MANY, [finding(line, 0) for line in range(1, MANY + 1)]),
-        ("x = 1; " * MANY, [finding(1, 7 * number) for number in range(MANY)]),
-    ],
+    ("text", "down", "right"),
+    [("x\n" * MANY, 1, 0), ("x = 1; " * MANY, 0, 7)],
     ids=["lines", "one line"],
 )
-def test_many_findings_are_written(text: str, findings: list[Finding]) -> None:
+def test_many_findings_are_written(text: str, down: int, right: int) -> None:
+    findings = [finding(1 + down * number, right * number) for number in range(MANY)]
     # Whatever looks at a whole file or line for each of them takes minutes, and pytest ends it.
     report = Report("5.1", [FileReport("a.py", Source(text), findings)])
     assert sum(len(line) == 3 for line in text_lines(report)) >= MANY

@@ -34,6 +34,19 @@ def case(rewrite: str, written_for: str, old: str, new: str) -> Case:
 
 
 CASES = (
+    case("renamed-import", "3.4",
+         """
+         from bpy.types import (
+             Operator, MetaSequence,
+             Sequence as Strip)
+         print(Operator, MetaSequence, Strip)
+         """,
+         """
+         from bpy.types import (
+             Operator, MetaStrip as MetaSequence,
+             Strip as Strip)
+         print(Operator, MetaSequence, Strip)
+         """),
     case("object-state", "2.79", "ob.select = True\n", "ob.select_set(True)\n"),
     case("object-state", "2.79", "ob.hide = not ob.select\n", "ob.hide_set(not ob.select_get())\n"),
     case("object-state", "2.79", "seen = [o for o in scene.objects if o.select]\n",
@@ -157,7 +170,7 @@ CASES = (
          action = ob.animation_data.action
          count = len(anim_utils.action_ensure_channelbag_for_slot(action, action.slots[0]).fcurves)
          """),
-    case("renamed-value", "4.2", "scene.render.engine = 'BLENDER_EEVEE_NEXT'\n",
+    case("unknown-value", "4.2", "scene.render.engine = 'BLENDER_EEVEE_NEXT'\n",
          "scene.render.engine = 'BLENDER_EEVEE'\n"),
     case("split-factor", "2.79",
          """

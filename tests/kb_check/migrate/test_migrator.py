@@ -169,3 +169,16 @@ def test_any_input_ends_in_text_that_python_reads(
     (file,) = Migrator(checker, [KeptVersion(version) for version in keep]).migrate({"a.py": code})
     if file.new != code:
         ast.parse(file.new)
+
+
+def test_a_condition_on_the_version_stands_below_the_import_of_bpy(checker: Checker) -> None:
+    keep = [KeptVersion((4, 2))]
+    lines = ["import bpy", "from bpy.types import MetaSequence"]
+    guarded = Migrator(checker, keep).migrate({"a.py": "\n".join(lines)})[0].new
+    assert (
+        "if bpy.app.version >= (4, 4, 0):\n    from bpy.types import MetaStrip as MetaSequence\n" in guarded
+    )
+    above = "\n".join(reversed(lines))
+    (left,) = Migrator(checker, keep).migrate({"a.py": above})
+    assert left.new == above
+    assert [one.rule for one in left.decisions] == ["unknown-name"]

@@ -82,3 +82,24 @@ def test_numbers_that_are_as_good_as_equal_do_not_differ() -> None:
     old = Ending("4.2", "", {"a": [1.0, 2.0], "b": {"c": 1}})
     new = Ending("5.1", "", {"a": [1.0004, 2.0], "b": {"c": 2}, "d": 1})
     assert compare(old, new) == ("b.c: 1 → 2", "d: new")
+
+
+def test_an_addon_may_ask_for_its_preferences_and_leave_classes_behind(
+    runtime: Runtime, tmp_path: Path
+) -> None:
+    folder = tmp_path / "asking"
+    folder.mkdir()
+    (folder / "__init__.py").write_text(
+        """
+import bpy
+class Wanted(bpy.types.AddonPreferences):
+    bl_idname = __name__
+    size: bpy.props.IntProperty(default=3)
+def register():
+    bpy.utils.register_class(Wanted)
+    assert bpy.context.preferences.addons[__name__].preferences.size == 3
+def unregister():
+    pass
+"""
+    )
+    assert run_in(runtime, folder).error == ""

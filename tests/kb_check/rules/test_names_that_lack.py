@@ -115,3 +115,103 @@ nodes.new("ShaderNodeOfMine")
     assert [one.span.line for one in found] == [4, 5, 9]
     assert "bpy.types.ShaderNodeTexNoise" in found[0].instead
     assert "`ShaderNodeTexNoise`" in found[1].message
+
+
+def test_values_that_only_blender_makes_are_no_finding(checker: Checker) -> None:
+    code = """
+        import bpy
+        kind = bpy.context.object.particle_systems[0].settings.type
+        kind == 'SPRAYFOAM'
+        kind == 'REACTOR'
+    """
+    assert [(one.rule, one.span.line) for one in checker.check(dedent(code))] == [("never-true", 5)]
+
+
+def test_the_name_that_registering_gives_a_property_is_a_keyword(checker: Checker) -> None:
+    code = """
+        import bpy
+        bpy.types.Scene.one = bpy.props.IntProperty(attr="one", name="One")
+        bpy.types.Scene.two = bpy.props.IntProperty(atr="two", name="Two")
+    """
+    assert errors(checker, code) == [(4, "unknown-keyword")]
+
+
+def test_a_key_of_max_is_given_each_of_what_is_compared(checker: Checker) -> None:
+    code = """
+        import bpy
+        largest = (0, "")
+        for ob in bpy.data.objects:
+            largest = max(largest, (len(ob.modifiers), ob.name), key=lambda pair: pair[0])
+            max(3, ob.location, key=lambda one: one[0])
+    """
+    assert errors(checker, code) == []
+
+
+def test_a_function_is_read_with_all_that_calls_pass(checker: Checker) -> None:
+    """An attribute holds one of five classes in the end; that some of them lack it is no error."""
+    code = """
+        import bpy
+        class Cache:
+            def __init__(self, holder):
+                self.holder = holder
+            def end(self):
+                self.holder.frame_end = 3
+                self.holder.nowhere = 3
+        def caches(scene, surface: bpy.types.DynamicPaintSurface):
+            yield Cache(scene.rigidbody_world)
+            yield from others(surface)
+        def others(surface):
+            yield Cache(bpy.context.object.modifiers.new("x", "CLOTH"))
+            yield Cache(bpy.context.object.particle_systems[0])
+            yield Cache(surface)
+        caches(bpy.context.scene, None)
+    """
+    assert errors(checker, code) == [(8, "unknown-attribute")]
+
+
+def test_what_took_the_place_of_a_name_is_judged_on(checker: Checker) -> None:
+    code = """
+        import bpy
+        strips = bpy.context.scene.sequence_editor.sequences
+        strips[0].channel
+        strips[0].nowhere
+        isinstance(strips[0], bpy.types.EffectSequence)
+    """
+    assert errors(checker, code) == [(3, "unknown-attribute"), (5, "unknown-attribute"), (6, "unknown-name")]
+
+
+def test_a_parameter_called_as_usual_has_lost_what_its_class_lost(checker: Checker) -> None:
+    code = """
+        def settings(brush):
+            brush.image_tool
+            return brush.size
+        def others(brush):
+            brush.image_tol
+            return brush.size
+        def of_its_own(brush):
+            brush.image_tool, brush.bristles
+    """
+    assert errors(checker, code) == [(3, "unknown-attribute")]
+    own = "class Tool:\n    def __init__(self):\n        self.image_tool = 1\n"
+    assert errors(checker, own + dedent(code)) == []
+
+
+def test_who_goes_on_has_a_value_that_has_the_name(checker: Checker) -> None:
+    code = """
+        import bpy
+        layer = bpy.context.object.data.layers.active
+        layer.hide
+        layer.nowhere
+    """
+    assert errors(checker, code) == [(5, "unknown-attribute")]
+
+
+def test_a_class_with_a_computed_name_is_hardly_one_that_is_gone(checker: Checker) -> None:
+    code = """
+        import bpy
+        for name in ("One", "Two"):
+            bpy.utils.register_class(type(name, (bpy.types.Panel,), {}))
+        bpy.types.One
+        bpy.types.EffectSequence
+    """
+    assert errors(checker, code) == [(6, "unknown-name")]

@@ -149,6 +149,20 @@ bpy.ops.mesh.primitive_cube_add(2.0)
 bpy.ops.mesh.primitive_cube_add('EXEC_DEFAULT', True, 1)
 bpy.ops.mesh.primitive_cube_add({"active_object": ob})
 """,
+    "refused-product": """\
+ob.matrix_world * mesh.vertices[0].co
+mesh.vertices[0].co * ob.matrix_world
+ob.matrix_world.to_quaternion() * ob.location
+Quaternion() * Matrix()
+Quaternion() @ Matrix()
+ob.rotation_euler * ob.location
+ob.rotation_euler @ Vector()
+light.color * light.color
+Vector() * light.color
+ob.location * Quaternion()
+ob.location *= ob.matrix_world
+ob.location @= ob.matrix_world
+""",
     "not-subscriptable": """\
 scene[0]
 ob[None]
@@ -221,9 +235,20 @@ bpy.data.objects.new("name", None)
 bpy.data.objects[-1]
 bpy.data.objects[:][::2]
 bpy.data.objects[True]
+ob.matrix_world @ mesh.vertices[0].co
+mesh.vertices[0].co @ ob.matrix_world
+ob.matrix_world * Matrix()
+ob.location * Vector((1, 2, 3))
+Quaternion() @ ob.location
+light.color * 2
+2 * ob.matrix_world
+ob.matrix_world *= 2
+ob.matrix_world @= Matrix()
 scene["property"] = 5
 scene["property"]
 mesh.vertices
+bpy.data.meshes.new("quad").from_pydata([(0, 0, 0), (1, 0, 0), (1, 1, 0), (0, 1, 0)], [], [(0, 1, 2, 3)])
+bpy.data.meshes["quad"].polygons[0].vertices[3]
 bm.verts[-1]
 bm.verts[0].co = (0, 0, 1)
 bm.verts[0].co.x = 1

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from fake_messages_api import FakeMessagesAPI
 
-from simworlds.llm.claude import Claude, Settings
+from simworlds.llm.attempts import Settings
+from simworlds.llm.claude import Claude
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -11,7 +11,8 @@ import pytest
 from asks import LOOK, MESSAGES, OPUS, ask, png
 from fake_messages_api import Reply, Stall, Status
 
-from simworlds.llm.claude import Claude, Settings
+from simworlds.llm.attempts import Settings
+from simworlds.llm.claude import Claude
 from simworlds.llm.errors import CutShort, Declined, Rejected, TooLong
 from simworlds.llm.messages import Kept, Message, Picture, Text, Tool, ToolResult, ToolUse, Usage, user
 from simworlds.llm.prices import Price, Prices
@@ -223,3 +224,10 @@ def test_too_long_a_conversation_has_its_own_error(api, claude):
     for _ in range(2):
         with pytest.raises(TooLong, match="too long"):
             claude.answer(ask())
+
+
+def test_a_form_is_a_structured_output(api, claude):
+    schema = {"type": "object", "properties": {"ok": {"type": "boolean"}}, "required": ["ok"]}
+    claude.answer(ask(form=Tool("verdict", "Whether it is right.", schema)))
+    told = api.received(MESSAGES)[0].body["output_config"]["format"]
+    assert (told["type"], told["schema"]["required"]) == ("json_schema", ["ok"])

@@ -27,7 +27,8 @@ from fake_messages_api import (
     Truncate,
 )
 
-from simworlds.llm.claude import Claude, Settings
+from simworlds.llm.attempts import Settings
+from simworlds.llm.claude import Claude
 from simworlds.llm.errors import ModelError, OverBudget, Rejected, Unreachable
 from simworlds.llm.messages import Kept, Text, ToolUse, Usage
 from simworlds.llm.retries import RetryPolicy

@@ -9,9 +9,9 @@ import pytest
 from asks import Scripted, ask
 from pydantic import BaseModel, ConfigDict, Field
 
-from simworlds.llm.errors import CutShort, Declined, Misfit
+from simworlds.llm.errors import CutShort, Declined, Misfit, Rejected
 from simworlds.llm.messages import Text, ToolResult, ToolUse, Turn, Usage
-from simworlds.llm.structured import ask_for, fits, read
+from simworlds.llm.structured import ask_for, fits, form_of, read
 
 
 class Part(BaseModel):
@@ -158,3 +158,33 @@ def test_scene_plans_are_read_with_their_own_check():
     with pytest.raises(Misfit, match=r"objects: It is missing\.") as misfit:
         read('{"title": "A table"}', read_plan)
     assert len(misfit.value.problems) > 1
+
+
+# Answers that are held to a form
+
+
+class Strict:
+    """A model that answers in turn, and may not take forms."""
+
+    def __init__(self, *texts: str, refuses: int = 0) -> None:
+        self.texts, self.refuses, self.forms = list(texts), refuses, []
+
+    def answer(self, ask, on_text=None):
+        self.forms.append(ask.form and ask.form.name)
+        if ask.form and self.refuses:
+            raise Rejected("The schema is too complex.", self.refuses)
+        return says(self.texts.pop(0))
+
+
+def test_an_answer_after_one_that_did_not_fit_is_held_to_the_form():
+    model = Strict("No.", "Still no.", GOOD)
+    assert ask_for(model, ask(), fits(Decision), form=form_of(Decision)).value.decision == "retry"
+    assert model.forms == [None, "Decision", "Decision"]
+
+
+def test_a_server_that_does_not_take_the_form_is_asked_without():
+    model = Strict("No.", "Still no.", GOOD, refuses=400)
+    assert ask_for(model, ask(), fits(Decision), form=form_of(Decision)).tries == 3
+    assert model.forms == [None, "Decision", None, None]
+    with pytest.raises(Rejected):
+        ask_for(Strict("No.", refuses=401), ask(), fits(Decision), form=form_of(Decision))

@@ -70,6 +70,23 @@ def test_this_environment_is_used_when_its_bpy_fits(tmp_path: Path, bpy_version:
 
 
 @pytest.mark.blender
+def test_a_blender_that_is_killed_leaves_no_temporary_files(tmp_path: Path, bpy_version: str) -> None:
+    runtime, output = find_runtime(bpy_version, home=tmp_path), tmp_path / "folder"
+    text = """
+        import os, signal, sys
+        import bpy
+        with open(sys.argv[-1], "w") as file:
+            file.write(bpy.app.tempdir)
+        assert os.path.isdir(bpy.app.tempdir)
+        os.kill(os.getpid(), signal.SIGKILL)
+    """
+    with pytest.raises(ProgramFailed, match="SIGKILL"):
+        run_script(runtime, script(tmp_path, text), [str(output)], timeout=120, log=tmp_path / "run.log")
+    assert output.read_text()
+    assert not Path(output.read_text()).exists()
+
+
+@pytest.mark.blender
 def test_a_script_runs_with_this_environments_bpy(tmp_path: Path, bpy_version: str) -> None:
     runtime = find_runtime(bpy_version, home=tmp_path)
     output, log = tmp_path / "out.json", tmp_path / "logs" / "run.log"

@@ -1,4 +1,4 @@
-"""A hundred kills at random moments: the next call works, what was kept is there, and nothing is left behind."""
+"""Kills at random moments: the next call works, what was kept is there, and nothing is left behind."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ import random
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from pathlib import Path
@@ -96,7 +97,11 @@ def opens_elsewhere(paths: list[Path], key: str) -> list[int]:
         f"    sys.stderr.write(f'{{bpy.context.scene[{key!r}]}}\\n')\nos._exit(0)"
     )
     words = [sys.executable, "-c", code, *map(str, paths)]
-    done = subprocess.run(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=True)
+    with tempfile.TemporaryDirectory() as folder:
+        environment = os.environ | {"TMPDIR": folder}
+        done = subprocess.run(
+            words, env=environment, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, check=True
+        )
     return [int(line) for line in done.stderr.split() if line.lstrip("-").isdigit()]
 
 

@@ -1,4 +1,4 @@
-"""What the tests of the command share: a home folder of its own with a real base, and a folder with code."""
+"""A checker of this environment's Blender, and the command in a home folder of its own and a folder for code."""
 
 from __future__ import annotations
 

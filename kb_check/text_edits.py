@@ -1,4 +1,4 @@
-"""A script's text while it is edited: every line remembers the line of the original that it came from."""
+"""Text that is edited: which edits can be made together, and which line of the original each line came from."""
 
 from __future__ import annotations
 
@@ -6,14 +6,16 @@ from bisect import bisect_left, insort
 from dataclasses import dataclass, field
 from functools import cached_property
 from itertools import accumulate
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from kb_check.source import split_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from kb_check.findings import Edit, Span
+
+_T = TypeVar("_T")
 
 
 @dataclass(frozen=True)
@@ -71,20 +73,24 @@ class Text:
         return Text("".join([*parts, self.code[at:]]), (*origins, *self.origins[line:]))
 
 
-class Taken:
-    """The parts of a text that edits have taken. Two that begin at one place collide, whatever their length."""
+def apart(text: Text, items: Iterable[_T], edits: Callable[[_T], Sequence[Edit]]) -> Iterator[_T]:
+    """The items whose edits share no text with those of an item before; ``edits`` are an item's, at least one.
 
-    def __init__(self) -> None:
-        self._spans: list[tuple[int, int]] = []
+    Two edits that begin at one place share it, whatever their length.
+    """
+    taken: list[tuple[int, int]] = []
+    for item in items:
+        spans = [text.offsets(edit.span) for edit in edits(item)]
+        if spans and not any(_meets(span, taken) for span in spans):
+            for span in spans:
+                insort(taken, span)
+            yield item
 
-    def is_free(self, span: tuple[int, int]) -> bool:
-        """Whether nothing of a span, given by its offsets, is taken."""
-        at = bisect_left(self._spans, span)
-        return not any(
-            span[0] == other[0] or (span[0] < other[1] and other[0] < span[1])
-            for other in self._spans[max(at - 1, 0) : at + 1]
-        )
 
-    def add(self, span: tuple[int, int]) -> None:
-        """Takes a span."""
-        insort(self._spans, span)
+def _meets(span: tuple[int, int], taken: list[tuple[int, int]]) -> bool:
+    """Whether a span touches one of those that are taken; they are sorted."""
+    at = bisect_left(taken, span)
+    return any(
+        span[0] == other[0] or (span[0] < other[1] and other[0] < span[1])
+        for other in taken[max(at - 1, 0) : at + 1]
+    )

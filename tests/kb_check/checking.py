@@ -1,4 +1,4 @@
-"""``simworlds check`` as a process of its own."""
+"""``simworlds check``, and commands like it, as processes of their own."""
 
 from __future__ import annotations
 
@@ -14,7 +14,7 @@ from places import REPO
 if TYPE_CHECKING:
     from pathlib import Path
 
-SIMWORLDS = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')", "check"]
+SIMWORLDS = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
 WRONG = 'import bpy\nbpy.context.object.draw_type = "WIRE"\n'
 RIGHT = 'import bpy\nbpy.context.object.display_type = "WIRE"\n'
 
@@ -43,6 +43,7 @@ class Command:
 
     home: Path
     folder: Path
+    name: str = "check"
 
     def write(self, name: str, content: str | bytes) -> Path:
         path = self.folder / name
@@ -61,7 +62,7 @@ class Command:
 
     def __call__(self, *arguments: str, given: bytes = b"", folder: Path | None = None) -> Outcome:
         done = subprocess.run(
-            [*SIMWORLDS, *arguments],
+            [*SIMWORLDS, self.name, *arguments],
             input=given,
             capture_output=True,
             cwd=folder or self.folder,
