@@ -293,7 +293,7 @@ def test_runs_are_listed_with_how_they_stand() -> None:
         [("first", until("run.ended")), ("second", run_state_after(stopped.rows)), ("third", RunState())]
     )
     told = [re.split(r"  +", line.strip()) for line in drawn(table).splitlines() if line.strip()]
-    assert told[0] == ["Run", "What", "ToolOutcome", "Stage", "Cost", "When"]
+    assert told[0] == ["Run", "What", "Outcome", "Stage", "Cost", "When"]
     assert told[2][:4] == ["first", "Twelve dominoes", "done", "$1.48"]
     assert told[3][:4] == ["second", "A cloth falls over a table", "stopped", "Motion"]
     assert told[4][:2] == ["third", "unfinished"]
