@@ -256,7 +256,7 @@ class Run:
                 _move(made, target)
             except OSError as error:
                 raise NotSaved(f"{target} cannot be written: {error.strerror or error}.") from error
-        if not target.is_file():
+        if not target.is_file() or "path" not in outcome.data:  # an earlier scene may stand there
             raise NotSaved(f"The scene could not be saved: {outcome.text}")
 
     def load(self, stage: Stage, file: Path) -> None:

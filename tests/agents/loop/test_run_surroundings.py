@@ -89,14 +89,19 @@ def test_the_scene_stands_from_the_first_closed_stage_on_and_is_replaced(
 ) -> None:
     root = tmp_path / "run"
     stood: dict[str, bytes] = {}
+    in_the_way = root / "blender" / "delivered" / "render" / "scene.blend"
 
     def keep(row: Mapping[str, Any]) -> None:
         if row["type"] == "stage.closed":
             stood[row["stage"]] = (root / "scene.blend").read_bytes()
+        if row["type"] == "final.reviewed":
+            in_the_way.mkdir(parents=True)
 
-    at = seat(on_row=keep)
-    played = sit(root, at)
-    assert played.ended.how == "done"
+    first = sit(root, seat(on_row=keep))
+    assert (first.ended.how, first.ended.file) == ("failed", root / "scene.blend"), "it is not the result"
+    in_the_way.rmdir()
+    assert go_on(root).ended.how == "done"
+    assert (root / "scene.blend").read_bytes() != stood["light"]
     assert list(stood) == ["modeling", "camera", "light"]
     assert len({*stood.values()}) == 3
     for stage, content in stood.items():
