@@ -161,6 +161,8 @@ class Run:
         except Stopping:
             raise
         except RunError as error:
+            if not self.root.is_dir():
+                raise  # no scene is why: the run's folder is gone
             text = f"{error} Until this is mended, what was changed is lost if Blender ends."
             return replace(outcome, content=(*outcome.content, Text(text)), failed=True), None
 
