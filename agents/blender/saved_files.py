@@ -62,17 +62,24 @@ class FileContents(Claim):
 
 
 class SavedCopy(FileContents):
-    """A file that was written; ``files`` are (path in the workspace, path in the folder beside the .blend)."""
+    """A file that was written; ``files`` are (path in the workspace, path in the folder beside the .blend).
+
+    The ``loose`` ones are of simulations that are not baked: Blender may have dropped them since. ``unused``:
+    data-blocks that are not in it, because nothing uses them.
+    """
 
     bytes: Count
     packed: list[Name] = Field(max_length=_MOST_NAMED)
     rescued: list[Name] = Field(max_length=_MOST_NAMED)
     files: list[tuple[Place, Place]] = Field(max_length=_MOST_FILES)
+    loose: list[tuple[Place, Place]] = Field(max_length=_MOST_FILES)
     external: list[ExternalFile] = Field(max_length=_MOST_NAMED)
+    unused: list[Name] = Field(max_length=_MOST_NAMED)
 
     @model_validator(mode="after")
     def _each_once(self) -> SavedCopy:
-        if len({source for source, _ in self.files}) < len(self.files):
+        every = [source for source, _ in (*self.files, *self.loose)]
+        if len({*every}) < len(every):
             raise ValueError("a file is to be copied more than once")
         return self
 
@@ -108,15 +115,22 @@ def staging(folder: RunFolder) -> Generator[Path]:
         shutil.rmtree(staged, ignore_errors=True)
 
 
-def copy_from_workspace(folder: RunFolder, files: Iterable[tuple[str, str]], target: Path) -> tuple[int, int]:
+def copy_from_workspace(
+    folder: RunFolder, files: Iterable[tuple[str, str]], target: Path, *, may_be_gone: bool = False
+) -> tuple[int, int]:
     """Copies (path in the workspace, path below ``target``); returns how many files and bytes. Raises Refusal."""
     count = total = 0
     for source, below in files:
         parts = PurePosixPath(below).parts
         if not parts or ".." in parts or len(parts) > DEEPEST or below.startswith("/") or "\0" in below:
             raise Refusal(f"{below[:120]!r} is not a valid path for a cache file.")
-        with folder.workspace.open(source) as file:
-            total += copy_to(file, target.joinpath(*parts), durable=False)
+        try:
+            with folder.workspace.open(source) as file:
+                total += copy_to(file, target.joinpath(*parts), durable=False)
+        except NotThere:
+            if may_be_gone:
+                continue
+            raise
         count += 1
     return count, total
 

@@ -61,6 +61,16 @@ _model = _options(
         "--role-model", multiple=True, metavar="ROLE=NAME", help=f"Another model for {', '.join(_ROLES)}."
     ),
 )
+_RENDER = (
+    click.option(
+        "--render-minutes",
+        type=click.FloatRange(0, min_open=True),
+        help="Time for a film; its samples and size are fitted to it.  [default: 20]",
+    ),
+    click.option(
+        "--samples", type=click.IntRange(1), help="Samples of the rendering, instead of the plan's."
+    ),
+)
 _blender = _options(
     click.option("--run", "root", type=_FOLDER, help="Folder of the run.  [default: a new one]"),
     click.option("--blender", metavar="VERSION", help="Blender version. Default: this environment's."),
@@ -75,12 +85,7 @@ _blender = _options(
     click.option(
         "--sandbox", type=click.Choice(["bubblewrap", "landlock", "none"]), help="What confines Blender."
     ),
-    click.option(
-        "--render-minutes", type=click.FloatRange(0, min_open=True), help="Time budget of the rendering."
-    ),
-    click.option(
-        "--samples", type=click.IntRange(1), help="Samples of the rendering, instead of the plan's."
-    ),
+    *_RENDER,
 )
 _ablations = _options(
     click.option("--no-verifier", is_flag=True, help="Leave the verifier out (ablation)."),
@@ -166,11 +171,15 @@ def replay(run: Path, **given: Any) -> None:
 @click.command()
 @click.argument("run", type=_FOLDER)
 @_limits
+@_options(*_RENDER)
 def resume(run: Path, **given: Any) -> None:
-    """Resume a run that was stopped or killed. Nothing that was done or paid for is done again."""
+    """Resume a run that was stopped or killed. Nothing that was done or paid for is done again.
+
+    --render-minutes and --samples are for what is still to be rendered.
+    """
     from agents.loop.session import resume as go_on  # noqa: PLC0415 - not for --help
 
-    _work(lambda session: go_on(run, session), run, given)
+    _work(lambda session: go_on(run, session), run, given, render=True)
 
 
 @click.command()
@@ -209,10 +218,11 @@ def _of_model(given: dict[str, Any]) -> dict[str, Any]:
     return asked | {"models": models}
 
 
-def _limited(given: dict[str, Any]) -> Any:
+def _limited(given: dict[str, Any], *, render: bool) -> Any:
     from agents.loop.options import RunLimits  # noqa: PLC0415 - not for --help
 
-    return RunLimits(max_cost=given["max_cost"], max_minutes=given["max_minutes"])
+    names = ("max_cost", "max_minutes", *(("render_minutes", "samples") if render else ()))
+    return RunLimits(**{name: given[name] for name in names})
 
 
 def _root(given: dict[str, Any]) -> Path:
@@ -244,11 +254,14 @@ def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
     _work(lambda session: begin(root, options, session), root, given)
 
 
-def _work(work: Callable[[RunSession], Ended], root: Path, given: dict[str, Any]) -> None:
+def _work(
+    work: Callable[[RunSession], Ended], root: Path, given: dict[str, Any], *, render: bool = False
+) -> None:
     from agents.loop.errors import RunError  # noqa: PLC0415 - not for --help
     from agents.loop.reducer import read_run_state  # noqa: PLC0415
     from agents.loop.session import RunSession, Stop  # noqa: PLC0415
     from agents.views.live_view import RunView, make_view  # noqa: PLC0415
+    from agents.views.report.early import ReportWriter  # noqa: PLC0415
     from agents.views.report.page import write_report  # noqa: PLC0415
 
     stop = Stop(threading.Event())
@@ -256,7 +269,8 @@ def _work(work: Callable[[RunSession], Ended], root: Path, given: dict[str, Any]
         before = read_run_state(root)
         watched = RunView(before) if given["quiet"] else make_view(sys.stderr, str(root), before)
         with watched as view, _signals(stop):
-            ended = work(RunSession(_limited(given), view, stop))
+            watcher = ReportWriter(view, root)
+            ended = work(RunSession(_limited(given, render=render), watcher, stop))
         report = write_report(root)
     except RunError as error:
         click.echo(f"Error: {error}", err=True)

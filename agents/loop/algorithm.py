@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from agents.loop.errors import NotSaved
 from agents.loop.events import PlanMade, StageMoved
-from agents.loop.reducer import run_state_after
-from agents.loop.rendering import fix, render, review
+from agents.loop.rendering import LastStage
 from agents.loop.run import START, plan_file
 from agents.loop.stage import StageLoop
 from agents.loop.task import RunTask
@@ -15,7 +16,6 @@ from agents.roles.planner import Planner, format_plan
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
-    from pathlib import Path
 
     from agents.loop.rendering import RenderResult
     from agents.loop.run import Run
@@ -31,7 +31,7 @@ deforms, motion, camera and light, in one pass from an empty scene."""
 
 def make(run: Run) -> RenderResult:
     """From the prompt to a rendered scene (paper, Algorithm 1). Raises RunError, ModelError."""
-    run.save("modeling", START, run.checkpoints)
+    run.save("modeling", START)
     planner = Planner(run.context)
     plan = planner.strategic(run.options.prompt)
     run.write("plan.json", plan_file(plan))
@@ -42,7 +42,7 @@ def make(run: Run) -> RenderResult:
     run.task = task = RunTask(text, plan, _actors(plan))
     wanted = stages_of(plan) if staged else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
-    return finish(run, task, plan.render, last)
+    return finish(run, planner, task, plan.render, last)
 
 
 def build(run: Run, planner: Planner, task: RunTask, wanted: Sequence[Stage]) -> str:
@@ -53,27 +53,20 @@ def build(run: Run, planner: Planner, task: RunTask, wanted: Sequence[Stage]) ->
             run.journal.note(StageMoved(type="stage.skipped", stage=stage))
             continue
         attempts = StageLoop(run, planner, task, stage, last).build()
-        file = run.save(stage, stage, run.checkpoints)
-        path = f"checkpoints/{file.name}"
+        if run.options.early:
+            with suppress(NotSaved):  # the stage is saved, and an earlier scene stands
+                run.deliver(stage)
+        path = f"checkpoints/{stage}.blend"
         run.journal.note(StageMoved(type="stage.closed", stage=stage, attempts=attempts, file=path))
         last = stage
     return last
 
 
-def finish(run: Run, task: RunTask, plan: RenderSettings | None, last: str) -> RenderResult:
+def finish(run: Run, planner: Planner, task: RunTask, plan: RenderSettings | None, last: str) -> RenderResult:
     """Renders the scene, has it reviewed, fixes it once if needed, and saves it. Raises RunError, ModelError."""
-    rendering = render(run, plan, 1)
-    verdict = review(run, task, rendering, 1)
-    if verdict.verdict == "needs_fix" and fix(run, task, verdict, last):
-        rendering = render(run, plan, 2)
-    run.save("render", "scene", run.root, verify=True)
+    rendering = LastStage(run, planner, task, plan, last).finish()
+    run.deliver("render", verify=True)
     return rendering
-
-
-def result_so_far(run: Run) -> Path | None:
-    """The file of the stage that was closed last."""
-    closed = [stage.file for stage in run_state_after(run.journal.rows).stages if stage.state == "closed"]
-    return run.root / closed[-1] if closed else None
 
 
 def stages_of(plan: ScenePlan) -> tuple[Stage, ...]:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.answer_source import transcript_folder, transcripts
 from agents.loop.errors import NoRun, RunError
+from agents.loop.options import BEFORE_DRAFTS
 from agents.loop.reducer import read_run_state
 from agents.loop.tool_client import ToolClient
 from simworlds.sandbox.confined_command import best_sandbox
@@ -36,6 +37,7 @@ def demo_options(name: str, made: Path) -> dict[str, Any]:
     asked: dict[str, Any] = {
         "origin": "session",
         "source": name,
+        "planner_looks": False,
         "prompt": settings.get("instruction", settings["prompt"]),
     }
     if "file" in settings:
@@ -49,7 +51,7 @@ def replay_options(run: Path) -> dict[str, Any]:
     options = read_run_state(run).options
     if not options:
         raise NoRun(f"{run} does not hold a record of a run.")
-    return {**options, "origin": "replay", "source": str(run)}
+    return {**BEFORE_DRAFTS, **options, "origin": "replay", "source": str(run)}
 
 
 def _settings(name: str) -> Mapping[str, Any]:

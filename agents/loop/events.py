@@ -23,7 +23,7 @@ from pydantic import (
 
 from agents.plan.edit import EditPlan
 from agents.plan.scene import ScenePlan
-from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
+from agents.plan.tactical import Decision, FilmDecision, FinalReview, Review, TacticalPlan
 from agents.protocol.findings import Finding
 from simworlds.llm.messages import Text, Turn
 
@@ -117,10 +117,12 @@ class RunBegan(Event):
 
 
 class SessionBegan(Event):
-    """A process began to work on the run."""
+    """A process began to work on the run; from here on, films have this time and these samples, if any are given."""
 
     type: Literal["sitting.began"] = "sitting.began"
     pid: Int = 0
+    render_minutes: Float | None = None
+    render_samples: Int | None = None
 
 
 class SceneRestored(Event):
@@ -263,6 +265,35 @@ class ToolAnswered(Event):
     checkpoint: Int | None = None
 
 
+class Drafted(Event):
+    """Before a film: stills, and a small preview at ``path`` ("" without one). ``text`` says what is planned."""
+
+    type: Literal["drafted"] = "drafted"
+    path: Str = ""
+    pictures: Strs = ()
+    text: Str = ""
+
+
+class FilmFitted(Event):
+    """How a film is rendered, and about how many ``seconds`` of the ``minutes`` that it may take it will need."""
+
+    type: Literal["film.fitted"] = "film.fitted"
+    width: Int = 0
+    height: Int = 0
+    samples: Int = 0
+    frames: Int = 0
+    seconds: Float = 0.0
+    minutes: Float = 0.0
+    lowered: Str = ""
+
+
+class FilmDecided(Event):
+    """What the planner decided before a film."""
+
+    type: Literal["film.decided"] = "film.decided"
+    decision: FilmDecision | None = None
+
+
 class SceneRendered(Event):
     """``path`` is the still or video; ``pictures`` are frames of it."""
 
@@ -307,7 +338,7 @@ KnownEvent = Annotated[
     RunBegan | SessionBegan | SceneRestored | RunEnded | PlanMade | ReferenceKept
     | StageMoved | TacticMade | AttemptBegan | AttemptEnded
     | Verified | Reviewed | Decided | RolledBack | ModelAsked | ModelAnswered
-    | ToolCalled | ToolAnswered | SceneRendered | FinalReviewed | Edited,
+    | ToolCalled | ToolAnswered | Drafted | FilmFitted | FilmDecided | SceneRendered | FinalReviewed | Edited,
     Field(discriminator="type"),
 ]  # fmt: skip
 _KNOWN: TypeAdapter[Event] = TypeAdapter(KnownEvent)

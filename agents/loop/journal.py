@@ -45,8 +45,11 @@ class Journal:
         self._lock = threading.RLock()
         whole = 0
         for row, end in _read(path):
+            if (row["type"], row.get("outcome")) == ("run.ended", "failed"):
+                self._forget_failure()
             self._remember(row)
             whole = end
+        self._forget_failure()
         try:
             self._file = path.open("ab", buffering=0)  # what was not written must not be tried again later
             self._file.truncate(whole)
@@ -107,6 +110,13 @@ class Journal:
             self._remember(written)
         for listener in self._listeners:
             listener(read_event(written))
+
+    def _forget_failure(self) -> None:
+        """Forgets the last call if it is the loop's own and failed, so that it is made again: its end was the run's."""
+        last = self.rows[-1] if self.rows else {}
+        if last.get("type") == "tool.answered" and last.get("role") == "runner" and last.get("failed"):
+            for kind in ("tool.called", "tool.answered"):
+                self._by_key.pop(_key({**last, "type": kind}), None)
 
     def _remember(self, row: Row) -> None:
         self.rows.append(row)

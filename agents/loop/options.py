@@ -13,6 +13,7 @@ from simworlds.llm.providers import DEFAULT_MODELS, ProviderName
 Mode = Literal["make", "edit"]
 Origin = Literal["live", "session", "replay"]
 
+BEFORE_DRAFTS = {"early": False, "planner_looks": False}  # in records that are older than these options
 ROLES = ("planner", "coder", "reviewer", "final_reviewer")
 
 
@@ -22,7 +23,9 @@ class Options(BaseModel):
     ``origin``: where answers come from: a live model, a ``session`` (its name) written by hand, or the ``replay`` of
     another run (its folder). ``file``, ``reference``: what is edited, and a picture of what it should be.
     ``provider``: the API that live models are reached by. ``price``: IN/OUT in dollars per million tokens, of models
-    without a list price. ``verifier``, ``stages``: False leaves that out (the paper's ablations).
+    without a list price. ``verifier``, ``stages``: False leaves that out (the paper's ablations). ``early``: the scene
+    is delivered as each stage closes, and a draft before the film; ``planner_looks``: the planner decides on that
+    draft. Runs that were begun without these go on without them.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -45,6 +48,8 @@ class Options(BaseModel):
     samples: int | None = Field(default=None, ge=1)
     verifier: bool = True
     stages: bool = True
+    early: bool = True
+    planner_looks: bool = True
 
     @model_validator(mode="before")
     @classmethod
@@ -87,9 +92,11 @@ class Options(BaseModel):
 
 
 class RunLimits(BaseModel):
-    """What one session may use: dollars (over the whole run), and minutes."""
+    """What one session may use: dollars (over the whole run), and minutes; how films are rendered from now on."""
 
     model_config = ConfigDict(frozen=True)
 
     max_cost: float | None = Field(default=None, ge=0)
     max_minutes: float | None = Field(default=None, gt=0)
+    render_minutes: float | None = Field(default=None, gt=0)
+    samples: int | None = Field(default=None, ge=1)

@@ -23,6 +23,9 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Turn
 
 
+_BUILDING = (events.PlanMade, events.StageMoved, events.TacticMade, events.AttemptBegan)
+
+
 def run_state_after(rows: Iterable[Mapping[str, Any]], before: RunState | None = None) -> RunState:
     """The state that ``rows`` of a journal, oldest first, lead to from ``before`` on."""
     return reduce(after, map(events.read_event, rows), before or RunState())
@@ -36,6 +39,8 @@ def read_run_state(run: Path) -> RunState:
 def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, PLR0912 - a case for each type of event
     """The state once ``event`` has happened."""
     state = _on_the_clock(state, event)
+    if isinstance(event, _BUILDING):
+        state = replace(state, is_building=True)
     match event:
         case events.RunBegan():
             names = ("mode", "prompt", "version", "blender", "source", "models", "options")
@@ -68,6 +73,12 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
             return _model_answered(state, event)
         case events.ToolAnswered():
             return _tool_answered(state, event)
+        case events.Drafted():
+            return replace(state, draft=event)
+        case events.FilmFitted():
+            return replace(state, film=event)
+        case events.FilmDecided():
+            return replace(state, before_film=event)
         case events.SceneRendered():
             return _rendered(state, event)
         case events.FinalReviewed():
@@ -97,6 +108,8 @@ def _on_the_clock(state: RunState, event: events.Event) -> RunState:
         latest=now or state.latest,
         seconds=state.seconds + passed,
     )
+    if not state.is_building:
+        return replace(state, planning=state.planning + passed)
     stage = state.stage(event.stage or (state.current.name if state.current else ""))
     if not passed or not stage:
         return state

@@ -2,38 +2,35 @@
 
 from __future__ import annotations
 
-import os
-import shutil
-from contextlib import closing
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeVar
 
-from agents.blender.render.image_checks import LARGEST_STILL, look_at
+from agents.loop.draft import asked_of, draft, minutes_of, note_film
 from agents.loop.edit.comparison import compared
-from agents.loop.errors import RunError
-from agents.loop.events import FinalReviewed, SceneRendered
+from agents.loop.errors import NotRendered
+from agents.loop.events import FilmDecided, FinalReviewed, SceneRendered
 from agents.loop.judging import note_verdict, verify
-from agents.loop.run import RUNNER
-from agents.plan.tactical import FinalReview
+from agents.loop.pictures import link, pictures_of
+from agents.loop.run import RENDER, RUNNER
+from agents.plan.tactical import FilmDecision, FinalReview
 from agents.roles.coder import Coder
 from agents.roles.final_reviewer import final_review
 from simworlds.llm.errors import Declined, Misfit
 from simworlds.llm.messages import Picture, Text
-from simworlds.sandbox.confined_command import best_sandbox
-from simworlds.sandbox.picture_decoder import PictureDecoder
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Callable, Sequence
 
+    from agents.loop.film_settings import FilmSettings
     from agents.loop.run import Run
     from agents.loop.task import RunTask
     from agents.plan.scene import RenderSettings
+    from agents.roles.planner import Planner
     from simworlds.llm.messages import Block
 
-LARGEST_FRAME = 1024  # pixels a side, of one of several frames
+T = TypeVar("T")
 _FRAMES_SHOWN = 5  # at 0, 25, 50, 75, 100 %
-_ENGINES = {"CYCLES": "cycles", "BLENDER_EEVEE": "eevee", "BLENDER_WORKBENCH": "workbench"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,62 +46,141 @@ class RenderResult:
     shown: tuple[tuple[Path, Picture], ...]
 
 
-def render(run: Run, plan: RenderSettings | None, number: int) -> RenderResult:
-    """Renders the scene as planned (None: by the scene's own settings). Raises RunError."""
-    run.attempt = number
-    asked: dict[str, Any] = {"kind": plan.kind if plan else "still"}
-    if plan is not None:
-        asked |= {"engine": _ENGINES[plan.engine], "samples": run.options.samples or plan.samples}
-        asked |= {"width": plan.resolution[0], "height": plan.resolution[1]}
-    if run.options.render_minutes is not None:
-        asked["time_budget"] = run.options.render_minutes * 60
-    outcome = run.use(RUNNER, "render", "blender_render", asked)
-    if outcome.failed:
-        raise RunError(f"The scene could not be rendered: {outcome.text}")
-    data = outcome.data
-    moving = data["kind"] == "animation"
-    made = Path(data["video"]["path"] if moving and data.get("video") else data["path"])
-    frames = tuple(sorted(Path(data["path"]).glob("*.png"))) if moving else (made,)
-    result = run.root / ("video.mp4" if moving else "still.png")
-    if made.is_file():
-        _link(made, result)
-    shown = _pictures(_spread(frames))
-    run.journal.note(
-        SceneRendered(
-            round=number,
-            kind=data["kind"],
-            path=result.name,
-            frames=len(frames),
-            samples=data.get("samples"),
-            seconds=data.get("seconds"),
-            pictures=tuple(run.keep(picture) for _, picture in shown),
+class LastStage:
+    """Renders the scene that was closed as ``last``. Each fix by a coder begins another attempt."""
+
+    def __init__(
+        self, run: Run, planner: Planner, task: RunTask, plan: RenderSettings | None, last: str
+    ) -> None:
+        self._run = run
+        self._planner = planner
+        self._task = task
+        self._plan = plan
+        self._last = last
+        self._attempt = 1
+        self._film: FilmSettings | None = None
+
+    def finish(self) -> RenderResult:
+        """The result, reviewed, and fixed at most once for the final reviewer. Raises RunError, ModelError."""
+        self._mended_if_need_be(self._draft)
+        rendering = self._mended_if_need_be(lambda: self._render(1))
+        verdict = self._review(rendering, 1)
+        if verdict.verdict == "needs_fix" and self._fix(verdict.instructions):
+            rendering = self._render(2)
+        return rendering
+
+    def _mended_if_need_be(self, work: Callable[[], T]) -> T:
+        """What ``work`` gives. If the scene cannot be rendered, a coder hears why, once."""
+        try:
+            return work()
+        except NotRendered as error:
+            if not self._fix(
+                f"The scene cannot be rendered. Mend what is in the way, and nothing else: {error}"
+            ):
+                raise
+            return work()
+
+    # Before a film
+
+    def _draft(self) -> None:
+        """Fits the film to its time, and lets the planner decide on its frames, once."""
+        run, plan = self._run, self._plan
+        if plan is None or plan.kind != "animation" or not run.options.early:
+            return
+        made = draft(run, plan, self._attempt)
+        if run.options.planner_looks:
+            decision = self._decision(made.shown)
+            run.journal.note(FilmDecided(attempt=self._attempt, decision=decision))
+            if decision.transition == "mend" and self._fix(decision.instructions):
+                made = draft(run, plan, self._attempt)
+        self._film = made.film
+
+    def _decision(self, shown: Sequence[Block]) -> FilmDecision:
+        """The planner's. One that declines has no objection."""
+        try:
+            return self._planner.before_film(shown)
+        except (Declined, Misfit) as error:
+            return FilmDecision(transition="film", reason=f"There is no decision: {error}"[:2000])
+
+    # Rendering
+
+    def _render(self, number: int) -> RenderResult:
+        """Renders the scene as planned (without a plan: by its own settings). Raises NotRendered."""
+        run, plan, film = self._run, self._plan, self._film
+        run.attempt = self._attempt
+        asked: dict[str, Any] = {"kind": plan.kind if plan else "still", "time_budget": minutes_of(run) * 60}
+        if plan is not None:
+            width, height = plan.resolution
+            asked |= asked_of(plan) | {
+                "samples": run.samples or plan.samples,
+                "width": width,
+                "height": height,
+            }
+        if film is not None:
+            asked |= {"samples": film.samples, "width": film.width, "height": film.height}
+            note_film(run, film, number)
+        outcome = run.use(RUNNER, "render", RENDER, asked)
+        if outcome.failed:
+            raise NotRendered(f"The scene could not be rendered: {outcome.text}")
+        data = outcome.data
+        moving = data["kind"] == "animation"
+        made = Path(data["video"]["path"] if moving and data.get("video") else data["path"])
+        frames = tuple(sorted(Path(data["path"]).glob("*.png"))) if moving else (made,)
+        result = run.root / ("video.mp4" if moving else "still.png")
+        if made.is_file():
+            link(made, result)
+        shown = pictures_of(_spread(frames))
+        run.journal.note(
+            SceneRendered(
+                round=number,
+                kind=data["kind"],
+                path=result.name,
+                frames=len(frames),
+                samples=data.get("samples"),
+                seconds=data.get("seconds"),
+                pictures=tuple(run.keep(picture) for _, picture in shown),
+            )
         )
-    )
-    return RenderResult(result, frames, outcome.text, shown)
+        return RenderResult(result, frames, outcome.text, shown)
 
+    def _review(self, rendering: RenderResult, number: int) -> FinalReview:
+        """The final reviewer's verdict. One that declines counts as accepting, and the summary says so."""
+        task = self._task
+        content: list[Block | str] = [Text(rendering.text)]
+        if self._film is not None and self._film.lowered:
+            content.append(Text(f"To keep its time, the film has {self._film.lowered}."))
+        if compared_with := _in_film(rendering, task):
+            content += compared(self._run, task, compared_with)
+        for place, (path, picture) in enumerate(rendering.shown):
+            content += [Text(f"Frame {path.stem} ({25 * place} %):"), picture]
+        try:
+            review = final_review(self._run.context, task.plan_text, content, edit=task.edit)
+        except (Declined, Misfit) as error:
+            review = FinalReview(verdict="accept", summary=f"There is no final review: {error}"[:4000])
+        self._run.journal.note(FinalReviewed(round=number, review=review))
+        return review
 
-def _pictures(paths: Sequence[Path]) -> tuple[tuple[Path, Picture], ...]:
-    """Rendered frames with their pictures as models see them; Blender has written the files."""
-    with closing(PictureDecoder(best_sandbox())) as decoder:
-        return tuple(
-            (path, Picture(look_at(decoder, path, LARGEST_STILL if len(paths) == 1 else LARGEST_FRAME).png))
-            for path in paths
-        )
+    def _fix(self, instructions: str) -> bool:
+        """Lets a coder change the scene as it was closed last; whether the fix stands.
 
-
-def review(run: Run, task: RunTask, rendering: RenderResult, number: int) -> FinalReview:
-    """The final reviewer's verdict. A reviewer that declines counts as accepting, and the summary says so."""
-    content: list[Block | str] = [Text(rendering.text)]
-    if compared_with := _in_film(rendering, task):
-        content += compared(run, task, compared_with)
-    for place, (path, picture) in enumerate(rendering.shown):
-        content += [Text(f"Frame {path.stem} ({25 * place} %):"), picture]
-    try:
-        review = final_review(run.context, task.plan_text, content, edit=task.edit)
-    except (Declined, Misfit) as error:
-        review = FinalReview(verdict="accept", summary=f"There is no final review: {error}"[:4000])
-    run.journal.note(FinalReviewed(round=number, review=review))
-    return review
+        A fix that is not finished, or breaks a hard rule, is undone: the result is never worse for it.
+        """
+        run, task = self._run, self._task
+        before, self._attempt = self._attempt, self._attempt + 1
+        run.attempt = self._attempt
+        run.roll_back("render", before, self._last)
+        coder = Coder(run.context, "render", task.plan_text, edit=task.edit)
+        worked = run.attempted("render", self._attempt, lambda: coder.fix(instructions, run.state("render")))
+        verdict = verify(run, "render", task)
+        note_verdict(run, "render", self._attempt, verdict)
+        if verdict.ok and worked.how == "done":
+            if run.options.early:  # a later fix begins with it
+                name = f"mended-{self._attempt}"
+                run.save("render", name)
+                self._last = name
+            return True
+        run.roll_back("render", self._attempt, self._last)
+        return False
 
 
 def _in_film(rendering: RenderResult, task: RunTask) -> Picture | None:
@@ -114,24 +190,7 @@ def _in_film(rendering: RenderResult, task: RunTask) -> Picture | None:
     name = f"{task.before_frame or 0:04d}"
     path = next((one for one in rendering.frames if one.stem == name), rendering.frames[0])
     known = dict(rendering.shown)
-    return known[path] if path in known else _pictures([path])[0][1]
-
-
-def fix(run: Run, task: RunTask, review: FinalReview, last: str) -> bool:
-    """Fixes once what the final reviewer wants, from the last checkpoint on; whether the fix stands.
-
-    A fix that is not finished, or breaks a hard rule, is undone: the result is never worse for it.
-    """
-    run.attempt = 2
-    run.roll_back("render", 1, last)
-    coder = Coder(run.context, "render", task.plan_text, edit=task.edit)
-    worked = run.attempted("render", 2, lambda: coder.fix(review.instructions, run.state("render")))
-    verdict = verify(run, "render", task)
-    note_verdict(run, "render", 2, verdict)
-    if verdict.ok and worked.how == "done":
-        return True
-    run.roll_back("render", 2, last)
-    return False
+    return known[path] if path in known else pictures_of([path])[0][1]
 
 
 def _spread(frames: Sequence[Path]) -> list[Path]:
@@ -139,11 +198,3 @@ def _spread(frames: Sequence[Path]) -> list[Path]:
     last = len(frames) - 1
     places = {round(last * share / (_FRAMES_SHOWN - 1)) for share in range(_FRAMES_SHOWN)}
     return [frames[place] for place in sorted(places)]
-
-
-def _link(made: Path, result: Path) -> None:
-    result.unlink(missing_ok=True)
-    try:
-        os.link(made, result)
-    except OSError:
-        shutil.copyfile(made, result)

@@ -1,22 +1,24 @@
 """A run: its folder, its journal, its tools and its limits.
 
 The folder holds ``journal.jsonl``, ``plan.json``, ``checkpoints/STAGE.blend``, ``pictures/`` (what the roles saw, by
-content), ``blender/`` (the worker's own), and in the end ``scene.blend``, ``video.mp4`` or ``still.png``, and
-``report.html``.
+content), ``blender/`` (the worker's own), ``scene.blend`` (of the last closed stage, in the end the result), and in the
+end ``video.mp4`` or ``still.png``, and ``report.html``.
 """
 
 from __future__ import annotations
 
 import hashlib
 import json
+import shutil
 import threading
 import time
 from collections import Counter
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-from agents.loop.errors import NoRun, RunError, Stopping
+from agents.blender.saved_files import caches_folder
+from agents.loop.errors import NoRun, NotSaved, RunError, Stopping
 from agents.loop.events import (
     AttemptBegan,
     AttemptEnded,
@@ -26,6 +28,7 @@ from agents.loop.events import (
     ToolAnswered,
     ToolCalled,
 )
+from agents.loop.interruptible import Interruptible
 from agents.loop.tool_client import ToolOutcome
 from agents.roles import coder, reviewer
 from agents.roles.base import RoleContext
@@ -50,6 +53,7 @@ CHECK = "blender_check"
 RENDER = "blender_render"
 START = "start"
 _KEPT_STILLS = 2
+SCENE = "scene.blend"
 _LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
 
 
@@ -80,13 +84,25 @@ class Run:
     def context(self) -> RoleContext:
         """What the roles work with."""
         return RoleContext(
-            self.model,
+            Interruptible(self.model, self.stop),
             self.options.model,
             tools=lambda role, stage: RoleTools(self, role, stage),
             saying=self.saying,
             safe=self.safe,
             names=self.options.models,
         )
+
+    @property
+    def render_minutes(self) -> float | None:
+        """How long a film may take: what was said last, as the run began or was resumed."""
+        said: float | None = self.journal.last("render_minutes")
+        return said or self.options.render_minutes
+
+    @property
+    def samples(self) -> int | None:
+        """The samples of a film, instead of the plan's: what was said last."""
+        said: int | None = self.journal.last("render_samples")
+        return said or self.options.samples
 
     @property
     def checkpoints(self) -> Path:
@@ -103,17 +119,19 @@ class Run:
 
     # ToolSet
 
-    def use(
+    def use(  # noqa: PLR0913, PLR0917 - who calls what with what
         self,
         role: str,
         stage: Stage,
         name: str,
         arguments: Mapping[str, Any],
         known: Mapping[str, Any] | None = None,
+        moved: Mapping[str, str] | None = None,
     ) -> ToolOutcome:
         """Calls a tool, or takes what the journal has of this call.
 
-        ``known`` are arguments that follow from the run, which ``arguments`` may replace.
+        ``known`` are arguments that follow from the run, which ``arguments`` may replace. ``moved``: folders whose
+        files go to another once the call is over; the answer has the paths at which they stay.
         """
         with self._door:
             self._calls[role, stage] += 1
@@ -125,12 +143,14 @@ class Run:
         self._align()
         self.journal.note(ToolCalled(**about, name=name, input=dict(arguments)))
         outcome = self._called(name, {**(known or {}), **arguments})
-        kept = None if self.tools.is_read_only(name) else self.tools.checkpoint()
+        kept = None
+        if not self.tools.is_read_only(name):
+            outcome, kept = self._kept(outcome)
         self.journal.note(
             ToolAnswered(
                 **about,
                 name=name,
-                content=tuple(self._written(block) for block in outcome.content),
+                content=tuple(self._written(_renamed(block, moved)) for block in outcome.content),
                 data=dict(outcome.data),
                 failed=outcome.failed,
                 seconds=round(outcome.seconds, 3),
@@ -139,9 +159,21 @@ class Run:
         )
         return outcome
 
+    def _kept(self, outcome: ToolOutcome) -> tuple[ToolOutcome, int | None]:
+        """The checkpoint after a call. Where none can be taken, whoever called is told: the scene may be why."""
+        try:
+            return outcome, self.tools.checkpoint()
+        except Stopping:
+            raise
+        except RunError as error:
+            if not self.root.is_dir():
+                raise  # no scene is why: the run's folder is gone
+            text = f"{error} Until this is mended, what was changed is lost if Blender ends."
+            return replace(outcome, content=(*outcome.content, Text(text)), failed=True), None
+
     def _called(self, name: str, arguments: Mapping[str, Any]) -> ToolOutcome:
         if name in self.tools.names:
-            return self.tools.call(name, arguments)
+            return self.tools.call(name, arguments, self.stop if name == RENDER else None)
         known = ", ".join(self.tools.names)
         return ToolOutcome((Text(f"There is no tool {name[:80]!r}; there are {known}."),), failed=True)
 
@@ -175,21 +207,23 @@ class Run:
             raise RunError(f"{path} cannot be written: {error.strerror or error}.") from error
         return name
 
-    def _recalled(self, answered: ToolAnswered) -> ToolOutcome:
-        """What a call came to. Raises NoRun."""
-        if answered.content is None:
-            raise NoRun(f"{self.journal.path}, row {answered.i}: not a valid 'tool.answered' row.")
+    def picture(self, name: str) -> bytes:
+        """A picture that was kept. Raises NoRun."""
         try:
-            content = tuple(
-                part
-                if isinstance(part, Text)
-                else Picture((self.root / part.path).read_bytes(), part.media_type)
-                for part in answered.content
-            )
+            return (self.root / name).read_bytes()
         except OSError as error:
             raise NoRun(
                 f"{error.filename}, a picture of an earlier answer, cannot be read: {error.strerror}."
             ) from error
+
+    def _recalled(self, answered: ToolAnswered) -> ToolOutcome:
+        """What a call came to. Raises NoRun."""
+        if answered.content is None:
+            raise NoRun(f"{self.journal.path}, row {answered.i}: not a valid 'tool.answered' row.")
+        content = tuple(
+            part if isinstance(part, Text) else Picture(self.picture(part.path), part.media_type)
+            for part in answered.content
+        )
         return ToolOutcome(content, answered.data, answered.failed, answered.seconds or 0.0)
 
     # The scene
@@ -198,20 +232,39 @@ class Run:
         """The scene's readout."""
         return self.use(RUNNER, stage, "blender_scene_state", {}).text
 
-    def save(self, stage: Stage, name: str, folder: Path, *, verify: bool = False) -> Path:
-        """Saves the scene as ``folder/name.blend``, with its caches beside it. Raises RunError."""
-        outcome = self.use(RUNNER, stage, "blender_save", {"name": name, "verify": verify})
-        target = folder / f"{name}.blend"
-        made = self.root / "blender" / f"{name}.blend"
-        if made.exists() and not target.exists():  # it may have been moved in an earlier session
-            folder.mkdir(exist_ok=True)
-            caches = f"blendcache_{name}"
-            if (made.parent / caches).is_dir():
-                (made.parent / caches).replace(folder / caches)
-            made.replace(target)  # last: where it is, all is
-        if not target.exists():
-            raise RunError(f"The scene could not be saved: {outcome.text}")
+    def save(self, stage: Stage, name: str) -> Path:
+        """Saves the scene as the checkpoint ``name``, with its caches beside it. Raises NotSaved."""
+        target = self.checkpoints / f"{name}.blend"
+        self._save(stage, name, target, self.root / "blender" / target.name, is_replaced=False)
         return target
+
+    def deliver(self, stage: Stage, *, verify: bool = False) -> Path:
+        """Saves the scene as the run's result so far, in place of an earlier one. Raises NotSaved."""
+        target = self.root / SCENE
+        made = self.root / "blender" / "delivered" / stage / SCENE
+        self._save(stage, f"delivered/{stage}/{target.stem}", target, made, verify=verify)
+        return target
+
+    def _save(  # noqa: PLR0913 - what is saved, from where to where
+        self,
+        stage: Stage,
+        name: str,
+        target: Path,
+        made: Path,
+        *,
+        verify: bool = False,
+        is_replaced: bool = True,
+    ) -> None:
+        """Lets the tool save ``made``, and moves it to ``target``, unless an earlier session has."""
+        moved = {str(made.parent): str(target.parent)}
+        outcome = self.use(RUNNER, stage, "blender_save", {"name": name, "verify": verify}, moved=moved)
+        if made.is_file() and (is_replaced or not target.exists()):
+            try:
+                _move(made, target)
+            except OSError as error:
+                raise NotSaved(f"{target} cannot be written: {error.strerror or error}.") from error
+        if not target.is_file() or "path" not in outcome.data:  # an earlier scene may stand there
+            raise NotSaved(f"The scene could not be saved: {outcome.text}")
 
     def load(self, stage: Stage, file: Path) -> None:
         """Opens a .blend in place of the scene. Raises RunError."""
@@ -288,6 +341,24 @@ class RoleTools:
             self._run.stills += [(outcome.text, picture) for picture in outcome.pictures[-_KEPT_STILLS:]]
             del self._run.stills[:-_KEPT_STILLS]
         return ToolResult(call.id, outcome.content, outcome.failed)
+
+
+def _move(made: Path, target: Path) -> None:
+    """Moves a saved file with its caches; where the file is, all is. May be called again after it was cut off."""
+    target.parent.mkdir(exist_ok=True)
+    if caches_folder(made).is_dir():
+        shutil.rmtree(caches_folder(target), ignore_errors=True)
+        caches_folder(made).replace(caches_folder(target))
+    made.replace(target)
+
+
+def _renamed(block: Text | Picture, moved: Mapping[str, str] | None) -> Text | Picture:
+    if isinstance(block, Picture) or not moved:
+        return block
+    text = block.text
+    for here, there in moved.items():
+        text = text.replace(here, there)
+    return Text(text)
 
 
 def plan_file(value: Any) -> str:

@@ -16,11 +16,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from datetime import datetime
 
-    from agents.loop.events import Decided, Edited, RunEnded, Verified
+    from agents.loop.events import Decided, Drafted, Edited, FilmDecided, FilmFitted, RunEnded, Verified
     from agents.plan.edit import EditPlan
     from agents.plan.scene import ScenePlan
     from agents.plan.tactical import FinalReview, Review, TacticalPlan
     from simworlds.llm.messages import Turn
+
+
+DEFAULT_RENDER_MINUTES = 20.0  # for a film, unless the run says otherwise
 
 
 @dataclass(frozen=True, slots=True)
@@ -126,7 +129,8 @@ class RunState:
     """A run, as far as its rows tell. ``steps`` belong to no stage; ``pending`` are not answered
     yet, ``settled`` was answered by the last row.
 
-    ``plan`` is the scene plan, ``edit`` the plan of an edit, which made the ``changes``.
+    ``plan`` is the scene plan, ``edit`` the plan of an edit, which made the ``changes``. ``planning``: seconds until
+    something was built (``is_building``). ``draft``, ``film``: what is known of the film before it is rendered.
     ``spending`` is by role and stage. ``began`` and ``latest`` are the times of the first and the last row.
     """
 
@@ -140,12 +144,17 @@ class RunState:
     began: datetime | None = None
     latest: datetime | None = None
     seconds: float = 0.0
+    planning: float = 0.0
+    is_building: bool = False
     rows: int = 0
     sessions: int = 0
     plan: ScenePlan | None = None
     edit: EditPlan | None = None
     steps: tuple[Step, ...] = ()
     stages: tuple[StageRun, ...] = ()
+    draft: Drafted | None = None
+    film: FilmFitted | None = None
+    before_film: FilmDecided | None = None
     renderings: tuple[Rendering, ...] = ()
     changes: Edited | None = None
     ending: RunEnded | None = None
@@ -203,6 +212,17 @@ class RunState:
         if self.edit:
             return tuple(dict.fromkeys((*self.edit.stages, "render")))
         return self.plan.stages if self.plan else ()
+
+    @property
+    def film_seconds(self) -> float | None:
+        """How long a film that is still to come takes, or may at most take; None where none is to come."""
+        plan = self.plan.render if self.plan else self.edit.render if self.edit else None
+        if plan is None or plan.kind != "animation" or self.renderings:
+            return None
+        if self.film:
+            return self.film.seconds
+        minutes = self.options.get("render_minutes")
+        return 60.0 * (minutes if isinstance(minutes, (int, float)) else DEFAULT_RENDER_MINUTES)
 
     @property
     def share_done(self) -> float:

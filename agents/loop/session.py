@@ -5,23 +5,23 @@ from __future__ import annotations
 import logging
 import os
 from contextlib import ExitStack
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib import metadata
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from pydantic import ValidationError
 
 from agents.blender.blender_sessions import SessionSetup
-from agents.loop.algorithm import make, result_so_far
+from agents.loop.algorithm import make
 from agents.loop.answer_source import LiveOptions, make_model
 from agents.loop.edit.edit_mode import edit
 from agents.loop.edit.inputs import check_inputs
 from agents.loop.errors import Aborted, NoRun, RunError, Stopping, Unusable
 from agents.loop.events import RunBegan, RunEnded, SessionBegan
 from agents.loop.journal import NAME, Journal
-from agents.loop.options import ROLES, Options, RunLimits
+from agents.loop.options import BEFORE_DRAFTS, ROLES, Options, RunLimits
 from agents.loop.reducer import read_run_state
-from agents.loop.run import Run
+from agents.loop.run import SCENE, Run
 from agents.loop.tool_client import ToolClient
 from simworlds.folder_lock import locked
 from simworlds.llm.errors import ModelError, OverBudget
@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from simworlds.llm.retries import Retry
 
 _LOG = logging.getLogger(__name__)
+RESULTS = ("video.mp4", "still.png", "draft.mp4")  # what a run shows, the best first
 How = Literal["done", "aborted", "stopped", "failed"]
 
 
@@ -134,7 +135,7 @@ def _work(root: Path, options: Options | None, session: RunSession) -> Ended:
         stack.callback(journal.close)
         journal.listen(session.watcher.take)
         asked = options or _options(journal)
-        ended = _ended(lambda: _run(root, asked, journal, session))
+        ended = _with_results(root, _ended(lambda: _run(root, asked, journal, session)))
         file, video = _within(root, ended.file), _within(root, ended.shown)
         journal.append(RunEnded(outcome=ended.how, why=ended.why, file=file, video=video))
         return ended
@@ -156,6 +157,12 @@ def _ended(run: Callable[[], Ended]) -> Ended:
         return Ended("failed", str(error))
 
 
+def _with_results(root: Path, ended: Ended) -> Ended:
+    """However it ended, with the scene and the pictures that there are by now."""
+    file, *shown = (path if path.is_file() else None for path in map(root.joinpath, (SCENE, *RESULTS)))
+    return replace(ended, file=ended.file or file, shown=ended.shown or next(filter(None, shown), None))
+
+
 def _run(root: Path, options: Options, journal: Journal, session: RunSession) -> Ended:
     stop = session.stop
     journal.note(
@@ -169,7 +176,10 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
             options=options.model_dump(mode="json"),
         )
     )
-    journal.append(SessionBegan(pid=os.getpid()))
+    limits = session.limits
+    journal.append(
+        SessionBegan(pid=os.getpid(), render_minutes=limits.render_minutes, render_samples=limits.samples)
+    )
     (root / "checkpoints").mkdir(exist_ok=True)
     setup = SessionSetup(
         best_sandbox(options.sandbox),
@@ -191,11 +201,9 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
         run = Run(root, options, session.limits, journal, tools, model, saying, stop.event)
         try:
             rendering = (edit if options.mode == "edit" else make)(run)
-        except Aborted as aborted:
-            return Ended("aborted", str(aborted), result_so_far(run))
         finally:
             stop.tools = None
-    return Ended("done", "", root / "scene.blend", rendering.path)
+    return Ended("done", "", root / SCENE, rendering.path)
 
 
 def _options(journal: Journal) -> Options:
@@ -205,7 +213,7 @@ def _options(journal: Journal) -> Options:
             f"{journal.path} does not say what the run is: it was killed before it began. Start a new run."
         )
     try:
-        return Options.model_validate(began.options)
+        return Options.model_validate({**BEFORE_DRAFTS, **began.options})
     except ValidationError as error:
         raise NoRun(f"{journal.path} does not say what the run is to do: {error}") from error
 

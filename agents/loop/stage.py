@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Literal
 
 from agents.loop.edit.comparison import references
-from agents.loop.errors import Aborted
+from agents.loop.errors import Aborted, NotSaved
 from agents.loop.events import Decided, StageMoved, TacticMade
 from agents.loop.judging import format_review, judge, overruled, review, verify
 from agents.roles.coder import Coder
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 
 MAX_RETRIES_PER_STAGE = 10
 MAX_REPLANS_PER_STAGE = 5
+_SAVES = 3  # tries to save a stage that is built
 
 Taken = Literal["advance", "retry", "replan", "abort"]
 
@@ -40,11 +41,14 @@ class StageLoop:
         self._before = before
         self._coder = Coder(run.context, stage, task.plan_text, edit=task.edit, shown=references(task))
         self._reviewer = Reviewer(run.context, stage, task.plan_text, edit=task.edit)
-        self._retries = self._replans = 0
+        self._retries = self._replans = self._saves = 0
         self._overruled = ""
 
     def build(self) -> int:
-        """How many attempts it took. Raises Aborted, with the scene as it was before the stage; ModelError."""
+        """Builds it and saves it as its checkpoint; how many attempts it took.
+
+        Raises Aborted, with the scene as it was before the stage; NotSaved; ModelError.
+        """
         self._run.journal.note(StageMoved(type="stage.began", stage=self._stage))
         attempt = 1
         tactic, worked = self._fresh(attempt, self._coder.begin)
@@ -52,7 +56,9 @@ class StageLoop:
             verdict, review = self._judged(attempt, tactic)
             decision, taken, why = self._decided(attempt, worked, verdict, review)
             if taken == "advance":
-                return attempt
+                if not (why := self._unsaved()):
+                    return attempt
+                taken = "retry"
             if taken == "abort":
                 self._run.roll_back(self._stage, attempt, self._before)
                 raise Aborted(f"The stage {self._stage} could not be closed: {why or decision.reason}")
@@ -66,6 +72,17 @@ class StageLoop:
                 self._run.roll_back(self._stage, attempt, self._before)
                 why = f"The last plan did not do: {decision.reason}"
                 tactic, worked = self._fresh(attempt, self._coder.replanned, why)
+
+    def _unsaved(self) -> str:
+        """Saves the stage; what the coder is to mend if that fails, "" if it is saved. Raises NotSaved in the end."""
+        try:
+            self._run.save(self._stage, self._stage)
+        except NotSaved as error:
+            self._saves += 1
+            if self._saves == _SAVES or self._retries == MAX_RETRIES_PER_STAGE:
+                raise
+            return f"All is built, but the scene cannot be saved. Mend what is in the way: {error}"
+        return ""
 
     def _fresh(
         self, attempt: int, code: Callable[[TacticalPlan, str], WorkResult], why: str = ""

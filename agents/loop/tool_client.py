@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import base64
 import time
-from concurrent.futures import CancelledError, Future
+from concurrent.futures import CancelledError, Future, wait
 from contextlib import ExitStack
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Self
@@ -26,6 +26,7 @@ from simworlds.llm.messages import Picture, Text, Tool
 from simworlds.schemas.json_schema import lean_arguments
 
 if TYPE_CHECKING:
+    import threading
     from collections.abc import Callable, Mapping, Sequence
     from types import TracebackType
 
@@ -33,6 +34,7 @@ if TYPE_CHECKING:
 
     from agents.blender.blender_sessions import SessionSetup
 
+_TICK = 0.2  # seconds between two looks at whether to stop
 Progress = "Callable[[str, float, float | None, str], object]"
 
 
@@ -137,8 +139,13 @@ class ToolClient:
         for future in tuple(self._running):
             future.cancel()
 
-    def call(self, name: str, arguments: Mapping[str, Any]) -> ToolOutcome:
-        """Calls a tool. An interrupt (Ctrl-C) gives the call up, and Blender is put back. Raises Stopping."""
+    def call(
+        self, name: str, arguments: Mapping[str, Any], until: threading.Event | None = None
+    ) -> ToolOutcome:
+        """Calls a tool. An interrupt (Ctrl-C), and ``until``, give the call up, and Blender is put back.
+
+        Raises Stopping.
+        """
         began = time.monotonic()
 
         async def report(progress: float, total: float | None, message: str | None) -> None:
@@ -151,6 +158,10 @@ class ToolClient:
         future = self._portal.start_task_soon(ask)
         self._running.add(future)
         try:
+            while until is not None and not wait((future,), _TICK).done:
+                if until.is_set():
+                    future.cancel()
+                    break
             result = future.result()
         except MCPError as error:
             return ToolOutcome((Text(str(error)),), failed=True, seconds=time.monotonic() - began)

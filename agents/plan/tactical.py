@@ -45,6 +45,22 @@ class Decision(PlanPart):
         return self
 
 
+class FilmDecision(PlanPart):
+    """What happens before the film is rendered, once its frames have been seen. ``mend`` is possible once."""
+
+    transition: Literal["film", "mend"]
+    reason: str = Field(min_length=1, max_length=2000)
+    instructions: str = Field(
+        default="", max_length=8000, description="For mend: what the coder must change."
+    )
+
+    @model_validator(mode="after")
+    def _mend_says_what(self) -> FilmDecision:
+        if self.transition == "mend" and not self.instructions.strip():
+            raise ValueError("instructions: mend must say what to change")
+        return self
+
+
 class ReviewAnswer(PlanPart):
     """The reviewer's answer to one question."""
 

@@ -8,7 +8,7 @@ from agents.plan.arithmetic import DOUBTED, doubts_of
 from agents.plan.check import read_plan
 from agents.plan.edit import EditPlan, unknown_targets
 from agents.plan.scene import ScenePlan
-from agents.plan.tactical import Decision, TacticalPlan
+from agents.plan.tactical import Decision, FilmDecision, TacticalPlan
 from agents.roles.base import Conversation, plan_json
 from agents.roles.prompts import system_prompt
 from simworlds.llm.structured import fits
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 
     from agents.plan.part import Stage
     from agents.roles.base import RoleContext
-    from simworlds.llm.messages import Picture
+    from simworlds.llm.messages import Block, Picture
 
 NAME = "planner"
 _STRATEGIC = "Write the scene plan for this request, as one JSON object:\n\n{prompt}"
@@ -50,6 +50,12 @@ The reviewer:
 Decide, as one JSON object."""
 
 
+_FILM = """\
+Before the film, the stage render: all stages are closed. Below are frames as the film will have them. Decide once, as \
+one JSON object {"transition": "film" or "mend", "reason": …, "instructions": …}. "film" renders it. "mend" lets \
+the coder change the scene first, once; take it only for what the one who asked would call wrong, that these frames \
+show, and that one round can mend: at most five things in `instructions`, each with its object, what is seen, and what \
+should be. After it the film is rendered in any case."""
 _DOUBTS = 20
 _KNOWN = 20  # faults of the file that are told
 _BEFORE = """\
@@ -122,6 +128,10 @@ class Planner:
             left=left,
         )
         return self._talk.data(stage, Decision, words, pinned=(*self._plan, verified))
+
+    def before_film(self, shown: Sequence[Block]) -> FilmDecision:
+        """Whether the film is rendered at once, or something is mended before; ``shown``: words and stills."""
+        return self._talk.data("render", FilmDecision, _FILM, *shown, pinned=self._plan)
 
 
 class _PlanReader:

@@ -10,6 +10,7 @@ from agents.protocol.report.grouping import group_findings
 from agents.views.formatting import (
     counted,
     describe_attempt,
+    describe_film,
     describe_source,
     format_cost,
     format_time,
@@ -24,7 +25,7 @@ _WORDS = 140
 _FINDINGS = 3
 
 
-def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa: PLR0911 - a case for each type
+def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa: PLR0911, PLR0912 - a case for each type
     """Lines for an event; ``run_state`` has it already. They may hold control characters: clean them."""
     stage = run_state.stage(event.stage) if event.stage else run_state.current
     match event:
@@ -44,9 +45,16 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
             return [f"  reviewer {verdict}: {shortened(review.summary, _WORDS)}"]
         case events.RolledBack():
             return [f"  back to {event.to}"]
+        case events.Drafted():
+            return [f"Draft: {event.path or 'no preview'}, {counted(len(event.pictures), 'still')}"]
+        case events.FilmFitted():
+            return [describe_film(event)]
+        case events.FilmDecided(decision=decision) if decision:
+            wanted = "go on" if decision.transition == "film" else "mend first"
+            return [f"Before the film: {wanted}: {shortened(decision.reason, _WORDS)}"]
         case events.SceneRendered():
             frames = f", {counted(event.frames, 'frame')}" if event.frames and event.frames > 1 else ""
-            return [f"SceneRendered: {event.path}{frames}, {format_time(event.seconds)}"]
+            return [f"Rendered: {event.path}{frames}, {format_time(event.seconds)}"]
         case events.FinalReviewed(review=review) if review:
             verdict = "accepted" if review.verdict == "accept" else "needs a fix"
             return [f"Final review: {verdict}: {shortened(review.summary, _WORDS)}"]

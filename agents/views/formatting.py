@@ -9,6 +9,7 @@ from simworlds.terminal.text import plain
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
+    from agents.loop.events import FilmFitted
     from agents.loop.run_state import Attempt, RunState
     from simworlds.llm.messages import Usage
     from simworlds.llm.spending import SpendingRow
@@ -114,6 +115,13 @@ STAGE_TITLES = {
 def stage_title(name: str) -> str:
     """The stage's name as a heading."""
     return STAGE_TITLES.get(name) or plain(name)
+
+
+def describe_film(film: FilmFitted) -> str:
+    """How a film is rendered, how long that takes, and what was lowered for it."""
+    size = f"{counted(film.frames, 'frame')}, {film.width}×{film.height}, {counted(film.samples, 'sample')}"
+    time = f"about {format_time(film.seconds)} of the {film.minutes:g} min that it may take"
+    return f"Film: {size}, {time}{f'; lowered: {plain(film.lowered)}' if film.lowered else ''}"
 
 
 def describe_attempt(attempt: Attempt) -> str:

@@ -14,12 +14,14 @@ from rich.padding import Padding
 from rich.table import Table
 from rich.text import Text
 
+from agents.loop.run import RENDER
 from agents.loop.run_state import ModelCall, ToolCall
 from agents.plan.part import STAGES
 from agents.views.event_lines import format_findings
 from agents.views.formatting import (
     counted,
     describe_attempt,
+    describe_film,
     describe_source,
     format_clock,
     format_cost,
@@ -50,6 +52,7 @@ _TALL = 22  # lines of a terminal that has room for findings
 _WIDEST = 400  # letters of a line, before the terminal cuts it
 _ENOUGH = 0.2  # of the stages have to be done before it can be told how long the rest takes
 _AT_LEAST = 0.2  # of a stage is always left
+_ENOUGH_FRAMES = 0.05  # of a film have to be there before they tell how long the rest takes
 _BAR = 20
 _SAID = 110  # letters of what is being said
 
@@ -89,8 +92,8 @@ def run_in_progress(run_state: RunState, now: Now, height: int) -> RenderableTyp
     return Group(*parts)
 
 
-def run_summary(run_state: RunState) -> RenderableType:
-    """A summary of the run, for ``simworlds show``."""
+def run_summary(run_state: RunState, frames: int = 0) -> RenderableType:
+    """A summary of the run, for ``simworlds show``. ``frames``: how many frames of its film are there by now."""
     parts: list[RenderableType] = [_head(run_state)]
     if run_state.title != run_state.prompt:
         parts.append(_line(run_state.prompt, "italic", most=_WIDEST * 4))
@@ -102,6 +105,8 @@ def run_summary(run_state: RunState) -> RenderableType:
                     _line(f"{stage_title(stage.name)}, attempt {attempt.number}: {describe_attempt(attempt)}")
                 )
                 parts += _judged(attempt, most=5)
+    if run_state.film and not run_state.renderings:
+        parts.append(_line(describe_film(run_state.film)))
     for rendering in run_state.renderings:
         if rendering.review:
             verdict = "accepted" if rendering.review.verdict == "accept" else "needs a fix"
@@ -111,7 +116,9 @@ def run_summary(run_state: RunState) -> RenderableType:
         parts.append(_line(f"Changed outside the request: {names}", "yellow"))
     if run_state.ending and run_state.ending.why:
         parts.append(_line(run_state.ending.why, _OUTCOMES.get(run_state.outcome, ""), most=_WIDEST * 4))
-    parts += [Text(), _foot(run_state, Now(run_state.seconds))]
+    film = run_state.film
+    progress = {RENDER: ToolProgress(frames, film.frames, "frames")} if film and frames else {}
+    parts += [Text(), _foot(run_state, Now(run_state.seconds, progress=progress))]
     return Group(*parts)
 
 
@@ -120,7 +127,7 @@ def runs_table(runs: Iterable[tuple[str, RunState]]) -> Table:
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("Run", no_wrap=True)
     table.add_column("What", ratio=1, overflow="ellipsis", no_wrap=True)
-    table.add_column("ToolOutcome", no_wrap=True)
+    table.add_column("Outcome", no_wrap=True)
     table.add_column("Stage", no_wrap=True)
     table.add_column("Cost", justify="right", no_wrap=True)
     table.add_column("When", no_wrap=True)
@@ -173,6 +180,9 @@ def _head(run_state: RunState) -> RenderableType:
 def _stages(run_state: RunState) -> RenderableType:
     """A line for each stage: its mark, name, attempts, time."""
     table = Table.grid(padding=(0, 2, 0, 0))
+    if run_state.planning:
+        mark, style = _MARKS["closed" if run_state.is_building else "running"]
+        table.add_row(Text(mark, style), Text("Planning"), Text(format_time(run_state.planning), "dim"))
     names = [*STAGES, *(one.name for one in run_state.stages if one.name not in STAGES)]
     for name in names:
         stage, state = run_state.stage(name), run_state.state_of(name)
@@ -257,9 +267,13 @@ def _judged(attempt: Attempt, most: int, *, is_cut: bool = False) -> list[Render
 def _foot(run_state: RunState, now: Now) -> Text:
     total = run_state.total
     words = [format_clock(now.seconds)]
-    if (left := seconds_left(run_state, now.seconds - run_state.seconds)) is not None:
-        step = 60 if left >= 90 else 10  # it is no more exact than that
-        words.append(f"about {format_time(max(1, round(left / step)) * step)} left")
+    since, film = now.seconds - run_state.seconds, film_left(run_state, now)
+    left = seconds_left(run_state, since)
+    if film is not None and run_state.film:
+        words.append(f"about {_rounded(film + (left or 0.0))} left")
+    elif left is not None:
+        and_film = f", and at most {_rounded(film)} for the film" if film is not None else ""
+        words.append(f"about {_rounded(left)} left{and_film}")
     words.append(
         format_cost(total) if total.calls or not total.recorded else "recorded answers, nothing to pay"
     )
@@ -270,15 +284,46 @@ def _foot(run_state: RunState, now: Now) -> Text:
     return Text(" · ".join(words), "dim", no_wrap=True, overflow="ellipsis")
 
 
+def _rounded(seconds: float) -> str:
+    step = 60 if seconds >= 90 else 10  # it is no more exact than that
+    return format_time(max(1, round(seconds / step)) * step)
+
+
 def seconds_left(run_state: RunState, since: float = 0.0) -> float | None:
     """How long the rest may take if its stages are like those that are done, ``since`` seconds after the last row.
 
-    None while that would be no more than a guess.
+    A film that is still to come is not in it: see ``film_left``. None while that would be no more than a guess.
     """
     share, count = run_state.share_done, len(run_state.planned)
     if run_state.ending or not _ENOUGH <= share < 1:
         return None
-    worked = sum(stage.seconds for stage in run_state.stages if stage.state == "closed")
-    each = worked / (share * count)
+    closed = [stage for stage in run_state.stages if stage.state == "closed"]
+    each = sum(stage.seconds for stage in closed) / (share * count)
+    left = (1 - share) * count - (run_state.film_seconds is not None)
+    if left < 0.5:
+        return None
     under_way = run_state.current.seconds if run_state.current else 0.0
-    return max(each * _AT_LEAST, each * (1 - share) * count - under_way - since)
+    return max(each * _AT_LEAST, each * left - under_way - since)
+
+
+def film_left(run_state: RunState, now: Now) -> float | None:
+    """Seconds of a film that is still to be rendered: by its frames once there are some, else as it was fitted.
+
+    None without one; before it is fitted, the most that it may take.
+    """
+    whole = run_state.film_seconds
+    if whole is None or run_state.ending:
+        return None
+    progress = now.progress.get(RENDER)
+    if (
+        run_state.film is None
+        or progress is None
+        or progress.total != run_state.film.frames
+        or not run_state.film.frames
+    ):
+        return whole
+    share = min(1.0, max(0.0, progress.done / run_state.film.frames))
+    pending = (step for step in run_state.pending if isinstance(step, ToolCall) and step.name == RENDER)
+    began = next((step.began for step in pending), None)
+    worked = 0.0 if began is None else now.seconds - began  # 0 where another process renders: nothing tells
+    return worked * (1 - share) / share if worked > 1 and share >= _ENOUGH_FRAMES else whole * (1 - share)

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from rich.table import Table
 
 
+FILM = "animation"  # what blender_render calls a film's frames
+
+
 def new_root(runs: Path) -> Path:
     """A folder below ``runs`` that is not there yet, named after the time."""
     return next(path for path in roots(runs) if not path.exists())
@@ -42,4 +45,6 @@ def shown(run: Path) -> RenderableType:
     """How a run stands. Raises NoRun."""
     if not (run / NAME).is_file():
         raise NoRun(f"{run} is not a run: it has no {NAME}.")
-    return run_summary(read_run_state(run))
+    state = read_run_state(run)
+    frames = run / "blender" / "frames" / FILM
+    return run_summary(state, sum(1 for _ in frames.glob("*.png")) if state.film else 0)

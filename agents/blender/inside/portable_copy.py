@@ -16,10 +16,25 @@ import bpy
 from simworlds.sandbox.inside.open_blend import open_blend
 from simworlds.sandbox.inside.refusal import Refused
 
+from .blend.cache_folders import (
+    CACHES,
+    absolute,
+    cache_folders,
+    is_temporary,
+    keep_fluids,
+    relative_to,
+    unused_name,
+)
 from .blend.file_io import SCENE_FILE, make_own, read_file, reason
 from .physics.caches import file_prefix, find_caches
 
-_CACHES = "caches"  # in the workspace: where fluids are baked to
+_UNUSED = (
+    "materials",
+    "node_groups",
+    "actions",
+    "worlds",
+)  # what is made by name, and missed when it is gone
+_MOST_UNUSED = 200
 _PACKED_SOURCES = {"FILE", "TILED"}
 _FRAME = re.compile(r"_-?\d{5,}_\d\d\.bphys$")
 
@@ -29,14 +44,15 @@ def save(arguments, report):
 
     ``workspace``: the folder that files may be taken from. ``pack``: pack images, sounds and fonts.
     Returns ``bytes``, ``objects``, ``packed`` and ``rescued`` (names; of the latter, no file had the pixels),
-    ``files`` ([path in the workspace, path below ``beside``]), ``external`` and ``caches``.
+    ``files`` ([path in the workspace, path below ``beside``]), ``loose`` ones, which may be gone by now (Blender drops
+    frames of simulations that are not baked), ``external``, ``caches``, and what is ``unused``, so not in the copy.
     """
     path, beside, workspace = arguments["path"], arguments["beside"], arguments["workspace"]
+    keep_fluids(workspace)
     with contextlib.ExitStack() as undo:
         report(0, None, "packing")
         packed, rescued = _pack(undo, arguments["pack"])
-        caches = kept_caches()
-        files = [*_point_files(workspace), *_redirect(undo, beside, workspace)]
+        redirected = list(_redirect(undo, beside, workspace))
         external = _make_absolute(undo, beside)
         report(0, None, "writing")
         try:
@@ -44,14 +60,18 @@ def save(arguments, report):
             bpy.ops.wm.save_as_mainfile(filepath=path, copy=True, check_existing=False, relative_remap=False)
         except RuntimeError as error:
             raise Refused(reason(error)) from None
+    caches = kept_caches()
+    whole, loose = _folder_files(redirected, workspace)
     return {
         "bytes": os.path.getsize(path),
         "objects": len(bpy.data.objects),
         "packed": packed,
         "rescued": rescued,
-        "files": files,
+        "files": [*_point_files(workspace), *whole],
+        "loose": loose,
         "external": external,
         "caches": caches,
+        "unused": _unused(),
     }
 
 
@@ -79,7 +99,7 @@ def load(arguments, report):
             f"{bpy.app.version_string}, which would lose what newer versions added."
         )
     scripts = bool(getattr(bpy.app, "autoexec_fail", False))
-    folders = _folders()
+    folders = cache_folders()
     report(0, None, "taking over its caches")
     make_own(workspace)
     _bring_points(path, workspace)
@@ -127,6 +147,17 @@ def _frame_counts(cache):
     return {"frames": count, "missing": max(0, frames + missing - count)}
 
 
+def _unused():
+    """What nothing uses: Blender writes no such data-block into a file."""
+    found = [
+        f"{block.bl_rna.name.lower()} {block.name!r}"
+        for kind in _UNUSED
+        for block in _local(getattr(bpy.data, kind))
+        if not block.users
+    ]
+    return found[:_MOST_UNUSED]
+
+
 # Packing
 
 
@@ -171,83 +202,54 @@ def _unpack(block):
 # Folders of caches
 
 
-class _Folder:
-    """The folder of one fluid, or of one bake of geometry nodes. ``name`` is unique in the file."""
-
-    def __init__(self, holder, attribute, name):
-        self._holder = holder
-        self._attribute = attribute
-        self.name = name
-        self.real = _absolute(self.path)
-
-    @property
-    def path(self):
-        """The path as Blender stores it; setting it keeps the bake valid."""
-        return getattr(self._holder, self._attribute)
-
-    @path.setter
-    def path(self, path):
-        setattr(self._holder, self._attribute, path)
-
-
-def _folders():
-    folders, taken = [], set()
-    for obj in _local(bpy.data.objects):
-        stem = re.sub(r"[^\w.-]+", "_", obj.name).strip(".") or "cache"
-        for modifier in obj.modifiers:
-            if modifier.type == "FLUID" and modifier.fluid_type == "DOMAIN":
-                holder, attribute = modifier.domain_settings, "cache_directory"
-            elif modifier.type == "NODES" and getattr(modifier, "bake_directory", ""):
-                holder, attribute = modifier, "bake_directory"
-            else:
-                continue
-            name = _unused_name(stem, lambda name: name.lower() in taken)
-            taken.add(name.lower())
-            folders.append(_Folder(holder, attribute, name))
-    return folders
-
-
-def _unused_name(stem, is_taken):
-    name, number = stem, 1
-    while is_taken(name):
-        number += 1
-        name = f"{stem}-{number}"
-    return name
-
-
 def _redirect(undo, beside, workspace):
-    """Makes folders of the workspace point below ``beside``; yields their files."""
-    for folder in _folders():
-        if _relative_to(folder.real, workspace) is None or not os.path.isdir(folder.real):
+    """Makes folders of the workspace, and temporary ones, point below ``beside``; yields (name there, path here)."""
+    for folder in cache_folders():
+        if relative_to(folder.real, workspace) is None and not is_temporary(folder.real):
             continue
         undo.callback(setattr, folder, "path", folder.path)
         folder.path = f"//{beside}/{folder.name}"
-        for place, _, names in os.walk(folder.real):
-            inside, below = _relative_to(place, workspace), os.path.relpath(place, folder.real)
-            for file_name in names:
-                yield [
-                    os.path.join(inside, file_name),  # pyright: ignore[reportCallIssue]
-                    os.path.normpath(os.path.join(folder.name, below, file_name)),
+        yield folder.name, folder.real
+
+
+def _folder_files(redirected, workspace):
+    """([path in the workspace, path beside the copy] of each file that ``_redirect`` gave, the same of unbaked)."""
+    unbaked = {
+        os.path.realpath(cache.folder)
+        for scene in bpy.data.scenes
+        for cache in find_caches(scene)
+        if cache.domain is not None and not cache.baked
+    }
+    whole, loose = [], []
+    for name, real in redirected:
+        files = loose if os.path.realpath(real) in unbaked else whole
+        for place, _, names in os.walk(real):
+            inside, below = relative_to(place, workspace), os.path.relpath(place, real)
+            if inside is not None:
+                files += [
+                    [os.path.join(inside, file), os.path.normpath(os.path.join(name, below, file))]
+                    for file in names
                 ]
+    return whole, loose
 
 
 def _bring_folder(folder, workspace):
     """Brings a folder of caches into the workspace, where it can be baked again."""
-    inside = _relative_to(folder.real, workspace)
+    inside = relative_to(folder.real, workspace)
     if inside is not None:
         folder.path = f"//{inside}"
         return
-    own = os.path.join(workspace, _CACHES)
-    name = _unused_name(folder.name, lambda name: os.path.lexists(os.path.join(own, name)))
+    own = os.path.join(workspace, CACHES)
+    name = unused_name(folder.name, lambda name: os.path.lexists(os.path.join(own, name)))
     if os.path.isdir(folder.real):
         os.makedirs(own, exist_ok=True)
         shutil.copytree(folder.real, os.path.join(own, name))
-    folder.path = f"//{_CACHES}/{name}"
+    folder.path = f"//{CACHES}/{name}"
 
 
 def _point_files(workspace):
     for cache in _disk_caches():
-        inside = _relative_to(cache.folder, workspace)
+        inside = relative_to(cache.folder, workspace)
         if inside is not None:
             for name in _cache_files(cache.folder, cache):
                 yield [os.path.join(inside, name), name]
@@ -285,16 +287,6 @@ def _cache_files(folder, cache):
     return sorted(name for name in names if name.startswith(start) and _FRAME.match(name, len(start) - 1))
 
 
-def _absolute(path):
-    return os.path.normpath(bpy.path.abspath(path))
-
-
-def _relative_to(path, workspace):
-    """The path within the workspace; None for one outside."""
-    real, root = os.path.realpath(path), os.path.realpath(workspace)
-    return os.path.relpath(real, root) if real == root or real.startswith(root + os.sep) else None
-
-
 # Files that stay outside
 
 
@@ -305,8 +297,8 @@ def _make_absolute(undo, beside):
     def visit(owner, path):
         if not path.startswith("//"):
             return None
-        before[owner, _absolute(path)] = path
-        return _absolute(path)
+        before[owner, absolute(path)] = path
+        return absolute(path)
 
     apart = {path for path in _folder_paths() if path.startswith(f"//{beside}/")}
     undo.callback(_external_files, apart, lambda owner, path: before.get((owner, path)))
@@ -321,7 +313,7 @@ def _external_files(apart=(), visit=None):
     if not hasattr(bpy.data, "file_path_foreach"):  # before Blender 5.0
         paths = set(bpy.utils.blend_paths(absolute=True, packed=False, local=True))
         libraries = {
-            _absolute(library.filepath): f"library {library.name!r}" for library in bpy.data.libraries
+            absolute(library.filepath): f"library {library.name!r}" for library in bpy.data.libraries
         }
         return [
             {"what": libraries.get(path, "a file"), "path": path, "missing": not _is_readable(path)}
@@ -331,7 +323,7 @@ def _external_files(apart=(), visit=None):
     uses = []
 
     def at(owner, path, _meta):
-        real = _absolute(path)
+        real = absolute(path)
         if owner.library is not None or path in {"", "<builtin>", *apart} or _is_cache_folder(real):
             return None
         what = f"{owner.bl_rna.name.lower()} {owner.name!r}"
@@ -360,4 +352,4 @@ def _is_cache_folder(path):
 
 
 def _folder_paths():
-    return {folder.path for folder in _folders()}
+    return {folder.path for folder in cache_folders()}

@@ -100,7 +100,10 @@ def save(context: ToolContext, arguments: SaveArguments, call: Call) -> Result:
         staged = folder / target.name
         try:
             copy = _write(context, arguments, call, staged)
-            count, size = copy_from_workspace(blender.folder, copy.files, caches_folder(staged))
+            beside = caches_folder(staged)
+            count, size = copy_from_workspace(blender.folder, copy.files, beside)
+            more = copy_from_workspace(blender.folder, copy.loose, beside, may_be_gone=True)
+            count, size = count + more[0], size + more[1]
             opened = None
             if arguments.verify:
                 opened = open_elsewhere(blender.launch, staged, timeout=min(arguments.timeout, _OPEN_SECONDS))
@@ -111,7 +114,7 @@ def save(context: ToolContext, arguments: SaveArguments, call: Call) -> Result:
         checkpoint = blender.keep(f"saved as {target.name}")
     faults = cache_faults(copy, opened)
     data: dict[str, Any] = {
-        **copy.model_dump(exclude={"files"}),
+        **copy.model_dump(exclude={"files", "loose"}),
         "path": str(target),
         "beside": {"path": str(caches_folder(target)), "files": count, "bytes": size} if count else None,
         "opened": opened.model_dump() if opened else None,
@@ -127,6 +130,11 @@ def save(context: ToolContext, arguments: SaveArguments, call: Call) -> Result:
     if copy.rescued:
         lines.append(
             f"- images in no file, packed into it and the open scene: {format_list(copy.rescued, _LISTED)}"
+        )
+    if copy.unused:
+        listed = format_list(copy.unused, _LISTED)
+        lines.append(
+            f"- **not in the file, since nothing uses it: {listed}** (use it, or set its use_fake_user, to keep it)"
         )
     lines += _file_lines(copy.external, copy.caches, faults)
     if opened and not faults:

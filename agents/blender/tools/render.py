@@ -226,6 +226,7 @@ def _data(
         "unbaked": [cache.label for cache in renderer.unbaked],
         "notes": renderer.notes,
         "stopped": outcome.stopped,
+        "frame_range": [renderer.plan.frame_start, renderer.plan.frame_end],
     }
 
 

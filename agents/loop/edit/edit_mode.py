@@ -42,7 +42,7 @@ def edit(run: Run) -> RenderResult:
     task = replace(_task(run, plan, before), goal=reference, **_still_before(run))
     wanted = plan.stages if options.stages else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
-    rendering = finish(run, task, plan.render, last)
+    rendering = finish(run, planner, task, plan.render, last)
     run.journal.note(compared(before, blocks(run, "render"), plan))
     return rendering
 
@@ -54,7 +54,7 @@ def _opened(run: Run) -> Blocks:
     opened = run.use(RUNNER, _FIRST, "blender_load", {"path": str(file)})
     if opened.failed:
         raise Unusable(f"{file} cannot be edited: {opened.text}")
-    run.save(_FIRST, START, run.checkpoints)
+    run.save(_FIRST, START)
     return blocks(run, _FIRST)
 
 

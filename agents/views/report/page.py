@@ -189,10 +189,13 @@ def _result(run_state: RunState, media: Media) -> dict[str, Any]:
     """The video or picture that stands for the run; the last of each that is there."""
     names = [run_state.ending.video or ""] if run_state.ending else []
     names += [one.path for one in reversed(run_state.renderings)]
-    video = next((shown for name in names if (shown := media.video(name))), None)
-    stills = [*names, *(name for one in reversed(run_state.renderings) for name in one.pictures[-1:])]
-    still = None if video else next((shown for name in stills if (shown := media.picture(name))), None)
-    poster = next((one.pictures[0] for one in reversed(run_state.renderings) if one.pictures), "")
+    draft = run_state.draft
+    names += [draft.path] if draft else []
+    video = next((found for name in names if (found := media.video(name))), None)
+    shown = [*reversed(run_state.renderings), *([draft] if draft else [])]
+    stills = [*names, *(name for one in shown for name in one.pictures[-1:])]
+    still = None if video else next((found for name in stills if (found := media.picture(name))), None)
+    poster = next((one.pictures[0] for one in shown if one.pictures), "")
     file = (run_state.ending and run_state.ending.file) or ""
     return {
         "video": video,
@@ -200,6 +203,8 @@ def _result(run_state: RunState, media: Media) -> dict[str, Any]:
         "poster": media.picture(poster),
         "file": media.link(file),
         "name": file,
+        "draft": [seen for name in draft.pictures if (seen := media.picture(name))] if draft else [],
+        "film": formatting.describe_film(run_state.film) if run_state.film else "",
     }
 
 
@@ -321,7 +326,7 @@ def _costs(run_state: RunState) -> list[dict[str, Any]]:
             "title": formatting.stage_title(name) if name else "Scene plan",
             "roles": [by_key.get((role, name)) for role in _ROLES],
             "total": sum((row for row in run_state.spending if row.stage == name), Spent("", name)),
-            "seconds": stage.seconds if (stage := run_state.stage(name)) else None,
+            "seconds": stage.seconds if (stage := run_state.stage(name)) else run_state.planning or None,
         }
         for name in ordered
     ]

@@ -37,6 +37,7 @@ REPLAN = {"transition": "replan", "reason": "This plan leads nowhere."}
 ABORT = {"transition": "abort", "reason": "This cannot be built."}
 FINE = {"judgements": [], "blocking": False, "summary": "It looks right."}
 BLOCKING = {"judgements": [], "blocking": True, "summary": "The crate looks like a sphere."}
+FILM = {"transition": "film", "reason": "It is as planned."}
 ACCEPT = {"verdict": "accept", "summary": "As asked."}
 NEEDS_FIX = {"verdict": "needs_fix", "summary": "Too low.", "instructions": "Put the sun higher."}
 
@@ -84,6 +85,7 @@ class Team:
     reviewer: Mapping[str, Sequence[Said]] = field(default_factory=dict)
     tactics: Mapping[str, Sequence[Said]] = field(default_factory=dict)
     decisions: Mapping[str, Sequence[Said]] = field(default_factory=dict)
+    film: Said = field(default_factory=lambda: dict(FILM))
     final: Sequence[Said] = (ACCEPT,)
     first: Callable[[str, str, Params], Said | None] = lambda role, stage, params: None
 
@@ -97,6 +99,8 @@ class Team:
 
     def _planner(self, stage: str, params: Params) -> Said:
         told = _task(params)
+        if told.startswith("Before the film"):
+            return self.film
         if not stage:
             return self.plan
         if told.startswith("Attempt"):
@@ -152,7 +156,7 @@ def _nth(turns: Sequence[Said], place: int) -> Said:
 
 def _task(params: Params) -> str:
     """What the planner was last asked for, complaints about its answers apart."""
-    asked = ("Write the ", "The stage ", "Attempt ")
+    asked = ("Write the ", "The stage ", "Attempt ", "Before the film")
     return next(text for text in reversed(list(_texts(params))) if text.startswith(asked))
 
 

@@ -20,6 +20,7 @@ from agents.views.live_view import RunLog, RunScreen, RunView, make_view
 from agents.views.rich_views import (
     Now,
     ToolProgress,
+    film_left,
     run_in_progress,
     run_row,
     run_summary,
@@ -176,8 +177,10 @@ def test_time_left_is_shown_once_enough_is_done() -> None:
     assert seconds_left(until("stage.began")) is None
     assert seconds_left(until("stage.closed", 1)) is None, "one of six stages tells little"
     two = until("stage.closed", 2)
-    assert seconds_left(two) == pytest.approx((80.1 + 29.7) / 2 * 4, rel=0.02)
-    assert "02:12 · about 4 min left" in drawn(run_in_progress(two, Now(132.0), 40))
+    assert seconds_left(two) == pytest.approx((80.1 + 29.7) / 2 * 3, rel=0.02)
+    assert "02:12 · about 3 min left, and at most 20 min for the film" in drawn(
+        run_in_progress(two, Now(132.0), 40)
+    )
     left = seconds_left(two, since=1e9)
     assert left
     assert left > 0, "what takes longer than thought is not over"
@@ -290,7 +293,7 @@ def test_runs_are_listed_with_how_they_stand() -> None:
         [("first", until("run.ended")), ("second", run_state_after(stopped.rows)), ("third", RunState())]
     )
     told = [re.split(r"  +", line.strip()) for line in drawn(table).splitlines() if line.strip()]
-    assert told[0] == ["Run", "What", "ToolOutcome", "Stage", "Cost", "When"]
+    assert told[0] == ["Run", "What", "Outcome", "Stage", "Cost", "When"]
     assert told[2][:4] == ["first", "Twelve dominoes", "done", "$1.48"]
     assert told[3][:4] == ["second", "A cloth falls over a table", "stopped", "Motion"]
     assert told[4][:2] == ["third", "unfinished"]
@@ -360,3 +363,44 @@ def test_progress_of_any_numbers_is_drawn() -> None:
 
 def test_the_row_of_a_run_that_never_began_is_empty() -> None:
     assert [str(cell) for cell in run_row("x", RunState())] == ["x", "", "unfinished", "plan", "", ""]
+
+
+def film_until(*rows: dict[str, Any]) -> RunState:
+    """The dominoes' run up to its rendering, and these rows."""
+    before = dominoes().rows
+    place = next(place for place, row in enumerate(before) if row["type"] == "rendered")
+    return run_state_after([*before[:place], *rows])
+
+
+FITTED = {"type": "film.fitted", "round": 1, "width": 640, "height": 360, "samples": 12, "frames": 96,
+          "seconds": 600.0, "minutes": 20.0, "lowered": "12 samples instead of 16"}  # fmt: skip
+
+
+def test_a_film_says_what_was_lowered_and_how_long_it_takes() -> None:
+    told = drawn(run_summary(film_until(FITTED)))
+    assert "Film: 96 frames, 640×360, 12 samples, about 10 min of the 20 min that it may take" in told
+    assert "lowered: 12 samples instead of 16" in told
+    assert "about 10 min left" in told
+    assert "about 5 min left" in drawn(run_summary(film_until(FITTED), frames=48))
+
+
+def test_the_rest_of_a_film_follows_from_the_frames_that_are_there() -> None:
+    called = {
+        "type": "tool.called",
+        "role": "runner",
+        "stage": "render",
+        "attempt": 1,
+        "n": 9,
+        "name": "blender_render",
+    }
+    history = film_until(FITTED, called)
+    (step,) = history.pending
+    now = Now(step.began + 240.0, progress={"blender_render": ToolProgress(24, 96, "frame 24")})
+    assert film_left(history, now) == pytest.approx(720.0), "240 s for a quarter of it"
+
+
+def test_planning_is_not_time_of_the_first_stage() -> None:
+    planned = until("stage.began")
+    assert planned.planning >= 20.0
+    assert "Planning" in drawn(run_summary(planned))
+    assert (planned.stage("modeling") or planned.stages[0]).seconds == 0.0

@@ -138,11 +138,11 @@ def test_when_replans_are_used_up_the_last_checkpoint_stands(
     played = play(team)
     assert [taken for stage, taken in played.taken if stage == "camera"] == ["replan"] * 5 + ["abort"]
     assert played.ended.how == "aborted"
-    assert played.ended.file == played.root / "checkpoints" / "modeling.blend"
+    assert played.ended.file == played.root / "scene.blend"
     (kept,) = scenes(tmp_path, played.ended.file)
     assert "Object Planks" in kept
     assert "Object Camera" not in kept
-    assert played.rows[-1]["file"] == "checkpoints/modeling.blend"
+    assert played.rows[-1]["file"] == "scene.blend"
 
 
 def test_the_planner_may_give_up(play: Callable[..., Played]) -> None:

@@ -28,6 +28,7 @@ def test_a_run_leaves_a_plan_checkpoints_a_scene_and_a_picture(mended: Played) -
     assert sorted(path.name for path in (root / "checkpoints").iterdir()) == [
         "camera.blend",
         "light.blend",
+        "mended-2.blend",
         "modeling.blend",
         "start.blend",
     ]

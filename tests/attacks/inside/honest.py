@@ -209,6 +209,8 @@ def on_save(arguments):
         "objects": 1,
         "packed": [],
         "rescued": [],
+        "unused": [],
+        "loose": [],
         "files": [],
         "external": [],
         "caches": [],

@@ -9,6 +9,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from .cache_folders import keep_fluids
 from .temporary import temporary_settings, without_handlers
 
 SCENE_FILE = "scene.blend"
@@ -58,10 +59,12 @@ def make_own(folder):
 def write_file(arguments, report):
     """Writes a copy of the whole state to ``path``, to be opened later as the run's own file in ``folder``.
 
-    Returns ``seconds`` and ``bytes``.
+    Frames of fluids that would end with this Blender are moved to where the next one finds them. Returns ``seconds``
+    and ``bytes``.
     """
     del report
     path = arguments["path"]
+    keep_fluids(arguments["folder"])
     # Relative paths are already as the run's own file wants them, unless code has made another file its own.
     elsewhere = os.path.dirname(bpy.data.filepath or path) not in {arguments["folder"], os.path.dirname(path)}
     started = time.perf_counter()

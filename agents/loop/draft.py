@@ -1,0 +1,136 @@
+"""Before a film: how long a frame takes, five stills as the film will have them, and a small, quick preview."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from agents.loop.errors import NotRendered
+from agents.loop.events import Drafted, FilmFitted, SceneRendered
+from agents.loop.film_settings import FilmSettings, FrameTime, fitted
+from agents.loop.pictures import link, pictures_of
+from agents.loop.run import RENDER, RUNNER
+from agents.loop.run_state import DEFAULT_RENDER_MINUTES
+from simworlds.llm.messages import Picture, Text
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from agents.loop.run import Run
+    from agents.plan.scene import RenderSettings
+    from simworlds.llm.messages import Block
+
+DRAFT = "draft.mp4"
+_TIMED = (4, 12)  # samples of the two frames that are timed
+_SHARES = (0, 25, 50, 75, 100)  # % of the film's length
+_PREVIEW_WIDTH = 320
+_PREVIEW_FRAMES = 40
+_PREVIEW_SECONDS = 60.0
+_ENGINES = {"CYCLES": "cycles", "BLENDER_WORKBENCH": "workbench"}
+_FITTED = """\
+Frames of the film at {shares} % of its length, with its own size, samples and denoising.
+The film: {film}. It takes about {minutes:.0f} min; {most:g} min are allowed."""
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """``film``: how the film will be rendered; ``shown``: words and stills for who is to look at it."""
+
+    film: FilmSettings
+    shown: tuple[Block, ...]
+
+
+def asked_of(plan: RenderSettings) -> dict[str, Any]:
+    """The arguments of ``blender_render`` that follow from the plan.
+
+    Where EEVEE is planned, the tool chooses as it does for the stills of coder and reviewer: Cycles without a GPU.
+    """
+    engine = _ENGINES.get(plan.engine)
+    asked: dict[str, Any] = {"engine": engine} if engine else {}
+    return asked | ({"denoise": True} if engine == "cycles" else {})
+
+
+def minutes_of(run: Run) -> float:
+    """How long the film may take."""
+    return run.render_minutes or DEFAULT_RENDER_MINUTES
+
+
+def draft(run: Run, plan: RenderSettings, number: int) -> Draft:
+    """Times frames, fits the film, and shows what it will be. Raises NotRendered."""
+    run.attempt = number
+    width, height = plan.resolution
+    asked = asked_of(plan) | {"kind": "still", "name": "timing", "width": width, "height": height}
+    samples = run.samples or plan.samples
+    timed: list[tuple[int, float]] = []
+    first = last = 1
+    for count in _TIMED:
+        data = _rendered(run, asked | {"samples": min(count, samples)})
+        first, last = data["frame_range"]
+        timed.append((data["samples"] or 1, data["seconds_per_frame"] or 0.0))
+    planned = FilmSettings(width, height, samples, last - first + 1, 0.0)
+    film = fitted(planned, FrameTime.of(timed[0], timed[1]), minutes_of(run) * 60)
+    stills: list[Path] = []
+    as_film = asked | {"width": film.width, "height": film.height, "samples": film.samples}
+    for share in _SHARES:
+        frame = first + round((last - first) * share / 100)
+        stills.append(Path(_rendered(run, as_film | {"frame": frame, "name": f"draft {share}"})["path"]))
+    video = _preview(run, asked, film)
+    known = run.journal.find(Drafted(round=number))
+    if known is None:
+        text = _FITTED.format(
+            shares=", ".join(map(str, _SHARES)), film=film, minutes=film.seconds / 60, most=minutes_of(run)
+        )
+        kept = tuple(run.keep(picture) for _, picture in pictures_of(stills))
+        known = Drafted(round=number, path=video, pictures=kept, text=text)
+        run.journal.note(known)
+    shown: list[Block] = [Text(known.text)]
+    for share, path in zip(_SHARES, known.pictures, strict=False):
+        shown += [Text(f"{share} %:"), Picture(run.picture(path))]
+    return Draft(film, tuple(shown))
+
+
+def note_film(run: Run, film: FilmSettings, number: int) -> None:
+    """Journals how the film is rendered from now on, unless it is said already."""
+    event = FilmFitted(
+        round=number,
+        width=film.width,
+        height=film.height,
+        samples=film.samples,
+        frames=film.frames,
+        seconds=round(film.seconds, 1),
+        minutes=minutes_of(run),
+        lowered=film.lowered,
+    )
+    known = run.journal.find(FilmFitted(round=number))
+    is_made = run.journal.find(SceneRendered(round=number)) is not None
+    if known is None or (known.as_row() != event.as_row() and not is_made):
+        run.journal.append(event)
+
+
+def _preview(run: Run, asked: Mapping[str, Any], film: FilmSettings) -> str:
+    """A small film of few frames in the run's folder; its name, "" where it could not be made."""
+    width = min(_PREVIEW_WIDTH, film.width)
+    small = {
+        "kind": "animation",
+        "name": "draft",
+        "width": width,
+        "height": max(4, 2 * round(film.height * width / film.width / 2)),
+        "samples": min(4, film.samples),
+        "step": max(1, math.ceil(film.frames / _PREVIEW_FRAMES)),
+        "time_budget": _PREVIEW_SECONDS,
+    }
+    outcome = run.use(RUNNER, "render", RENDER, {**asked, **small})
+    video = outcome.data.get("video")
+    if outcome.failed or not video or not Path(video["path"]).is_file():
+        return ""
+    link(Path(video["path"]), run.root / DRAFT)
+    return DRAFT
+
+
+def _rendered(run: Run, asked: Mapping[str, Any]) -> Mapping[str, Any]:
+    outcome = run.use(RUNNER, "render", RENDER, asked)
+    if outcome.failed:
+        raise NotRendered(f"The scene could not be rendered: {outcome.text}")
+    return outcome.data
