@@ -17,49 +17,33 @@ if TYPE_CHECKING:
 
 NAME = "coder"
 
-# What a coder is not told of in a stage, since nothing in it needs that; called all the same, it works. The loop saves
-# and loads by itself, and blender_group sets an object's tags too.
-_ALWAYS_LEFT_OUT = frozenset({"blender_save", "blender_load", "blender_tag_object"})
-_LEFT_OUT: dict[str, frozenset[str]] = {
-    "modeling": frozenset(
-        {"blender_motion_sheet_preview", "blender_bake", "blender_trial", "blender_render"}
-    ),
-    "uv": frozenset(
-        {
-            "blender_motion_sheet_preview",
-            "blender_bake",
-            "blender_trial",
-            "blender_group",
-            "blender_system_layout_preview",
-            "blender_render",
-        }
-    ),
-    "texture": frozenset({"blender_motion_sheet_preview", "blender_bake", "blender_trial", "blender_group"}),
-    "deformation_setup": frozenset({"blender_single_mesh_preview", "blender_render"}),
-    "motion": frozenset({"blender_single_mesh_preview", "blender_system_layout_preview", "blender_render"}),
-    "camera": frozenset({"blender_single_mesh_preview", "blender_bake", "blender_trial", "blender_group"}),
-    "light": frozenset({"blender_single_mesh_preview", "blender_bake", "blender_trial", "blender_group"}),
-    "render": frozenset({"blender_single_mesh_preview", "blender_system_layout_preview", "blender_trial"}),
-}
-
-
-_ONLY_IN: dict[str, tuple[str, ...]] = {
+# The stages in which a tool is told of; what is not listed, in all. Called in another stage, a tool works all the same.
+# The loop saves and loads by itself, and blender_group sets an object's tags too.
+_TOLD_IN: dict[str, tuple[Stage, ...]] = {
+    "blender_single_mesh_preview": ("modeling", "uv", "texture"),
+    "blender_system_layout_preview": ("modeling", "texture", "deformation_setup", "camera", "light"),
+    "blender_group": ("modeling", "deformation_setup", "motion", "render"),
     "blender_uv_preview": ("uv",),
     "blender_material_preview": ("texture", "camera", "light"),
+    "blender_trial": ("deformation_setup", "motion"),
+    "blender_bake": ("deformation_setup", "motion", "render"),
+    "blender_motion_sheet_preview": ("deformation_setup", "motion", "camera", "light", "render"),
+    "blender_render": ("texture", "camera", "light", "render"),
+    "blender_save": (),
+    "blender_load": (),
+    "blender_tag_object": (),
 }
+_SHOWING = ("blender_uv_preview", "blender_material_preview")  # what their stages make
 
 
 def is_needed(tool: str, stage: Stage) -> bool:
     """Whether a coder is told of a tool in a stage."""
-    if not is_seen(tool, stage):
-        return False
-    return tool not in _ALWAYS_LEFT_OUT and tool not in _LEFT_OUT.get(stage, ())
+    return tool not in _TOLD_IN or stage in _TOLD_IN[tool]
 
 
 def is_seen(tool: str, stage: Stage) -> bool:
     """Whether a stage has what a tool shows: UV maps and materials are looked at where they are made or filmed."""
-    stages = _ONLY_IN.get(tool)
-    return stages is None or stage in stages
+    return tool not in _SHOWING or is_needed(tool, stage)
 
 
 _BEGIN = """\
