@@ -17,9 +17,9 @@ class PreviewMaterial:
     active one) and a ``mapping`` (a matrix or None); ``attribute``: the name of the colour attribute that ``rgb`` comes
     from ("" for the active one), or None."""
 
-    def __init__(self, rgb=CLAY, alpha=1.0, roughness=0.6):
+    def __init__(self, rgb=CLAY, alpha=1.0, roughness=0.6, image=None):
         self.rgb, self.alpha, self.roughness = tuple(rgb), alpha, roughness
-        self.image, self.uv_map, self.mapping = None, "", None
+        self.image, self.uv_map, self.mapping = image, "", None
         self.attribute = None
 
     def mixed(self, other, share):

@@ -82,9 +82,7 @@ class _CheckerStudio(StudioScene):
         if not self._materials:
             self._grid = self.owned(bpy.data.images.new(".checker", 512, 512))
             self._grid.generated_type = "COLOR_GRID"
-        checker = PreviewMaterial((0.6, 0.6, 0.6))
-        checker.image = self._grid
-        return super().material(checker)
+        return super().material(PreviewMaterial((0.6, 0.6, 0.6), image=self._grid))
 
 
 def _meshes(scene, names, drawn):
