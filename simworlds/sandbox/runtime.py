@@ -144,9 +144,12 @@ def _executable_at(path: Path) -> Path:
 
 def executable_version(executable: Path) -> str:
     """The full version that a Blender executable reports. Raises RuntimeMissing if it is not Blender."""
+    # `import bpy` sets OCIO to its own colours, which other versions cannot read and then do not start.
+    environment = {name: value for name, value in os.environ.items() if name != "OCIO"}
     try:
         done = subprocess.run(
             [str(executable), "--version"],
+            env=environment,
             stdin=subprocess.DEVNULL,
             capture_output=True,
             timeout=_VERSION_SECONDS,

@@ -5,6 +5,7 @@ import contextlib
 import ctypes
 import os
 import sys
+import tempfile
 
 import bpy
 from bpy.app.handlers import persistent
@@ -33,6 +34,8 @@ _MOST_BLOCKS = (
 )
 _ELSEWHERE = frozenset({"collection", "view layers"})  # parts of scenes that other data-blocks tell of
 _WHOLE = frozenset({"settings", "geometry", "keyframes", "picture", "nodes", "shapes", "bones"})
+
+_WARNING = b"WARN (bpy.rna)"  # a setting has a value that this Blender was built without
 
 _C = ctypes.CDLL(None)
 _updated = set()
@@ -112,7 +115,8 @@ class ChangeWatch:
         """
         self._settle()
         report = {}
-        digests = _digests() if self._digests is not None else None
+        with _silenced(but_threads=True):
+            digests = _digests() if self._digests is not None else None
         for kind, new in _names_by_kind().items():
             old = self._before[kind]
             both = [key for key in new if key in old]
@@ -157,26 +161,32 @@ def _digests():
 
 
 @contextlib.contextmanager
-def _silenced():
-    """Drops what Blender prints when settings are read for the first time: it is not the code's output."""
+def _silenced(*, but_threads=False):
+    """Drops what Blender prints when settings are read: it is not the code's output.
+
+    ``but_threads``: threads of the code may still print, so only Blender's warnings are dropped.
+    """
     kept = []
-    try:
-        _flush()
-        for number in (1, 2):
-            kept.append((number, os.dup(number)))
-        nowhere = os.open(os.devnull, os.O_WRONLY)
-        for number, _ in kept:
-            os.dup2(nowhere, number)
-        os.close(nowhere)
-    except OSError:  # they are closed
-        pass
-    try:
-        yield
-    finally:
-        _flush()
-        for number, copy in kept:
-            os.dup2(copy, number)
-            os.close(copy)
+    with contextlib.ExitStack() as files:
+        try:
+            _flush()
+            for number in (1, 2):
+                kept.append((number, os.dup(number), files.enter_context(tempfile.TemporaryFile())))
+            for number, _, printed in kept:
+                os.dup2(printed.fileno(), number)
+        except OSError:  # they are closed
+            pass
+        try:
+            yield
+        finally:
+            _flush()
+            for number, copy, printed in kept:
+                os.dup2(copy, number)
+                os.close(copy)
+                if but_threads:
+                    printed.seek(0)
+                    lines = [line for line in printed if not line.startswith(_WARNING)]
+                    os.write(number, b"".join(lines))
 
 
 def _flush():
