@@ -82,6 +82,10 @@ class Attempt(Protocol):
 class Api(Protocol):
     """A server, as one of the packages reaches it."""
 
+    def close(self) -> None:
+        """Closes the connections."""
+        ...
+
     @property
     def address(self) -> str:
         """Where requests go."""
@@ -108,7 +112,7 @@ class _ServerFault(Exception):  # noqa: N818 - sets faults of the server apart f
 
 
 class Attempts:
-    """Retries, prices and errors around an Api. Safe to call from several threads at once."""
+    """A Model of an Api, with retries, prices and errors. Safe to call from several threads at once."""
 
     def __init__(
         self,
@@ -126,6 +130,15 @@ class Attempts:
         self._pause = pause
         self._chance = chance or random.Random()  # noqa: S311 - spreads pauses
         self._heard = False
+
+    @property
+    def address(self) -> str:
+        """Where requests go."""
+        return self._api.address
+
+    def close(self) -> None:
+        """Closes the connections."""
+        self._api.close()
 
     def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
         """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Declined, CutShort."""

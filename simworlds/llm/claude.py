@@ -48,7 +48,7 @@ _LASTING = (
 )
 
 
-class Claude:
+class Claude(Attempts):
     """A Model. Safe to call from several threads at once."""
 
     def __init__(
@@ -65,21 +65,7 @@ class Claude:
         The environment's settings are ANTHROPIC_API_KEY (or ANTHROPIC_AUTH_TOKEN) and ANTHROPIC_BASE_URL.
         """
         settings = settings or Settings()
-        self._api = _MessagesApi(settings, clock)
-        self._attempts = Attempts(self._api, settings, tell, pause=pause, chance=chance)
-
-    @property
-    def address(self) -> str:
-        """Where requests go."""
-        return self._api.address
-
-    def close(self) -> None:
-        """Closes the connections."""
-        self._api.client.close()
-
-    def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
-        """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Declined, CutShort."""
-        return self._attempts.answer(ask, on_text)
+        super().__init__(_MessagesApi(settings, clock), settings, tell, pause=pause, chance=chance)
 
 
 class _MessagesApi:
@@ -95,6 +81,9 @@ class _MessagesApi:
     @property
     def address(self) -> str:
         return str(self.client.base_url)
+
+    def close(self) -> None:
+        self.client.close()
 
     def attempt(self, ask: Ask) -> _MessagesAttempt:
         return _MessagesAttempt(self.client, ask, self._settings.longest, self._clock)

@@ -42,7 +42,7 @@ class NoPackage(Rejected):
     """The package that speaks the API is not installed."""
 
 
-class OpenAIChat:
+class OpenAIChat(Attempts):
     """A Model. Safe to call from several threads at once."""
 
     def __init__(
@@ -60,21 +60,7 @@ class OpenAIChat:
         left out. Raises Rejected without a key, NoPackage without the package.
         """
         settings = settings or Settings()
-        self._api = _ChatApi(settings, clock)
-        self._attempts = Attempts(self._api, settings, tell, pause=pause, chance=chance)
-
-    @property
-    def address(self) -> str:
-        """Where requests go."""
-        return self._api.address
-
-    def close(self) -> None:
-        """Closes the connections."""
-        self._api.client.close()
-
-    def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
-        """The model's turn, see Model. Raises Rejected, TooLong, Unreachable, Declined, CutShort."""
-        return self._attempts.answer(ask, on_text)
+        super().__init__(_ChatApi(settings, clock), settings, tell, pause=pause, chance=chance)
 
 
 class _ChatApi:
@@ -92,6 +78,9 @@ class _ChatApi:
     @property
     def address(self) -> str:
         return str(self.client.base_url)
+
+    def close(self) -> None:
+        self.client.close()
 
     def attempt(self, ask: Ask) -> _ChatAttempt:
         return _ChatAttempt(
