@@ -28,6 +28,7 @@ from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import REPO, say
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -177,7 +178,7 @@ def measure(setting: Setting) -> ReportPart:
         others = (
             path for path in sorted(setting.base.parent.glob("blender-*.sqlite")) if path != setting.base
         )
-        bases += [path for path in others if _minor(path) >= OLDEST]
+        bases += [path for path in others if version_key(path.stem) >= OLDEST]
     rows: list[tuple[str, ...]] = []
     skipped: list[str] = []
     false: list[str] = []
@@ -211,10 +212,6 @@ def measure(setting: Setting) -> ReportPart:
     return ReportPart(
         "check_blender", figures if rows else (), (table,), tuple(skipped), {"false": false, "inside": own}
     )
-
-
-def _minor(base: Path) -> tuple[int, ...]:
-    return tuple(int(part) for part in base.stem.removeprefix("blender-").split("."))
 
 
 def _judged(

@@ -16,6 +16,7 @@ from agents.plan.fall_arithmetic import fall_doubts
 from agents.plan.faults import Fault
 from agents.plan.part import owner_of
 from agents.plan.relations import (
+    SIDES,
     Aperture,
     Direction,
     Distributed,
@@ -43,15 +44,6 @@ DOUBTED = (
     "wrong. Where a shape or a root makes it right all the same, leave it, say so in the object's description, and "
     "give the whole plan again."
 )
-# Direction → (axis of the frame, sign). The front is −Y.
-_SIDES = {
-    "LeftOf": (0, -1.0),
-    "RightOf": (0, 1.0),
-    "InFrontOf": (1, -1.0),
-    "Behind": (1, 1.0),
-    "Above": (2, 1.0),
-    "Below": (2, -1.0),
-}
 _GAP, _GAP_SHARE = 0.01, 0.05  # the verifier's tolerances of NextTo
 _FOOTPRINT = 0.25
 _TILT = 8.0  # degrees; what Upright and a planned rotation may differ by
@@ -211,7 +203,7 @@ def _common_share(a: PlannedBox, b: PlannedBox, axis: int) -> float:
 
 
 def _wrong_side(relation: Direction, a: PlannedBox, b: PlannedBox, plan: ScenePlan) -> Iterator[str]:
-    number, sign = _SIDES[relation.kind]
+    number, sign = SIDES[relation.kind]
     axis: Vector | None = (float(number == 0), float(number == 1), float(number == 2))
     if number != 2 and relation.frame == "reference":
         axis = b.axis(number)

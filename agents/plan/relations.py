@@ -147,6 +147,17 @@ class Direction(RelationPart):
     frame: Reference = "world"
 
 
+# Kind of Direction → (axis of the frame, sign). The front is −Y, as in Blender's front view.
+SIDES = {
+    "LeftOf": (0, -1.0),
+    "RightOf": (0, 1.0),
+    "InFrontOf": (1, -1.0),
+    "Behind": (1, 1.0),
+    "Above": (2, 1.0),
+    "Below": (2, -1.0),
+}
+
+
 class Upright(RelationPart):
     """The object's own Z axis points up."""
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from agents.plan.relations import Direction, Facing, NextTo, OnTopOf, ParallelTo, Upright
+from agents.plan.relations import SIDES, Direction, Facing, NextTo, OnTopOf, ParallelTo, Upright
 from agents.protocol.judging.planned_relations import Violation, relation_rule, surface_pair, surfaces
 from agents.protocol.judging.poses import anchor, pose, pose_request
 from agents.protocol.judging.sizes import contact_gap
@@ -25,15 +25,6 @@ if TYPE_CHECKING:
     from agents.protocol.measures.requests import Measures, Request
     from agents.protocol.rule import RuleContext
 
-# Direction → (axis of the frame, sign). The front is −Y, as in Blender's front view.
-_SIDES = {
-    "LeftOf": (0, -1.0),
-    "RightOf": (0, 1.0),
-    "InFrontOf": (1, -1.0),
-    "Behind": (1, 1.0),
-    "Above": (2, 1.0),
-    "Below": (2, -1.0),
-}
 _UP = np.array([0.0, 0.0, 1.0])
 _SAME_PLACE = 1e-3  # metres in plan view below which there is no direction from one place to another
 
@@ -115,7 +106,7 @@ def _not_next_to(
 
 def _direction(context: RuleContext, relation: Direction, frame: int | None) -> DirectionRequest:
     """Raises Unmeasured."""
-    axis, sign = _SIDES[relation.kind]
+    axis, sign = SIDES[relation.kind]
     of: str | None = None
     if axis != 2 and relation.frame == "reference":
         of = anchor(context, relation.b)
