@@ -27,7 +27,7 @@ def staged_folder(target: Path) -> Generator[Path]:
     made ``target`` meanwhile, that one stays. Raises OSError when the disk refuses.
     """
     target.parent.mkdir(parents=True, exist_ok=True)
-    _remove_leftovers(target.parent)
+    remove_leftovers(target.parent)
     folder = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=target.parent))
     try:
         folder.chmod(0o755)
@@ -48,7 +48,7 @@ def scratch_folder(parent: Path) -> Generator[Path]:
     Raises OSError when the disk refuses.
     """
     parent.mkdir(parents=True, exist_ok=True)
-    _remove_leftovers(parent)
+    remove_leftovers(parent)
     folder = Path(tempfile.mkdtemp(prefix=f"{_PREFIX}{os.getpid()}-", dir=parent))
     try:
         yield folder
@@ -94,7 +94,8 @@ def remove_unfinished_files(folder: Path) -> None:
                 path.unlink(missing_ok=True)
 
 
-def _remove_leftovers(parent: Path) -> None:
+def remove_leftovers(parent: Path) -> None:
+    """Remove what killed processes left in ``parent`` of their scratch folders and of folders that they staged."""
     for folder in parent.glob(f"{_PREFIX}*"):
         pid = folder.name.removeprefix(_PREFIX).partition("-")[0]
         if pid.isdigit() and not _is_running(int(pid)):

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 from kb_build.errors import SourceError
 from kb_build.pages.page_cache import kept_pages, read_pages
 from simworlds.errors import UserError
-from simworlds.files import scratch_folder
+from simworlds.files import remove_leftovers, scratch_folder
 from simworlds.forked import can_fork, forked
 
 if TYPE_CHECKING:
@@ -46,6 +46,7 @@ class PageReader:
         self._cleanup = contextlib.ExitStack()
 
     def __enter__(self) -> PageReader:
+        remove_leftovers(self._cache / "scratch")
         for source in self._sources:
             kept = kept_pages(source, self._cache)
             if kept is not None:

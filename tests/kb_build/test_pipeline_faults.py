@@ -7,6 +7,7 @@ import resource
 import signal
 import subprocess
 import sys
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -93,6 +94,18 @@ def test_a_killed_build_leaves_the_old_base_and_no_process(small: Built, step: s
     assert read_meta(small.path)["fingerprint"] == small.report.meta["fingerprint"]
     assert build(None, options=small.options, home=small.home).built
     assert files_below(small.home / "kb") == [small.path.name]
+    assert files_below(small.home / "cache" / "scratch") == []
+
+
+def test_a_build_that_cannot_fork_removes_what_a_killed_one_left(small: Built) -> None:
+    change_a_page(small)
+    with start(small) as process:
+        wait_for(process, "Reading the manual")
+        process.kill()
+    wait_until_alone(small.home)
+    with ThreadPoolExecutor(1) as threads:
+        threads.submit(int).result()
+        assert build(None, options=small.options, home=small.home).built
     assert files_below(small.home / "cache" / "scratch") == []
 
 
