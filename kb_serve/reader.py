@@ -13,12 +13,14 @@ from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 from kb_build.records import Page, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import NoBase, open_read_only, unpack
 from kb_serve.errors import BadQuery, BaseMissing, BaseUnreadable
+from kb_serve.kept_rows import KeptRows
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Collection, Generator, Iterator
+    from collections.abc import Callable, Collection, Generator, Iterable, Iterator, Sequence
     from pathlib import Path
 
 _Record = TypeVar("_Record")
+_Value = TypeVar("_Value")
 
 TYPES = "bpy.types."
 STRUCT = "bpy.types.bpy_struct"
@@ -27,8 +29,7 @@ _UNLIMITED = float("inf")
 _REBUILD = "Rebuild it: simworlds kb build --force"
 
 
-@dataclass(frozen=True, slots=True)
-class SymbolEntry:
+class SymbolEntry(NamedTuple):
     """The part of a symbol that resolving needs; the whole record is read only for answers.
 
     ``line`` describes it in the list of its owner's members.
@@ -47,8 +48,7 @@ class SymbolEntry:
     line: str
 
 
-@dataclass(frozen=True, slots=True)
-class PageEntry:
+class PageEntry(NamedTuple):
     """A page without its text; ``parent`` is a slug."""
 
     slug: str
@@ -115,13 +115,17 @@ class BaseReader:
         self.path = path
         self._connection = open_file(path)
         self._work_left = _UNLIMITED
-        # A symbol's or page's row, or None; the members of a class or module by name; the classes right below one;
-        # the symbols whose last part is a name.
+        # A symbol's or page's row, or None; the pages right below one, in the manual's order; the targets of a symbol's
+        # links to the manual; (form, id) of everything spelled like a key (see analysis.key), preferred forms first.
         # An entry takes nearly a kilobyte, and a class has fifty members.
-        self.entry = lru_cache(maxsize=2_000)(self._entry)
+        self.entry = KeptRows(self._entries, None, 2_000)
+        self.page_entry = KeptRows(self._page_entries, None, 500)
+        self.page_children = KeptRows(self._page_children, (), 100)
+        self.manual_links = KeptRows(self._manual_links, (), 500)
+        self.by_key = KeptRows(self._by_key, (), 200)
+        # The members of a class or module by name; the classes right below one; the symbols whose last part is a name.
         self.members = lru_cache(maxsize=64)(self._members)
         self.subclasses = lru_cache(maxsize=64)(self._subclasses)
-        self.page_entry = lru_cache(maxsize=500)(self._page_entry)
         # A thousand symbols share a name, and resolving asks for the same few again and again.
         self.by_name = lru_cache(maxsize=8)(self._by_name)
 
@@ -153,9 +157,10 @@ class BaseReader:
         finally:
             self._work_left = _UNLIMITED
 
-    def rows_of(self, sql: str, keys: Collection[object]) -> list[Any]:
-        """The rows with any of the keys, unordered; ``sql`` ends with the keys' column."""
-        return self.rows(f"{sql} IN ({','.join('?' * len(keys))})", *keys)
+    def rows_of(self, sql: str, keys: Collection[object], order: str = "") -> list[Any]:
+        """The rows with any of the keys, by the columns ``order`` if given; ``sql`` ends with the keys' column."""
+        ordered = f" ORDER BY {order}" if order else ""
+        return self.rows(f"{sql} IN ({','.join('?' * len(keys))}){ordered}", *keys)
 
     def damaged(self, why: object) -> BaseUnreadable:
         """The error to raise for a file with wrong content."""
@@ -172,17 +177,33 @@ class BaseReader:
         """Facts about the base: version, build, fingerprint, sources, missing sources, …"""
         return dict(self.rows("SELECT name, value FROM meta"))
 
-    def _entry(self, path: str) -> SymbolEntry | None:
-        rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE path = ?", path)
-        return SymbolEntry(*rows[0]) if rows else None
+    def _entries(self, paths: Sequence[str]) -> dict[str, SymbolEntry | None]:
+        rows = self.rows_of(f"SELECT {_ENTRY} FROM symbols WHERE path", paths)
+        return {row[0]: SymbolEntry._make(row) for row in rows}
+
+    def _page_entries(self, slugs: Sequence[str]) -> dict[str, PageEntry | None]:
+        rows = self.rows_of(f"SELECT {_PAGE} FROM pages WHERE slug", slugs)
+        return {row[0]: PageEntry._make(row) for row in rows}
+
+    def _page_children(self, slugs: Sequence[str]) -> dict[str, tuple[PageEntry, ...]]:
+        rows = self.rows_of(f"SELECT parent, {_PAGE} FROM pages WHERE parent", slugs, "parent, position")
+        return _grouped((row[0], PageEntry._make(row[1:])) for row in rows)
+
+    def _manual_links(self, sources: Sequence[str]) -> dict[str, tuple[str, ...]]:
+        sql = "SELECT source, target FROM links WHERE kind = 'manual' AND source"
+        return _grouped(self.rows_of(sql, sources, "rowid"))
+
+    def _by_key(self, keys: Sequence[str]) -> dict[str, tuple[tuple[int, str], ...]]:
+        rows = self.rows_of("SELECT key, form, id FROM names WHERE key", keys, "key, form, id")
+        return _grouped((key, (form, identifier)) for key, form, identifier in rows)
 
     def _members(self, owner: str) -> dict[str, SymbolEntry]:
         rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE owner = ? ORDER BY id", owner)
-        return {row[3] if row[1] != "socket" else row[0][len(owner) + 1 :]: SymbolEntry(*row) for row in rows}
+        return {row[3] if row[1] != "socket" else row[0][len(owner) + 1 :]: SymbolEntry._make(row) for row in rows}
 
     def _subclasses(self, path: str) -> tuple[SymbolEntry, ...]:
         rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE base = ? AND base != '' ORDER BY path", path)
-        return tuple(SymbolEntry(*row) for row in rows)
+        return tuple(SymbolEntry._make(row) for row in rows)
 
     def descendants(self, path: str) -> Iterator[SymbolEntry]:
         """Every class below a class, nearest first."""
@@ -216,17 +237,13 @@ class BaseReader:
     def _by_name(self, name: str) -> tuple[SymbolEntry, ...]:
         """Every symbol whose last part is exactly ``name``."""
         rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE name = ?", name)
-        return tuple(SymbolEntry(*row) for row in rows)
+        return tuple(SymbolEntry._make(row) for row in rows)
 
     def pointing_at(self, cls: str) -> list[SymbolEntry]:
         """The pointer properties whose value is a class, given by its name."""
         sql = f"""SELECT {_ENTRY} FROM symbols
             WHERE target = ? AND target != '' AND kind = 'property' AND type = 'pointer' ORDER BY path"""
-        return [SymbolEntry(*row) for row in self.rows(sql, cls)]
-
-    def by_key(self, key: str) -> list[tuple[int, str]]:
-        """(form, id) of everything spelled like ``key`` (see analysis.key), preferred forms first."""
-        return self.rows("SELECT form, id FROM names WHERE key = ? ORDER BY form, id", key)
+        return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
     def enum_owners(self, key: str) -> list[tuple[str, str, str]]:
         """(owner, identifier, name) for every enumeration that has the item."""
@@ -289,13 +306,6 @@ class BaseReader:
         """How often Blender's own scripts use each of some symbols; those that they do not use are left out."""
         return dict(self.rows_of("SELECT path, uses FROM use_counts WHERE path", paths))
 
-    def links_from(self, source: str, kind: str) -> list[str]:
-        """Targets of a symbol's or page's links of one kind."""
-        return [
-            row[0]
-            for row in self.rows("SELECT target FROM links WHERE source = ? AND kind = ?", source, kind)
-        ]
-
     def passage(self, path: str) -> tuple[str, int, int] | None:
         """(slug, number of the section, line of its text) of the place in the manual that is about a symbol."""
         rows = self.rows("SELECT slug, section, line FROM passages WHERE path = ?", path)
@@ -325,15 +335,6 @@ class BaseReader:
             WHERE form = 2 AND key >= ? AND key < ? AND kind = 'function' AND owner LIKE 'bpy.types.%'"""
         return [row[0] for row in self.rows(sql, prefix, prefix + "\uffff")] if prefix else []
 
-    def _page_entry(self, slug: str) -> PageEntry | None:
-        rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE slug = ?", slug)
-        return PageEntry(*rows[0]) if rows else None
-
-    def page_children(self, slug: str) -> list[PageEntry]:
-        """The pages right below a page, in the manual's order."""
-        rows = self.rows(f"SELECT {_PAGE} FROM pages WHERE parent = ? ORDER BY position", slug)
-        return [PageEntry(*row) for row in rows]
-
     def symbols_of_page(self, slug: str) -> list[str]:
         """The symbols that a page explains, by Blender's own table."""
         return [row[0] for row in self.rows("SELECT symbol FROM explained WHERE slug = ?", slug)]
@@ -352,3 +353,11 @@ class BaseReader:
         """A page with its sections, or None."""
         rows = self.rows("SELECT record FROM pages WHERE slug = ?", slug)
         return self._record(page_from_json, rows[0][0]) if rows else None
+
+
+def _grouped(rows: Iterable[tuple[str, _Value]]) -> dict[str, tuple[_Value, ...]]:
+    """Key → its values, in the order of the rows."""
+    groups: dict[str, list[_Value]] = {}
+    for key, value in rows:
+        groups.setdefault(key, []).append(value)
+    return {key: tuple(values) for key, values in groups.items()}

@@ -113,7 +113,7 @@ class AnswerComposer:
         topic = "" if self._reader.entry(text) else self._topics.find(text)
         if topic:
             return self._overview(topic, ranking, limit)
-        hits = tuple(self._hit(row) for row in ranking.ranked[:limit])
+        hits = self._hits(ranking.ranked[:limit])
         notes = (*ranking.notes, *self._source_notes(ranking, hits))
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
@@ -135,6 +135,13 @@ class AnswerComposer:
         missing = [row["role"] for row in json.loads(meta.get("missing", "[]"))]
         if missing and not ranking.named:
             yield f"This base was built without the {' and the '.join(missing)}; `simworlds kb info` says why."
+
+    def _hits(self, rows: Sequence[RankedId]) -> tuple[Hit, ...]:
+        self._reader.page_entry.load(row.id for row in rows)
+        symbols = [row.id for row in rows if self._reader.page_entry(row.id) is None]
+        self._reader.entry.load(symbols)
+        self._renderer.load_manual_pages(symbols)
+        return tuple(self._hit(row) for row in rows)
 
     def _hit(self, row: RankedId) -> Hit:
         score = round(row.score, 3)
@@ -186,13 +193,13 @@ class AnswerComposer:
             text = text.removeprefix(f"`{entry.name}`").strip()
             return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS)
         page = self._reader.page_entry(hit.id)
-        text = first_sentence(said_of(page, self._reader.page_children(hit.id))) if page else ""
+        text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
 
     def _overview(self, topic: str, ranking: Ranking, limit: int) -> _Draft:
         overview = self._topics.overview(topic)
         ids = dict.fromkeys((topic, *overview.members, *(row.id for row in ranking.ranked)))
-        hits = tuple(self._hit(RankedId(i, 1.0 - 0.02 * n, "topic")) for n, i in enumerate(list(ids)[:limit]))
+        hits = self._hits([RankedId(i, 1.0 - 0.02 * n, "topic") for n, i in enumerate(list(ids)[:limit])])
         return _draft("page", hits, tuple(self._source_notes(ranking, hits)), overview.blocks)
 
 

@@ -218,8 +218,7 @@ class MarkdownRenderer:
 
     def page_line(self, page: PageEntry) -> str:
         """A page on one line: its address, its title, and what it says."""
-        said = said_of(page, self.reader.page_children(page.slug))
-        return f"- `{page.slug}` ({page.title}) {first_sentence(said)}".rstrip()
+        return f"- `{page.slug}` ({page.title}) {first_sentence(said_of(page, self.reader))}".rstrip()
 
     def _head(self, symbol: Symbol) -> str:
         lines = [f"## `{symbol.path}`"]
@@ -272,12 +271,19 @@ class MarkdownRenderer:
 
     def manual_page(self, path: str) -> str:
         """The URL of a symbol's manual page, by Blender's own table; empty for none."""
-        for target in self.reader.links_from(path, "manual"):
+        for target in self.reader.manual_links(path):
             slug, _, anchor = target.partition("#")
             page = self.reader.page_entry(slug)
             if page:
                 return page.url + (f"#{anchor}" if anchor else "")
         return ""
+
+    def load_manual_pages(self, paths: Iterable[str]) -> None:
+        """Reads what ``manual_page`` needs for some symbols, all at once."""
+        paths = list(paths)
+        self.reader.manual_links.load(paths)
+        targets = (target for path in paths for target in self.reader.manual_links(path))
+        self.reader.page_entry.load(target.partition("#")[0] for target in targets)
 
     def _passage(self, path: str) -> Iterator[AnswerBlock]:
         """What the manual says about a symbol."""
@@ -339,10 +345,15 @@ def _leads_to(anchor: str, section: Section) -> bool:
     return bool(anchor) and (section.anchor == anchor or any(name == anchor for name, _ in section.marks))
 
 
-def said_of(page: PageEntry, below: Sequence[PageEntry]) -> str:
+def said_of(page: PageEntry, reader: BaseReader) -> str:
     """A page's summary; of a page that only lists others, which these are."""
-    said = page.summary.removeprefix(page.title).lstrip(". ")
-    if said and not said.startswith("Contents: "):
-        return page.summary
-    titles = ", ".join(child.title for child in below)
+    if summary := own_summary(page):
+        return summary
+    titles = ", ".join(child.title for child in reader.page_children(page.slug))
     return f"Contents: {titles}" if titles else ""
+
+
+def own_summary(page: PageEntry) -> str:
+    """A page's summary; empty for a page that only lists others."""
+    said = page.summary.removeprefix(page.title).lstrip(". ")
+    return "" if not said or said.startswith("Contents: ") else page.summary

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
 from kb_serve.answer.budget import AnswerBlock, clip, tokens
-from kb_serve.answer.render import first_sentence, said_of
+from kb_serve.answer.render import first_sentence, own_summary, said_of
 from kb_serve.answer.topic_steps import Steps, TopicNames
 
 if TYPE_CHECKING:
@@ -69,7 +69,7 @@ class Topics:
             return False
         return bool(self._children(slug) or self._reader.symbols_of_page(slug))
 
-    def _children(self, slug: str) -> list[PageEntry]:
+    def _children(self, slug: str) -> tuple[PageEntry, ...]:
         return self._reader.page_children(slug)
 
     def _size(self, slug: str) -> int:
@@ -114,8 +114,8 @@ class Topics:
         record = self._reader.page(page.slug)
         is_hollow = record is None or not any(section.text for section in record.sections)
         if is_hollow and below and below[0].title == "Introduction":
-            return said_of(below[0], ()) or said_of(page, below)
-        return said_of(page, below)
+            return own_summary(below[0]) or said_of(page, self._reader)
+        return said_of(page, self._reader)
 
     def _names(self, slug: str, title: str) -> TopicNames:
         """The classes and operators of a topic: those that its pages explain, and those with its name."""
@@ -165,10 +165,8 @@ class Topics:
 
     def _page_lines(self, slug: str, depth: int = 2) -> Iterator[str]:
         for child in self._children(slug):
-            below = self._children(child.slug)
-            yield clip(
-                f"`{child.slug}` ({child.title}) {first_sentence(said_of(child, below))}", _LINE_TOKENS
-            )
+            said = first_sentence(said_of(child, self._reader))
+            yield clip(f"`{child.slug}` ({child.title}) {said}", _LINE_TOKENS)
             if depth > 1:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
 

@@ -343,7 +343,7 @@ class Steps:
 
     def _bakes(self) -> Iterator[str]:
         """The heaviest operator of the page that explains the cache."""
-        for target in self._reader.links_from(_CACHE, "manual"):
+        for target in self._reader.manual_links(_CACHE):
             paths = self._reader.symbols_of_page(target.partition("#")[0])
             entries = (self._reader.entry(path) for path in paths if not _has(path, (*_MAKES, *_REMOVES)))
             operators = [entry for entry in entries if entry and entry.kind == "operator"]

@@ -13,6 +13,7 @@ _MAX_CHAINS = 12
 _MAX_STEPS = 16  # the longest expression of a scene's script has ten
 _MAX_BUILTINS = 12
 _MAX_VALUES = 8
+_HUMP = re.compile(r"[a-z0-9][A-Z]")
 _IDENTIFIER = re.compile(r"[^\W\d]\w*")
 _DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
@@ -66,7 +67,7 @@ class Chain:
         """Whether it can only be code, unlike a single word of prose."""
         if self.steps:
             return True
-        return "_" in self.root.strip("_") or bool(re.search(r"[a-z0-9][A-Z]", self.root))
+        return "_" in self.root.strip("_") or _HUMP.search(self.root) is not None
 
 
 def _bracket(text: str, start: int) -> tuple[str, int]:

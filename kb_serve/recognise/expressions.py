@@ -225,15 +225,14 @@ class Expressions:
 
     def _class_with_member(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds a class's member that stands beside the class: ``SoftBodySettings goal_spring``."""
-        classes = [
-            entry
-            for chain in chains
-            if not chain.steps and (entry := self._reader.entry(TYPES + chain.root)) and entry.kind == "class"
-        ]
+        bare = [chain.root for chain in chains if not chain.steps]
+        self._reader.entry.load(TYPES + root for root in bare)
+        named = (self._reader.entry(TYPES + root) for root in bare)
+        classes = [entry for entry in named if entry and entry.kind == "class"]
         for cls in classes:
-            for chain in chains:
-                if chain.steps or chain.root == cls.name:
+            for root in bare:
+                if root == cls.name:
                     continue
-                member = self._resolver.member(cls.path, chain.root)
-                if member and ("_" in chain.root or chain.root not in STOP_WORDS):
+                member = self._resolver.member(cls.path, root)
+                if member and ("_" in root or root not in STOP_WORDS):
                     recognition.add(member.path, 0.96, "class and member")

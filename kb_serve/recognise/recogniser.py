@@ -59,27 +59,29 @@ class Recogniser:
     def recognise(self, query: str) -> Recognition:
         """Everything that ``query`` names, surest first."""
         recognition = Recognition()
+        chains = find_chains(query)
         for identifier in ids_in_urls(query, self._reader):
             recognition.add(identifier, 1.0, "address")
         self._spellings.recognise(query, recognition)
         if recognition.best is None or recognition.best.sure < 1:
             self._messages.recognise(query, recognition)
             text = without_callers_names(without_wording(query))
-            self._expressions.recognise(find_chains(_FILE_PATH.sub(" ", text)), recognition)
+            code = _FILE_PATH.sub(" ", text)
+            self._expressions.recognise(chains if code == query else find_chains(code), recognition)
             self._enum_values.recognise(text, recognition)
             self._removed_values(text, recognition)
-        self._check_uses(query, recognition)
+        self._check_uses(query, chains, recognition)
         self._messages.explain(query, recognition)
         self._explain_removed(recognition)
         self._explain_missing(recognition)
         recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
         return recognition
 
-    def _check_uses(self, query: str, recognition: Recognition) -> None:
+    def _check_uses(self, query: str, chains: list[Chain], recognition: Recognition) -> None:
         """Adds removed values and arguments of what was recognised, and notes on wrong ones."""
         for removed in (*self._old.in_imports(query), *self._old.in_strings(query)):
             recognition.add_removed(removed)
-        for chain in find_chains(query):
+        for chain in chains:
             called = bool(chain.steps) and chain.steps[-1].kind == "call"
             if not (called or chain.values):
                 continue

@@ -11,6 +11,8 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.addresses import find_page
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
@@ -55,7 +57,9 @@ class Spellings:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds the symbols and pages that the whole query names."""
         text = query.strip().strip("`'\"").rstrip(".:;,?!")
-        for path in (text, f"bpy.{text}"):
+        candidates = (text, f"bpy.{text}")
+        self._reader.entry.load(candidates)
+        for path in candidates:
             if self._reader.entry(path):
                 recognition.add(path, 1.0, "exact")
                 return
@@ -72,7 +76,7 @@ class Spellings:
             for removed in self._removed.spelled(called):
                 recognition.add_removed(removed)
 
-    def _spelled(self, text: str, rows: list[tuple[int, str]], recognition: Recognition) -> None:
+    def _spelled(self, text: str, rows: Sequence[tuple[int, str]], recognition: Recognition) -> None:
         """Adds the symbols and pages with the query's key; the fuller the spelling, the surer."""
         dotted = "." in text
         plain = " " not in text.strip()
@@ -90,9 +94,11 @@ class Spellings:
 
     def _labelled(self, text: str, recognition: Recognition) -> None:
         """Adds classes and operators with exactly this label; for modifiers, Blender's default name will do."""
+        labels = (f"{text} Modifier", f"{text} Constraint", text)
+        self._reader.by_key.load(map(key, labels))
         entries = [
             entry
-            for label in (f"{text} Modifier", f"{text} Constraint", text)
+            for label in labels
             for form, identifier in self._reader.by_key(key(label))
             if form == FORM_LABEL and (entry := self._reader.entry(identifier)) and entry.label == label
         ]
