@@ -159,8 +159,13 @@ class BaseReader:
 
     def rows_of(self, sql: str, keys: Collection[object], order: str = "") -> list[Any]:
         """The rows with any of the keys, by the columns ``order`` if given; ``sql`` ends with the keys' column."""
+        if not keys:
+            return []
         ordered = f" ORDER BY {order}" if order else ""
-        return self.rows(f"{sql} IN ({','.join('?' * len(keys))}){ordered}", *keys)
+        # Filled up to a power of two: a statement of another length is prepared anew, which costs as much as it finds.
+        values = [*keys]
+        values += values[-1:] * ((1 << (len(values) - 1).bit_length()) - len(values))
+        return self.rows(f"{sql} IN ({','.join('?' * len(values))}){ordered}", *values)
 
     def damaged(self, why: object) -> BaseUnreadable:
         """The error to raise for a file with wrong content."""

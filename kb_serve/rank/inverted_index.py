@@ -1,13 +1,10 @@
 """The inverted index of a base, as numpy arrays: its documents, what they are asked for by, the postings of stems.
 
-All is numbered through: first the units, then the topics around them, then the phrases that ask for either. Lists that
-queries touch are kept, the least used forgotten first; those that a query needs are read together, since a look-up
-costs more than what it finds.
+All is numbered through: first the units, then the topics around them, then the phrases that ask for either.
 """
 
 from __future__ import annotations
 
-from collections import OrderedDict
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -17,15 +14,17 @@ from numpy.typing import NDArray
 
 from kb_build.index.analysis import idf
 from kb_build.schema import DOCUMENT_KINDS, POSTING_BYTES, TOPICS, UNITS
+from kb_serve.kept_rows import KeptRows
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Sequence
 
     from kb_serve.reader import BaseReader
 
 Scores = NDArray[np.float32]
 
 K1 = 2.2
+_NUMBER_BYTES = 4
 _KEPT = 600  # stems; a query has a dozen
 
 
@@ -67,7 +66,8 @@ class InvertedIndex:
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
-        self._kept: OrderedDict[str, StemPostings] = OrderedDict()
+        # Where a stem stands; nowhere, if it is unknown.
+        self.postings = KeptRows(self._read_postings, _NOWHERE, _KEPT)
 
     @cached_property
     def levels(self) -> tuple[Level, Level]:
@@ -78,11 +78,11 @@ class InvertedIndex:
         return units, topics
 
     @cached_property
-    def asked(self) -> NDArray[np.int32]:
+    def asked(self) -> NDArray[np.intp]:
         """For each phrase the number of the document that it asks for. Raises BaseUnreadable."""
         try:
             ((targets,),) = self._reader.rows("SELECT targets FROM phrases")
-            asked = np.frombuffer(targets, np.int32)
+            asked = np.frombuffer(targets, np.int32).astype(np.intp)
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
         if not _within(asked, 0, sum(level.count for level in self.levels)):
@@ -94,24 +94,6 @@ class InvertedIndex:
         """The numbers at which units, topics and phrases end."""
         units, topics = (level.count for level in self.levels)
         return units, units + topics, units + topics + len(self.asked)
-
-    def load(self, stems: Iterable[str]) -> None:
-        """Reads the postings of stems that are not known yet, all at once."""
-        wanted = [stem for stem in dict.fromkeys(stems) if stem not in self._kept]
-        if not wanted:
-            return
-        self._kept.update(dict.fromkeys(wanted, _NOWHERE))
-        rows = self._reader.rows_of("SELECT stem, units, data FROM postings WHERE stem", wanted)
-        self._kept.update(self._postings(rows))
-        while len(self._kept) > max(_KEPT, len(wanted)):
-            self._kept.popitem(last=False)
-
-    def postings(self, stem: str) -> StemPostings:
-        """Where a stem stands; nowhere, if it is unknown."""
-        if stem not in self._kept:
-            self.load((stem,))
-        self._kept.move_to_end(stem)
-        return self._kept[stem]
 
     def idf(self, stem: str) -> float:
         """How much a stem tells, by the units that have it; 0 for an unknown one."""
@@ -144,35 +126,38 @@ class InvertedIndex:
             raise self._reader.damaged(f"level {level} of its index")
         return read
 
-    def _postings(self, rows: Sequence[tuple[str, int, bytes]]) -> Iterator[tuple[str, StemPostings]]:
-        """Of (stem, units, data): checked and weighed all at once, which costs less than one by one."""
+    def _read_postings(self, stems: Sequence[str]) -> dict[str, StemPostings]:
+        """Those of some stems, checked and weighed all at once, which costs less than one by one."""
+        rows: list[tuple[str, int, bytes]] = self._reader.rows_of(
+            "SELECT stem, units, data FROM postings WHERE stem", stems
+        )
         if not rows:
-            return
-        lengths = [len(data) // POSTING_BYTES for *_, data in rows]
+            return {}
         try:
-            numbers = [
-                np.frombuffer(data, np.uint32, count) for (*_, data), count in zip(rows, lengths, strict=True)
-            ]
-            weights = [
-                np.frombuffer(data, np.float16, offset=array.nbytes)
-                for (*_, data), array in zip(rows, numbers, strict=True)
-            ]
+            lengths = [len(data) // POSTING_BYTES for *_, data in rows]
+            # The numbers' bytes of each stem stand before those of their weights.
+            cuts = [_NUMBER_BYTES * length for length in lengths]
+            numbers = np.frombuffer(
+                b"".join(data[:cut] for (*_, data), cut in zip(rows, cuts, strict=True)), np.uint32
+            )
+            weights = np.frombuffer(
+                b"".join(data[cut:] for (*_, data), cut in zip(rows, cuts, strict=True)), np.float16
+            )
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
-        listed, weight = np.concatenate(numbers), np.concatenate(weights).astype(np.float32)
+        weight = weights.astype(np.float32)
         units, documents, end = self.ends
-        if not (len(listed) == len(weight) and _within(listed, 0, end) and np.isfinite(weight).all()):
+        if not (len(numbers) == len(weight) and _within(numbers, 0, end) and np.isfinite(weight).all()):
             raise self._reader.damaged(f"the postings of {', '.join(stem for stem, *_ in rows)}")
-        saturated = np.where(listed < documents, weight * (K1 + 1) / (weight + K1), weight).astype(np.float32)
+        saturated = np.where(numbers < documents, weight * (K1 + 1) / (weight + K1), weight)
+        places = numbers.astype(np.intp)  # the type that numpy takes indices as
+        found: dict[str, StemPostings] = {}
         last = 0
-        for (stem, having, _), array in zip(rows, numbers, strict=True):
-            first, last = last, last + len(array)
-            # Copies, not to keep the lists of all for one, nor what was read for a part of it; of the type that numpy
-            # takes indices as.
-            yield (
-                stem,
-                StemPostings(array.astype(np.intp), saturated[first:last].copy(), having, idf(units, having)),
-            )
+        # Parts of what is kept and forgotten together.
+        for (stem, having, _), length in zip(rows, lengths, strict=True):
+            first, last = last, last + length
+            found[stem] = StemPostings(places[first:last], saturated[first:last], having, idf(units, having))
+        return found
 
 
 def _within(numbers: NDArray[Any], low: int, high: int) -> bool:

@@ -43,6 +43,6 @@ def score_all(index: InvertedIndex, concepts: Sequence[Concept]) -> Scored:
             continue
         postings = index.postings(concept.stem)
         weight = concept.weight * concept.idf
-        scores[postings.numbers] += np.float32(weight) * postings.saturated
-        coverage[postings.numbers] += np.float32(weight / whole)
+        np.add.at(scores, postings.numbers, np.float32(weight) * postings.saturated)
+        np.add.at(coverage, postings.numbers, np.float32(weight / whole))
     return Scored(scores, coverage)

@@ -22,7 +22,7 @@ from kb_serve.rank.scoring import Concept, score_all
 from kb_serve.rank.signals import Evidence, scores_of
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from numpy.typing import NDArray
 
@@ -39,6 +39,7 @@ _TWO_TYPOS = 9  # letters from which on two may be wrong
 _MAX_WORDS = 40
 _CANDIDATES = 400
 _DIFFERENT = 5
+_INDEX = DOCUMENT_KINDS.index("index")
 
 
 @dataclass(frozen=True, slots=True)
@@ -80,13 +81,13 @@ class Searcher:
         )
         return ranked[0][0] if ranked else ""
 
-    def concepts(self, text: str) -> list[Concept]:
-        """The query's distinct words, each with its stem in this corpus."""
+    def concepts(self, asking: Sequence[str]) -> list[Concept]:
+        """The distinct words of a query, each with its stem in this corpus."""
         asked: dict[str, str] = {}
-        for word in words(text)[:_MAX_WORDS]:
+        for word in asking[:_MAX_WORDS]:
             if word not in STOP_WORDS:
                 asked.setdefault(stem(word), word)
-        self.index.load(asked)
+        self.index.postings.load(asked)
         return [self._concept(word, own) for own, word in asked.items()]
 
     def _concept(self, word: str, own: str) -> Concept:
@@ -103,28 +104,27 @@ class Searcher:
             return []
         numbers, evidence = found
         scores = scores_of(evidence)
-        best = _spread(_top(scores, len(scores)), self.index.levels[0].topics[numbers])
-        best = _with_text_first(best, evidence.kinds)
-        return self._varied(numbers[best].tolist(), scores[best].tolist(), limit)
+        topics: list[int] = self.index.levels[0].topics[numbers].tolist()
+        best = _spread(np.argsort(-scores, kind="stable").tolist(), topics)
+        best = _with_text_first(best, evidence.kinds.tolist())
+        return self._varied(((int(numbers[place]), float(scores[place])) for place in best), limit)
 
     def find(self, text: str, *, failed: bool = False) -> tuple[NDArray[np.intp], Evidence] | None:
         """The units that speak most of a text: their numbers, and what is known of them. None if there are none."""
-        concepts = self.concepts(text)
+        asking = words(text)
         units, topics = self.index.levels
-        found = score_all(self.index, concepts)
+        found = score_all(self.index, self.concepts(asking))
         numbers = np.flatnonzero(found.coverage[: units.count] > 0)
         if not len(numbers):
             return None
-        documents = self.index.ends[1]
-        told = _float32(found.scores[:documents] * found.coverage[:documents] ** COVERAGE)
         around = np.zeros(topics.count + 1, np.float32)  # the last: for the units that have no topic, -1
-        around[:-1] = told[units.count :]
-        own, topic = told[numbers], units.topics[numbers]
+        around[:-1] = _told(found, slice(*self.index.ends[:2]))
+        own, topic = _told(found, numbers), units.topics[numbers]
         texts = _float32(own + TOPIC_WEIGHT * np.where(topic >= 0, around[topic], ALONE * own))
         best = _top(texts, _CANDIDATES)
         numbers, texts, topic = numbers[best], texts[best], topic[best]
         evidence = Evidence(
-            frozenset(words(text)),
+            frozenset(asking),
             failed,
             texts,
             self._asked(found, numbers, topic),
@@ -138,12 +138,13 @@ class Searcher:
         units, documents, _ = self.index.ends
         phrases = np.flatnonzero(found.coverage[documents:] > 0)
         shares, coverage = found.scores[documents:][phrases], found.coverage[documents:][phrases]
-        best = np.zeros(documents, np.float32)
+        best = np.zeros(documents + 1, np.float32)  # the last: of the units that have no topic
         np.maximum.at(best, self.index.asked[phrases], np.sqrt(np.minimum(shares, 1) * coverage))
-        return np.maximum(best[numbers], np.where(topic >= 0, best[units + topic], 0))
+        return np.maximum(best[numbers], best[np.where(topic >= 0, units + topic, documents)])
 
-    def _varied(self, numbers: Sequence[int], scores: Sequence[float], limit: int) -> list[SearchHit]:
-        """Of the ranked units each ref once, and the first member of a name before other members of that name.
+    def _varied(self, order: Iterable[tuple[int, float]], limit: int) -> list[SearchHit]:
+        """Of the ranked units, (number, score), each ref once, and the first member of a name before other members of
+        that name.
 
         A class or operator and the page that explains it say the same: the second of them waits until the first
         few different things have been named.
@@ -153,7 +154,7 @@ class Searcher:
         waiting: list[SearchHit] = []
         later: list[SearchHit] = []
         seen: set[str | int] = set()
-        for number, score in zip(numbers, scores, strict=True):
+        for number, score in order:
             ref = units.refs[number]
             if ref in seen:
                 continue
@@ -177,22 +178,41 @@ class Searcher:
         return [*first, *few, *later][:limit]
 
 
+def _told(found: Scored, numbers: NDArray[np.intp] | slice) -> Scores:
+    """How much documents speak of the query."""
+    return _float32(found.scores[numbers] * found.coverage[numbers] ** COVERAGE)
+
+
 def _float32(values: NDArray[Any]) -> Scores:
     return values.astype(np.float32, copy=False)
 
 
-def _spread(places: NDArray[np.intp], topics: NDArray[np.int32]) -> NDArray[np.intp]:
+def _spread(places: Sequence[int], topics: Sequence[int]) -> Iterator[int]:
     """Every topic's first, and all that have no topic, before any topic's second."""
-    named = topics[places]
-    first = named < 0
-    first[np.unique(named, return_index=True)[1]] = True
-    return np.concatenate((places[first], places[~first]))
+    seen: set[int] = set()
+    second: list[int] = []
+    for place in places:
+        topic = topics[place]
+        if topic in seen:
+            second.append(place)
+        else:
+            yield place
+            if topic >= 0:
+                seen.add(topic)
+    yield from second
 
 
-def _with_text_first(places: NDArray[np.intp], kinds: NDArray[np.uint8]) -> NDArray[np.intp]:
+def _with_text_first(places: Iterable[int], kinds: Sequence[int]) -> Iterator[int]:
     """The best unit that has a text, if any has, before those of pages without."""
-    first = int(np.argmax(kinds[places] != DOCUMENT_KINDS.index("index")))
-    return np.concatenate((places[first : first + 1], places[:first], places[first + 1 :]))
+    hollow: list[int] = []
+    rest = iter(places)
+    for place in rest:
+        if kinds[place] != _INDEX:
+            yield place
+            break
+        hollow.append(place)
+    yield from hollow
+    yield from rest
 
 
 def _top(scores: Scores, count: int) -> NDArray[np.intp]:
