@@ -144,12 +144,12 @@ CREATE TABLE vocabulary (stem TEXT PRIMARY KEY, word TEXT NOT NULL) WITHOUT ROWI
 
 INDEXES = """
 CREATE INDEX symbols_owner ON symbols (owner, name);
-CREATE INDEX symbols_name ON symbols (name);
+CREATE INDEX symbols_name ON symbols (name, kind);
 CREATE INDEX symbols_target ON symbols (target) WHERE target != '';
 CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
 CREATE INDEX removed_name ON removed (name);
 CREATE INDEX sections_slug ON sections (slug, position);
-CREATE INDEX links_source ON links (source, kind);
+CREATE INDEX links_source ON links (source, kind, target);
 CREATE INDEX pages_parent ON pages (parent, position);
 """
 

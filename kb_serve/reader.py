@@ -241,7 +241,7 @@ class BaseReader:
 
     def _by_name(self, name: str) -> tuple[SymbolEntry, ...]:
         """Every symbol whose last part is exactly ``name``."""
-        rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE name = ?", name)
+        rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE name = ? ORDER BY id", name)
         return tuple(SymbolEntry._make(row) for row in rows)
 
     def pointing_at(self, cls: str) -> list[SymbolEntry]:

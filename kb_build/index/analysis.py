@@ -49,6 +49,11 @@ def words(text: str) -> list[str]:
     return parts
 
 
+def distinct_words(text: str) -> set[str]:
+    """The words of a long text, each once."""
+    return {word for token in set(_WORD.findall(text)) for word in words(token)}
+
+
 def content_words(text: str) -> list[str]:
     """A text's words without stop words, in order and with repetitions."""
     return [word for word in words(text) if word not in STOP_WORDS]

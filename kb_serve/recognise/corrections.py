@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, words
+from kb_build.index.analysis import distinct_words, key, words
 from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.chains import Chain, ChainStep
 
@@ -102,12 +102,18 @@ class Corrector:
         return {key(name): path.removeprefix(TYPES) for name, path in rows}
 
     @cached_property
+    def _names(self) -> list[tuple[str, bool]]:
+        """The names of members and classes, each with whether it is a member's."""
+        return self._reader.rows(
+            "SELECT name, max(kind != 'class') FROM symbols "
+            "WHERE kind IN ('property', 'function', 'operator', 'class') GROUP BY name"
+        )
+
+    @cached_property
     def _words(self) -> set[str]:
         """Every word of some length in a name."""
-        rows = self._reader.rows(
-            "SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function', 'operator', 'class')"
-        )
-        return {word for (name,) in rows for word in words(name) if len(word) >= _WORD}
+        names = "\n".join(name for name, _ in self._names)
+        return {word for word in distinct_words(names) if len(word) >= _WORD}
 
     def root(self, written: str) -> Correction | None:
         """The class or module that a misspelt first name means."""
@@ -118,10 +124,8 @@ class Corrector:
     @cached_property
     def _members(self) -> dict[str, str]:
         """key → name of every member whose name has several words."""
-        rows = self._reader.rows(
-            "SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function', 'operator')"
-        )
-        return {key(name): name for (name,) in rows if len(name) >= _LONG and "_" in name}
+        names = [name for name, of_member in self._names if of_member]
+        return {key(name): name for name in names if len(name) >= _LONG and "_" in name}
 
     def member(self, written: str) -> Correction | None:
         """Corrects a name of several words, ``use_self_colision``, without its owner; not a variable's plural."""

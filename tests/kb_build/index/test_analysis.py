@@ -7,7 +7,7 @@ import string
 
 import pytest
 
-from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
+from kb_build.index.analysis import STOP_WORDS, distinct_words, key, stem, terms, words
 
 
 @pytest.mark.parametrize(
@@ -41,6 +41,11 @@ def test_spellings_of_one_name_have_one_key(spellings: tuple[str, ...]) -> None:
 )
 def test_spellings_of_one_name_have_the_same_terms(spellings: tuple[str, ...]) -> None:
     assert len({tuple(terms(spelling)) for spelling in spellings}) == 1
+
+
+def test_distinct_words_are_the_words() -> None:
+    names = ["use_self_collision", "UVProjectModifier", "view_3d", "3D view", "image_10d_x", "SceneEEVEE", "UVs", "GRÖßE"]
+    assert distinct_words("\n".join(names)) == {word for name in names for word in words(name)}
 
 
 @pytest.mark.parametrize(
