@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.enum_contexts import items_in_contexts
+from kb_build.blender.prefixes import KnownPrefixes
 from kb_build.errors import ExtractError
 from kb_build.records import Default, Link, Page, Parameter, Section, Symbol, symbol_from_json
 
@@ -266,12 +267,12 @@ def manual_links(symbols: Iterable[Symbol], table: list[tuple[str, str]]) -> Ite
     def matcher(rank: int) -> re.Pattern[str]:
         return re.compile(fnmatch.translate(table[rank][0].lower()))
 
-    lengths = sorted({len(prefix) for prefix in (*starred, *others)})
+    known = KnownPrefixes((*starred, *others))
     for symbol in symbols:
         if not symbol.path.startswith("bpy.") or symbol.kind == "socket":
             continue
         path = symbol.path.lower()
-        prefixes = [path[:length] for length in lengths if length <= len(path)]
+        prefixes = known.of(path)
         ranks = [starred[prefix] for prefix in prefixes if prefix in starred]
         ranks += [
             rank
