@@ -7,7 +7,8 @@ these. A leaf module: it imports nothing of the project.
 from __future__ import annotations
 
 import hashlib
-from dataclasses import asdict, dataclass, fields, is_dataclass
+from dataclasses import dataclass, fields, is_dataclass
+from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, cast, get_args
 
 if TYPE_CHECKING:
@@ -205,9 +206,9 @@ class Link:
 def to_json(record: Symbol | Page) -> dict[str, Any]:
     """A record as a JSON-ready dictionary, without the fields that hold their default value."""
     return {
-        field.name: _plain(value)
-        for field in fields(record)
-        if (value := getattr(record, field.name)) != field.default
+        name: _plain(value)
+        for name, default in _fields(type(record))
+        if (value := getattr(record, name)) != default
     }
 
 
@@ -218,7 +219,14 @@ def _plain(value: Any) -> Any:
     if isinstance(value, Section):  # thousands, and most have no marks
         plain = {"anchor": value.anchor, "title": value.title, "level": value.level, "text": value.text}
         return {**plain, "marks": value.marks} if value.marks else plain
-    return asdict(value) if is_dataclass(value) and not isinstance(value, type) else value
+    known = _fields(type(value))
+    return {name: _plain(getattr(value, name)) for name, _ in known} if known else value
+
+
+@cache
+def _fields(of: type) -> tuple[tuple[str, Any], ...]:
+    """(name, default) of the fields of a record; none for other values."""
+    return tuple((field.name, field.default) for field in fields(of)) if is_dataclass(of) else ()
 
 
 def _enum_items(rows: list[dict[str, Any]]) -> tuple[EnumItem, ...]:

@@ -26,6 +26,7 @@ UNITS, TOPICS = range(2)
 # What a document is to the search; index: of a page that only lists others.
 DocumentKind = Literal["data", "code", "node", "index", "rarely asked"]
 DOCUMENT_KINDS: tuple[DocumentKind, ...] = ("data", "code", "node", "index", "rarely asked")
+_JSON = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"))
 POSTING_BYTES = 6  # a number as uint32, a weight as float16
 
 DDL = """
@@ -198,7 +199,7 @@ def _check(connection: sqlite3.Connection) -> None:
 
 def pack(record: dict[str, Any]) -> bytes:
     """A record (records.to_json) as deflated JSON: a third of its size, and 20 µs to read back."""
-    return zlib.compress(json.dumps(record, ensure_ascii=False, separators=(",", ":")).encode(), 6)
+    return zlib.compress(_JSON.encode(record).encode(), 6)
 
 
 def unpack(data: bytes) -> dict[str, Any]:

@@ -7,6 +7,7 @@ import os
 import sqlite3
 from dataclasses import dataclass, field, replace
 from functools import cache
+from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -122,8 +123,12 @@ def _insert(
 
 
 def _write_symbols(
-    connection: sqlite3.Connection, symbols: Sequence[Symbol], reached: Mapping[str, str]
+    connection: sqlite3.Connection,
+    symbols: Sequence[Symbol],
+    pages: Sequence[Page],
+    reached: Mapping[str, str],
 ) -> None:
+    """Writes the symbols, and the names of symbols and pages."""
     _insert(
         connection,
         "symbols",
@@ -137,8 +142,11 @@ def _write_symbols(
         ),
         13,
     )  # fmt: skip
-    _insert(connection, "names", (row for symbol in symbols for row in symbol_names(symbol)), 3)
-    _insert(connection, "enum_items", (row for symbol in symbols for row in enum_rows(symbol)), 4)
+    # In the order of their keys: SQLite then fills page after page, and splits none.
+    names = (row for symbol in symbols for row in symbol_names(symbol))
+    _insert(connection, "names", sorted({*names, *(row for page in pages for row in page_names(page))}), 3)
+    items = (row for symbol in symbols for row in enum_rows(symbol))
+    _insert(connection, "enum_items", sorted(items, key=itemgetter(0, 1, 2)), 4)
 
 
 def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
@@ -161,7 +169,7 @@ def _explained(symbols: Sequence[Symbol], links: Sequence[Link]) -> Iterator[tup
 
 def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: RemovedSymbols) -> None:
     _insert(connection, "removed", removed_symbols.removed, 5)
-    _insert(connection, "removed_names", removed_symbols.names, 2)
+    _insert(connection, "removed_names", sorted(removed_symbols.names), 2)
     _insert(connection, "successors", removed_symbols.successors, 6)
     _insert(connection, "similar_names", removed_symbols.similar_names, 3)
     _insert(connection, "since", removed_symbols.since, 2)
@@ -199,7 +207,6 @@ def _write_pages(
                 for position, section in enumerate(page.sections)
             ),
         )
-        _insert(connection, "names", page_names(page), 3)
 
 
 def _write_level(
@@ -303,7 +310,7 @@ def _write(part: Path, contents: Contents) -> None:
             usage = contents.usage()
             calls = creation_calls(contents.symbols, usage.reached)
             _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
-            _write_symbols(connection, contents.symbols, usage.reached)
+            _write_symbols(connection, contents.symbols, contents.pages, usage.reached)
             _write_usage(connection, usage.uses)
             counts = {path: uses.count for path, uses in usage.uses.items()}
             weights = symbol_weights(contents.symbols, passages, expansions, counts)

@@ -204,7 +204,9 @@ class BaseReader:
 
     def _members(self, owner: str) -> dict[str, SymbolEntry]:
         rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE owner = ? ORDER BY id", owner)
-        return {row[3] if row[1] != "socket" else row[0][len(owner) + 1 :]: SymbolEntry._make(row) for row in rows}
+        return {
+            row[3] if row[1] != "socket" else row[0][len(owner) + 1 :]: SymbolEntry._make(row) for row in rows
+        }
 
     def _subclasses(self, path: str) -> tuple[SymbolEntry, ...]:
         rows = self.rows(f"SELECT {_ENTRY} FROM symbols WHERE base = ? AND base != '' ORDER BY path", path)

@@ -58,6 +58,16 @@ class _Graph:
     label: dict[str, str] = field(default_factory=dict)
     trees: dict[str, tuple[str, ...]] = field(default_factory=dict)
     named: set[str] = field(default_factory=set)
+    descendants: dict[str, list[str]] = field(default_factory=dict)
+
+    def below(self, cls: str) -> list[str]:
+        """Every class below one, each before its own."""
+        if cls not in self.descendants:
+            found = self.descendants[cls] = []
+            for child in self.derived.get(cls, ()):
+                found += [child, *self.below(child)]
+        return self.descendants[cls]
+
     told: dict[str, str] = field(default_factory=dict)
 
 
@@ -128,12 +138,6 @@ def _active(step: _Step, graph: _Graph) -> _Step | None:
     return next((inner for inner in found if inner.target == step.target and not inner.many), None)
 
 
-def _descendants(cls: str, graph: _Graph) -> Iterable[str]:
-    for child in graph.derived.get(cls, ()):
-        yield child
-        yield from _descendants(child, graph)
-
-
 def reached_expressions(symbols: Iterable[Symbol], uses: Mapping[str, int] | None = None) -> dict[str, str]:
     """class name → an expression that gives an instance, for every class that pointers lead to.
 
@@ -146,10 +150,11 @@ def reached_expressions(symbols: Iterable[Symbol], uses: Mapping[str, int] | Non
     queue: list[tuple[float, int, str, str]] = []
     order = 0
 
-    def offer(cost: float, cls: str, expression: str) -> None:
+    def offer(cost: float, cls: str, expression: str, *, many: bool = False) -> None:
         nonlocal order
         if cls not in expressions:
-            heapq.heappush(queue, (cost, order := order + 1, cls, expression))
+            key = _key(cls, graph) if many else ""
+            heapq.heappush(queue, (cost, order := order + 1, cls, expression + key))
 
     for root, cls, cost in _ROOTS:
         offer(cost, cls, root)
@@ -163,15 +168,15 @@ def reached_expressions(symbols: Iterable[Symbol], uses: Mapping[str, int] | Non
         for step in _steps(cls, graph):
             here = f"{expression}.{step.name}"
             reached = cost + step.cost + (1 if step.many else 0)
-            offer(reached, step.target, here + (_key(step.target, graph) if step.many else ""))
+            offer(reached, step.target, here, many=step.many)
             active = _active(step, graph) if step.many else None
             if active is not None:
                 offer(cost + step.cost + active.cost - _ACTIVE_GAIN, step.target, f"{here}.active")
             # ``Object.data`` is any data-block to RNA; the collections of ``bpy.data`` say which.
-            for child in _descendants(step.target, graph) if step.target != "ID" else ():
+            for child in graph.below(step.target) if step.target != "ID" else ():
                 # Every tree's ``nodes`` takes every node as far as RNA knows.
                 if cls in graph.trees.get(child, (cls,)):
-                    offer(reached + 1, child, here + (_key(child, graph) if step.many else ""))
+                    offer(reached + 1, child, here, many=step.many)
     # A shader's nodes live in a material, where there are others like it.
     for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
         expressions[cls] = f"{expressions.get('Material', 'material')}.node_tree.nodes{_key(cls, graph)}"

@@ -12,8 +12,8 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.enum_contexts import items_in_contexts
-from kb_build.blender.prefixes import KnownPrefixes
 from kb_build.errors import ExtractError
+from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import Default, Link, Page, Parameter, Section, Symbol, symbol_from_json
 
 if TYPE_CHECKING:

@@ -42,16 +42,20 @@ def words(text: str) -> list[str]:
     """Lower-case words; identifiers are split at ``_``, at dots and at CamelCase humps."""
     parts: list[str] = []
     for token in _WORD.findall(text):
-        if token.isascii() and token[0].isalpha() and not token.islower():
-            parts.extend(part.lower() for part in _CAMEL.findall(token))
-        else:
-            parts.append(token.lower())
+        parts += _words_in(token)
     return parts
+
+
+@lru_cache(maxsize=30_000)
+def _words_in(token: str) -> tuple[str, ...]:
+    if token.isascii() and token[0].isalpha() and not token.islower():
+        return tuple(part.lower() for part in _CAMEL.findall(token))
+    return (token.lower(),)
 
 
 def distinct_words(text: str) -> set[str]:
     """The words of a long text, each once."""
-    return {word for token in set(_WORD.findall(text)) for word in words(token)}
+    return {word for token in set(_WORD.findall(text)) for word in _words_in(token)}
 
 
 def content_words(text: str) -> list[str]:

@@ -47,7 +47,8 @@ def document_postings(
     for document in documents:
         row: dict[str, Counter[str]] = {}
         for name in FIELDS:
-            stems = [stem(word) for text in getattr(document, name) if text for word in tokenize(text)]
+            texts = getattr(document, name)
+            stems = [stem(word) for text in texts if text for word in tokenize(text)] if texts else ()
             lengths[name].append(len(stems))
             if stems:
                 row[name] = Counter(stems)
@@ -109,11 +110,14 @@ def pack_postings(*levels: tuple[int, PostingLists]) -> Iterator[tuple[str, int,
 
 def vocabulary(units: Iterable[Document], tokenize: Tokenize = content_words) -> Iterator[tuple[str, str]]:
     """(stem, most used spelling) for every word of the corpus."""
-    spellings: dict[str, Counter[str]] = defaultdict(Counter)
+    counts: Counter[str] = Counter()
     for unit in units:
         for name in FIELDS:
             for text in getattr(unit, name):
-                for word in tokenize(text):
-                    spellings[stem(word)][word] += 1
-    for stemmed, counter in spellings.items():
-        yield stemmed, counter.most_common(1)[0][0]
+                counts.update(tokenize(text))
+    usual: dict[str, str] = {}
+    for word, count in counts.items():
+        known = usual.setdefault(stem(word), word)
+        if count > counts[known]:
+            usual[stem(word)] = word
+    yield from usual.items()

@@ -11,7 +11,7 @@ def split_path(path: str) -> tuple[str, str, str]:
     """Splits a path into (path above, mark, name). Marks: ``.`` member, ``(`` parameter, ``:`` enum item, ``<`` input
     and ``>`` output of a node. Enum items follow the last ``:`` of a path.
     """
-    if match := _PATH.fullmatch(path):
+    if path.endswith(('"]', ")")) and (match := _PATH.fullmatch(path)):
         if match[2]:
             return match[1], "<" if match[2] == "inputs" else ">", match[3]
         return match[4], "(", match[5]

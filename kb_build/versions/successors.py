@@ -10,10 +10,12 @@ from __future__ import annotations
 import csv
 import re
 from dataclasses import dataclass
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kb_build.errors import StoreError
+from kb_build.known_prefixes import KnownPrefixes
 from kb_build.versions.paths import joined_path, split_path
 from simworlds.releases import version_key
 
@@ -66,12 +68,13 @@ class Successors:
         until = version_key(version)
         rows = [row for row in table if version_key(row.version) <= until]
         self._rows = {row.old: row for row in rows if "*" not in row.old}
-        # What precedes the star is compared first: that is faster.
-        self._patterns = [
-            (row.old.partition("*")[0], re.compile(re.escape(row.old).replace(r"\*", r"([^.()\[\]:]*)")), row)
-            for row in rows
-            if "*" in row.old
-        ]
+        # By what precedes the star, each with its place in the table.
+        self._patterns: dict[str, list[tuple[int, re.Pattern[str], Succession]]] = {}
+        for place, row in enumerate(rows):
+            if "*" in row.old:
+                pattern = re.compile(re.escape(row.old).replace(r"\*", r"([^.()\[\]:]*)"))
+                self._patterns.setdefault(row.old.partition("*")[0], []).append((place, pattern, row))
+        self._starts = KnownPrefixes(self._patterns)
         self._found: dict[str, list[Succession]] = {}
 
     def stated(self) -> Iterator[Succession]:
@@ -139,8 +142,9 @@ class Successors:
     def _row(self, path: str) -> Succession | None:
         if row := self._rows.get(path):
             return row
-        for start, pattern, row in self._patterns:
-            if path.startswith(start) and (match := pattern.fullmatch(path)):
+        patterns = (entry for start in self._starts.of(path) for entry in self._patterns[start])
+        for _, pattern, row in sorted(patterns, key=itemgetter(0)):
+            if match := pattern.fullmatch(path):
                 new = tuple(target.replace("*", match[1]) for target in row.new)
                 return Succession(path, new, row.how, row.version, row.source)
         return None

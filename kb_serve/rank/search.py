@@ -81,10 +81,10 @@ class Searcher:
         )
         return ranked[0][0] if ranked else ""
 
-    def concepts(self, asking: Sequence[str]) -> list[Concept]:
-        """The distinct words of a query, each with its stem in this corpus."""
+    def concepts(self, text: str) -> list[Concept]:
+        """The query's distinct words, each with its stem in this corpus."""
         asked: dict[str, str] = {}
-        for word in asking[:_MAX_WORDS]:
+        for word in words(text)[:_MAX_WORDS]:
             if word not in STOP_WORDS:
                 asked.setdefault(stem(word), word)
         self.index.postings.load(asked)
@@ -111,9 +111,9 @@ class Searcher:
 
     def find(self, text: str, *, failed: bool = False) -> tuple[NDArray[np.intp], Evidence] | None:
         """The units that speak most of a text: their numbers, and what is known of them. None if there are none."""
-        asking = words(text)
+        concepts = self.concepts(text)
         units, topics = self.index.levels
-        found = score_all(self.index, self.concepts(asking))
+        found = score_all(self.index, concepts)
         numbers = np.flatnonzero(found.coverage[: units.count] > 0)
         if not len(numbers):
             return None
@@ -124,7 +124,7 @@ class Searcher:
         best = _top(texts, _CANDIDATES)
         numbers, texts, topic = numbers[best], texts[best], topic[best]
         evidence = Evidence(
-            frozenset(asking),
+            frozenset(words(text)),
             failed,
             texts,
             self._asked(found, numbers, topic),

@@ -144,7 +144,7 @@ def test_enum_items_lead_to_their_property_or_argument(small: BaseReader) -> Non
 
 
 def test_links_meta_and_other_versions_read_back(small: BaseReader) -> None:
-    assert small.links_from(STEPS.path, "manual") == ["physics/cloth/index#steps"]
+    assert small.manual_links(STEPS.path) == ("physics/cloth/index#steps",)
     assert small.symbols_of_page("physics/index") == [ADD.path]
     assert small.meta == {"minor": "5.1", "fingerprint": "f"}
     assert small.removed("bpy.types.ClothSettings.old") == ("4.2", "4.5", "5.0")

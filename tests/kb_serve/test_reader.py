@@ -86,7 +86,7 @@ def test_unknown_symbols_and_pages_are_none(reader: BaseReader, text: str) -> No
     assert reader.removed(text) is None
     assert not reader.members(text) or text == ""
     assert reader.by_name(text) == ()
-    assert reader.links_from(text, "manual") == []
+    assert reader.manual_links(text) == ()
     assert reader.successors(text) == []
     assert reader.similar_names(text) == []
     assert reader.since(text) == ""
@@ -100,7 +100,7 @@ def test_no_look_up_reads_a_whole_table(base: Path) -> None:
         lambda r: r.by_name("quality"), lambda r: r.by_key("quality"), lambda r: r.enum_owners("emitter"),
         lambda r: r.removed("x"), lambda r: r.removed_by_key("x"), lambda r: r.successors("x"),
         lambda r: r.similar_names("x"), lambda r: r.since("x"),
-        lambda r: r.links_from("bpy.types.Object", "manual"),
+        lambda r: r.manual_links("bpy.types.Object"),
         lambda r: r.page_entry("physics/index"), lambda r: r.page_children("physics/index"),
         lambda r: r.symbols_of_page("physics/index"), lambda r: r.page("physics/cloth/introduction"),
     ]  # fmt: skip

@@ -8,9 +8,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from docutils import nodes
+from sphinx import addnodes
 from sphinx.builders import Builder
 from sphinx.environment.collectors.asset import ImageCollector
 from sphinx.transforms import SphinxTransform
+from sphinx.transforms.post_transforms.code import HighlightLanguageTransform
 
 from kb_build.pages.readers import blender_markup
 from kb_build.pages.readers import markdown as md
@@ -78,6 +80,16 @@ class VersionSubstitutions(SphinxTransform):
         for parent in parents:
             if any(id(child) in ours for child in parent.children):
                 parent[:] = [ours.get(id(child), child) for child in parent.children]
+
+
+class CodeLanguages(HighlightLanguageTransform):
+    """Sphinx's own, which goes through the whole tree, for the pages that have code."""
+
+    def apply(self, **given: Any) -> None:
+        """Name the language of each block of code."""
+        kinds = (nodes.literal_block, addnodes.highlightlang)
+        if any(next(self.document.findall(kind), None) is not None for kind in kinds):
+            super().apply(**given)
 
 
 class PagesBuilder(Builder):
@@ -210,7 +222,7 @@ def drop_needless_work(app: Sphinx) -> None:
     registry = app.registry
     registry.transforms[:] = [each for each in registry.transforms if each.__name__ not in _NEEDLESS]
     registry.post_transforms[:] = [
-        each
+        CodeLanguages if each is HighlightLanguageTransform else each
         for each in registry.post_transforms
         if each.__name__ not in _NEEDLESS and not each.__module__.startswith("sphinx.builders.latex")
     ]
