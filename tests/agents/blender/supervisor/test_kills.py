@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-KILLS = 12  # of each of the five
+KILLS = 6  # of each of the five, half of them of the process around Blender
 SEED = 20251
 
 # A scene that takes a moment to write, and has something to bake and to render.
