@@ -139,7 +139,7 @@ ALIKE = {"verify-plan", "verify-heavy", "verify-none", "audit-heavy", "show-brok
 @pytest.mark.parametrize("name", [name for name in WORDS if name not in ALIKE])
 def test_what_a_command_prints_steers_nothing(name: str, place: Path) -> None:
     done = subprocess.run(
-        command(place, name), env=environment(place), capture_output=True, check=False, timeout=120
+        command(place, name), env=environment(place), capture_output=True, check=False, timeout=280
     )
     printed = (done.stdout + done.stderr).decode()
     assert "evil" in printed, printed
