@@ -194,7 +194,6 @@ async def test_calls_that_come_at_once_are_run_one_after_the_other(client: Clien
 
 async def test_a_call_that_is_cancelled_is_undone_and_the_next_one_works(client: Client) -> None:
     await run(client, "bpy.context.scene['kept'] = 1")
-    began = time.monotonic()
     with anyio.move_on_after(1.0) as waited:
         await run(client, f"bpy.context.scene['kept'] = 2\n{FOREVER}", timeout=100)
     assert waited.cancelled_caught
@@ -203,7 +202,6 @@ async def test_a_call_that_is_cancelled_is_undone_and_the_next_one_works(client:
     assert after["value"] == "1"
     assert "was cancelled after" in after["note"]
     assert "started from checkpoint" in after["note"]
-    assert time.monotonic() - began < 60  # far from the deadline of 100 s
 
 
 async def test_cancelling_a_waiting_call_affects_no_other_call(
@@ -287,14 +285,12 @@ async def test_an_unforeseen_error_shows_no_traceback(
 
 def test_without_a_base_blender_works_and_the_documentation_says_what_to_do(tmp_path: Path) -> None:
     with ByHand(tmp_path) as wire:
-        began = time.monotonic()
         assert wire.run("1 + 1") == "2"
         failed = wire.call("tools/call", name="blender_execute", arguments={"code": "bpy.types.Nonsense"})
         assert failed["result"]["structuredContent"]["error"]["documentation"] == ""
         asked = wire.call("tools/call", name="blender_docs", arguments={"query": "cloth"})["result"]
         assert asked["isError"]
         assert "simworlds kb build" in asked["content"][0]["text"]
-        assert time.monotonic() - began < 60
 
 
 def test_a_documentation_server_that_was_killed_is_started_again(home: Path) -> None:
