@@ -207,7 +207,10 @@ class Reviewed(Event):
 
 
 class Decided(Event):
-    """What the planner decided, what was ``taken`` instead where it was ``overruled``, and why."""
+    """What became of an attempt: ``taken``, and ``why`` the stage is still open; "advance" closes it, undecided.
+
+    ``overruled``: what the planner decided could not be done any more.
+    """
 
     type: Literal["decided"] = "decided"
     decision: Decision | None = None

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from agents.loop.run import Run
     from agents.loop.task import Finding, RunTask
     from agents.plan.part import Stage
-    from agents.plan.tactical import Decision, TacticalPlan
+    from agents.plan.tactical import TacticalPlan
     from agents.roles.reviewer import Reviewer
 
 _OFF = "The verifier is switched off in this run."
@@ -134,10 +134,8 @@ def format_review(review: Review) -> str:
     return "\n".join(lines)
 
 
-def overruled(decision: Decision, how: str, verdict: VerifierVerdict, review: Review) -> str:
-    """Why a decision to advance is not followed; "" if it may be (paper, "Per-Stage Execution Loop")."""
-    if decision.transition != "advance":
-        return ""
+def still_open(how: str, verdict: VerifierVerdict, review: Review) -> str:
+    """What keeps a stage from being closed; "" if nothing does (paper, "Per-Stage Execution Loop")."""
     if not verdict.ok:
         return f"The verifier has {verdict.hard} hard finding{'s' if verdict.hard != 1 else ''}."
     if review.blocking:

@@ -30,13 +30,14 @@ class TacticalPlan(PlanPart):
 
 
 class Decision(PlanPart):
-    """What happens after a stage. ``advance`` is refused while a hard rule fails or a review blocks."""
+    """What happens after an attempt that leaves a stage open."""
 
-    transition: Literal["advance", "retry", "replan", "abort"]
+    transition: Literal["retry", "replan", "abort"]
     reason: str = Field(min_length=1, max_length=2000)
     instructions: str = Field(
         default="", max_length=8000, description="For a retry: what the coder must fix."
     )
+    tactic: TacticalPlan | None = Field(default=None, description="For a replan: the stage's new plan.")
 
     @model_validator(mode="after")
     def _retry_says_what(self) -> Decision:

@@ -83,9 +83,8 @@ def _stage_lines(event: events.Event, stage: StageRun) -> list[str]:
         case events.Decided(decision=decision) if last:
             reason = decision.reason if decision else event.why
             wanted = f" (it wanted to {decision.transition})" if decision and event.overruled else ""
-            return [
-                f"{name}, attempt {last.number} {describe_attempt(last)}{wanted}: {shortened(reason, _WORDS)}"
-            ]
+            why = f": {shortened(reason, _WORDS)}" if reason else ""
+            return [f"{name}, attempt {last.number} {describe_attempt(last)}{wanted}{why}"]
         case _:
             return []
 

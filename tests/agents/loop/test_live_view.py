@@ -73,14 +73,14 @@ def test_log_lines_follow_the_run() -> None:
         "verifier: 13 hard findings, 1 soft finding",
         "V1 ×12 Domino.01 … Domino.12 (12) · Table",
         "reviewer blocks: The row is even.",
-        "attempt 1 sent back: 13 hard findings, the reviewer blocks (it wanted to advance)",
+        "attempt 1 sent back: 13 hard findings, the reviewer blocks: The verifier measured it",
         "Modeling closed after 2 attempts, 1 min 20 s",
         "UV: skipped",
         "back to checkpoints/texture.blend",
         "Resumed, session 2.",
         "Final review: needs a fix: The last domino is cut off.",
         "Run done",
-        "cost: $1.48",
+        "cost: $1.28",
     ):
         assert words in told
         told = told[told.index(words) :]
