@@ -200,10 +200,11 @@ class Verified(Event):
 
 
 class Reviewed(Event):
-    """The reviewer's verdict on an attempt."""
+    """The reviewer's verdict on an attempt. ``lines`` are those of acceptance that it answers."""
 
     type: Literal["reviewed"] = "reviewed"
     review: Review | None = None
+    lines: Strs = ()
 
 
 class Decided(Event):
@@ -310,10 +311,11 @@ class SceneRendered(Event):
 
 
 class FinalReviewed(Event):
-    """The final reviewer's verdict on a rendering."""
+    """The final reviewer's verdict on a rendering. ``lines`` are those of acceptance that it answers."""
 
     type: Literal["final.reviewed"] = "final.reviewed"
     review: FinalReview | None = None
+    lines: Strs = ()
 
 
 class Edited(Event):

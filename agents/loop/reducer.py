@@ -60,7 +60,7 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
         case events.Verified():
             return _with_attempt(state, event, verification=event)
         case events.Reviewed():
-            return _with_attempt(state, event, review=event.review)
+            return _with_attempt(state, event, review=event.review, lines=event.lines)
         case events.Decided():
             return _with_attempt(state, event, choice=event)
         case events.RolledBack():
@@ -268,12 +268,15 @@ def _rendered(state: RunState, event: events.SceneRendered) -> RunState:
 def _final_reviewed(state: RunState, event: events.FinalReviewed) -> RunState:
     known = [rendering.round for rendering in state.renderings]
     if not known:
-        return replace(state, renderings=(Rendering(event.round or 1, review=event.review),))
+        rendering = Rendering(event.round or 1, review=event.review, lines=event.lines)
+        return replace(state, renderings=(rendering,))
     number = event.round if event.round in known else known[-1]
     return replace(
         state,
         renderings=tuple(
-            replace(rendering, review=event.review) if rendering.round == number else rendering
+            replace(rendering, review=event.review, lines=event.lines)
+            if rendering.round == number
+            else rendering
             for rendering in state.renderings
         ),
     )

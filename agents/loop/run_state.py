@@ -73,7 +73,8 @@ Step = ModelCall | ToolCall
 class Attempt:
     """One attempt at a stage. ``tactic`` is there if a plan was made for this very one.
 
-    ``report`` are the coder's last words, ``ended`` is how it came to its end, ``rolled_back`` what was gone back to.
+    ``lines`` are those of acceptance that the ``review`` answers. ``report`` are the coder's last words,
+    ``ended`` is how it came to its end, ``rolled_back`` what was gone back to.
     """
 
     stage: str
@@ -84,6 +85,7 @@ class Attempt:
     ended: str = ""
     verification: Verified | None = None
     review: Review | None = None
+    lines: tuple[str, ...] = ()
     choice: Decided | None = None
     rolled_back: str = ""
     seconds: float = 0.0
@@ -112,7 +114,10 @@ class StageRun:
 
 @dataclass(frozen=True, slots=True)
 class Rendering:
-    """A render (``path`` is the still or video), and its final review. Paths are not to be trusted."""
+    """A render (``path`` is the still or video), and its final review, which answers ``lines`` of acceptance.
+
+    Paths are not to be trusted.
+    """
 
     round: int
     kind: str = ""
@@ -122,6 +127,7 @@ class Rendering:
     samples: int | None = None
     pictures: tuple[str, ...] = ()
     review: FinalReview | None = None
+    lines: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)

@@ -53,11 +53,14 @@ class StageLoop:
         while True:
             verdict, review = self._judged(attempt, tactic)
             if why := still_open(worked.how, verdict, review):
-                decision = self._decided(attempt, worked, verdict, review, why)
+                reviewed = format_review(review, tactic)
+                decision = self._decided(attempt, worked, verdict, reviewed, why)
             else:
                 self._run.journal.note(Decided(stage=self._stage, attempt=attempt, taken="advance"))
                 if not (mend := self._unsaved()):
-                    self._planner.closed(self._stage, worked.said, verdict.text, format_review(review))
+                    self._run.acceptance.close(tactic, review)
+                    reviewed = format_review(review, tactic)
+                    self._planner.closed(self._stage, worked.said, verdict.text, reviewed)
                     return attempt
                 decision = Decision(transition="retry", reason="It cannot be saved.", instructions=mend)
             if decision.transition == "abort":
@@ -66,7 +69,7 @@ class StageLoop:
             attempt += 1
             if decision.transition == "retry":
                 self._retries += 1
-                mend_what = (decision.instructions, verdict.text, format_review(review))
+                mend_what = (decision.instructions, verdict.text, format_review(review, tactic))
                 worked = self._run.attempted(self._stage, attempt, partial(self._coder.again, *mend_what))
             else:
                 self._replans += 1
@@ -95,6 +98,7 @@ class StageLoop:
         if tactic is None:
             why = f"The last plan did not do: {replan.reason}" if replan else ""
             tactic = self._planner.tactical(stage, state, why)
+        tactic = run.acceptance.with_lines_due(tactic)
         run.journal.note(TacticMade(stage=stage, attempt=attempt, plan=tactic))
         return tactic, run.attempted(stage, attempt, partial(code, tactic, state))
 
@@ -102,14 +106,14 @@ class StageLoop:
         run, task, stage = self._run, self._task, self._stage
         return judge(
             run,
-            stage,
+            tactic,
             attempt,
             partial(verify, run, stage, task),
             partial(review, run, self._reviewer, tactic, task),
         )
 
     def _decided(
-        self, attempt: int, worked: WorkResult, verdict: VerifierVerdict, review: Review, why: str
+        self, attempt: int, worked: WorkResult, verdict: VerifierVerdict, reviewed: str, why: str
     ) -> Decision:
         """The planner's decision on an attempt that leaves the stage open; to abort where it has no such try left."""
         left = {
@@ -123,7 +127,7 @@ class StageLoop:
             how=worked.how,
             report=worked.said,
             verified=verdict.text,
-            reviewed=format_review(review),
+            reviewed=reviewed,
             left=f"{left['retry']} retries and {left['replan']} replans are left.",
         )
         is_spent = left.get(decision.transition) == 0

@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from agents.plan.acceptance import AcceptanceAnswer
 from agents.plan.part import Name, PlanPart, Stage
 
 
@@ -74,14 +75,21 @@ class Review(PlanPart):
     """A reviewer's answers. ``blocking`` keeps the stage open."""
 
     judgements: tuple[ReviewAnswer, ...]
+    acceptance: tuple[AcceptanceAnswer, ...] = ()
     blocking: bool
     summary: str = Field(max_length=4000)
+
+    @property
+    def blocks(self) -> bool:
+        """Whether it keeps the stage open: by its own word, or by a line of ``acceptance`` that fails."""
+        return self.blocking or any(answer.verdict == "fails" for answer in self.acceptance)
 
 
 class FinalReview(PlanPart):
     """The verdict on the rendered result."""
 
     verdict: Literal["accept", "needs_fix"]
+    acceptance: tuple[AcceptanceAnswer, ...] = ()
     summary: str = Field(max_length=4000)
     instructions: str = Field(default="", max_length=8000)
 

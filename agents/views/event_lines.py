@@ -41,7 +41,7 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
         case events.Verified():
             return _verified(event)
         case events.Reviewed(review=review) if review:
-            verdict = "blocks" if review.blocking else "does not block"
+            verdict = "blocks" if review.blocks else "does not block"
             return [f"  reviewer {verdict}: {shortened(review.summary, _WORDS)}"]
         case events.RolledBack():
             return [f"  back to {event.to}"]

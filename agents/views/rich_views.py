@@ -256,9 +256,9 @@ def _judged(attempt: Attempt, most: int, *, is_cut: bool = False) -> list[Render
     told = format_findings(found, most) if found else []
     lines = [_line(one, "red" if found and found.hard else "yellow") for one in told]
     if attempt.review:
-        verdict = "blocks" if attempt.review.blocking else "does not block"
+        verdict = "blocks" if attempt.review.blocks else "does not block"
         words = f"Reviewer {verdict}: {attempt.review.summary}"
-        lines.append(_line(words, "red" if attempt.review.blocking else "green", most=200))
+        lines.append(_line(words, "red" if attempt.review.blocks else "green", most=200))
     for line in lines:
         line.no_wrap, line.overflow = is_cut, "ellipsis" if is_cut else None
     return [Padding(line, (0, 0, 0, 2)) for line in lines]

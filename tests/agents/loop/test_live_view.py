@@ -74,7 +74,7 @@ def test_log_lines_follow_the_run() -> None:
         "V1 ×12 Domino.01 … Domino.12 (12) · Table",
         "reviewer blocks: The row is even.",
         "attempt 1 sent back: 13 hard findings, the reviewer blocks: The verifier measured it",
-        "Modeling closed after 2 attempts, 1 min 20 s",
+        "Modeling closed after 2 attempts, 1 min 14 s",
         "UV: skipped",
         "back to checkpoints/texture.blend",
         "Resumed, session 2.",
@@ -106,7 +106,7 @@ def test_log_continues_a_resumed_run() -> None:
     stream = io.StringIO()
     with RunLog(stream, until("stage.closed")) as view:
         view.take(read_event({"type": "stage.began", "stage": "texture"}))
-    assert stream.getvalue() == "01:41  Texture begins\n"
+    assert stream.getvalue() == "01:35  Texture begins\n"
 
 
 class _Gone(io.StringIO):
@@ -177,8 +177,8 @@ def test_time_left_is_shown_once_enough_is_done() -> None:
     assert seconds_left(until("stage.began")) is None
     assert seconds_left(until("stage.closed", 1)) is None, "one of six stages tells little"
     two = until("stage.closed", 2)
-    assert seconds_left(two) == pytest.approx((80.1 + 29.7) / 2 * 3, rel=0.02)
-    assert "02:12 · about 3 min left, and at most 20 min for the film" in drawn(
+    assert seconds_left(two) == pytest.approx((74.0 + 23.6) / 2 * 3, rel=0.02)
+    assert "02:12 · about 2 min left, and at most 20 min for the film" in drawn(
         run_in_progress(two, Now(132.0), 40)
     )
     left = seconds_left(two, since=1e9)
@@ -188,7 +188,7 @@ def test_time_left_is_shown_once_enough_is_done() -> None:
 
 
 def test_costs_are_shown_and_recorded_answers_cost_nothing() -> None:
-    assert "$1.48 · 640.8k in, 15.2k out" in drawn(run_in_progress(until("run.ended"), Now(377.0), 40))
+    assert "$1.28 · 554.2k in, 13.1k out" in drawn(run_in_progress(until("run.ended"), Now(377.0), 40))
     recorded = drawn(run_in_progress(run_state_after(dominoes(live=False).rows), Now(377.0), 40))
     assert "recorded answers, nothing to pay" in recorded
     assert "No model was asked" in recorded
@@ -294,7 +294,7 @@ def test_runs_are_listed_with_how_they_stand() -> None:
     )
     told = [re.split(r"  +", line.strip()) for line in drawn(table).splitlines() if line.strip()]
     assert told[0] == ["Run", "What", "Outcome", "Stage", "Cost", "When"]
-    assert told[2][:4] == ["first", "Twelve dominoes", "done", "$1.48"]
+    assert told[2][:4] == ["first", "Twelve dominoes", "done", "$1.28"]
     assert told[3][:4] == ["second", "A cloth falls over a table", "stopped", "Motion"]
     assert told[4][:2] == ["third", "unfinished"]
 

@@ -190,8 +190,8 @@ def test_pictures_are_there_once_and_steps_lead_to_them(page: BeautifulSoup) -> 
 def test_costs_are_told_by_role_and_stage(page: BeautifulSoup) -> None:
     rows = [words(row) for row in page.select("#costs tbody tr")]
     assert rows[0].startswith("Scene plan $0.21")
-    assert any(row.startswith("Modeling") and row.endswith("1 min 20 s") for row in rows)
-    assert "$1.48" in words(page.select_one("#costs tfoot"))
+    assert any(row.startswith("Modeling") and row.endswith("1 min 14 s") for row in rows)
+    assert "$1.28" in words(page.select_one("#costs tfoot"))
 
 
 def test_live_answers_are_not_excused(page: BeautifulSoup) -> None:
