@@ -228,10 +228,12 @@ class RolledBack(Event):
 
 
 class ModelAsked(Event):
-    """A role asked its model; ``simworlds.llm.recorded`` writes what else is in the row."""
+    """A role asked its model: ``parts`` are digests of what it was told, see ``simworlds.llm.recorded``."""
 
     type: Literal["model.asked"] = "model.asked"
     model: Str = ""
+    parts: Strs = ()
+    texts: dict[str, str] = Field(default_factory=dict[str, str])
 
 
 class ModelAnswered(Event):

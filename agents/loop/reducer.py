@@ -6,6 +6,7 @@ nothing but the clock, and what an event speaks of without its having begun has 
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Turn
 
 
+_PICTURE = re.compile(r"^<picture image/\w+>$", re.MULTILINE)
 _BUILDING = (events.PlanMade, events.StageMoved, events.TacticMade, events.AttemptBegan)
 
 
@@ -66,7 +68,9 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
         case events.RolledBack():
             return _with_attempt(state, event, rolled_back=event.to)
         case events.ModelAsked():
-            return _begin(state, ModelCall(**_place(state, event), model=event.model))
+            pictures = sum(_pictures(event.texts.get(part, "")) for part in set(event.parts) - state.sent)
+            state = replace(state, sent=state.sent.union(event.parts))
+            return _begin(state, ModelCall(**_place(state, event), model=event.model, pictures=pictures))
         case events.ToolCalled():
             return _begin(state, ToolCall(**_place(state, event), name=event.name, input=event.input))
         case events.ModelAnswered():
@@ -194,6 +198,11 @@ def _place(state: RunState, event: events.Event) -> dict[str, Any]:
 def _begin(state: RunState, step: Step) -> RunState:
     state = _put_step(state, step)
     return replace(state, pending=(*state.pending, step))
+
+
+def _pictures(text: str) -> int:
+    """How many pictures there are in what a model was told, as ``simworlds.llm.canonical`` writes it."""
+    return len(_PICTURE.findall(text))
 
 
 def _open(state: RunState, event: events.Event, kind: type[Step]) -> Step | None:

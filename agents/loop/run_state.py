@@ -28,13 +28,17 @@ DEFAULT_RENDER_MINUTES = 20.0  # for a film, unless the run says otherwise
 
 @dataclass(frozen=True, slots=True)
 class ModelCall:
-    """A role asked its model. ``turn`` is None until it is answered. ``began`` is in seconds of work."""
+    """A role asked its model. ``turn`` is None until it is answered. ``began`` is in seconds of work.
+
+    ``pictures``: how many it was sent that it had not been sent before.
+    """
 
     n: int
     role: str
     stage: str
     attempt: int
     model: str = ""
+    pictures: int = 0
     began: float = 0.0
     seconds: float | None = None
     turn: Turn | None = None
@@ -137,7 +141,8 @@ class RunState:
 
     ``plan`` is the scene plan, ``edit`` the plan of an edit, which made the ``changes``. ``planning``: seconds until
     something was built (``is_building``). ``draft``, ``film``: what is known of the film before it is rendered.
-    ``spending`` is by role and stage. ``began`` and ``latest`` are the times of the first and the last row.
+    ``spending`` is by role and stage, ``sent`` are digests of all that models were told. ``began`` and ``latest`` are
+    the times of the first and the last row.
     """
 
     mode: str = ""
@@ -165,6 +170,7 @@ class RunState:
     changes: Edited | None = None
     ending: RunEnded | None = None
     spending: tuple[SpendingRow, ...] = ()
+    sent: frozenset[str] = frozenset()
     pending: tuple[Step, ...] = ()
     settled: Step | None = None
 

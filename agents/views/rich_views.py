@@ -17,6 +17,7 @@ from rich.text import Text
 from agents.loop.run import RENDER
 from agents.loop.run_state import ModelCall, ToolCall
 from agents.plan.part import STAGES
+from agents.views.cost_table import KINDS, costs_by_role
 from agents.views.event_lines import format_findings
 from agents.views.formatting import (
     counted,
@@ -25,6 +26,8 @@ from agents.views.formatting import (
     describe_source,
     format_clock,
     format_cost,
+    format_count,
+    format_money,
     format_time,
     format_tokens,
     stage_title,
@@ -118,7 +121,7 @@ def run_summary(run_state: RunState, frames: int = 0) -> RenderableType:
         parts.append(_line(run_state.ending.why, _OUTCOMES.get(run_state.outcome, ""), most=_WIDEST * 4))
     film = run_state.film
     progress = {RENDER: ToolProgress(frames, film.frames, "frames")} if film and frames else {}
-    parts += [Text(), _foot(run_state, Now(run_state.seconds, progress=progress))]
+    parts += [*_costs(run_state), Text(), _foot(run_state, Now(run_state.seconds, progress=progress))]
     return Group(*parts)
 
 
@@ -217,6 +220,26 @@ def _last_words(attempt: Attempt) -> str:
         step.turn for step in reversed(attempt.steps) if isinstance(step, ModelCall) and step.role == "coder"
     )
     return next((turn.text for turn in turns if turn and turn.text.strip()), attempt.report)
+
+
+def _costs(run_state: RunState) -> list[RenderableType]:
+    """Tokens and dollars by role and kind, where a model was paid for."""
+    rows = costs_by_role(run_state)
+    if not rows:
+        return []
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("Role", no_wrap=True)
+    for heading in ("Calls", "Pictures", *KINDS.values(), "Cost"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in rows:
+        kinds = [(getattr(row.usage, kind), row.dollars[kind]) for kind in KINDS]
+        table.add_row(
+            Text(shortened(row.role.replace("_", " ") or "all", 20), "" if row.role else "bold"),
+            *(Text(format_count(number)) for number in (row.calls, row.pictures)),
+            *(Text(f"{format_count(tokens)} {format_money(dollars)}") for tokens, dollars in kinds),
+            Text(format_money(row.cost) + (f" + {row.unpriced} unpriced" if row.unpriced else "")),
+        )
+    return [Text(), table]
 
 
 def _spoken(role: str, words: str, style: str = "") -> Text:
