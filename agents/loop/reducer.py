@@ -48,7 +48,9 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
             names = ("mode", "prompt", "version", "blender", "source", "models", "options")
             return replace(state, **{name: getattr(event, name) for name in names})
         case events.SessionBegan():
-            return replace(state, sessions=state.sessions + 1, ending=None)
+            minutes = event.render_minutes
+            options = state.options if minutes is None else {**state.options, "render_minutes": minutes}
+            return replace(state, sessions=state.sessions + 1, ending=None, options=options)
         case events.PlanMade():
             return replace(state, plan=event.plan or state.plan, edit=event.edit or state.edit)
         case events.StageMoved():

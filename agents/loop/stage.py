@@ -9,6 +9,7 @@ from agents.loop.edit.comparison import references
 from agents.loop.errors import Aborted, NotSaved
 from agents.loop.events import Decided, StageMoved, TacticMade
 from agents.loop.judging import format_review, judge, review, still_open, verify
+from agents.loop.topic_page import topic_page
 from agents.plan.tactical import Decision
 from agents.roles.coder import Coder
 from agents.roles.reviewer import Reviewer
@@ -49,7 +50,7 @@ class StageLoop:
         """
         self._run.journal.note(StageMoved(type="stage.began", stage=self._stage))
         attempt = 1
-        tactic, worked = self._fresh(attempt, self._coder.begin)
+        tactic, worked = self._fresh(attempt, self._begin)
         while True:
             verdict, review = self._judged(attempt, tactic)
             if why := still_open(worked.how, verdict, review):
@@ -75,6 +76,11 @@ class StageLoop:
                 self._replans += 1
                 self._run.roll_back(self._stage, attempt, self._before)
                 tactic, worked = self._fresh(attempt, self._coder.replanned, decision)
+
+    def _begin(self, tactic: TacticalPlan, state: str) -> WorkResult:
+        """The coder's first attempt, with what is known of the stage's topic."""
+        page = topic_page(self._run, self._stage, self._task)
+        return self._coder.begin(tactic, "\n\n".join(filter(None, (state, page))))
 
     def _unsaved(self) -> str:
         """Saves the stage; what the coder is to mend if that fails, "" if it is saved. Raises NotSaved in the end."""

@@ -14,19 +14,12 @@ from hostile_text import HOSTILE, steering
 from sample_runs import Tape
 
 from agents.loop.events import read_event
-from agents.loop.reducer import run_state_after
+from agents.loop.reducer import after, run_state_after
 from agents.loop.run_state import RunState
 from agents.views.live_view import RunLog, RunScreen, RunView, make_view
-from agents.views.rich_views import (
-    Now,
-    ToolProgress,
-    film_left,
-    run_in_progress,
-    run_row,
-    run_summary,
-    runs_table,
-    seconds_left,
-)
+from agents.views.now import Now, ToolProgress
+from agents.views.rich_views import run_in_progress, run_row, run_summary, runs_table
+from agents.views.time_left import describe_time_left, film_left, seconds_left
 from simworlds.terminal.console import Console
 
 if TYPE_CHECKING:
@@ -181,10 +174,28 @@ def test_time_left_is_shown_once_enough_is_done() -> None:
     assert "02:12 · about 2 min left, and at most 20 min for the film" in drawn(
         run_in_progress(two, Now(132.0), 40)
     )
-    left = seconds_left(two, since=1e9)
-    assert left
-    assert left > 0, "what takes longer than thought is not over"
     assert seconds_left(until("run.ended")) is None
+
+
+def test_a_stage_that_takes_longer_than_the_others_does_not_use_up_their_time() -> None:
+    under_way = until("stage.began", 3)
+    each = (74.0 + 23.6) / 2
+    assert seconds_left(under_way) == pytest.approx(3 * each, rel=0.02)
+    assert seconds_left(under_way, since=1e9) == pytest.approx(2.2 * each, rel=0.02)
+
+
+def test_the_time_of_the_film_is_known_from_the_plan_on_and_follows_a_resume() -> None:
+    planned = until("plan")
+    assert describe_time_left(planned, Now(planned.seconds)) == "at most 20 min for the film"
+    more = after(planned, read_event({"type": "sitting.began", "pid": 1, "render_minutes": 45.0}))
+    assert describe_time_left(more, Now(more.seconds)) == "at most 45 min for the film"
+    assert describe_time_left(until("run.ended"), Now(377.0)) == ""
+
+
+def test_the_log_says_what_is_left_as_a_stage_closes() -> None:
+    first, second, *_ = [line for line in lines_of(dominoes()) if " closed after " in line]
+    assert first.endswith("(at most 20 min for the film)")
+    assert second.endswith("(about 2 min left, and at most 20 min for the film)")
 
 
 def test_costs_are_shown_and_recorded_answers_cost_nothing() -> None:
