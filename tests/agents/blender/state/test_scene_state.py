@@ -627,6 +627,10 @@ tree.nodes['Principled BSDF'].inputs['Roughness'].default_value = 0.2
     assert nodes["RGB Curves"]["settings"]["curves"] == {"3": [[0, 0], [0.5, 0.7], [1, 1]]}
     assert nodes["Principled BSDF"]["inputs"] == {"Roughness": 0.2}
     assert paint["surface"]["inputs"] == {"Shader[1]": "<- Principled BSDF", "Shader[2]": "<- Glass BSDF"}
+    principled, glass = paint["surface"]["mixed"]
+    assert principled["inputs"]["Roughness"] == 0.2
+    assert glass["shader"] == "Glass BSDF"
+    assert "Principled BSDF = Principled BSDF Base Color=" in read(session, sections=["materials"]).text
     assert session.run("len(bpy.data.node_groups)") == before
 
 
