@@ -11,6 +11,7 @@ from agents.loop.events import Decided, StageMoved, TacticMade
 from agents.loop.judging import format_review, judge, overruled, review, verify
 from agents.roles.coder import Coder
 from agents.roles.reviewer import Reviewer
+from agents.roles.sheets import solvers_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -39,7 +40,14 @@ class StageLoop:
         self._task = task
         self._stage: Stage = stage
         self._before = before
-        self._coder = Coder(run.context, stage, task.plan_text, edit=task.edit, shown=references(task))
+        self._coder = Coder(
+            run.context,
+            stage,
+            task.plan_text,
+            edit=task.edit,
+            shown=references(task),
+            solvers=solvers_of(task.plan, task.declared),
+        )
         self._reviewer = Reviewer(run.context, stage, task.plan_text, edit=task.edit)
         self._retries = self._replans = self._saves = 0
         self._overruled = ""
