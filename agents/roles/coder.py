@@ -29,6 +29,7 @@ _TOLD_IN: dict[str, tuple[Stage, ...]] = {
     "blender_trial": ("deformation_setup", "motion"),
     "blender_bake": ("deformation_setup", "motion", "render"),
     "blender_motion_sheet_preview": ("deformation_setup", "motion", "camera", "render"),
+    "blender_object_preview": ("modeling", "uv", "texture", "deformation_setup", "render"),
     "blender_render": ("texture", "camera", "light", "render"),
     "blender_save": (),
     "blender_load": (),
@@ -54,7 +55,7 @@ def is_seen(tool: str, stage: Stage, *, staged: bool = True) -> bool:
     return tool not in _SHOWING or not staged or is_needed(tool, stage)
 
 
-_BEGIN = """\
+BEGIN = """\
 {plan}
 
 The stage is {stage}. Its tactical plan:
@@ -64,7 +65,7 @@ How the scene stands:
 
 {state}
 
-Build this stage. End with a short report, without a call, when it is done."""
+Build this stage."""
 _AGAIN = """\
 The stage is not done. The planner says: {instructions}
 
@@ -126,7 +127,7 @@ class Coder:
     def begin(self, tactic: TacticalPlan, state: str) -> WorkResult:
         """The first attempt."""
         self._tactic = plan_json(tactic)
-        words = _BEGIN.format(plan=self._plan, stage=self._stage, tactic=self._tactic, state=state)
+        words = BEGIN.format(plan=self._plan, stage=self._stage, tactic=self._tactic, state=state)
         return self._work(words, shown=self._shown)
 
     def again(self, instructions: str, verified: str, reviewed: str) -> WorkResult:

@@ -88,7 +88,7 @@ def system_prompt(  # noqa: PLR0913 - all that a prompt depends on
         return tuple(parts)
     if role == "coder" and verifier:
         parts.append(_rules_text(stage, edit=edit, staged=staged))
-    parts.append(stage_text(stage, edit=edit) if staged else _read(f"{_AT_ONCE}.md"))
+    parts.append(stage_text(stage, edit=edit, verifier=verifier) if staged else _read(f"{_AT_ONCE}.md"))
     if role == "coder" and (stage in _SIMULATING or not staged):
         parts += [sheet(solver) for solver in solvers]
     return tuple(parts)
@@ -118,8 +118,10 @@ def team_text(*, edit: bool = False) -> str:
 
 
 @cache
-def stage_text(stage: Stage, *, edit: bool = False) -> str:
+def stage_text(stage: Stage, *, edit: bool = False, verifier: bool = True) -> str:
     """What belongs into a stage, when it is done, what goes wrong in it, and which rules judge it."""
+    if not verifier:
+        return _read(f"stages/{stage}.md")
     return f"{_read(f'stages/{stage}.md')}\n\nRules that judge this stage: {format_stage_rules(stage, edit=edit)}."
 
 
