@@ -27,12 +27,13 @@ itself. Query before you write a name you are not sure of: a property from memor
 - a name: `ClothSettings.quality`, `bpy.ops.object.modifier_add`, `ShaderNodeBsdfPrincipled`
 - an expression from your code: `mat.node_tree.nodes["Principled BSDF"].inputs["Specular"]`; a name that does not \
 exist is answered with similar ones that do
-- an error message, pasted whole; an enum value
+- an error message, pasted whole: `AttributeError: …`; an enum value
 - plain words: `make cloth collide with itself`
 - a topic, when you begin a stage of work: `cloth`, `rigid body`, `uv` give an overview of pages, classes, operators
 
 The best hit is shown in full, others by `id`; query an id to see it. A long answer ends with the part to go on with: \
-repeat the call with it, as `part=23`. `notes` report corrections, missing sources, differences between versions."""
+repeat the call with it, as `part=23`. `blender="4.5"` asks another version's base. `notes` report corrections and \
+differences between versions."""
 
 
 class DocsArguments(BaseModel):
@@ -43,7 +44,7 @@ class DocsArguments(BaseModel):
     query: str = Field(description="One name, question or topic.")
     blender: str | None = Field(
         default=None,
-        description="Version, as 4.5, if its base was built. Default: the one in use, else the newest.",
+        description="Default: the version in use, else the newest.",
     )
     limit: int = Field(default=8, ge=1, description="Hits at most.")
     max_tokens: int = Field(default=1500, ge=150, description="Of the answer, at most.")

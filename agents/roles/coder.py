@@ -37,7 +37,8 @@ _TOLD_IN: dict[str, tuple[Stage, ...]] = {
 }
 # What a run without stages is not told of: other tools show the same.
 _BY_OTHERS = (
-    "blender_single_mesh_preview", "blender_system_layout_preview", "blender_uv_preview", "blender_material_preview"
+    "blender_single_mesh_preview", "blender_object_preview", "blender_system_layout_preview", "blender_uv_preview",
+    "blender_material_preview",
 )  # fmt: skip
 _SHOWING = ("blender_uv_preview", "blender_material_preview")  # what their stages make
 

@@ -63,7 +63,7 @@ class GroupedObject(Arguments):
 class GroupArguments(Arguments):
     """The arguments of ``blender_group``."""
 
-    groups: list[GroupedObject] = Field(min_length=1, max_length=_MOST)
+    groups: list[GroupedObject] = Field(min_length=1, max_length=_MOST, description="The objects.")
 
 
 DESCRIPTION = """\

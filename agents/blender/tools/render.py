@@ -30,7 +30,7 @@ _Side = Annotated[int, Field(ge=4, le=8192)]
 class RenderArguments(Arguments):
     """The arguments of ``blender_render``."""
 
-    kind: Literal["still", "animation"] = "still"
+    kind: Literal["still", "animation"] = Field(default="still", description="What to render.")
     name: str | None = Field(
         default=None,
         pattern=r"^[\w()+-][\w ().+-]{0,79}$",
@@ -38,16 +38,16 @@ class RenderArguments(Arguments):
     )
     frame: _Frame | None = Field(default=None, description="Of a still; default: the current one.")
     frame_start: _Frame | None = Field(default=None, description="Of an animation.")
-    frame_end: _Frame | None = None
+    frame_end: _Frame | None = Field(default=None, description="Of an animation.")
     step: int = Field(default=1, ge=1, le=1000, description="Render every step-th frame.")
-    camera: str | None = Field(default=None, max_length=256)
+    camera: str | None = Field(default=None, max_length=256, description="Its name.")
     engine: Literal["cycles", "eevee", "workbench"] | None = Field(
         default=None, description="Without a GPU, Cycles instead of EEVEE."
     )
-    samples: int | None = Field(default=None, ge=1, le=65536)
+    samples: int | None = Field(default=None, ge=1, le=65536, description="A pixel.")
     denoise: bool | None = Field(default=None, description="Cycles only.")
     width: _Side | None = Field(default=None, description="Pixels; the other side follows.")
-    height: _Side | None = None
+    height: _Side | None = Field(default=None, description="Pixels.")
     percentage: int | None = Field(default=None, ge=1, le=400, description="Of the scene's resolution.")
     time_budget: float | None = Field(
         default=None,

@@ -57,7 +57,7 @@ class SceneStateArguments(Arguments):
         description="Only these. view: cameras, lights, world, render. data_blocks, never by default: digests.",
     )
     start: int = Field(default=0, ge=0, description="Entries to skip, as the last readout says.")
-    max_tokens: int = Field(default=4000, ge=500, le=50_000)
+    max_tokens: int = Field(default=4000, ge=500, le=50_000, description="Of the readout.")
 
 
 DESCRIPTION = """\

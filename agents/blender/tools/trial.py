@@ -33,9 +33,9 @@ class TrialArguments(Arguments):
         max_length=12,
         description="Default: all that are simulated.",
     )
-    frames: int = Field(default=24, ge=2, le=1000)
+    frames: int = Field(default=24, ge=2, le=1000, description="To step.")
     seconds: float = Field(default=60.0, ge=1, le=1800, description="It ends when this time is over.")
-    pictures: bool = True
+    pictures: bool = Field(default=True, description="Small ones.")
 
 
 DESCRIPTION = """\

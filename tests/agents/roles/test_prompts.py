@@ -16,6 +16,8 @@ from agents.blender.server import entry
 from agents.blender.tool_catalogue import TOOLS
 from agents.loop.algorithm import ALL_AT_ONCE
 from agents.plan import relations
+from agents.plan.arithmetic import doubts_of
+from agents.plan.check import read_plan
 from agents.plan.edit import EditPlan
 from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
@@ -199,6 +201,30 @@ def test_a_role_is_told_every_field_of_what_it_answers(
             assert re.search(rf"^  {field}{mark}: ", block[0], re.MULTILINE), f"{name}.{field}"
             for choice in told.get("enum", ()):
                 assert f'"{choice}"' in block[0]
+
+
+def examples(role: Role, *, edit: bool = False) -> list[Any]:
+    text = prompts.role_text(role, edit=edit)
+    return [json.loads(code) for code in re.findall(r"^```json\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)]
+
+
+def test_the_planners_examples_are_answers_that_are_taken() -> None:
+    scene, tactic, decision = examples("planner")
+    plan, faults = read_plan(scene)
+    assert plan is not None
+    assert (faults, doubts_of(plan)) == ([], [])
+    wanted = TacticalPlan.model_validate(tactic)
+    assert all(plan.object(asset.target) for asset in wanted.assets)
+    assert max(wanted.relations) < len(plan.relations)
+    assert Decision.model_validate(decision).instructions
+    assert examples("planner", edit=True) == [tactic, decision], "a file is edited by another plan"
+
+
+def test_the_reviewers_example_is_an_answer_that_is_taken_and_nobody_elses() -> None:
+    (review,) = examples("reviewer")
+    assert Review.model_validate(review).judgements
+    assert not examples("coder")
+    assert not examples("final_reviewer")
 
 
 @pytest.mark.parametrize("role", [*ROLES, "team"])
