@@ -305,8 +305,7 @@ def _write(part: Path, contents: Contents) -> None:
             _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
             _write_symbols(connection, contents.symbols, usage.reached)
             _write_usage(connection, usage.uses)
-            counts = {path: uses.count for path, uses in usage.uses.items()}
-            weights = symbol_weights(contents.symbols, passages, expansions, counts)
+            weights = symbol_weights(contents.symbols, passages, expansions, usage.uses)
             _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(

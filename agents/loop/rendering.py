@@ -154,10 +154,16 @@ class LastStage:
         for place, (path, picture) in enumerate(rendering.shown):
             content += [Text(f"Frame {path.stem} ({25 * place} %):"), picture]
         try:
-            review = final_review(self._run.context, task.plan_text, content, edit=task.edit)
+            review = final_review(
+                self._run.context,
+                task.plan_text,
+                content,
+                self._run.acceptance.described(),
+                edit=task.edit,
+            )
         except (Declined, Misfit) as error:
             review = FinalReview(verdict="accept", summary=f"There is no final review: {error}"[:4000])
-        self._run.journal.note(FinalReviewed(round=number, review=review))
+        self._run.journal.note(FinalReviewed(round=number, review=review, lines=self._run.acceptance.lines))
         return review
 
     def _fix(self, instructions: str) -> bool:

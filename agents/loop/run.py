@@ -18,6 +18,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from agents.blender.saved_files import caches_folder
+from agents.loop.acceptance import AcceptanceRecord
 from agents.loop.errors import NoRun, NotSaved, RunError, Stopping
 from agents.loop.events import (
     AttemptBegan,
@@ -62,6 +63,7 @@ class Run:
     """What the loop works with. Two threads may call at the same time.
 
     ``stills``: the last pictures that the coder rendered in this attempt, each with what the tool said of it.
+    ``acceptance``: what the plans of the closed stages wanted, and whether it holds.
     """
 
     root: Path
@@ -75,6 +77,7 @@ class Run:
     attempt: int | None = None
     task: RunTask | None = None
     stills: list[tuple[str, Picture]] = field(default_factory=list["tuple[str, Picture]"])
+    acceptance: AcceptanceRecord = field(default_factory=AcceptanceRecord)
     _began: float = field(default_factory=time.monotonic)
     _calls: Counter[tuple[str, str]] = field(default_factory=Counter[tuple[str, str]])
     _aligned: bool = False

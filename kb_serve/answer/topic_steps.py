@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 _MAKERS = 3
 _CHOICES = 12  # types that one maker is shown with
-_SETTINGS = 8
+_SETTINGS = 10
 _HOLDERS = 4  # pointers of a thing whose settings are shown
 _FUNCTIONS = 3
 _RUNS = 4

@@ -98,6 +98,60 @@ def read_turn(name: str, text: str) -> WrittenTurn:
     )
 
 
+def write_turn(role: str, stage: str, turn: Turn) -> str:
+    """A turn as the text of a file for ``read_turn``. Raises UnreadableRecord where that would misread its words."""
+    head = [f"role: {role}", *([f"stage: {stage}"] if stage else [])]
+    if turn.stop_reason not in {"end_turn", "tool_use"}:
+        head.append(f"stop: {turn.stop_reason}")
+    written = [block.text.strip() if isinstance(block, Text) else _as_fence(block) for block in _said(turn)]
+    text = "\n".join((*head, "---", "\n\n".join(written), ""))
+    if _content(read_turn("turn", text).turn) != _content(turn):
+        raise UnreadableRecord(f"An answer of the {role} cannot be written so that it is read the same.")
+    return text
+
+
+def _said(turn: Turn) -> Iterator[Text | ToolUse]:
+    for block in turn.content:
+        if isinstance(block, ToolUse) or (isinstance(block, Text) and block.text.strip()):
+            yield block
+
+
+def _content(turn: Turn) -> list[object]:
+    """What a turn says, as far as a file can keep it."""
+    return [
+        block.text.strip() if isinstance(block, Text) else (block.name, block.input) for block in _said(turn)
+    ]
+
+
+def _as_fence(call: ToolUse) -> str:
+    """A tool call as a fence; its longest text of several lines stands in it as it is."""
+    long = [key for key, value in call.input.items() if isinstance(value, str) and _has_lines(value)]
+    key = max(long, key=lambda key: len(call.input[key]), default=None)
+    if key is None:
+        inside, words = json.dumps(call.input, indent=1), ["json", "call", call.name]
+    else:
+        rest = [shlex.quote(f"{name}={_as_word(value)}") for name, value in call.input.items() if name != key]
+        inside, words = (
+            call.input[key],
+            ["python" if key == "code" else "text", "call", call.name, key, *rest],
+        )
+    longest = max((len(run) for run in re.findall(r"`{3,}", inside)), default=2)
+    fence = "`" * (longest + 1)
+    return f"{fence}{' '.join(words)}\n{inside}\n{fence}"
+
+
+def _has_lines(text: str) -> bool:
+    """Whether ``text`` has several lines, and no other breaks than those of files."""
+    closed = f"{text}."
+    return "\n" in text and closed.splitlines() == closed.split("\n")
+
+
+def _as_word(value: Any) -> str:
+    """What ``_value`` reads as ``value``."""
+    plain = isinstance(value, str) and value.splitlines() == [value] and _value(value) == value
+    return value if plain else json.dumps(value)
+
+
 def _text_of(path: Path) -> str:
     try:
         return path.read_text("utf-8")

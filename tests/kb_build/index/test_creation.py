@@ -10,6 +10,7 @@ from kb_build.blender.access_paths import reached_expressions
 from kb_build.index.creation import Creation, creation_calls
 from kb_build.index.weights import symbol_weights
 from kb_build.records import Symbol
+from kb_build.usage.examples import Example, Uses
 
 if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract
@@ -75,5 +76,12 @@ def test_blender_makes_a_modifier_of_the_class_for_every_call(calls: dict[str, C
 
 def test_what_is_used_asked_for_and_explained_weighs_more() -> None:
     symbols = [Symbol(f"m.{name}", "property", "m") for name in ("used", "asked", "explained", "none")]
-    weights = symbol_weights(symbols, {"m.explained"}, {"m.asked": "one; two; three"}, {"m.used": 7})
+    weights = symbol_weights(symbols, {"m.explained"}, {"m.asked": "one; two; three"}, {"m.used": Uses(7, 2)})
     assert weights == {"m.used": 6.0, "m.asked": 1.5, "m.explained": 1.0}
+
+
+def test_an_operator_that_only_menus_name_weighs_less_than_one_that_scripts_call() -> None:
+    symbols = [Symbol(f"bpy.ops.uv.{name}", "operator", "bpy.ops.uv") for name in ("in_menus", "called")]
+    call = Example(1.0, "bake.py", 3, "bpy.ops.uv.called()")
+    usage = {"bpy.ops.uv.in_menus": Uses(9, 1), "bpy.ops.uv.called": Uses(3, 1, [call])}
+    assert symbol_weights(symbols, (), {}, usage) == {"bpy.ops.uv.in_menus": 2.0, "bpy.ops.uv.called": 4.0}

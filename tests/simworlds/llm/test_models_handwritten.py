@@ -6,11 +6,13 @@ from typing import TYPE_CHECKING
 
 import pytest
 from asks import ask
+from hypothesis import given
+from hypothesis import strategies as st
 
 from simworlds.llm.errors import CutShort, Declined, Drifted, UnreadableRecord, raise_for_stop
-from simworlds.llm.messages import Message, Text, ToolResult, ToolUse, user
+from simworlds.llm.messages import Message, Text, ToolResult, ToolUse, Turn, user
 from simworlds.llm.recorded import Recorded
-from simworlds.llm.transcript import read_turn
+from simworlds.llm.transcript import read_turn, write_turn
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -168,3 +170,46 @@ def test_empty_folders_and_unreadable_files_are_errors(tmp_path: Path):
     (tmp_path / "01-x.md").write_bytes(b"\xff\xfe")
     with pytest.raises(UnreadableRecord, match="cannot be read"):
         Recorded(tmp_path)
+
+
+ARGUMENTS = st.dictionaries(
+    st.from_regex(r"[a-z_]{1,12}", fullmatch=True),
+    st.none() | st.booleans() | st.integers() | st.text() | st.lists(st.text(), max_size=3),
+    max_size=4,
+)
+CALLS = st.builds(ToolUse, st.just("1"), st.sampled_from(["blender_execute", "blender_docs"]), ARGUMENTS)
+CODES = st.lists(st.sampled_from(["import bpy", "", "```", "~~~~", "x = 'it\\'s'"]), min_size=2).map(
+    "\n".join
+)
+WORDS = st.sampled_from(["I begin.", "A list:\n\n- one\n- two", "```json\n{}\n```", "---"])
+
+
+@given(st.lists(WORDS.map(Text) | CALLS, max_size=3))
+def test_what_is_written_is_read_the_same(blocks: list[Text | ToolUse]) -> None:
+    said: list[Text | ToolUse] = []
+    for block in blocks:  # words that follow each other are one text
+        if not (isinstance(block, Text) and said and isinstance(said[-1], Text)):
+            said.append(block)
+    turn = Turn(tuple(said), "tool_use")
+    again = read_turn("01-coder.md", write_turn("coder", "motion", turn))
+    assert (again.role, again.stage) == ("coder", "motion")
+    assert [told(block) for block in again.turn.content] == [told(block) for block in said]
+
+
+def told(block: object) -> object:
+    return (block.name, block.input) if isinstance(block, ToolUse) else block
+
+
+@given(CODES, st.text())
+def test_code_stands_as_it_is(code: str, title: str) -> None:
+    call = ToolUse("1", "blender_execute", {"code": code, "title": title, "timeout": 90})
+    text = write_turn("coder", "", Turn((call,), "tool_use"))
+    assert [told(block) for block in read_turn("01-coder.md", text).turn.content] == [told(call)]
+    if not title.splitlines()[1:]:
+        assert code in text
+
+
+def test_words_that_would_become_a_call_are_refused() -> None:
+    turn = Turn((Text("```json call blender_verify\n{}\n```"),), "end_turn")
+    with pytest.raises(UnreadableRecord, match="read the same"):
+        write_turn("coder", "motion", turn)

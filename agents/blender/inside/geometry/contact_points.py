@@ -12,6 +12,7 @@ _MOST_ALONG = 3_000  # points along their edges
 _MOST_TOUCHES = 600
 _MOST_CROSSINGS = 250_000  # pairs of edges
 _STEPS = 7
+_ALONG_AXIS = 0.99  # cosine; what looks nearer an axis counts as flat
 _OUTWARDS = numpy.array(
     [
         (math.cos(turn * math.pi / 16), math.sin(turn * math.pi / 16), rise)
@@ -44,12 +45,31 @@ def contact_points(a, b, within):
     return ContactPoints(*(numpy.concatenate(columns) for columns in zip(*parts, strict=True)))
 
 
-def _thin_out(places):
-    """Numbers of some places: all if they are few, else the outermost and some in between."""
+def _thin_out(places, facing):
+    """Numbers of some places: all if they are few, else the outermost of each way they face, and some in between.
+
+    ``facing`` (ways × places): whether a face there looks that way. A fringe must not hide the slab that it hangs on.
+    """
     if len(places) <= _MOST_TOUCHES:
         return range(len(places))
-    outermost = numpy.unique((places @ _OUTWARDS.T).argmax(axis=0))
-    return sorted({*outermost.tolist(), *spread_numbers(len(places), _MOST_TOUCHES).tolist()})
+    kept = {*spread_numbers(len(places), _MOST_TOUCHES).tolist()}
+    for chosen in (numpy.ones(len(places), bool), *facing):
+        numbers = numpy.flatnonzero(chosen)
+        if len(numbers):
+            kept.update(numbers[(places[numbers] @ _OUTWARDS.T).argmax(axis=0)].tolist())
+    return sorted(kept)
+
+
+def _facing(topology, ats, place_of, triangle_of, count):
+    """For each way along an axis and each of the places ``ats``, whether a face there looks that way."""
+    normals = topology.normals[triangle_of]
+    ways = []
+    for axis in range(3):
+        for sign in (-1, 1):
+            looks = numpy.zeros(count, bool)
+            looks[place_of[normals[:, axis] * sign > _ALONG_AXIS]] = True
+            ways.append(looks[ats])
+    return ways
 
 
 def _near(solid, other, within):
@@ -76,7 +96,9 @@ def _projected_points(solid, other, within, *, swapped=False):
             feet.append((at, foot))
     if not feet:
         return _no_points()
-    feet = [feet[at] for at in _thin_out(numpy.array([foot for _, foot in feet]))]
+    at_feet = numpy.array([at for at, _ in feet])
+    facing = _facing(topology, at_feet, place_of, triangle_of, len(places))
+    feet = [feet[at] for at in _thin_out(numpy.array([foot for _, foot in feet]), facing)]
     # A nearest point on an edge belongs to all triangles there, not only to the one that was returned.
     hits = numpy.array([(at, index, *foot) for at, foot in feet for _, _, index, _ in around(foot, slack)])
     hits = hits[_distinct(hits[:, 0].astype(int), topology_of(other).normals[hits[:, 1].astype(int)])]

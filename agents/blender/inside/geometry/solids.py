@@ -10,6 +10,7 @@ from mathutils.bvhtree import BVHTree
 
 from ..blend.fluids import is_empty_domain
 from .evaluated_meshes import Instances, TooManyInstances, TriangleMesh, are_finite, mesh_of
+from .topology import piece_labels
 
 MOST_TRIANGLES = 4_000_000
 # Arbitrary directions: a ray along an edge or through a vertex would count twice.
@@ -121,10 +122,21 @@ class Solid:
 
     def holds(self, point):
         """Whether a point is inside it, by a majority of three rays. Only for a closed one."""
-        first, second = (self._is_around(point, ray) for ray in _RAYS[:2])
-        return first if first == second else self._is_around(point, _RAYS[2])
+        shells = self._shells.around(point)
+        first, second = (self._is_around(shells, point, ray) for ray in _RAYS[:2])
+        return first if first == second else self._is_around(shells, point, _RAYS[2])
 
-    def _is_around(self, point, ray):
+    def _is_around(self, shells, point, ray):
+        count = sum(shell.crossings(point, ray, signed=self.oriented) for shell in shells)
+        # Without consistent normals, only the number of hits counts.
+        return count != 0 if self.oriented else count % 2 == 1
+
+    @functools.cached_property
+    def _shells(self):
+        return _Shells(self)
+
+    def crossings(self, point, ray, *, signed):
+        """How often a ray goes through its surface: ``signed``, how much more often outwards than inwards."""
         count = hits = 0
         start = Vector(point)
         step = ray * max(_STEP, _COARSE * max(map(abs, point)))
@@ -135,8 +147,7 @@ class Solid:
             hits += 1
             count += 1 if normal.dot(ray) > 0 else -1
             start = place + step
-        # Without consistent normals, only the number of hits counts.
-        return count != 0 if self.oriented else hits % 2 == 1
+        return count if signed else hits
 
     def nearest(self, point, within=None):
         """(place, normal, triangle, distance) of the nearest point of its surface, Nones beyond ``within``."""
@@ -162,6 +173,49 @@ class Solid:
         solid = Solid(self.name, self.points[used], numbers.reshape(-1, 3))
         solid.eye = self.eye
         return solid
+
+
+class _Shells:
+    """The closed pieces of a solid as they were modelled, each a solid, and last what is left of it.
+
+    Where pieces touch, two faces coincide, of which a ray hits one: it has to be cast through each piece alone.
+    """
+
+    def __init__(self, solid):
+        self._solid = solid
+        label = piece_labels(len(solid.points), solid.triangles)[solid.triangles[:, 0]]
+        known, pieces = numpy.unique(label, return_inverse=True)
+        pieces = pieces.reshape(-1)
+        pieces = numpy.where(self._is_open(len(known), pieces)[pieces], len(known), pieces)
+        order = numpy.argsort(pieces, kind="stable")
+        starts = numpy.flatnonzero(numpy.diff(pieces[order], prepend=-1))
+        self._triangles = numpy.split(order, starts[1:])
+        low, high = solid.boxes
+        self._low = numpy.minimum.reduceat(low[order], starts)
+        self._high = numpy.maximum.reduceat(high[order], starts)
+        self._made = {0: solid} if len(starts) == 1 else {}
+
+    def _is_open(self, count, pieces):
+        """Whether each of ``count`` pieces has an edge with an odd number of triangles."""
+        corners = self._solid.triangles
+        ends = numpy.concatenate([corners[:, sides] for sides in ((0, 1), (1, 2), (2, 0))]).astype(
+            numpy.int64
+        )
+        keys = ends.min(axis=1) * len(self._solid.points) + ends.max(axis=1)
+        _, first, sides = numpy.unique(keys, return_index=True, return_counts=True)
+        is_open = numpy.zeros(count, bool)
+        is_open[numpy.tile(pieces, 3)[first[sides % 2 == 1]]] = True
+        return is_open
+
+    def around(self, point):
+        """Those whose boxes hold a point."""
+        inside = ((self._low <= point) & (self._high >= point)).all(axis=1)
+        return [self._shell(number) for number in numpy.flatnonzero(inside).tolist()]
+
+    def _shell(self, number):
+        if number not in self._made:
+            self._made[number] = self._solid.part(self._triangles[number])
+        return self._made[number]
 
 
 class Solids:

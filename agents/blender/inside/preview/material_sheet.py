@@ -82,12 +82,12 @@ class _Sheet:
         self.scene += [{**view, "frame": scene.frame_current} for view in views]
 
     def _take_objects(self, renderer, groups, side):
-        alike = _alike(groups)
-        late = []
+        alike = _alike(groups, as_given=bool(self._arguments["objects"]))
+        many, late = [], []
         for name, others in alike.items():
             owners = groups[name]
             if len(self.objects) == _MOST_OBJECTS or (self.objects and self._is_late):
-                late.append(name)
+                (many if len(self.objects) == _MOST_OBJECTS else late).append(name)
                 continue
             self._say(name)
             file, scale = renderer.alone(owners, _THREE_QUARTER[1], side)
@@ -101,8 +101,14 @@ class _Sheet:
                     "bare": sorted(owner for owner in owners if not _materials_of({owner}))[:_LISTED],
                 }
             )
+        if many:
+            self.notes.append(f"Not shown alone: {quoted(many, _NAMED)}. Name them as objects to see them.")
         if late:
-            self.notes.append(f"Not shown alone: {quoted(late, _NAMED)}. Name them as objects to see them.")
+            spent = f"{self._arguments['seconds']:g} seconds were over"
+            self.notes.append(
+                f"Not shown alone, since the {spent}: {quoted(late, _NAMED)}. Call again with "
+                "show='objects' and these names."
+            )
 
     @property
     def _is_late(self):
@@ -147,13 +153,16 @@ def _has_surface(owners):
     return any(bpy.data.objects[owner].type in DRAWABLE for owner in owners)
 
 
-def _alike(groups):
+def _alike(groups, *, as_given):
     """{name: those that have the same materials and as many parts, and are not shown}.
 
-    First those that show materials that none before has, the most at once before all others.
+    As they were given; or first those that show materials that none before has: of these what acts, then what has the
+    most.
     """
+    if as_given:
+        return {name: [] for name in groups}
     first, alike, seen = {}, {}, set()
-    for name in sorted(groups, key=lambda name: -len(_materials_of(groups[name]))):
+    for name in sorted(groups, key=lambda name: (not _acts(name), -len(_materials_of(groups[name])))):
         materials = _materials_of(groups[name])
         look = (tuple(materials), len(groups[name])) if materials else name
         if look in first:
@@ -167,6 +176,13 @@ def _alike(groups):
         new[name] = bool(materials - seen)
         seen |= materials
     return {name: alike[name] for name in sorted(alike, key=lambda name: not new[name])}
+
+
+def _acts(name):
+    """Whether the protocol's object is tagged as moved or changed by anything."""
+    collection = bpy.data.collections.get(name)
+    kinds = [collection.get(tag) for tag in ("deformation_kind", "motion_kind")] if collection else []
+    return any(kind not in {None, "none"} for kind in kinds)
 
 
 def _materials_of(owners):

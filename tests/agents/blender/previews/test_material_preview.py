@@ -108,6 +108,15 @@ def test_shows_the_scene_at_frames_through_its_camera(session: LiveSession) -> N
     assert session.run("bpy.context.scene.frame_current") == 1
 
 
+def test_objects_come_as_they_were_named_else_those_that_act_first(session: LiveSession) -> None:
+    build(session, CLOSED_ROOM)
+    named = session.use(material_preview.TOOL, show="objects", objects=["The Shell", "The Chest 1"])
+    assert [one["name"] for one in named.data["objects"]] == ["The Shell", "The Chest 1"]
+    session.run("bpy.data.collections['The Chest 1'].__setitem__('deformation_kind', 'sim_soft')")
+    first, *_ = session.use(material_preview.TOOL, show="objects").data["objects"]
+    assert (first["name"], first["alike"]) == ("The Chest 1", ["The Chest 0"])
+
+
 def test_an_unknown_name_is_refused_with_the_nearest(session: LiveSession) -> None:
     build(session, CLOSED_ROOM)
     with pytest.raises(Refusal, match="Nearest: 'The Chest 2'"):
@@ -121,4 +130,5 @@ def test_time_that_is_over_leaves_out_stills_and_says_which(session: LiveSession
     )
     left = {"The Chest 0", "The Shell"} - {one["name"] for one in result.data["objects"]}
     assert all(repr(name) in result.text for name in left)
+    assert ("since the 1 seconds were over" in result.text) == bool(left)
     assert len(left) < 2, "nothing is shown at all"
