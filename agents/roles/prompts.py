@@ -46,11 +46,12 @@ _TOLD_RULES: dict[Stage, tuple[str, ...]] = {
     "uv": ("R2",),
     "texture": ("R1",),
     "deformation_setup": ("C3", "V", "W3", "R1", "R4", "R15"),
-    "motion": ("V", "R3", "R7", "R15", "R18", "R19", "T"),
+    "motion": ("V", "R7", "R15", "R18", "R19", "T"),
     "camera": ("W3", "W4", "R14"),
     "light": ("W3", "W5", "R14"),
     "render": ("V", "R14", "R15", "R19", "T"),
 }
+_PLANNED = ("V", "W1", "R", "T")  # what a plan can break
 _TOLD_AT_ONCE = ("V", "R", "T")  # grouping by the tool keeps the layout
 _SIMULATING: tuple[Stage, ...] = (
     "deformation_setup",
@@ -79,7 +80,7 @@ def system_prompt(  # noqa: PLR0913 - all that a prompt depends on
     """
     parts = [role_text(role, edit=edit, verifier=verifier)]
     if role == "planner":
-        parts += [protocol_text(), rules_guide()]
+        parts += [protocol_text(), rules_guide(select_rules(_PLANNED))]
     if role == "coder":
         parts.append(builders_guide())
     if _ANSWERS[role]:
