@@ -25,8 +25,8 @@ itself. Query before you write a name you are not sure of: a property from memor
 
 `query`, one thing at a time:
 - a name: `ClothSettings.quality`, `bpy.ops.object.modifier_add`, `ShaderNodeBsdfPrincipled`
-- an expression from your code: `mat.node_tree.nodes["Principled BSDF"].inputs["Specular"]`; a name that does not \
-exist is answered with similar ones that do
+- an expression from your code: `bpy.context.object.modifiers["Cloth"].settings.quality`; a name that does not exist \
+is answered with similar ones that do
 - an error message, pasted whole: `AttributeError: …`; an enum value
 - plain words: `make cloth collide with itself`
 - a topic, when you begin a stage of work: `cloth`, `rigid body`, `uv` give an overview of pages, classes, operators
