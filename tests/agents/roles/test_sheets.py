@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from live_session import LiveSession
 
+from agents.blender.tool_catalogue import TOOLS
 from agents.plan.edit import EditedActor
 from agents.plan.part import STAGES
 from agents.plan.scene import ScenePlan
@@ -247,6 +248,20 @@ def test_particles_come_to_rest_on_a_floor_and_stay(blender: LiveSession) -> Non
     assert len(grains) == 40
     assert all(0 < height < 0.1 for height, _ in grains)
     assert max(speed for _, speed in grains) < 0.1
+
+
+def test_settings_that_sheets_name_are_there(blender: LiveSession) -> None:
+    prose = "\n".join(_RECIPE.sub("", sheet(solver)) for solver in SOLVERS)
+    named = set(re.findall(r"`(?:\w+\.)*([a-z]+(?:_[a-z]+)+)`", prose)) - {tool.name for tool in TOOLS}
+    assert len(named) > 15
+    missing = f"""
+known = set()
+for name in dir(bpy.types):
+    kind = getattr(bpy.types, name)
+    known.update(kind.bl_rna.properties.keys() if hasattr(kind, "bl_rna") else ())
+sorted(set({sorted(named)!r}) - known)
+"""
+    assert blender.run(missing) == []
 
 
 @pytest.mark.parametrize("solver", SOLVERS)
