@@ -59,7 +59,8 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
         for frame in _telling_frames(task, peak):
             shown.take(RENDER, still(f"look-{frame}", frame))
     shown.blocks += _coders_stills(run)
-    shown.take(_STATE, {})
+    subjects = _layout(task).get("subjects")
+    shown.take(_STATE, {"first": subjects} if subjects else {})
     return shown.blocks
 
 

@@ -18,6 +18,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 from agents.blender.saved_files import caches_folder
+from agents.blender.tools.scene_order import words_of
 from agents.loop.acceptance import AcceptanceRecord
 from agents.loop.errors import NoRun, NotSaved, RunError, Stopping
 from agents.loop.events import (
@@ -55,6 +56,7 @@ RENDER = "blender_render"
 START = "start"
 _KEPT_STILLS = 2
 SCENE = "scene.blend"
+_MOST_WORDS = 60  # of an instruction
 _LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
 
 
@@ -234,8 +236,9 @@ class Run:
     # The scene
 
     def state(self, stage: Stage) -> str:
-        """The scene's readout."""
-        return self.use(RUNNER, stage, "blender_scene_state", {}).text
+        """The scene's readout; in an edit, what the instruction names comes first."""
+        first = words_of(self.options.prompt)[:_MOST_WORDS] if self.options.mode == "edit" else []
+        return self.use(RUNNER, stage, "blender_scene_state", {"first": first} if first else {}).text
 
     def save(self, stage: Stage, name: str) -> Path:
         """Saves the scene as the checkpoint ``name``, with its caches beside it. Raises NotSaved."""

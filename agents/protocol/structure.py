@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from dataclasses import dataclass
 from functools import cached_property
@@ -23,6 +24,7 @@ _MOVING_MODIFIERS = frozenset(
     }
 )  # fmt: skip
 _MOVING_CONSTRAINTS = frozenset({"FOLLOW_PATH", "TRANSFORM_CACHE", "FOLLOW_TRACK"})
+_NUMBER = re.compile(r"\.\d{3,}$")  # that Blender puts behind a name that is taken
 _GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"})
 
 
@@ -122,11 +124,17 @@ class SceneStructure:
             item = self.objects.get(item.parent)
 
     def surfaces_of(self, node: str) -> tuple[str, ...]:
-        """The meshes with a surface that a name stands for: an L3's, a root's, ``Object/Part``'s or one mesh's."""
+        """The meshes with a surface that a name stands for: an L3's, a root's, ``Object/Part``'s or one mesh's.
+
+        A part's mesh need not have the part's very name, which is another object's in many a scene: ``Object_Part`` and
+        ``Part.001`` are taken for it.
+        """
         owner, _, part = node.partition("/")
         if part:
-            meshes = self.by_name[owner].meshes if owner in self.by_name else ()
-            return tuple(mesh.name for mesh in meshes if mesh.surface and mesh.name == part)
+            meshes = self.by_name[owner].surfaces if owner in self.by_name else ()
+            return (
+                (part,) if part in meshes else tuple(name for name in meshes if _is_part(name, owner, part))
+            )
         if node in self.by_name:
             return self.by_name[node].surfaces
         item = self.objects.get(node)
@@ -198,4 +206,12 @@ def is_animated(item: ObjectFacts) -> bool:
         or item.drivers
         or item.animated_shape_keys
         or any(constraint.on and constraint.type in _MOVING_CONSTRAINTS for constraint in item.constraints)
+    )
+
+
+def _is_part(mesh: str, owner: str, part: str) -> bool:
+    """Whether a mesh of ``owner`` is named as its ``part``, with the owner's name before it or a number behind it."""
+    plain = _NUMBER.sub("", mesh).casefold()
+    return plain == part.casefold() or bool(
+        re.fullmatch(rf"{re.escape(owner.casefold())}[ _./-]{re.escape(part.casefold())}", plain)
     )

@@ -60,6 +60,7 @@ if TYPE_CHECKING:
 _LOG = logging.getLogger(__name__)
 
 START_SECONDS = 60.0
+_LONGEST_TOLD = 300
 _CHECK_SECONDS = 0.05  # between two checks whether the call was cancelled or a limit exceeded
 _END_SECONDS = 5.0
 _EXIT_SECONDS = 1.0  # in which a process that has closed its channel is expected to end
@@ -109,6 +110,7 @@ class BlenderProcess:
         launch.prepare()
         self._launch = launch
         self._closed = False
+        self._told = ""  # what the call that runs told last
         self._stdout, self._stderr = CapturedOutput(), CapturedOutput()
         self._usage = launch.usage
         self._worker = WatchedProcess(0)
@@ -202,6 +204,7 @@ class BlenderProcess:
         except channel.TooLarge as error:
             raise Refusal(f"The arguments of {what} are too large: {error}.") from error
         try:
+            self._told = ""
             self._worker.mark()
             self._worker.go_on()
             self._send(request, what, timeout)
@@ -239,6 +242,7 @@ class BlenderProcess:
                     f"Code had sent a false reply before {what} began; it is ignored, and Blender was stopped"
                 )
             if isinstance(claim, ProgressMessage):
+                self._told = claim.progress[-1][:_LONGEST_TOLD]
                 if progress is not None:
                     progress(*claim.progress)
                 continue
@@ -341,8 +345,9 @@ class BlenderProcess:
         raise Died(f"Blender ended {seconds:.1f} s into {what}: {ending}", self._last_output(), ending)
 
     def _too_long(self, what: str, timeout: float) -> TookTooLong:
+        told = f" (the last it told: {self._told})" if self._told else ""
         return TookTooLong(
-            f"{_capital(what)} ran past its deadline of {timeout:g} s, and Blender was stopped",
+            f"{_capital(what)} ran past its deadline of {timeout:g} s{told}, and Blender was stopped",
             self._last_output(),
         )
 

@@ -24,6 +24,7 @@ from .blend.cache_folders import (
     keep_fluids,
     relative_to,
     unused_name,
+    write_paths,
 )
 from .blend.file_io import SCENE_FILE, make_own, read_file, reason
 from .physics.caches import file_prefix, find_caches
@@ -48,18 +49,21 @@ def save(arguments, report):
     frames of simulations that are not baked), ``external``, ``caches``, and what is ``unused``, so not in the copy.
     """
     path, beside, workspace = arguments["path"], arguments["beside"], arguments["workspace"]
-    keep_fluids(workspace)
+    renamed = keep_fluids(workspace)
     with contextlib.ExitStack() as undo:
         report(0, None, "packing")
         packed, rescued = _pack(undo, arguments["pack"])
-        redirected = list(_redirect(undo, beside, workspace))
-        external = _make_absolute(undo, beside)
+        redirected = list(_redirect(undo, beside, workspace, renamed))
+        external = _make_absolute(undo, beside, renamed)
         report(0, None, "writing")
         try:
             # Relative paths are already right for where the copy will be.
-            bpy.ops.wm.save_as_mainfile(filepath=path, copy=True, check_existing=False, relative_remap=False)
+            bpy.ops.wm.save_as_mainfile(
+                filepath=path, copy=True, check_existing=False, relative_remap=False, compress=False
+            )
         except RuntimeError as error:
             raise Refused(reason(error)) from None
+    write_paths(path, renamed)
     caches = kept_caches()
     whole, loose = _folder_files(redirected, workspace)
     return {
@@ -202,13 +206,20 @@ def _unpack(block):
 # Folders of caches
 
 
-def _redirect(undo, beside, workspace):
-    """Makes folders of the workspace, and temporary ones, point below ``beside``; yields (name there, path here)."""
+def _redirect(undo, beside, workspace, renamed):
+    """Makes folders of the workspace, and temporary ones, point below ``beside``; yields (name there, path here).
+
+    Those of fluids only in ``renamed``, for the file that is written: see ``keep_fluids``.
+    """
     for folder in cache_folders():
         if relative_to(folder.real, workspace) is None and not is_temporary(folder.real):
             continue
-        undo.callback(setattr, folder, "path", folder.path)
-        folder.path = f"//{beside}/{folder.name}"
+        there = f"//{beside}/{folder.name}"
+        if folder.is_fluid:
+            renamed[folder.path] = there
+        else:
+            undo.callback(setattr, folder, "path", folder.path)
+            folder.path = there
         yield folder.name, folder.real
 
 
@@ -290,7 +301,7 @@ def _cache_files(folder, cache):
 # Files that stay outside
 
 
-def _make_absolute(undo, beside):
+def _make_absolute(undo, beside, renamed):
     """Makes the paths of external files absolute; returns those files, as ``_external_files`` does."""
     before = {}
 
@@ -300,7 +311,7 @@ def _make_absolute(undo, beside):
         before[owner, absolute(path)] = path
         return absolute(path)
 
-    apart = {path for path in _folder_paths() if path.startswith(f"//{beside}/")}
+    apart = {path for path in _folder_paths() if path.startswith(f"//{beside}/") or path in renamed}
     undo.callback(_external_files, apart, lambda owner, path: before.get((owner, path)))
     return _external_files(apart, visit)
 

@@ -13,6 +13,7 @@ from agents.blender.tools import scene_words as words
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from agents.blender.tools.scene_fit import ReadoutItem, ReadoutSection, share_tokens, tokens
 from agents.blender.tools.scene_fold import fold, fold_tree, series
+from agents.blender.tools.scene_order import asked_first
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -20,7 +21,7 @@ if TYPE_CHECKING:
     from agents.blender.tools.scene_fold import Entry
 
 TIMEOUT = 60.0
-_LONGEST_OBJECTS = 80  # characters of the caller's own ``objects`` in a call that is named
+_LONGEST_NAMES = 80  # characters of the caller's own names in a call that is named
 _FEW = 8  # channels, drivers or shape keys of a data-block in a readout that is not full
 _TOO_MANY = 60  # entries, above which similar ones are folded whatever their names
 _PART = 40  # of them in one entry of a full readout
@@ -36,6 +37,7 @@ _TITLES: dict[SectionName, tuple[str, int]] = {
     "view": ("Cameras, lights, world, render", 1),
 }
 DATA_BLOCKS: SectionName = "data_blocks"
+_ORDERED: tuple[SectionName, ...] = ("objects", "physics", "animation", "materials")
 _OF_SUMMARY: tuple[SectionName, ...] = ("collections", "physics", "animation", "view")
 
 
@@ -50,6 +52,11 @@ class SceneStateArguments(Arguments):
         default=None,
         max_length=200,
         description="Only these names, patterns (Brick.*) or collections, not folded.",
+    )
+    first: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
+        default=None,
+        max_length=200,
+        description="Names or words: what is called so, and the materials on it, comes before all else.",
     )
     sections: list[SectionName] | None = Field(
         default=None,
@@ -84,6 +91,8 @@ def run(context: ToolContext, arguments: SceneStateArguments, call: Call) -> Res
 
 def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
     """The facts as text and as data, both within ``max_tokens``."""
+    if arguments.first:
+        asked_first(facts, arguments.first, _ORDERED)
     sections = [
         ReadoutSection(name, _items(name, facts[name], arguments), weight, facts["unread"].get(name, 0))
         for name, (_, weight) in _TITLES.items()
@@ -196,9 +205,10 @@ def _footer(section: ReadoutSection, arguments: SceneStateArguments) -> str:
 def _next(section: ReadoutSection, arguments: SceneStateArguments) -> str:
     """The call that continues a section."""
     options: list[str] = []
-    if arguments.objects is not None:
-        objects = json.dumps(arguments.objects, ensure_ascii=False)
-        options.append(f"objects={objects if len(objects) <= _LONGEST_OBJECTS else '[… as before]'}")
+    for name, given in (("objects", arguments.objects), ("first", arguments.first)):
+        if given is not None:
+            names = json.dumps(given, ensure_ascii=False)
+            options.append(f"{name}={names if len(names) <= _LONGEST_NAMES else '[… as before]'}")
     options.append(f'sections=["{section.name}"]')
     if arguments.detail != "normal":
         options.append(f'detail="{arguments.detail}"')

@@ -232,7 +232,7 @@ def material(entry: Entry) -> str:
 
 def _rest(entry: Entry) -> Iterable[str]:
     if entry["viewport"] != _NEW_VIEWPORT:
-        unseen = " (in no preview: these show its nodes)" if "nodes" in entry else ""
+        unseen = " (unused: previews show the nodes' colour)" if "nodes" in entry else ""
         yield f"viewport {row(entry['viewport'])}{unseen}"
     if "surface_render_method" in entry:
         yield entry["surface_render_method"]
@@ -251,7 +251,12 @@ def _shaders(entry: Entry) -> Iterable[str]:
             yield "nothing linked to its output"
         else:
             name = "" if part == "surface" else f"{part} "
-            yield f"{name}{node['shader']}" + (f" {pairs(node['inputs'])}" if "inputs" in node else "")
+            yield f"{name}{_shader(node)}"
+            yield from (f"{mixed['name']} = {_shader(mixed)}" for mixed in node.get("mixed", ()))
+
+
+def _shader(node: Entry) -> str:
+    return node["shader"] + (f" {pairs(node['inputs'])}" if "inputs" in node else "")
 
 
 def _with_nodes(head: str, entry: Entry, parts: Iterable[str]) -> str:

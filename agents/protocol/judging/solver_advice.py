@@ -22,8 +22,8 @@ _INTO_COLLIDER = {
 _UNREST = {
     "rigid": "Add friction and damping, let bodies sleep, limit joints, or simulate longer; then bake again.",
     "soft": "Raise the damping of its springs, lower mass and stiffness together, or simulate longer; then bake again.",
-    "cloth": "Raise the damping of the cloth and of its collisions, its friction and its quality, or simulate longer; "
-    "then bake again.",
+    "cloth": "Keep bending_damping at 0.5 or below (more is itself what jitters), raise air_damping, the damping of "
+    "its collisions and its quality, or simulate longer; then bake again.",
     "fluid": "Simulate longer, or give the liquid more viscosity; then bake again.",
     "keyframed": "End its keyframes before the phase.",
     "rig": "End its keyframes before the phase.",

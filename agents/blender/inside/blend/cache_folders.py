@@ -7,6 +7,10 @@ import shutil
 
 import bpy
 
+from simworlds.sandbox.inside.refusal import Refused
+
+from .stored_texts import UnknownForm, replace_texts
+
 CACHES = "caches"  # in the workspace: where fluids are baked to
 
 
@@ -16,12 +20,13 @@ class CacheFolder:
     def __init__(self, holder, attribute, name):
         self._holder = holder
         self._attribute = attribute
+        self.is_fluid = attribute == "cache_directory"
         self.name = name
         self.real = absolute(self.path)
 
     @property
     def path(self):
-        """The path as Blender stores it; setting it keeps the bake valid."""
+        """The path as Blender stores it; setting it keeps a bake valid, and loses what a fluid was stepped to."""
         return getattr(self._holder, self._attribute)
 
     @path.setter
@@ -50,15 +55,32 @@ def cache_folders():
 
 
 def keep_fluids(workspace):
-    """Moves the frames of fluids from Blender's temporary folder, which ends with it, into the workspace."""
-    own = os.path.join(workspace, CACHES)
+    """Moves the frames of fluids from Blender's temporary folder, which ends with it, into the workspace.
+
+    A link stays in their place: to set a domain's path would make Blender drop the frames of one that is not baked.
+    Returns {path as the open file has it: path as a copy of it should have it}, for ``write_paths``.
+    """
+    own, renamed = os.path.join(workspace, CACHES), {}
     for folder in cache_folders():
-        if not is_temporary(folder.real) or not os.path.isdir(folder.real):
-            continue
-        name = unused_name(folder.name, lambda name: os.path.lexists(os.path.join(own, name)))
-        os.makedirs(own, exist_ok=True)
-        shutil.move(folder.real, os.path.join(own, name))
-        folder.path = f"//{CACHES}/{name}"
+        if is_temporary(folder.real) and os.path.isdir(folder.real):
+            name = unused_name(folder.name, lambda name: os.path.lexists(os.path.join(own, name)))
+            os.makedirs(own, exist_ok=True)
+            shutil.move(folder.real, os.path.join(own, name))
+            os.symlink(os.path.join(own, name), folder.real)
+        inside = relative_to(folder.real, workspace)
+        if folder.is_fluid and inside is not None:
+            renamed[folder.path] = f"//{inside}"
+    return renamed
+
+
+def write_paths(file, renamed):
+    """Gives the fluids in a .blend file other folders: {path in it: path wanted}. Raises Refused."""
+    changed = {old: new for old, new in renamed.items() if old != new}
+    try:
+        if changed:
+            replace_texts(file, "FluidDomainSettings", "cache_directory", changed)
+    except UnknownForm as error:
+        raise Refused(f"The folders of fluids cannot be written into the file: {error}") from None
 
 
 def unused_name(name, is_taken):

@@ -9,7 +9,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from .cache_folders import keep_fluids
+from .cache_folders import keep_fluids, write_paths
 from .temporary import temporary_settings, without_handlers
 
 SCENE_FILE = "scene.blend"
@@ -64,7 +64,7 @@ def write_file(arguments, report):
     """
     del report
     path = arguments["path"]
-    keep_fluids(arguments["folder"])
+    renamed = keep_fluids(arguments["folder"])
     # Relative paths are already as the run's own file wants them, unless code has made another file its own.
     elsewhere = os.path.dirname(bpy.data.filepath or path) not in {arguments["folder"], os.path.dirname(path)}
     started = time.perf_counter()
@@ -73,10 +73,11 @@ def write_file(arguments, report):
     try:
         with without_handlers(_ON_SAVING), temporary_settings(no_thumbnail):
             bpy.ops.wm.save_as_mainfile(
-                filepath=path, copy=True, check_existing=False, relative_remap=elsewhere
+                filepath=path, copy=True, check_existing=False, relative_remap=elsewhere, compress=False
             )
     except RuntimeError as error:
         raise Refused(f"{path} cannot be written: {reason(error)}") from None
+    write_paths(path, renamed)
     sys.stdout.flush()
     return {"seconds": time.perf_counter() - started, "bytes": os.path.getsize(path)}
 

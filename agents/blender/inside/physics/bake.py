@@ -212,7 +212,7 @@ class _Job:
                 cache.range = frames
             self.expected = cache.expected
             return
-        domain, stepped = cache.domain, cache.folder
+        domain, stepped = cache.domain, os.path.realpath(cache.folder)  # a link may stand in its place
         folder = f"//{_new_folder(cache)}"
         target = bpy.path.abspath(folder)
         os.makedirs(os.path.dirname(target), exist_ok=True)

@@ -68,14 +68,22 @@ class _Sheet:
             )
             renderer.set_up(True, False, [])
             with renderer.cleaned_up():
+                # From outside, materials are seen best on the objects: these come first while there is time.
+                present = _present(groups, subject, self.notes)
+                if camera is None:
+                    self._take_objects(renderer, present, side)
                 if self._arguments["show"] != OBJECTS:
                     self._take_scene(scene, renderer, camera)
-                self._take_objects(renderer, _present(groups, subject, self.notes), side)
+                if camera is not None:
+                    self._take_objects(renderer, present, side)
             self._files = renderer.files
             if frame == self.scene[0]["frame"] if self.scene else True:
                 note_missing(subject, self.notes)
 
     def _take_scene(self, scene, renderer, camera):
+        if self.objects and self._is_late:
+            self.notes.append("The scene as a whole is not shown, for want of time.")
+            return
         self._say(f"frame {scene.frame_current}")
         views = list(renderer.camera_view(camera, scene.render, self.notes)) if camera else []
         views = views or list(renderer.fixed_views(lambda *_: None, 1, views=(_THREE_QUARTER,)))

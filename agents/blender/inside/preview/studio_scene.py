@@ -3,6 +3,7 @@
 
 import contextlib
 import os
+from pathlib import Path
 
 import bpy
 from mathutils import Matrix, Vector
@@ -16,6 +17,7 @@ REACH = (
     10.0  # the diagonal that the subject is scaled to, so that clipping and shading do not depend on its size
 )
 _NAME = ".preview"
+_NEUTRAL = Path(__file__).with_name("neutral.sl")
 _SUPERSAMPLING = (
     2  # pictures are this many times as large as asked; shrinking them is cheaper than more samples
 )
@@ -182,8 +184,8 @@ def _light_workbench(scene):
     display, shading = scene.display, scene.display.shading
     display.render_aa = "OFF"
     shading.light = "STUDIO"
-    with contextlib.suppress(TypeError):
-        shading.studio_light = "paint.sl"  # even, so that colours stay what they are
+    with contextlib.suppress(TypeError, RuntimeError):
+        shading.studio_light = _neutral_light()
     shading.color_type = "TEXTURE"  # a material without a picture shows its colour
     shading.show_shadows = True
     shading.shadow_intensity = 0.3
@@ -199,6 +201,14 @@ def _light_workbench(scene):
     shading.show_specular_highlight = True
     shading.show_backface_culling = False
     shading.show_xray = False
+
+
+def _neutral_light():
+    """The name of an even light without a tint: Blender's own ones colour what looks away from them."""
+    lights = bpy.context.preferences.studio_lights
+    if _NEUTRAL.name not in lights:
+        lights.load(path=str(_NEUTRAL), type="STUDIO")
+    return _NEUTRAL.name
 
 
 def tree_of(material):

@@ -152,7 +152,25 @@ def _surface(tree, kind):
         node = _source_node(socket)
         if node is not None:
             entry[name.lower()] = _node_facts(node, everything=False)
+            if mixed := _mixed_shaders(node):
+                entry[name.lower()]["mixed"] = mixed
     return entry or {"surface": None}
+
+
+def _mixed_shaders(node):
+    """The shaders that a shader mixes, nearest first, without those that only mix others."""
+    waiting, seen, mixed = [node], {node}, []
+    while waiting and len(mixed) < _MOST_MIXED:
+        for socket in list(waiting.pop(0).inputs)[:MOST_SOCKETS]:
+            source = _source_node(socket) if socket.type == "SHADER" and socket.is_linked else None
+            if source is None or source in seen:
+                continue
+            seen.add(source)
+            if source.type in _MIXERS:
+                waiting.append(source)
+            elif len(mixed) < _MOST_MIXED:
+                mixed.append({"name": text(source.name), **_node_facts(source, everything=False)})
+    return mixed
 
 
 def _source_node(socket):
@@ -256,6 +274,8 @@ def _own_settings(node):
 
 
 _STRAIGHT = [[0, 0], [1, 1]]
+_MIXERS = ("MIX_SHADER", "ADD_SHADER")
+_MOST_MIXED = 4
 
 
 def ramp_facts(ramp):

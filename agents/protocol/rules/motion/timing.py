@@ -156,7 +156,8 @@ def _out_of_order(
         )
     meeting = _meeting(context, effect, cause)
     met = measures[meeting].frames if meeting else ()
-    if met and met[0] - began.frame > most:
+    # What touches when the cause begins may have touched long before.
+    if met and met[0] > cause.start and met[0] - began.frame > most:
         yield T3.finding(
             pair,
             f"{phase_label(place, effect)} moves from frame {began.frame} on, but {cause.actor!r} "

@@ -16,6 +16,12 @@ if TYPE_CHECKING:
     from agents.protocol.measures.requests import Measures
     from agents.protocol.rule import RuleContext
 
+_CELLS = 1.5  # of its solver that a liquid's surface may be in a wall: one to creep, and half a particle
+_LIQUID_FIX = (
+    "Let the domain's own border hold the liquid: its box ends one cell outside of the cavity's floor and walls; or "
+    "use smaller cells. Lower particle_radius where the liquid gains volume."
+)
+
 
 def _embedding(context: RuleContext, relation: EmbeddedIn, frame: int | None) -> EmbeddingRequest:
     return EmbeddingRequest(*surface_pair(context, *relation.nodes), frame)
@@ -25,9 +31,13 @@ def _enclosure(context: RuleContext, relation: Inside, frame: int | None) -> Enc
     content, container = surface_pair(context, *relation.nodes)
     noise = context.tolerances.noise(smallest_dimension(context, content, container))
     # A liquid's surface is only as exact as the cells that it is computed on.
-    fluids = [fluid for name in content if (fluid := context.structure.objects[name].fluid) is not None]
-    noise = max([noise, *(fluid.cell for fluid in fluids)])
+    noise = max([noise, *(_CELLS * cell for cell in _cells_of(context, content))])
     return EnclosureRequest(content, container, noise, frame)
+
+
+def _cells_of(context: RuleContext, names: Iterable[str]) -> list[float]:
+    """The sizes of the cells of fluids, in metres."""
+    return [fluid.cell for name in names if (fluid := context.structure.objects[name].fluid) is not None]
 
 
 def _requests(
@@ -62,7 +72,9 @@ def _outside(
             least,
             "",
             enclosed.at,
-            "Move the content into the cavity, below the rim and clear of the walls, or make it smaller.",
+            _LIQUID_FIX
+            if _cells_of(context, request.content)
+            else "Move the content into the cavity, below the rim and clear of the walls, or make it smaller.",
         )
 
 

@@ -17,6 +17,7 @@ from agents.protocol.judging.planned_relations import (
     surfaces,
 )
 from agents.protocol.judging.sizes import contact_gap, smallest_dimension
+from agents.protocol.judging.solver_advice import into_collider
 from agents.protocol.measures.contact import DepthRequest, FlushRequest, SupportRequest
 from agents.protocol.measures.geometry import GapRequest
 from agents.protocol.tolerances import CONTACT
@@ -42,11 +43,12 @@ def _too_deep(
     if measured.depth <= most:
         return None
     sentence = f"{names[0]!r} is {_mm(measured.depth)} deep in {names[1]}."
-    fix = (
-        f"Move {names[0]!r} out by {_mm(measured.depth)}, so that the surfaces meet."
-        if is_near(context, request.a, measured.depth)
-        else f"See why {names[0]!r} is inside {names[1]}: one of them is misplaced, or a hollow of it is closed."
-    )
+    if request.frame is not None and (advice := into_collider(context, names[0])):
+        fix = advice  # where a simulation or keyframes have put it, a move is undone by the next bake
+    elif is_near(context, request.a, measured.depth):
+        fix = f"Move {names[0]!r} out by {_mm(measured.depth)}, so that the surfaces meet."
+    else:
+        fix = f"See why {names[0]!r} is inside {names[1]}: one of them is misplaced, or a hollow of it is closed."
     return Violation(sentence, measured.depth, most, "m", measured.at, fix)
 
 

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     from agents.protocol.findings import Finding
 
+_NAMED = 6
+
 
 @dataclass(frozen=True, slots=True)
 class _ContactPair:
@@ -129,8 +131,18 @@ def _invalid(context: RuleContext, contact: DeclaredContact) -> Finding:
     return V1.finding(
         (contact.a, contact.b),
         f"{contact.by} {problem}.",
-        fix="Name other meshes, roots or objects of the scene in contact_with, exactly as they are called.",
+        fix=_fix_of_name(context, unknown[0] if unknown else ""),
     )
+
+
+def _fix_of_name(context: RuleContext, node: str) -> str:
+    owner, _, part = node.partition("/")
+    if part and (thing := context.structure.by_name.get(owner)):
+        return (
+            f"Call a mesh of {owner!r} {part!r} or {f'{owner}_{part}'!r}; its meshes are "
+            f"{', '.join(map(repr, thing.surfaces[:_NAMED])) or 'none yet'}."
+        )
+    return "Name other meshes, roots or objects of the scene in contact_with, exactly as they are called."
 
 
 V1 = Rule(

@@ -11,7 +11,7 @@ from test_stepped_once import CLOTH_ON_BALL, broken
 from agents.blender.tools.bake import TOOL as BAKE
 from agents.blender.tools.base import Call
 from agents.blender.tools.trial import TOOL
-from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.errors import Refusal, TookTooLong
 from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
@@ -45,6 +45,15 @@ def test_a_trial_tells_heights_speeds_pace_and_shows_a_strip(session: LiveSessio
     assert "the whole bake of 12 frames" in found.text
     (strip,) = found.pictures
     assert strip.png.startswith(b"\x89PNG")
+
+
+def test_a_trial_past_its_deadline_still_says_what_a_frame_took(session: LiveSession) -> None:
+    session.run(f"""{CLOTH_ON_BALL}
+import time
+bpy.app.handlers.frame_change_post.append(lambda *_: time.sleep(0.5))""")
+    wanted = {"objects": None, "frames": 99, "seconds": 99, "folder": "/nowhere", "width": None}
+    with pytest.raises(TookTooLong, match=r"4 s \(the last it told: frame \d+ in .* s; Flag: lowest"):
+        session.blender.call("trial", wanted, unread, timeout=4)
 
 
 def test_what_a_trial_simulated_is_kept_for_the_next_one_and_for_the_bake(session: LiveSession) -> None:

@@ -9,6 +9,7 @@ from test_bake import PARTS, one
 
 from agents.blender.tools.bake import TOOL as BAKE
 from agents.blender.tools.base import Call
+from agents.blender.tools.files import SAVE as SAVE_TOOL
 from agents.blender.tools.motion_sheet import TOOL as MOTION
 from agents.blender.tools.previews import TOOLS as PREVIEWS
 from agents.blender.tools.verify import TOOL as VERIFY
@@ -66,6 +67,23 @@ def test_what_was_stepped_is_measured_again_without_a_step_and_becomes_the_bake(
     session.blender.keep("before a restart")
     session.blender.restore()
     assert visited(session, name)[1] == pytest.approx(first[1], abs=1e-5)
+
+
+@pytest.mark.parametrize("place", ["in the run", "in Blender's temporary folder"])
+def test_what_a_liquid_was_stepped_to_outlives_saving(session: LiveSession, place: str) -> None:
+    session.run(f"{LIQUID}\n{SAVE}")
+    if place == "in the run":
+        session.run("bpy.data.objects['Tank'].modifiers[0].domain_settings.cache_directory = '//frames'")
+    first = visited(session, "Tank")
+    session.run("bpy.context.scene.frame_set(1)")
+    for name in ("stage", "scene"):
+        saved = session.use(SAVE_TOOL, name=name, verify=False)
+        session.run("bpy.context.view_layer.update()")
+        (cache,) = saved.data["caches"]
+        assert (cache["frames"], saved.data["beside"]["files"]) == (12, 3 * 12)
+    assert visited(session, "Tank") == (1, first[1])
+    bake = session.use(BAKE)
+    assert one(bake)["kept"], bake.text
 
 
 @pytest.mark.parametrize(

@@ -105,3 +105,15 @@ def test_textures_follow_uv_coordinates(session: LiveSession) -> None:
     assert isinstance(right, tuple)
     assert is_coloured(left, "red")
     assert is_coloured(right, "blue")
+
+
+def test_what_looks_away_from_the_light_is_darker_and_has_no_tint(session: LiveSession) -> None:
+    boards = "".join(
+        f"box('Board {turn}', ({turn}, 0, 0), (.2, 1, .02), turn=({turn}, 0, 0))\n" for turn in (1.4, -1.4)
+    )
+    build(session, f"{boards}collection('Board', 'object', *bpy.context.scene.objects)")
+    for picture in Views(session, "object", "Board").pictures.values():
+        data = picture.convert("RGBA").tobytes()
+        shades = [data[at : at + 3] for at in range(0, len(data), 4) if data[at + 3] == 255]
+        assert shades
+        assert max(max(shade) - min(shade) for shade in shades) < 7

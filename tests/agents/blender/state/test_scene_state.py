@@ -12,6 +12,7 @@ import pytest
 
 from agents.blender.tools.base import Result, parse
 from agents.blender.tools.scene_fit import tokens
+from agents.blender.tools.scene_order import words_of
 from agents.blender.tools.scene_state import TOOL, SceneStateArguments, readout
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.replies import unread
@@ -627,6 +628,10 @@ tree.nodes['Principled BSDF'].inputs['Roughness'].default_value = 0.2
     assert nodes["RGB Curves"]["settings"]["curves"] == {"3": [[0, 0], [0.5, 0.7], [1, 1]]}
     assert nodes["Principled BSDF"]["inputs"] == {"Roughness": 0.2}
     assert paint["surface"]["inputs"] == {"Shader[1]": "<- Principled BSDF", "Shader[2]": "<- Glass BSDF"}
+    principled, glass = paint["surface"]["mixed"]
+    assert principled["inputs"]["Roughness"] == 0.2
+    assert glass["shader"] == "Glass BSDF"
+    assert "Principled BSDF = Principled BSDF Base Color=" in read(session, sections=["materials"]).text
     assert session.run("len(bpy.data.node_groups)") == before
 
 
@@ -1015,3 +1020,23 @@ def test_entries_keep_the_order_of_the_scene(session: LiveSession) -> None:
     assert names == session.run("[o.name for o in bpy.context.scene.collection.objects]")
     places = [found.text.index(f"- {name} EMPTY") for name in names]
     assert all(one < other for one, other in pairwise(places))
+
+
+def test_what_is_asked_for_comes_first_with_its_materials(session: LiveSession) -> None:
+    session.run(
+        """
+for number in range(12):
+    bpy.ops.mesh.primitive_cube_add(location=(3 * number, 0, 0), rotation=(0, 0, number / 10))
+    made = bpy.context.object
+    made.name = 'FloorLamp_Shade' if number == 9 else f'Thing {chr(65 + number)}'
+    made.data.materials.append(bpy.data.materials.new(f'Paint {chr(65 + number)}'))
+"""
+    )
+    asked = words_of("Switch the floor lamp on, so that it lights the sofa's corner.")
+    assert asked == ["switch", "floor", "lamp", "light", "sofa", "corner"]
+    found = read(session, first=["sofa", "lamp"])
+    assert found.data["objects"][0]["name"] == "FloorLamp_Shade"
+    assert found.data["materials"][0]["name"] == "Paint J"
+    short = read(session, first=["sofa", "lamp"], max_tokens=500, sections=["objects"])
+    assert 'first=["sofa", "lamp"], sections=["objects"], start=' in short.text
+    assert "FloorLamp_Shade" in short.text

@@ -193,3 +193,16 @@ def test_what_is_not_evaluated_cannot_be_measured_and_hides_no_other_finding(ses
 def test_without_declarations_there_is_nothing_to_judge(session: LiveSession) -> None:
     build(session, crate(0.5))
     assert set(verified(session, "V1").not_applicable) == {"V1"}
+
+
+@pytest.mark.parametrize("mesh", ["Lid", "Lid.001", "Crate_Lid", "crate lid"])
+def test_a_part_is_found_by_the_names_that_people_give_it(session: LiveSession, mesh: str) -> None:
+    lid = f'thing("Crate", box("Planks", (0, 0, 0), (1, 1, 1)), box("{mesh}", (0, 0, 1.01), (1, 1, 1.03)))'
+    build(session, f"{FLOOR}{lid}\nbpy.data.objects['Planks']['contact_with'] = ['Crate/Lid']")
+    assert "10.0 mm apart" in the_finding(verified(session, "V1")).message
+
+
+def test_a_part_that_is_nowhere_is_told_with_the_meshes_there_are(session: LiveSession) -> None:
+    build(session, crate(0) + 'planks["contact_with"] = ["Crate/Lid"]')
+    fix = the_finding(verified(session, "V1")).fix
+    assert fix == "Call a mesh of 'Crate' 'Lid' or 'Crate_Lid'; its meshes are 'Planks'."

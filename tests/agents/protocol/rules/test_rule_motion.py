@@ -191,6 +191,15 @@ def test_without_a_contact_the_cause_moves_first(session: LiveSession, onset: in
         assert (finding.measured, finding.frame) == (10 - onset, onset)
 
 
+def test_what_is_held_from_the_start_is_not_touched_only_later(session: LiveSession) -> None:
+    script = PUSH.replace("ONSET", "7").replace("location=(-1, 0, 0)", "location=(0, 0, 0)")
+    script = script.replace("key(rod, 30, location=(0, 0, 0))", "key(rod, 30, location=(-1, 0, 0))")
+    (finding,) = judged(
+        session, "T3", script, CAUSED[0], phase("Tile", "slide", 7, 17, cause="push")
+    ).findings
+    assert "its cause 'push' starts only at frame 10" in finding.message
+
+
 def test_a_fast_ball_that_rebounds_between_frames_has_hit(session: LiveSession) -> None:
     script = """
 scene.frame_start, scene.frame_end = 1, 60

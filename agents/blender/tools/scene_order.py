@@ -1,0 +1,63 @@
+"""Orders the entries of a readout: what the reader asked for before all else."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from agents.blender.tools.scene_fold import Entry
+
+_WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[^\W\d_a-zA-Z]+")
+_LEAST = 3  # letters of a word that is looked for
+_COMMON = frozenset(
+    """all and any are but for from has have her his into its let make not now off onto our out over same so than that
+    the their them then they this those through under until upon was were what when where which while will with you
+    your""".split()  # noqa: SIM905
+)
+
+
+def words_of(text: str) -> list[str]:
+    """The words of a sentence that may name something, each once."""
+    return list(dict.fromkeys(word for word in _words(text) if len(word) >= _LEAST and word not in _COMMON))
+
+
+def asked_first(facts: dict[str, Any], names: Sequence[str], sections: Iterable[str]) -> None:
+    """Moves the entries of ``sections`` whose names hold all words of one of ``names`` before the others, and the
+    materials of such objects.
+    """
+    wanted = [set(_words(name)) for name in names]
+    wanted = [words for words in wanted if words]
+    worn = {
+        _name(material)
+        for entry in facts.get("objects", ())
+        if _is_wanted(entry, wanted)
+        for material in entry.get("materials", ())
+    }
+    for section in sections:
+        entries: list[Entry] = facts.get(section, [])
+        facts[section] = sorted(
+            entries,
+            key=lambda entry: (
+                not (_is_wanted(entry, wanted) or (section == "materials" and entry.get("name") in worn))
+            ),
+        )
+
+
+def _is_wanted(entry: Entry, wanted: list[set[str]]) -> bool:
+    own = set(_words(str(entry.get("name", ""))))
+    return any(words <= own for words in wanted)
+
+
+def _name(material: object) -> object:
+    return material.get("name") if isinstance(material, dict) else material
+
+
+def _words(text: str) -> list[str]:
+    """Words in small letters, without the ``s`` of a plural or a genitive: ``FloorLamps`` is ``floor``, ``lamp``."""
+    words = (word.lower() for word in _WORD.findall(text.replace("'s", "")))
+    return [
+        word[:-1] if len(word) > _LEAST and word.endswith("s") and word[-2] != "s" else word for word in words
+    ]
