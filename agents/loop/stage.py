@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 MAX_RETRIES_PER_STAGE = 10
 MAX_REPLANS_PER_STAGE = 5
 _SAVES = 3  # tries to save a stage that is built
+_WORDS = 8000  # letters of what is to be mended
 
 
 class StageLoop:
@@ -61,25 +62,26 @@ class StageLoop:
         tactic, worked = self._fresh(attempt, self._begin)
         while True:
             verdict, review = self._judged(attempt, tactic)
+            reviewed = format_review(review, tactic)
             if why := still_open(worked.how, verdict, review):
-                reviewed = format_review(review, tactic)
                 decision = self._decided(attempt, worked, verdict, reviewed, why)
             else:
                 self._run.journal.note(Decided(stage=self._stage, attempt=attempt, taken="advance"))
                 if not (mend := self._unsaved()):
                     self._run.acceptance.close(tactic, review)
-                    reviewed = format_review(review, tactic)
                     self._planner.closed(self._stage, worked.said, verdict.text, reviewed)
                     return attempt
-                decision = Decision(transition="retry", reason="It cannot be saved.", instructions=mend)
+                decision = Decision(
+                    transition="retry", reason="It cannot be saved.", instructions=mend[:_WORDS]
+                )
             if decision.transition == "abort":
                 self._run.roll_back(self._stage, attempt, self._before)
                 raise Aborted(f"The stage {self._stage} could not be closed: {decision.reason}")
             attempt += 1
             if decision.transition == "retry":
                 self._retries += 1
-                mend_what = (decision.instructions, verdict.text, format_review(review, tactic))
-                worked = self._run.attempted(self._stage, attempt, partial(self._coder.again, *mend_what))
+                what = (decision.instructions, verdict.text, reviewed)
+                worked = self._run.attempted(self._stage, attempt, partial(self._coder.again, *what))
             else:
                 self._replans += 1
                 self._run.roll_back(self._stage, attempt, self._before)
