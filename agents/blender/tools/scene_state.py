@@ -56,7 +56,7 @@ class SceneStateArguments(Arguments):
     first: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
         default=None,
         max_length=200,
-        description="Names or words: what is called so, and the materials on it, comes before all else.",
+        description="What bears these names or words, and its materials, comes first.",
     )
     sections: list[SectionName] | None = Field(
         default=None,
