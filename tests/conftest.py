@@ -94,6 +94,12 @@ def _small_once(built_once: Built, tmp_path_factory: pytest.TempPathFactory) -> 
     return made_once(tmp_path_factory, "small", lambda folder: built_once.copy(folder).rebuilt_small())
 
 
+@pytest.fixture(scope="session")
+def small_base(_small_once: Built) -> Path:
+    """The file of a base like ``base``, of few symbols. Never write to it."""
+    return _small_once.path
+
+
 @pytest.fixture
 def small(_small_once: Built, tmp_path: Path) -> Built:
     """A base of one's own like ``base``, of few symbols: for tests that build again.

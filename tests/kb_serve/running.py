@@ -106,5 +106,5 @@ class HttpServer:
     def end(self, number: int) -> tuple[int, str, str]:
         """Sends a signal; the exit code, and what was printed meanwhile."""
         self.process.send_signal(number)
-        out, err = self.process.communicate(timeout=20)
+        out, err = self.process.communicate(timeout=60)
         return self.process.returncode, out, err

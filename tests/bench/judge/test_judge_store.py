@@ -81,7 +81,7 @@ def test_two_processes_with_the_same_question_ask_once(claude, frames, store):
     claude.script.before = gate
     with ThreadPoolExecutor(2) as pool:
         both = [pool.submit(judged, claude, frames, store) for _ in range(2)]
-        assert gate.reached.wait(20)
+        assert gate.reached.wait(60)
         gate.go.set()
         one, other = (each.result() for each in both)
     assert one == other

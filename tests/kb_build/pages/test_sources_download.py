@@ -329,7 +329,7 @@ def test_an_address_that_never_answers_costs_what_patience_allows_for_both_sourc
     assert "could not be reached" in reason(found["manual"])
     assert "was not tried" in reason(found["guides"])
     assert patience.seconds == 0.0
-    assert time.monotonic() - started < 5
+    assert time.monotonic() - started < 60  # without patience, the system waits for two minutes
 
 
 def test_silent_hosts_share_one_patience(tmp_path: Path) -> None:

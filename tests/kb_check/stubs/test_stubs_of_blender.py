@@ -99,31 +99,31 @@ def test_every_class_is_written(folder: Path, base: Path) -> None:
     }
 
 
-def test_writes_again_over_its_own(base: Path, tmp_path: Path) -> None:
-    write_folder(base, tmp_path)
+def test_writes_again_over_its_own(small_base: Path, tmp_path: Path) -> None:
+    write_folder(small_base, tmp_path)
     stale = tmp_path / "bpy-stubs" / "stale.pyi"
     stale.write_text("", encoding="utf-8")
     other = tmp_path / "other-stubs"
     other.mkdir()
-    write_folder(base, tmp_path)
+    write_folder(small_base, tmp_path)
     assert not stale.exists()
     assert other.is_dir()
     assert (tmp_path / "bpy-stubs" / "__init__.pyi").read_text(encoding="utf-8").startswith(MARK)
 
 
 @pytest.mark.parametrize("text", [None, "", "# somebody else's\n"])
-def test_never_replaces_what_others_wrote(base: Path, tmp_path: Path, text: str | None) -> None:
-    package = tmp_path / "mathutils-stubs"
+def test_never_replaces_what_others_wrote(small_base: Path, tmp_path: Path, text: str | None) -> None:
+    package = tmp_path / "bpy-stubs"
     package.mkdir()
     if text is not None:
         (package / "__init__.pyi").write_text(text, encoding="utf-8")
-    with pytest.raises(OutputInTheWay, match="mathutils-stubs"):
-        write_folder(base, tmp_path)
-    assert [path.name for path in tmp_path.iterdir()] == ["mathutils-stubs"]
+    with pytest.raises(OutputInTheWay, match="bpy-stubs"):
+        write_folder(small_base, tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["bpy-stubs"]
 
 
-def test_a_wheel_installs(base: Path, tmp_path: Path) -> None:
-    wheel, written = write_wheel(base, tmp_path / "dist")
+def test_a_wheel_installs(small_base: Path, tmp_path: Path) -> None:
+    wheel, written = write_wheel(small_base, tmp_path / "dist")
     assert wheel.name == f"simworlds_bpy_stubs-{written.blender}-py3-none-any.whl"
     with zipfile.ZipFile(wheel) as archive:
         record = archive.read(f"simworlds_bpy_stubs-{written.blender}.dist-info/RECORD").decode()
@@ -132,7 +132,7 @@ def test_a_wheel_installs(base: Path, tmp_path: Path) -> None:
             data = archive.read(name)
             expected = base64.urlsafe_b64encode(hashlib.sha256(data).digest()).rstrip(b"=").decode()
             assert (digest, int(size)) == (f"sha256={expected}", len(data)), name
-    again, _ = write_wheel(base, tmp_path / "again")
+    again, _ = write_wheel(small_base, tmp_path / "again")
     assert again.read_bytes() == wheel.read_bytes()
     target = tmp_path / "installed"
     install = ["uv", "pip", "install", "--offline", "--no-deps", "--target", str(target), str(wheel)]
@@ -140,8 +140,8 @@ def test_a_wheel_installs(base: Path, tmp_path: Path) -> None:
     assert (target / "bpy-stubs" / "types.pyi").is_file()
 
 
-def test_the_command_writes_and_says_what(base: Path, tmp_path: Path) -> None:
-    result = CliRunner().invoke(command, ["--base", str(base), "--out", str(tmp_path / "typings")])
+def test_the_command_writes_and_says_what(small_base: Path, tmp_path: Path) -> None:
+    result = CliRunner().invoke(command, ["--base", str(small_base), "--out", str(tmp_path / "typings")])
     assert result.exit_code == 0, result.output
     assert "files" in result.output
     assert (tmp_path / "typings" / "bpy-stubs" / "ops" / "mesh.pyi").is_file()

@@ -62,7 +62,7 @@ def guarded(home_of_servers: Path) -> Iterator[HttpServer]:
 def post(url: str, content: object = ASK, **headers: str) -> httpx2.Response:
     body = content if isinstance(content, bytes) else json.dumps(content).encode()
     given = {"Content-Type": "application/json", **ACCEPT, **headers}
-    return httpx2.post(url, content=body, headers=given, timeout=20)
+    return httpx2.post(url, content=body, headers=given, timeout=60)
 
 
 @pytest.mark.anyio
@@ -262,7 +262,7 @@ def test_requests_that_make_no_sense_are_refused_and_others_still_served(
 
 
 def test_there_are_no_streams_that_could_be_held_open(server: HttpServer) -> None:
-    answer = httpx2.get(server.url, headers={"Accept": "text/event-stream"}, timeout=20)
+    answer = httpx2.get(server.url, headers={"Accept": "text/event-stream"}, timeout=60)
     assert answer.status_code == 405
     assert answer.headers["Allow"] == "POST"
 

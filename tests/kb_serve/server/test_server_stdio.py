@@ -59,14 +59,14 @@ def test_the_server_ends_when_the_client_closes_stdin(wire: Wire) -> None:
     wire.shake_hands()
     wire.ask(QUALITY)
     assert wire.close() == b""
-    assert wire.process.wait(timeout=10) == 0
+    assert wire.process.wait(timeout=60) == 0
 
 
 @pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGINT])
 def test_a_signal_ends_the_server_though_it_waits_for_stdin(wire: Wire, number: signal.Signals) -> None:
     wire.shake_hands()
     wire.process.send_signal(number)
-    assert wire.process.wait(timeout=10) == 0
+    assert wire.process.wait(timeout=60) == 0
 
 
 def test_lines_that_are_no_messages_do_not_end_the_server(wire: Wire) -> None:

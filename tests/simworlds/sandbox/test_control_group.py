@@ -112,7 +112,7 @@ def test_what_still_runs_in_a_group_ends_with_it(group: ControlGroup) -> None:
         assert process.stdout is not None
         assert process.stdout.readline() == "in\n"
         group.close()
-        assert process.wait(20) == -9
+        assert process.wait(60) == -9
     assert not any(folder.exists() for folder in folders)
 
 

@@ -8,7 +8,6 @@ import shutil
 import socket
 import subprocess
 import tempfile
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -587,6 +586,4 @@ def test_forged_replies_do_not_affect_the_next_call(channelled: LiveSession) -> 
     code = f"{WIRE}wire.send({{'ticket': ticket, 'value': {value}, 'seconds': 0.1, 'left': []}})"
     with contextlib.suppress(Died):
         channelled.use(TOOL, code=code)
-    started = time.monotonic()
     assert channelled.run("1 + 1") == 2
-    assert time.monotonic() - started < 60

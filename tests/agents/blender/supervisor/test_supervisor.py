@@ -9,7 +9,6 @@ import signal
 import subprocess
 import sys
 import threading
-import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -192,9 +191,7 @@ def test_blender_survives(hardy: LiveSession, code: str) -> None:
     ids=["python", "sleep", "c", "render", "catches all", "output", "ignores signals"],
 )
 def test_keeps_the_deadline_whatever_runs(hardy: LiveSession, code: str) -> None:
-    started = time.monotonic()
     error = lost(hardy, code, timeout=0.7)
-    assert time.monotonic() - started < 60  # a new Blender takes long to start on a busy machine
     assert isinstance(error, TookTooLong)
     assert "ran past its deadline of 0.7 s, and Blender was stopped. A new Blender was started from" in str(
         error
@@ -225,10 +222,8 @@ def test_undoes_a_crash_with_on_error_restore(hardy: LiveSession) -> None:
 def test_stops_a_cancelled_call(hardy: LiveSession) -> None:
     call = Call()
     threading.Timer(0.2, call.cancelled.set).start()
-    started = time.monotonic()
     with pytest.raises(Interrupted, match=r"was cancelled after \d\.\d s, and Blender was stopped"):
         hardy.use(TOOL, call, code="while True: pass", timeout=100)
-    assert time.monotonic() - started < 60
     assert hardy.run(NAMES) == ["Kept"]
 
 
