@@ -95,6 +95,8 @@ class Run:
             saying=self.saying,
             safe=self.safe,
             names=self.options.models,
+            verifier=self.options.verifier,
+            staged=self.options.stages,
         )
 
     @property
@@ -330,10 +332,11 @@ class RoleTools:
     @property
     def offered(self) -> tuple[Tool, ...]:
         """What the model is told of them."""
-        if not self._run.options.stages or self._run.options.mode == "edit":
-            return self._run.tools.offered(self._names)
         is_told = coder.is_needed if self._role == coder.NAME else coder.is_seen
-        return self._run.tools.offered([name for name in self._names if is_told(name, self._stage)])
+        staged = self._run.options.stages
+        return self._run.tools.offered(
+            [name for name in self._names if is_told(name, self._stage, staged=staged)]
+        )
 
     def use(self, call: ToolUse) -> ToolResult:
         """Calls one, for the model."""

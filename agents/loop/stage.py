@@ -13,6 +13,7 @@ from agents.loop.topic_page import topic_page
 from agents.plan.tactical import Decision
 from agents.roles.coder import Coder
 from agents.roles.reviewer import Reviewer
+from agents.roles.sheets import solvers_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -40,7 +41,14 @@ class StageLoop:
         self._task = task
         self._stage: Stage = stage
         self._before = before
-        self._coder = Coder(run.context, stage, task.plan_text, edit=task.edit, shown=references(task))
+        self._coder = Coder(
+            run.context,
+            stage,
+            task.plan_text,
+            edit=task.edit,
+            shown=references(task),
+            solvers=solvers_of(task.plan, task.declared),
+        )
         self._reviewer = Reviewer(run.context, stage, task.plan_text, edit=task.edit)
         self._retries = self._replans = self._saves = 0
 
