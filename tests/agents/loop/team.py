@@ -136,7 +136,8 @@ def whose(params: Params) -> tuple[str, str]:
         return role, found[1] if found else ""
     if role == "final_reviewer":
         return role, "render"
-    return role, re.match(r"# (\w+)", system[-1])[1]  # type: ignore[index]
+    stages = (re.match(r"# ([a-z]\w*)", block) for block in reversed(system))  # a solver's sheet may follow
+    return role, next(found[1] for found in stages if found)
 
 
 def turn_of(params: Params) -> int:
