@@ -40,7 +40,8 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     beside the file as it is.
     """
     shown = _Shown(run, stage)
-    shown.take(_LAYOUT, _layout(task))
+    subjects = _subjects(task)
+    shown.take(_LAYOUT, {"subjects": subjects} if subjects else {})
     if stage == "uv":
         shown.take(_UV, {})
     if stage == "texture" or not run.options.stages:
@@ -59,7 +60,6 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
         for frame in _telling_frames(task, peak):
             shown.take(RENDER, still(f"look-{frame}", frame))
     shown.blocks += _coders_stills(run)
-    subjects = _layout(task).get("subjects")
     shown.take(_STATE, {"first": subjects} if subjects else {})
     return shown.blocks
 
@@ -85,9 +85,10 @@ def still(name: str, frame: int | None) -> dict[str, Any]:
     return {**asked, "time_budget": _SECONDS} | ({} if frame is None else {"frame": frame})
 
 
-def _layout(task: RunTask) -> dict[str, Any]:
+def _subjects(task: RunTask) -> list[str]:
+    """What the plan is about: the camera's subjects and the actors."""
     subjects = (*task.plan.camera.subjects, *task.actors) if task.plan is not None else ()
-    return {"subjects": list(dict.fromkeys(subjects))[:_MOST_SUBJECTS]} if subjects else {}
+    return list(dict.fromkeys(subjects))[:_MOST_SUBJECTS]
 
 
 def motion_sheets(actors: Sequence[str], phases: Iterable[MotionPhase]) -> list[dict[str, Any]]:
