@@ -131,9 +131,10 @@ class SceneStructure:
         """
         owner, _, part = node.partition("/")
         if part:
-            meshes = self.by_name[owner].surfaces if owner in self.by_name else ()
+            meshes = self.by_name[owner].meshes if owner in self.by_name else ()
+            bodies = tuple(mesh.name for mesh in meshes if mesh.surface)
             return (
-                (part,) if part in meshes else tuple(name for name in meshes if _is_part(name, owner, part))
+                (part,) if part in bodies else tuple(name for name in bodies if _is_part(name, owner, part))
             )
         if node in self.by_name:
             return self.by_name[node].surfaces
