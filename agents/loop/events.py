@@ -174,6 +174,13 @@ class TacticMade(Event):
     plan: TacticalPlan | None = None
 
 
+class TimeTold(Event):
+    """The roles were told how many ``minutes`` are left of the session's limit."""
+
+    type: Literal["time.told"] = "time.told"
+    minutes: int = 0
+
+
 class AttemptBegan(Event):
     """The coder began an attempt."""
 

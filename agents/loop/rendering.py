@@ -62,6 +62,7 @@ class LastStage:
 
     def finish(self) -> RenderResult:
         """The result, reviewed, and fixed at most once for the final reviewer. Raises RunError, ModelError."""
+        self._run.stage = "render"
         self._mended_if_need_be(self._draft)
         rendering = self._mended_if_need_be(lambda: self._render(1))
         verdict = self._review(rendering, 1)
@@ -183,7 +184,8 @@ class LastStage:
             if run.options.early:  # a later fix begins with it
                 name = f"mended-{self._attempt}"
                 run.save("render", name)
-                self._last = name
+                self._last = run.closed = name
+                run.is_changed = False
             return True
         run.roll_back("render", self._attempt, self._last)
         return False

@@ -58,6 +58,7 @@ class StageLoop:
         Raises Aborted, with the scene as it was before the stage; NotSaved; ModelError.
         """
         self._run.journal.note(StageMoved(type="stage.began", stage=self._stage))
+        self._run.stage = self._stage
         attempt = 1
         tactic, worked = self._fresh(attempt, self._begin)
         while True:
@@ -109,7 +110,7 @@ class StageLoop:
         """A tactical plan, and the first attempt to realise it. A decision to replan may have brought the plan."""
         run, stage = self._run, self._stage
         run.attempt = attempt
-        state = run.state(stage)
+        state = "\n\n".join(filter(None, (run.time_left(stage, attempt), run.state(stage))))
         tactic = replan.tactic if replan else None
         if tactic is None:
             why = f"The last plan did not do: {replan.reason}" if replan else ""
@@ -136,6 +137,7 @@ class StageLoop:
             "retry": MAX_RETRIES_PER_STAGE - self._retries,
             "replan": MAX_REPLANS_PER_STAGE - self._replans,
         }
+        tries = f"{left['retry']} retries and {left['replan']} replans are left."
         decision = self._planner.decide(
             self._stage,
             attempt,
@@ -144,7 +146,7 @@ class StageLoop:
             report=worked.said,
             verified=verdict.text,
             reviewed=reviewed,
-            left=f"{left['retry']} retries and {left['replan']} replans are left.",
+            left=f"{tries} {self._run.time_left(self._stage, attempt + 1)}".rstrip(),
         )
         is_spent = left.get(decision.transition) == 0
         if is_spent:

@@ -108,7 +108,7 @@ class Team:
         if told.startswith("Attempt"):
             attempt = int(told.split()[1])
             return _nth(self.decisions.get(stage, (RETRY,)), attempt - 1) or RETRY
-        before = [text for text in _texts(params) if text.startswith(f"The stage {stage} begins.")]
+        before = [text for text in texts(params) if text.startswith(f"The stage {stage} begins.")]
         plain = {"stage": stage, "goal": f"Build {stage}."}
         return _nth(self.tactics.get(stage, (plain,)), len(before) - 1)
 
@@ -148,12 +148,12 @@ def turn_of(params: Params) -> int:
 
 def words_of(params: Params) -> str:
     """All that is said in a request's messages, results of tools included."""
-    return "\n".join(_texts(params))
+    return "\n".join(texts(params))
 
 
 def last_words(params: Params) -> str:
     """What the user said last."""
-    return "\n".join(_texts({"messages": params["messages"][-1:]}))
+    return "\n".join(texts({"messages": params["messages"][-1:]}))
 
 
 def _nth(turns: Sequence[Turn], place: int) -> Turn:
@@ -163,10 +163,11 @@ def _nth(turns: Sequence[Turn], place: int) -> Turn:
 def _task(params: Params) -> str:
     """What the planner was last asked for, complaints about its answers apart."""
     asked = ("Write the ", "The stage ", "Attempt ", "Before the film")
-    return next(text for text in reversed(list(_texts(params))) if text.startswith(asked))
+    return next(text for text in reversed(list(texts(params))) if text.startswith(asked))
 
 
-def _texts(params: Params) -> list[str]:
+def texts(params: Params) -> list[str]:
+    """All that the user said and tools answered, in words."""
     found: list[str] = []
     for message in params["messages"]:
         if message["role"] != "user":
