@@ -22,10 +22,10 @@ ifneq ($(wildcard /etc/ssl/certs/ca-certificates.crt),)
 export UV_SYSTEM_CERTS ?= 1
 endif
 
-# More than there are cores, as many tests wait: for a Blender to start or to end, for a limit to be reached. Each takes up
-# to 2 GB.
+# One more than there are cores, as many tests wait: for a Blender to start or to end, for a limit to be reached. With more
+# of them, limits in seconds that tests set are reached by waiting for a core. Each takes up to 2 GB.
 TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinity(0)); \
-  memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(3 * cores, memory, 8)))')
+  memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
 .PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures lock clean

@@ -19,28 +19,21 @@ NAME = "blender_docs"
 _Arguments = TypeVar("_Arguments", bound=BaseModel)
 
 DESCRIPTION = """\
-Look up Blender's Python API and manual: exact schemas (types, defaults, ranges, enum values, units, what \
-is read-only), operators with their arguments, node sockets, and the manual's pages, for the Blender \
-version in use. Answers come from that Blender itself. Query before you write a name you are not sure of, \
-and again when Blender raises an error: a property from memory may belong to another version.
+Look up Blender's Python API and manual, for the Blender version in use: exact schemas (types, defaults, ranges, enum \
+values, units), operators with their arguments, node sockets, the manual's pages. Answers come from that Blender \
+itself. Query before you write a name you are not sure of: a property from memory may belong to another version.
 
-What to send as `query`, one thing at a time:
-- a name as Blender writes it: `ClothSettings.quality`, `bpy.ops.object.modifier_add`, \
-`mathutils.Vector.lerp`, `ShaderNodeBsdfPrincipled`
-- an expression from your code: `bpy.context.object.modifiers["Cloth"].settings.quality`, \
-`mat.node_tree.nodes["Principled BSDF"].inputs["Specular"]`; a name that does not exist is answered with \
-similar ones that do
-- an error message, pasted whole: `AttributeError: 'Mesh' object has no attribute 'use_auto_smooth'`
-- an enum value: `BLENDER_EEVEE`
-- plain words: `make cloth collide with itself`, `bake rigid body simulation`
-- a topic, when you begin a stage of work: `cloth`, `rigid body`, `compositor`, `uv` give an overview of \
-its pages, classes and operators
+`query`, one thing at a time:
+- a name: `ClothSettings.quality`, `bpy.ops.object.modifier_add`, `ShaderNodeBsdfPrincipled`
+- an expression from your code: `bpy.context.object.modifiers["Cloth"].settings.quality`; a name that does not exist \
+is answered with similar ones that do
+- an error message, pasted whole: `AttributeError: …`; an enum value
+- plain words: `make cloth collide with itself`
+- a topic, when you begin a stage of work: `cloth`, `rigid body`, `uv` give an overview of pages, classes, operators
 
-The answer shows the best hit in full and lists others by `id`; query an id to see it. A long answer \
-ends with the part to go on with: repeat the call with it, as `part=23`. Parts are the same for every \
-`max_tokens`, which bounds how many of them one answer shows. `blender="4.5"` queries another \
-version's base, if it was built here. `notes` report corrections, missing sources and \
-differences between versions: read them."""
+The best hit is shown in full, others by `id`; query an id to see it. A long answer ends with the part to go on with: \
+repeat the call with it, as `part=23`. `blender="4.5"` asks another version's base. `notes` report corrections and \
+differences between versions."""
 
 
 class DocsArguments(BaseModel):
@@ -48,13 +41,14 @@ class DocsArguments(BaseModel):
 
     model_config = ConfigDict(extra="forbid", coerce_numbers_to_str=True, title="blender_docs")
 
-    query: str = Field(description="A name, expression, error message, enum value, question or topic.")
+    query: str = Field(description="One name, question or topic.")
     blender: str | None = Field(
-        default=None, description="Blender version, as 5.1. Default: the one in use, else the newest built."
+        default=None,
+        description="Default: the version in use, else the newest.",
     )
-    limit: int = Field(default=8, ge=1, description="Maximum number of hits.")
-    max_tokens: int = Field(default=1500, ge=150, description="Maximum length of the answer.")
-    part: int = Field(default=1, ge=1, description="The part of a long answer to begin with.")
+    limit: int = Field(default=8, ge=1, description="Hits at most.")
+    max_tokens: int = Field(default=1500, ge=150, description="Of the answer, at most.")
+    part: int = Field(default=1, ge=1, description="The part to begin with.")
 
 
 class DocsHit(BaseModel):

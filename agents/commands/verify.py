@@ -8,7 +8,7 @@ import sys
 import tempfile
 import threading
 import time
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn
 
@@ -46,7 +46,11 @@ class _CannotCheckError(Exception):
 
 @click.command()
 @click.argument("scene", type=_PATH)
-@click.option("--plan", type=_PATH, help="The scene plan (JSON) that the scene was built to.")
+@click.option(
+    "--plan",
+    type=_PATH,
+    help="The scene plan (JSON) that the scene was built to. Default: the plan of the run that made the file.",
+)
 @click.option("--rules", metavar="LIST", help="Families or rules, such as C,G,V1. Default: all.")
 @click.option("--json", "form", flag_value="json", help="Print everything as JSON.")
 @click.option("--sarif", "form", flag_value="sarif", help="Print the findings as SARIF 2.1.0.")
@@ -78,7 +82,7 @@ def _verify(scene: Path, form: str | None, rules: tuple[Rule, ...], choices: dic
     from agents.protocol.report.summary import exit_code  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
-    plan = _plan(choices["plan"]) if choices["plan"] else None
+    plan = _plan_for(scene, choices["plan"])
     image: Path | None = choices["image"]
     if image is not None and not image.absolute().parent.is_dir():
         raise _CannotCheckError(f"The folder {image.absolute().parent} for {image.name} does not exist.")
@@ -97,6 +101,20 @@ def _rules(wanted: str | None) -> tuple[Rule, ...]:
         return rules_named(None if wanted is None else wanted.split(","))
     except ValueError as error:
         raise _CannotCheckError(f"--rules: {error}") from error
+
+
+def _plan_for(scene: Path, given: Path | None) -> ScenePlan | None:
+    """The plan that was given, or that of the run whose result ``scene`` is. Raises _CannotCheckError."""
+    if given is not None:
+        return _plan(given)
+    beside = scene.parent / "plan.json"
+    if not beside.is_file() or not (scene.parent / "journal.jsonl").is_file():
+        return None
+    with suppress(_CannotCheckError):  # the plan of an edit, say
+        plan = _plan(beside)
+        click.echo(f"The plan is {beside}, of the run that made the file.", err=True)
+        return plan
+    return None
 
 
 def _plan(path: Path) -> ScenePlan:

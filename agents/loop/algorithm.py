@@ -58,6 +58,7 @@ def build(run: Run, planner: Planner, task: RunTask, wanted: Sequence[Stage]) ->
                 run.deliver(stage)
         path = f"checkpoints/{stage}.blend"
         run.journal.note(StageMoved(type="stage.closed", stage=stage, attempts=attempts, file=path))
+        run.closed, run.is_changed = stage, False
         last = stage
     return last
 

@@ -174,6 +174,13 @@ class TacticMade(Event):
     plan: TacticalPlan | None = None
 
 
+class TimeTold(Event):
+    """The roles were told how many ``minutes`` are left of the session's limit."""
+
+    type: Literal["time.told"] = "time.told"
+    minutes: int = 0
+
+
 class AttemptBegan(Event):
     """The coder began an attempt."""
 
@@ -200,14 +207,18 @@ class Verified(Event):
 
 
 class Reviewed(Event):
-    """The reviewer's verdict on an attempt."""
+    """The reviewer's verdict on an attempt. ``lines`` are those of acceptance that it answers."""
 
     type: Literal["reviewed"] = "reviewed"
     review: Review | None = None
+    lines: Strs = ()
 
 
 class Decided(Event):
-    """What the planner decided, what was ``taken`` instead where it was ``overruled``, and why."""
+    """What became of an attempt: ``taken``, and ``why`` the stage is still open; "advance" closes it, undecided.
+
+    ``overruled``: what the planner decided could not be done any more.
+    """
 
     type: Literal["decided"] = "decided"
     decision: Decision | None = None
@@ -224,10 +235,12 @@ class RolledBack(Event):
 
 
 class ModelAsked(Event):
-    """A role asked its model; ``simworlds.llm.recorded`` writes what else is in the row."""
+    """A role asked its model: ``parts`` are digests of what it was told, see ``simworlds.llm.recorded``."""
 
     type: Literal["model.asked"] = "model.asked"
     model: Str = ""
+    parts: Strs = ()
+    texts: dict[str, str] = Field(default_factory=dict[str, str])
 
 
 class ModelAnswered(Event):
@@ -307,10 +320,11 @@ class SceneRendered(Event):
 
 
 class FinalReviewed(Event):
-    """The final reviewer's verdict on a rendering."""
+    """The final reviewer's verdict on a rendering. ``lines`` are those of acceptance that it answers."""
 
     type: Literal["final.reviewed"] = "final.reviewed"
     review: FinalReview | None = None
+    lines: Strs = ()
 
 
 class Edited(Event):

@@ -35,31 +35,31 @@ def moves(stage: Stage) -> bool:
 def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     """The layout, then what the stage is about, then the coder's own stills and the readout.
 
-    Materials are lit by a light of their own; what the camera sees is lit so until the scene has its light, and then
-    rendered at the first frame, at that of the fastest motion, and at the last. Of an edit, the file as it was stands
-    beside the file as it is.
+    Motion is shown in its stage: what comes after does not touch it, and rules judge it to the end. Materials are lit
+    by a light of their own; what the camera sees is lit so until the scene has its light, and then rendered at the
+    first frame, at that of the fastest motion, and at the last. Of an edit, the file as it was stands beside the file
+    as it is.
     """
     shown = _Shown(run, stage)
-    shown.take(_LAYOUT, _layout(task))
+    subjects = _subjects(task)
+    shown.take(_LAYOUT, {"subjects": subjects} if subjects else {})
     if stage == "uv":
         shown.take(_UV, {})
     if stage == "texture" or not run.options.stages:
         shown.take(_MATERIALS, {"width": WIDTH})
-    peak: int | None = None
-    if moves(stage) and task.actors:
+    if task.actors and (stage == "motion" or (moves(stage) and (task.edit or not run.options.stages))):
         phases = task.plan.motion.phases if task.plan is not None and stage == "motion" else ()
         sheets = motion_sheets(task.actors, phases)
         peaks = [_peak(shown.take(_MOTION, sheet)) for sheet in sheets]
-        peak = max(peaks, default=(0.0, None), key=lambda found: found[0])[1]
+        run.peak = max(peaks, default=(0.0, None), key=lambda found: found[0])[1]
     if task.edit:
         shown.blocks += edit_comparison(run, stage, task)
     elif stage == "camera":
-        shown.take(_MATERIALS, {"show": "scene", "width": WIDTH, "frames": _telling_frames(task, peak)})
+        shown.take(_MATERIALS, {"show": "scene", "width": WIDTH, "frames": _telling_frames(task, run.peak)})
     elif stage == "light":
-        for frame in _telling_frames(task, peak):
+        for frame in _telling_frames(task, run.peak):
             shown.take(RENDER, still(f"look-{frame}", frame))
     shown.blocks += _coders_stills(run)
-    subjects = _layout(task).get("subjects")
     shown.take(_STATE, {"first": subjects} if subjects else {})
     return shown.blocks
 
@@ -85,9 +85,10 @@ def still(name: str, frame: int | None) -> dict[str, Any]:
     return {**asked, "time_budget": _SECONDS} | ({} if frame is None else {"frame": frame})
 
 
-def _layout(task: RunTask) -> dict[str, Any]:
+def _subjects(task: RunTask) -> list[str]:
+    """What the plan is about: the camera's subjects and the actors."""
     subjects = (*task.plan.camera.subjects, *task.actors) if task.plan is not None else ()
-    return {"subjects": list(dict.fromkeys(subjects))[:_MOST_SUBJECTS]} if subjects else {}
+    return list(dict.fromkeys(subjects))[:_MOST_SUBJECTS]
 
 
 def motion_sheets(actors: Sequence[str], phases: Iterable[MotionPhase]) -> list[dict[str, Any]]:

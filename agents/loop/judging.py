@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from agents.loop.run import Run
     from agents.loop.task import Finding, RunTask
     from agents.plan.part import Stage
-    from agents.plan.tactical import Decision, TacticalPlan
+    from agents.plan.tactical import TacticalPlan
     from agents.roles.reviewer import Reviewer
 
 _OFF = "The verifier is switched off in this run."
@@ -96,18 +96,19 @@ def review(run: Run, reviewer: Reviewer, tactic: TacticalPlan, task: RunTask) ->
 
 def judge(
     run: Run,
-    stage: Stage,
+    tactic: TacticalPlan,
     attempt: int,
     verifying: Callable[[], VerifierVerdict],
     reviewing: Callable[[], Review],
 ) -> tuple[VerifierVerdict, Review]:
     """Both at the same time: while the model thinks, Blender measures. Their verdicts are journalled."""
+    stage, lines = tactic.stage, tactic.acceptance
     with ThreadPoolExecutor(1, thread_name_prefix="verifier") as pool:
         verified = pool.submit(verifying)
         review = reviewing()
         verdict = verified.result()
     note_verdict(run, stage, attempt, verdict)
-    run.journal.note(Reviewed(stage=stage, attempt=attempt, review=review))
+    run.journal.note(Reviewed(stage=stage, attempt=attempt, review=review, lines=lines))
     return verdict, review
 
 
@@ -125,21 +126,25 @@ def note_verdict(run: Run, stage: Stage, attempt: int, verdict: VerifierVerdict)
     )
 
 
-def format_review(review: Review) -> str:
-    """The review in words, for the other roles."""
-    lines = [f"{'Blocking' if review.blocking else 'Not blocking'}: {review.summary}"]
+def format_review(review: Review, tactic: TacticalPlan) -> str:
+    """The review in words, for the other roles; of the lines of acceptance, those that do not hold."""
+    lines = [f"{'Blocking' if review.blocks else 'Not blocking'}: {review.summary}"]
     lines += [
         f"- {'yes' if one.holds else 'NO'}: {one.question} ({one.evidence})" for one in review.judgements
     ]
+    for one in review.acceptance:
+        line = tactic.acceptance[one.line - 1]
+        if one.verdict == "fails":
+            lines.append(f"- Acceptance FAILS: {line} ({one.evidence})")
+        elif one.verdict == "later":
+            lines.append(f"- Acceptance left to the stage {one.stage}: {line} ({one.evidence})")
     return "\n".join(lines)
 
 
-def overruled(decision: Decision, how: str, verdict: VerifierVerdict, review: Review) -> str:
-    """Why a decision to advance is not followed; "" if it may be (paper, "Per-Stage Execution Loop")."""
-    if decision.transition != "advance":
-        return ""
+def still_open(how: str, verdict: VerifierVerdict, review: Review) -> str:
+    """What keeps a stage from being closed; "" if nothing does (paper, "Per-Stage Execution Loop")."""
     if not verdict.ok:
         return f"The verifier has {verdict.hard} hard finding{'s' if verdict.hard != 1 else ''}."
-    if review.blocking:
+    if review.blocks:
         return "The review blocks."
     return "" if how == "done" else f"The coder did not finish ({how})."

@@ -6,6 +6,7 @@ nothing but the clock, and what an event speaks of without its having begun has 
 
 from __future__ import annotations
 
+import re
 from dataclasses import replace
 from functools import reduce
 from typing import TYPE_CHECKING, Any
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Turn
 
 
+_PICTURE = re.compile(r"^<picture image/\w+>$", re.MULTILINE)
 _BUILDING = (events.PlanMade, events.StageMoved, events.TacticMade, events.AttemptBegan)
 
 
@@ -46,7 +48,9 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
             names = ("mode", "prompt", "version", "blender", "source", "models", "options")
             return replace(state, **{name: getattr(event, name) for name in names})
         case events.SessionBegan():
-            return replace(state, sessions=state.sessions + 1, ending=None)
+            minutes = event.render_minutes
+            options = state.options if minutes is None else {**state.options, "render_minutes": minutes}
+            return replace(state, sessions=state.sessions + 1, ending=None, options=options)
         case events.PlanMade():
             return replace(state, plan=event.plan or state.plan, edit=event.edit or state.edit)
         case events.StageMoved():
@@ -60,13 +64,15 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
         case events.Verified():
             return _with_attempt(state, event, verification=event)
         case events.Reviewed():
-            return _with_attempt(state, event, review=event.review)
+            return _with_attempt(state, event, review=event.review, lines=event.lines)
         case events.Decided():
             return _with_attempt(state, event, choice=event)
         case events.RolledBack():
             return _with_attempt(state, event, rolled_back=event.to)
         case events.ModelAsked():
-            return _begin(state, ModelCall(**_place(state, event), model=event.model))
+            pictures = sum(_pictures(event.texts.get(part, "")) for part in set(event.parts) - state.sent)
+            state = replace(state, sent=state.sent.union(event.parts))
+            return _begin(state, ModelCall(**_place(state, event), model=event.model, pictures=pictures))
         case events.ToolCalled():
             return _begin(state, ToolCall(**_place(state, event), name=event.name, input=event.input))
         case events.ModelAnswered():
@@ -196,6 +202,11 @@ def _begin(state: RunState, step: Step) -> RunState:
     return replace(state, pending=(*state.pending, step))
 
 
+def _pictures(text: str) -> int:
+    """How many pictures there are in what a model was told, as ``simworlds.llm.canonical`` writes it."""
+    return len(_PICTURE.findall(text))
+
+
 def _open(state: RunState, event: events.Event, kind: type[Step]) -> Step | None:
     """The newest step without an answer that the event's answer may belong to."""
     about = {name: getattr(event, name) for name in ("n", "attempt", "role", "stage")}
@@ -268,12 +279,15 @@ def _rendered(state: RunState, event: events.SceneRendered) -> RunState:
 def _final_reviewed(state: RunState, event: events.FinalReviewed) -> RunState:
     known = [rendering.round for rendering in state.renderings]
     if not known:
-        return replace(state, renderings=(Rendering(event.round or 1, review=event.review),))
+        rendering = Rendering(event.round or 1, review=event.review, lines=event.lines)
+        return replace(state, renderings=(rendering,))
     number = event.round if event.round in known else known[-1]
     return replace(
         state,
         renderings=tuple(
-            replace(rendering, review=event.review) if rendering.round == number else rendering
+            replace(rendering, review=event.review, lines=event.lines)
+            if rendering.round == number
+            else rendering
             for rendering in state.renderings
         ),
     )

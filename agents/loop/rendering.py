@@ -62,6 +62,7 @@ class LastStage:
 
     def finish(self) -> RenderResult:
         """The result, reviewed, and fixed at most once for the final reviewer. Raises RunError, ModelError."""
+        self._run.stage = "render"
         self._mended_if_need_be(self._draft)
         rendering = self._mended_if_need_be(lambda: self._render(1))
         verdict = self._review(rendering, 1)
@@ -154,10 +155,16 @@ class LastStage:
         for place, (path, picture) in enumerate(rendering.shown):
             content += [Text(f"Frame {path.stem} ({25 * place} %):"), picture]
         try:
-            review = final_review(self._run.context, task.plan_text, content, edit=task.edit)
+            review = final_review(
+                self._run.context,
+                task.plan_text,
+                content,
+                self._run.acceptance.described(),
+                edit=task.edit,
+            )
         except (Declined, Misfit) as error:
             review = FinalReview(verdict="accept", summary=f"There is no final review: {error}"[:4000])
-        self._run.journal.note(FinalReviewed(round=number, review=review))
+        self._run.journal.note(FinalReviewed(round=number, review=review, lines=self._run.acceptance.lines))
         return review
 
     def _fix(self, instructions: str) -> bool:
@@ -177,7 +184,8 @@ class LastStage:
             if run.options.early:  # a later fix begins with it
                 name = f"mended-{self._attempt}"
                 run.save("render", name)
-                self._last = name
+                self._last = run.closed = name
+                run.is_changed = False
             return True
         run.roll_back("render", self._attempt, self._last)
         return False

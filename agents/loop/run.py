@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.blender.saved_files import caches_folder
 from agents.blender.tools.scene_order import words_of
+from agents.loop.acceptance import AcceptanceRecord
 from agents.loop.errors import NoRun, NotSaved, RunError, Stopping
 from agents.loop.events import (
     AttemptBegan,
@@ -26,6 +27,7 @@ from agents.loop.events import (
     PicturePart,
     RolledBack,
     SceneRestored,
+    TimeTold,
     ToolAnswered,
     ToolCalled,
 )
@@ -54,9 +56,12 @@ CHECK = "blender_check"
 RENDER = "blender_render"
 START = "start"
 _KEPT_STILLS = 2
+_LEAVING_SECONDS = 120.0  # of a session's limit, for saving and showing what stands
+_TIME_LEFT = "About {} minutes are left; then the run ends with what stands."
 SCENE = "scene.blend"
 _MOST_WORDS = 60  # of an instruction
 _LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
+_SHOWING = (*_LOOKS, VERIFY)  # what these say follows from the scene and their arguments alone
 
 
 @dataclass
@@ -64,6 +69,10 @@ class Run:
     """What the loop works with. Two threads may call at the same time.
 
     ``stills``: the last pictures that the coder rendered in this attempt, each with what the tool said of it.
+    ``acceptance``: what the plans of the closed stages wanted, and whether it holds. ``peak``: the frame of the fastest
+    motion that the motion stage's reviewer was shown. ``stage`` is being built, ``closed`` was closed last;
+    ``is_changed``: whether the scene is another since. ``is_leaving``: the run has stopped; calls are neither
+    journalled nor refused.
     """
 
     root: Path
@@ -77,6 +86,14 @@ class Run:
     attempt: int | None = None
     task: RunTask | None = None
     stills: list[tuple[str, Picture]] = field(default_factory=list["tuple[str, Picture]"])
+    acceptance: AcceptanceRecord = field(default_factory=AcceptanceRecord)
+    peak: int | None = None
+    stage: Stage | None = None
+    closed: str = START
+    is_changed: bool = False
+    is_leaving: bool = False
+    _checkpoint: int | None = None
+    _seen: dict[str, ToolOutcome] = field(default_factory=dict[str, ToolOutcome])
     _began: float = field(default_factory=time.monotonic)
     _calls: Counter[tuple[str, str]] = field(default_factory=Counter[tuple[str, str]])
     _aligned: bool = False
@@ -92,6 +109,8 @@ class Run:
             saying=self.saying,
             safe=self.safe,
             names=self.options.models,
+            verifier=self.options.verifier,
+            staged=self.options.stages,
         )
 
     @property
@@ -115,9 +134,24 @@ class Run:
         """A safe point: called before everything that costs time or money. Raises Stopping."""
         if self.stop.is_set():
             raise Stopping("You asked the run to stop.")
-        most = self.limits.max_minutes
-        if most is not None and time.monotonic() - self._began > most * 60:
-            raise Stopping(f"The limit of {most:g} minutes is reached.")
+        left = self._seconds_left
+        if left is not None and left < 0:
+            raise Stopping(f"The limit of {self.limits.max_minutes:g} minutes is reached.")
+
+    @property
+    def _seconds_left(self) -> float | None:
+        """Until the limit, without what is kept back for saving and showing the scene; None without a limit."""
+        if (most := self.limits.max_minutes) is None:
+            return None
+        return most * 60 - min(_LEAVING_SECONDS, most * 6) - (time.monotonic() - self._began)
+
+    def time_left(self, stage: Stage, attempt: int) -> str:
+        """A sentence for the roles; "" in a run without a limit. A session that resumes says the same again."""
+        if self._seconds_left is not None:
+            left = max(0, round(self._seconds_left / 60))
+            self.journal.note(TimeTold(stage=stage, attempt=attempt, minutes=left))
+        told = self.journal.find(TimeTold(stage=stage, attempt=attempt))
+        return _TIME_LEFT.format(told.minutes) if told else ""
 
     # ToolSet
 
@@ -135,19 +169,24 @@ class Run:
         ``known`` are arguments that follow from the run, which ``arguments`` may replace. ``moved``: folders whose
         files go to another once the call is over; the answer has the paths at which they stay.
         """
+        if self.is_leaving:
+            return self._called(name, {**(known or {}), **arguments})
         with self._door:
             self._calls[role, stage] += 1
             number = self._calls[role, stage]
         about: dict[str, Any] = {"role": role, "stage": stage, "attempt": self.attempt, "n": number}
+        asked = {**(known or {}), **arguments}
         if answered := self.journal.find(ToolAnswered(**about)):
-            return self._recalled(answered)
+            outcome = self._recalled(answered)
+            self._remember(name, asked, outcome, answered.checkpoint)
+            return outcome
         self.safe()
         self._align()
         self.journal.note(ToolCalled(**about, name=name, input=dict(arguments)))
-        outcome = self._called(name, {**(known or {}), **arguments})
-        kept = None
+        outcome, kept = self._seen.get(_call(name, asked)) or self._called(name, asked), None
         if not self.tools.is_read_only(name):
             outcome, kept = self._kept(outcome)
+        self._remember(name, asked, outcome, kept)
         self.journal.note(
             ToolAnswered(
                 **about,
@@ -160,6 +199,17 @@ class Run:
             )
         )
         return outcome
+
+    def _remember(self, name: str, asked: Mapping[str, Any], outcome: ToolOutcome, kept: int | None) -> None:
+        """Keeps what a call shows of the scene, for whoever asks the same while the scene is the same."""
+        with self._door:
+            if not self.tools.is_read_only(name):
+                if kept is None or kept != self._checkpoint:
+                    self._seen.clear()
+                    self.is_changed = True
+                self._checkpoint = kept
+            elif not outcome.failed and any(word in name for word in _SHOWING):
+                self._seen[_call(name, asked)] = replace(outcome, seconds=0.0)
 
     def _kept(self, outcome: ToolOutcome) -> tuple[ToolOutcome, int | None]:
         """The checkpoint after a call. Where none can be taken, whoever called is told: the scene may be why."""
@@ -327,10 +377,11 @@ class RoleTools:
     @property
     def offered(self) -> tuple[Tool, ...]:
         """What the model is told of them."""
-        if not self._run.options.stages or self._run.options.mode == "edit":
-            return self._run.tools.offered(self._names)
         is_told = coder.is_needed if self._role == coder.NAME else coder.is_seen
-        return self._run.tools.offered([name for name in self._names if is_told(name, self._stage)])
+        staged = self._run.options.stages
+        return self._run.tools.offered(
+            [name for name in self._names if is_told(name, self._stage, staged=staged)]
+        )
 
     def use(self, call: ToolUse) -> ToolResult:
         """Calls one, for the model."""
@@ -353,6 +404,10 @@ def _move(made: Path, target: Path) -> None:
         shutil.rmtree(caches_folder(target), ignore_errors=True)
         caches_folder(made).replace(caches_folder(target))
     made.replace(target)
+
+
+def _call(name: str, asked: Mapping[str, Any]) -> str:
+    return json.dumps([name, asked], sort_keys=True, default=str)
 
 
 def _renamed(block: Text | Picture, moved: Mapping[str, str] | None) -> Text | Picture:

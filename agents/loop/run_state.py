@@ -28,13 +28,17 @@ DEFAULT_RENDER_MINUTES = 20.0  # for a film, unless the run says otherwise
 
 @dataclass(frozen=True, slots=True)
 class ModelCall:
-    """A role asked its model. ``turn`` is None until it is answered. ``began`` is in seconds of work."""
+    """A role asked its model. ``turn`` is None until it is answered. ``began`` is in seconds of work.
+
+    ``pictures``: how many it was sent that it had not been sent before.
+    """
 
     n: int
     role: str
     stage: str
     attempt: int
     model: str = ""
+    pictures: int = 0
     began: float = 0.0
     seconds: float | None = None
     turn: Turn | None = None
@@ -73,7 +77,8 @@ Step = ModelCall | ToolCall
 class Attempt:
     """One attempt at a stage. ``tactic`` is there if a plan was made for this very one.
 
-    ``report`` are the coder's last words, ``ended`` is how it came to its end, ``rolled_back`` what was gone back to.
+    ``lines`` are those of acceptance that the ``review`` answers. ``report`` are the coder's last words,
+    ``ended`` is how it came to its end, ``rolled_back`` what was gone back to.
     """
 
     stage: str
@@ -84,6 +89,7 @@ class Attempt:
     ended: str = ""
     verification: Verified | None = None
     review: Review | None = None
+    lines: tuple[str, ...] = ()
     choice: Decided | None = None
     rolled_back: str = ""
     seconds: float = 0.0
@@ -112,7 +118,10 @@ class StageRun:
 
 @dataclass(frozen=True, slots=True)
 class Rendering:
-    """A render (``path`` is the still or video), and its final review. Paths are not to be trusted."""
+    """A render (``path`` is the still or video), and its final review, which answers ``lines`` of acceptance.
+
+    Paths are not to be trusted.
+    """
 
     round: int
     kind: str = ""
@@ -122,6 +131,7 @@ class Rendering:
     samples: int | None = None
     pictures: tuple[str, ...] = ()
     review: FinalReview | None = None
+    lines: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -131,7 +141,8 @@ class RunState:
 
     ``plan`` is the scene plan, ``edit`` the plan of an edit, which made the ``changes``. ``planning``: seconds until
     something was built (``is_building``). ``draft``, ``film``: what is known of the film before it is rendered.
-    ``spending`` is by role and stage. ``began`` and ``latest`` are the times of the first and the last row.
+    ``spending`` is by role and stage, ``sent`` are digests of all that models were told. ``began`` and ``latest`` are
+    the times of the first and the last row.
     """
 
     mode: str = ""
@@ -159,6 +170,7 @@ class RunState:
     changes: Edited | None = None
     ending: RunEnded | None = None
     spending: tuple[SpendingRow, ...] = ()
+    sent: frozenset[str] = frozenset()
     pending: tuple[Step, ...] = ()
     settled: Step | None = None
 

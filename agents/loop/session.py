@@ -19,6 +19,7 @@ from agents.loop.edit.inputs import check_inputs
 from agents.loop.errors import Aborted, NoRun, RunError, Stopping, Unusable
 from agents.loop.events import RunBegan, RunEnded, SessionBegan
 from agents.loop.journal import NAME, Journal
+from agents.loop.leaving import LATEST, leave
 from agents.loop.options import BEFORE_DRAFTS, ROLES, Options, RunLimits
 from agents.loop.reducer import read_run_state
 from agents.loop.run import SCENE, Run
@@ -39,7 +40,7 @@ if TYPE_CHECKING:
     from simworlds.llm.retries import Retry
 
 _LOG = logging.getLogger(__name__)
-RESULTS = ("video.mp4", "still.png", "draft.mp4")  # what a run shows, the best first
+RESULTS = ("video.mp4", "still.png", "draft.mp4", LATEST)  # what a run shows, the best first
 How = Literal["done", "aborted", "stopped", "failed"]
 
 
@@ -201,6 +202,10 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
         run = Run(root, options, session.limits, journal, tools, model, saying, stop.event)
         try:
             rendering = (edit if options.mode == "edit" else make)(run)
+        except (Stopping, OverBudget):
+            if not stop.event.is_set():
+                leave(run)
+            raise
         finally:
             stop.tools = None
     return Ended("done", "", root / SCENE, rendering.path)

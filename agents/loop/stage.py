@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
 from agents.loop.edit.comparison import references
 from agents.loop.errors import Aborted, NotSaved
 from agents.loop.events import Decided, StageMoved, TacticMade
-from agents.loop.judging import format_review, judge, overruled, review, verify
+from agents.loop.judging import format_review, judge, review, still_open, verify
+from agents.loop.topic_page import topic_page
+from agents.plan.tactical import Decision
 from agents.roles.coder import Coder
 from agents.roles.reviewer import Reviewer
+from agents.roles.sheets import solvers_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -19,15 +22,14 @@ if TYPE_CHECKING:
     from agents.loop.run import Run
     from agents.loop.task import RunTask
     from agents.plan.part import Stage
-    from agents.plan.tactical import Decision, Review, TacticalPlan
+    from agents.plan.tactical import Review, TacticalPlan
     from agents.roles.base import WorkResult
     from agents.roles.planner import Planner
 
 MAX_RETRIES_PER_STAGE = 10
 MAX_REPLANS_PER_STAGE = 5
 _SAVES = 3  # tries to save a stage that is built
-
-Taken = Literal["advance", "retry", "replan", "abort"]
+_WORDS = 8000  # letters of what is to be mended
 
 
 class StageLoop:
@@ -39,10 +41,16 @@ class StageLoop:
         self._task = task
         self._stage: Stage = stage
         self._before = before
-        self._coder = Coder(run.context, stage, task.plan_text, edit=task.edit, shown=references(task))
+        self._coder = Coder(
+            run.context,
+            stage,
+            task.plan_text,
+            edit=task.edit,
+            shown=references(task),
+            solvers=solvers_of(task.plan, task.declared),
+        )
         self._reviewer = Reviewer(run.context, stage, task.plan_text, edit=task.edit)
         self._retries = self._replans = self._saves = 0
-        self._overruled = ""
 
     def build(self) -> int:
         """Builds it and saves it as its checkpoint; how many attempts it took.
@@ -50,28 +58,40 @@ class StageLoop:
         Raises Aborted, with the scene as it was before the stage; NotSaved; ModelError.
         """
         self._run.journal.note(StageMoved(type="stage.began", stage=self._stage))
+        self._run.stage = self._stage
         attempt = 1
-        tactic, worked = self._fresh(attempt, self._coder.begin)
+        tactic, worked = self._fresh(attempt, self._begin)
         while True:
             verdict, review = self._judged(attempt, tactic)
-            decision, taken, why = self._decided(attempt, worked, verdict, review)
-            if taken == "advance":
-                if not (why := self._unsaved()):
+            reviewed = format_review(review, tactic)
+            if why := still_open(worked.how, verdict, review):
+                decision = self._decided(attempt, worked, verdict, reviewed, why)
+            else:
+                self._run.journal.note(Decided(stage=self._stage, attempt=attempt, taken="advance"))
+                if not (mend := self._unsaved()):
+                    self._run.acceptance.close(tactic, review)
+                    self._planner.closed(self._stage, worked.said, verdict.text, reviewed)
                     return attempt
-                taken = "retry"
-            if taken == "abort":
+                decision = Decision(
+                    transition="retry", reason="It cannot be saved.", instructions=mend[:_WORDS]
+                )
+            if decision.transition == "abort":
                 self._run.roll_back(self._stage, attempt, self._before)
-                raise Aborted(f"The stage {self._stage} could not be closed: {why or decision.reason}")
+                raise Aborted(f"The stage {self._stage} could not be closed: {decision.reason}")
             attempt += 1
-            if taken == "retry":
+            if decision.transition == "retry":
                 self._retries += 1
-                mend = (why or decision.instructions, verdict.text, format_review(review))
-                worked = self._run.attempted(self._stage, attempt, partial(self._coder.again, *mend))
+                what = (decision.instructions, verdict.text, reviewed)
+                worked = self._run.attempted(self._stage, attempt, partial(self._coder.again, *what))
             else:
                 self._replans += 1
                 self._run.roll_back(self._stage, attempt, self._before)
-                why = f"The last plan did not do: {decision.reason}"
-                tactic, worked = self._fresh(attempt, self._coder.replanned, why)
+                tactic, worked = self._fresh(attempt, self._coder.replanned, decision)
+
+    def _begin(self, tactic: TacticalPlan, state: str) -> WorkResult:
+        """The coder's first attempt, with what is known of the stage's topic."""
+        page = topic_page(self._run, self._stage, self._task)
+        return self._coder.begin(tactic, "\n\n".join(filter(None, (state, page))))
 
     def _unsaved(self) -> str:
         """Saves the stage; what the coder is to mend if that fails, "" if it is saved. Raises NotSaved in the end."""
@@ -85,13 +105,17 @@ class StageLoop:
         return ""
 
     def _fresh(
-        self, attempt: int, code: Callable[[TacticalPlan, str], WorkResult], why: str = ""
+        self, attempt: int, code: Callable[[TacticalPlan, str], WorkResult], replan: Decision | None = None
     ) -> tuple[TacticalPlan, WorkResult]:
-        """A tactical plan, and the first attempt to realise it."""
+        """A tactical plan, and the first attempt to realise it. A decision to replan may have brought the plan."""
         run, stage = self._run, self._stage
         run.attempt = attempt
-        state = run.state(stage)
-        tactic = self._planner.tactical(stage, state, why)
+        state = "\n\n".join(filter(None, (run.time_left(stage, attempt), run.state(stage))))
+        tactic = replan.tactic if replan else None
+        if tactic is None:
+            why = f"The last plan did not do: {replan.reason}" if replan else ""
+            tactic = self._planner.tactical(stage, state, why)
+        tactic = run.acceptance.with_lines_due(tactic)
         run.journal.note(TacticMade(stage=stage, attempt=attempt, plan=tactic))
         return tactic, run.attempted(stage, attempt, partial(code, tactic, state))
 
@@ -99,41 +123,42 @@ class StageLoop:
         run, task, stage = self._run, self._task, self._stage
         return judge(
             run,
-            stage,
+            tactic,
             attempt,
             partial(verify, run, stage, task),
             partial(review, run, self._reviewer, tactic, task),
         )
 
     def _decided(
-        self, attempt: int, worked: WorkResult, verdict: VerifierVerdict, review: Review
-    ) -> tuple[Decision, Taken, str]:
-        """The planner's decision, what is done instead where something blocks, and why."""
-        retries, replans = MAX_RETRIES_PER_STAGE - self._retries, MAX_REPLANS_PER_STAGE - self._replans
+        self, attempt: int, worked: WorkResult, verdict: VerifierVerdict, reviewed: str, why: str
+    ) -> Decision:
+        """The planner's decision on an attempt that leaves the stage open; to abort where it has no such try left."""
+        left = {
+            "retry": MAX_RETRIES_PER_STAGE - self._retries,
+            "replan": MAX_REPLANS_PER_STAGE - self._replans,
+        }
+        tries = f"{left['retry']} retries and {left['replan']} replans are left."
         decision = self._planner.decide(
             self._stage,
             attempt,
+            why=why,
             how=worked.how,
             report=worked.said,
             verified=verdict.text,
-            reviewed=format_review(review),
-            left=f"{self._overruled}{retries} retries and {replans} replans are left.",
+            reviewed=reviewed,
+            left=f"{tries} {self._run.time_left(self._stage, attempt + 1)}".rstrip(),
         )
-        taken: Taken = decision.transition
-        if why := overruled(decision, worked.how, verdict, review):
-            taken = "retry"
-        if (taken, retries) == ("retry", 0) or (taken, replans) == ("replan", 0):
-            why = f"{why} There is no {taken} left.".strip()
-            taken = "abort"
-        self._overruled = f"Your last decision was not followed: {why} " if why else ""
+        is_spent = left.get(decision.transition) == 0
+        if is_spent:
+            why += f" There is no {decision.transition} left."
         self._run.journal.note(
             Decided(
                 stage=self._stage,
                 attempt=attempt,
                 decision=decision,
-                taken=taken,
-                overruled=taken != decision.transition,
+                taken="abort" if is_spent else decision.transition,
+                overruled=is_spent,
                 why=why,
             )
         )
-        return decision, taken, why
+        return Decision(transition="abort", reason=why) if is_spent else decision

@@ -1,4 +1,4 @@
-"""Whether the planned camera sees its subjects at the first frame, by their boxes."""
+"""Whether the planned camera sees its subjects at the first frame, by their boxes; one that moves starts there."""
 
 from __future__ import annotations
 
@@ -40,7 +40,7 @@ def camera_axes(plan: ScenePlan) -> tuple[Vector, Vector, Vector] | None:
 def camera_doubts(plan: ScenePlan, boxes: dict[str, PlannedBox]) -> Iterator[Fault]:
     """Subjects that are outside the picture or too small in it."""
     camera, towards = plan.camera, _towards(plan, boxes)
-    if towards is None or camera.moves:
+    if towards is None:
         return
     width, height = plan.render.resolution
     aspect = (1.0, width / height) if width >= height else (height / width, 1.0)

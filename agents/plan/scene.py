@@ -121,7 +121,7 @@ class Light(PlanPart):
 
 
 class Camera(PlanPart):
-    """The camera. ``lens`` is in millimetres; the camera must show the ``subjects``."""
+    """The camera, as it is at the first frame. ``lens`` is in millimetres; the camera must show the ``subjects``."""
 
     name: Name = "Camera"
     position: Vector

@@ -6,6 +6,7 @@ from typing import Literal
 
 from pydantic import Field, model_validator
 
+from agents.plan.acceptance import AcceptanceAnswer
 from agents.plan.part import Name, PlanPart, Stage
 
 
@@ -30,13 +31,14 @@ class TacticalPlan(PlanPart):
 
 
 class Decision(PlanPart):
-    """What happens after a stage. ``advance`` is refused while a hard rule fails or a review blocks."""
+    """What happens after an attempt that leaves a stage open."""
 
-    transition: Literal["advance", "retry", "replan", "abort"]
+    transition: Literal["retry", "replan", "abort"]
     reason: str = Field(min_length=1, max_length=2000)
     instructions: str = Field(
         default="", max_length=8000, description="For a retry: what the coder must fix."
     )
+    tactic: TacticalPlan | None = Field(default=None, description="For a replan: the stage's new plan.")
 
     @model_validator(mode="after")
     def _retry_says_what(self) -> Decision:
@@ -73,14 +75,21 @@ class Review(PlanPart):
     """A reviewer's answers. ``blocking`` keeps the stage open."""
 
     judgements: tuple[ReviewAnswer, ...]
+    acceptance: tuple[AcceptanceAnswer, ...] = ()
     blocking: bool
     summary: str = Field(max_length=4000)
+
+    @property
+    def blocks(self) -> bool:
+        """Whether it keeps the stage open: by its own word, or by a line of ``acceptance`` that fails."""
+        return self.blocking or any(answer.verdict == "fails" for answer in self.acceptance)
 
 
 class FinalReview(PlanPart):
     """The verdict on the rendered result."""
 
     verdict: Literal["accept", "needs_fix"]
+    acceptance: tuple[AcceptanceAnswer, ...] = ()
     summary: str = Field(max_length=4000)
     instructions: str = Field(default="", max_length=8000)
 

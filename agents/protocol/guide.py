@@ -25,33 +25,35 @@ _KINDS: tuple[tuple[str, dict[Any, str]], ...] = (
     (vocabulary.DEFORMATION_KIND, vocabulary.DEFORMATION_KINDS),
     (vocabulary.MOTION_KIND, vocabulary.MOTION_KINDS),
 )
+_HEAD = (
+    "# The scene protocol\n\n"
+    "Units are metres; Z is up; the front of an object, and of the world, is −Y. Rules judge the scene by "
+    "measurements of its evaluated geometry."
+)
+_BRACKETS = "In brackets: tolerances, which a plan may tighten by name. "
 _UNITS = {tolerance.name: tolerance.metadata["unit"] for tolerance in fields(TOLERANCES)}
 
 
-def guide(*, with_relations: bool = True) -> str:
-    """The protocol's words, as Markdown: levels, tags and relations; without the latter, which of them are contacts."""
-    return "\n\n".join(
-        [
-            "# The scene protocol",
-            "Units are metres; Z is up; the front of an object, and of the world, is −Y. Rules judge the scene by "
-            "measurements of its evaluated geometry.",
-            _levels(),
-            _tags(),
-            _relations() if with_relations else _contacts(),
-        ]
-    )
+def guide() -> str:
+    """The protocol's words, as Markdown: levels, tags and relations."""
+    return "\n\n".join([_HEAD, _levels(), _tags(), _relations()])
 
 
-def rules_guide(stage: Stage | None = None, *, edit: bool = False) -> str:
-    """The rules that judge a stage (None: all), each in a sentence, with its tolerances."""
+def builders_guide() -> str:
+    """The protocol's words as far as whoever builds needs them: tools set the tags, and the plan has its relations."""
+    return "\n\n".join([_HEAD, _levels(), _required(), _contacts()])
+
+
+def rules_guide(rules: Iterable[Rule] = RULES, *, with_tolerances: bool = True) -> str:
+    """Rules, each in a sentence, with its tolerances if wanted."""
     share, most = format_tolerance("contact_share"), format_tolerance("contact_most")
     return "\n".join(
         [
             "## Rules",
             f"ε is {format_tolerance('contact')} or {share} of the smaller object's diagonal, at most {most}; noise is "
             f"{format_tolerance('penetration')} or {format_tolerance('penetration_share')} of the smallest dimension. "
-            "In brackets: tolerances, which a plan may tighten by name. Rules are hard unless marked (soft).",
-            *_listed(rules_of(stage, edit=edit) if stage else RULES),
+            f"{_BRACKETS if with_tolerances else ''}Rules are hard unless marked (soft).",
+            *_listed(rules, with_tolerances=with_tolerances),
         ]
     )
 
@@ -85,11 +87,15 @@ def _levels() -> str:
 def _tags() -> str:
     lines = [f"- `{tag.name}` (on {_carrier(tag)}): {tag.meaning}" for tag in vocabulary.PROPERTIES]
     lines += [f"- `{name}` is one of: {', '.join(choices)}." for name, choices in _KINDS]
+    return "\n".join(["## Tags (custom properties)", *lines, f"- {_required()}"])
+
+
+def _required() -> str:
     by_kinds: dict[tuple[str, str], list[str]] = {}
     for role, kinds in MECHANISMS.items():
         by_kinds.setdefault(kinds, []).append(role)
     table = "; ".join(f"{', '.join(roles)}: {' + '.join(kinds)}" for kinds, roles in by_kinds.items())
-    return "\n".join(["## Tags (custom properties)", *lines, f"- A planned role requires both: {table}."])
+    return f"A planned role requires `deformation_kind` + `motion_kind`: {table}."
 
 
 def _carrier(tag: vocabulary.CustomProperty) -> str:
@@ -124,13 +130,15 @@ def _relation(kind: type[relations.RelationPart]) -> str:
     return f"- {names}({', '.join(members)}): {meaning}"
 
 
-def _listed(rules: Iterable[Rule]) -> Iterator[str]:
+def _listed(rules: Iterable[Rule], *, with_tolerances: bool) -> Iterator[str]:
     known = {*CONTACT, *PENETRATION}  # each tolerance is listed once
     for rule in rules:
         own = [f"{name} {format_tolerance(name)}" for name in rule.tolerances if name not in known]
         known.update(rule.tolerances)
         soft = " (soft)" if rule.severity == "soft" else ""
-        yield f"- {rule.id}{soft} {_first_sentence(rule.about)}" + (f" [{', '.join(own)}]" if own else "")
+        yield f"- {rule.id}{soft} {_first_sentence(rule.about)}" + (
+            f" [{', '.join(own)}]" if own and with_tolerances else ""
+        )
 
 
 def _first_sentence(text: str) -> str:

@@ -24,7 +24,7 @@ _MOVING_MODIFIERS = frozenset(
     }
 )  # fmt: skip
 _MOVING_CONSTRAINTS = frozenset({"FOLLOW_PATH", "TRANSFORM_CACHE", "FOLLOW_TRACK"})
-_NUMBER = re.compile(r"\.\d{3,}$")  # that Blender puts behind a name that is taken
+NUMBER = re.compile(r"\.\d{3,}$")  # that Blender puts behind a name that is taken
 _GEOMETRY = frozenset({"MESH", "CURVE", "SURFACE", "FONT", "META", "CURVES", "POINTCLOUD", "VOLUME"})
 
 
@@ -131,9 +131,10 @@ class SceneStructure:
         """
         owner, _, part = node.partition("/")
         if part:
-            meshes = self.by_name[owner].surfaces if owner in self.by_name else ()
+            meshes = self.by_name[owner].meshes if owner in self.by_name else ()
+            bodies = tuple(mesh.name for mesh in meshes if mesh.surface)
             return (
-                (part,) if part in meshes else tuple(name for name in meshes if _is_part(name, owner, part))
+                (part,) if part in bodies else tuple(name for name in bodies if _is_part(name, owner, part))
             )
         if node in self.by_name:
             return self.by_name[node].surfaces
@@ -211,7 +212,7 @@ def is_animated(item: ObjectFacts) -> bool:
 
 def _is_part(mesh: str, owner: str, part: str) -> bool:
     """Whether a mesh of ``owner`` is named as its ``part``, with the owner's name before it or a number behind it."""
-    plain = _NUMBER.sub("", mesh).casefold()
+    plain = NUMBER.sub("", mesh).casefold()
     return plain == part.casefold() or bool(
         re.fullmatch(rf"{re.escape(owner.casefold())}[ _./-]{re.escape(part.casefold())}", plain)
     )

@@ -53,7 +53,7 @@ class RoleContext:
 
     ``name`` is the model's, unless ``names`` has another for a role; ``tools`` makes the tools for a role and stage;
     ``saying`` gets (role, words) as they come; ``safe`` is called before everything that costs, and raises what ends
-    the run there.
+    the run there. ``verifier``, ``staged``: whether the run has a verifier, and stages.
     """
 
     model: Model
@@ -64,6 +64,8 @@ class RoleContext:
     names: Mapping[str, str] = field(default_factory=dict[str, str])
     limits: ContextLimits = field(default_factory=ContextLimits)
     max_tokens: int = 32_000
+    verifier: bool = True
+    staged: bool = True
 
     def answer(self, ask: Ask, on_text: Callable[[str], object] | None = None) -> Turn:
         """The model's turn, see Model; each is a safe point."""

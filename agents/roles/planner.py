@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, cast
 
 from agents.plan.arithmetic import DOUBTED, doubts_of
 from agents.plan.check import read_plan
@@ -36,7 +36,7 @@ The stage {stage} begins. {why}Write its tactical plan, as one JSON object. How 
 
 {state}"""
 _DECIDE = """\
-Attempt {attempt} of the stage {stage} is over. {left}
+Attempt {attempt} of the stage {stage} is over, and the stage is not done. {why} {left}
 
 The coder ({how}) says:
 {report}
@@ -47,7 +47,18 @@ The verifier:
 The reviewer:
 {reviewed}
 
-Decide, as one JSON object."""
+Decide, as one JSON object; to replan, with the new tactical plan in `tactic`."""
+_CLOSED = """\
+The stage {stage} is closed: nothing kept it open.
+
+The coder says:
+{report}
+
+The verifier:
+{verified}
+
+The reviewer:
+{reviewed}"""
 
 
 _FILM = """\
@@ -69,6 +80,7 @@ class Planner:
     def __init__(self, context: RoleContext, *, edit: bool = False) -> None:
         self._talk = Conversation(context, NAME, system_prompt(NAME, edit=edit))
         self._plan: tuple[str, ...] = ()
+        self._news: tuple[str, ...] = ()
 
     def strategic(self, prompt: str) -> ScenePlan:
         """The scene plan, which contradicts itself nowhere."""
@@ -102,6 +114,10 @@ class Planner:
         self._plan = (self._talk.said,)
         return plan
 
+    def closed(self, stage: Stage, report: str, verified: str, reviewed: str) -> None:
+        """A stage was closed, with nothing to decide: told with the next question."""
+        self._news = (_CLOSED.format(stage=stage, report=report, verified=verified, reviewed=reviewed),)
+
     def tactical(self, stage: Stage, state: str, why: str = "") -> TacticalPlan:
         """The plan of a stage; ``state`` is the scene's readout, ``why`` what an earlier plan came to."""
 
@@ -112,26 +128,56 @@ class Planner:
             return plan, problems
 
         words = _TACTICAL.format(stage=stage, why=f"{why.rstrip()} " if why else "", state=state)
-        return self._talk.data(stage, TacticalPlan, words, reader=reader, pinned=self._plan)
+        return self._talk.data(stage, TacticalPlan, *self._heard(), words, reader=reader, pinned=self._plan)
 
     def decide(  # noqa: PLR0913 - all that is known of an attempt
-        self, stage: Stage, attempt: int, *, how: str, report: str, verified: str, reviewed: str, left: str
+        self,
+        stage: Stage,
+        attempt: int,
+        *,
+        why: str,
+        how: str,
+        report: str,
+        verified: str,
+        reviewed: str,
+        left: str,
     ) -> Decision:
-        """What becomes of the stage. ``left`` tells how many retries and replans there are."""
+        """What becomes of a stage that is kept open by ``why``. ``left`` tells how many retries and replans there are.
+
+        A tactical plan that comes with it is left out where it does not fit, or is another stage's.
+        """
+
+        def reader(data: Any) -> tuple[Decision | None, Sequence[object]]:
+            decision, problems = fits(Decision)(data)
+            if decision is None and isinstance(data, dict) and "tactic" in data:
+                without = {
+                    name: value for name, value in cast("dict[str, Any]", data).items() if name != "tactic"
+                }
+                decision = fits(Decision)(without)[0]
+            if decision is not None and decision.tactic is not None and decision.tactic.stage != stage:
+                decision = decision.model_copy(update={"tactic": None})
+            return decision, problems if decision is None else ()
+
         words = _DECIDE.format(
             stage=stage,
             attempt=attempt,
+            why=why,
             how=how,
             report=report,
             verified=verified,
             reviewed=reviewed,
             left=left,
         )
-        return self._talk.data(stage, Decision, words, pinned=(*self._plan, verified))
+        return self._talk.data(stage, Decision, words, reader=reader, pinned=(*self._plan, verified))
 
     def before_film(self, shown: Sequence[Block]) -> FilmDecision:
         """Whether the film is rendered at once, or something is mended before; ``shown``: words and stills."""
-        return self._talk.data("render", FilmDecision, _FILM, *shown, pinned=self._plan)
+        return self._talk.data("render", FilmDecision, *self._heard(), _FILM, *shown, pinned=self._plan)
+
+    def _heard(self) -> tuple[str, ...]:
+        """What has happened since the last question."""
+        news, self._news = self._news, ()
+        return news
 
 
 class _PlanReader:

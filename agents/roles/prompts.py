@@ -1,8 +1,8 @@
-"""The roles' system prompts: the role's own text, the protocol, the shapes of what is read and answered, the stage.
+"""The roles' system prompts: the role's own text, the protocol, the shapes of answers, rules, the stage, its solvers.
 
 The texts are the Markdown files beside this module (paper, "Implementation Details": a role file plus the documentation
 of the scene protocol). A section that is headed "Making: …" is left out when a file is edited, one that is headed
-"Editing: …" when a scene is made.
+"Editing: …" when a scene is made, one that is headed "Measuring: …" when there is no verifier.
 """
 
 from __future__ import annotations
@@ -16,11 +16,18 @@ from agents.plan.edit import EditPlan
 from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
 from agents.plan.tactical import Decision, FinalReview, Review, TacticalPlan
-from agents.protocol.guide import format_stage_rules, guide, rules_guide
+from agents.protocol.guide import builders_guide, format_stage_rules, guide, rules_guide
+from agents.protocol.rules.catalogue import select_rules
+from agents.protocol.rules_by_stage import rules_of
+from agents.roles.sheets import sheet
 from simworlds.schemas.notation import shape_of
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from pydantic import BaseModel
+
+    from agents.roles.sheets import Solver
 
 Role = Literal["planner", "coder", "reviewer", "final_reviewer"]
 ROLES: tuple[Role, ...] = ("planner", "coder", "reviewer", "final_reviewer")
@@ -33,37 +40,76 @@ _ANSWERS: dict[Role, tuple[type[BaseModel], ...]] = {
     "reviewer": (Review,),
     "final_reviewer": (FinalReview,),
 }
+# The rules that a stage's own work can break, which its coder is told; all that held before must still hold.
+_TOLD_RULES: dict[Stage, tuple[str, ...]] = {
+    "modeling": ("C", "G", "V", "W1", "W2", "R"),
+    "uv": ("R2",),
+    "texture": ("R1",),
+    "deformation_setup": ("C3", "V", "W3", "R1", "R4", "R15"),
+    "motion": ("V", "R7", "R15", "R18", "R19", "T"),
+    "camera": ("W3", "W4", "R14"),
+    "light": ("W3", "W5", "R14"),
+    "render": ("V", "R14", "R15", "R19", "T"),
+}
+_PLANNED = ("V", "W1", "R", "T")  # what a plan can break
+_TOLD_AT_ONCE = ("V", "R", "T")  # grouping by the tool keeps the layout
+_SIMULATING: tuple[Stage, ...] = (
+    "deformation_setup",
+    "motion",
+)  # their coders get the sheets of the plan's solvers
 _SECTION = re.compile(r"^(?=## )", re.MULTILINE)
-_ONLY = {True: "## Making:", False: "## Editing:"}  # what is left out
 _HOLE = re.compile(r"\{\{(\w+)\}\}")
+_AT_ONCE = "at_once"  # the text in place of a stage's, when there are none
 
 
-def system_prompt(role: Role, stage: Stage | None = None, *, edit: bool = False) -> tuple[str, ...]:
+def system_prompt(  # noqa: PLR0913 - all that a prompt depends on
+    role: Role,
+    stage: Stage | None = None,
+    *,
+    edit: bool = False,
+    verifier: bool = True,
+    staged: bool = True,
+    solvers: Sequence[Solver] = (),
+) -> tuple[str, ...]:
     """The parts of a role's system prompt, from what all runs share to what only this stage has.
 
-    Each role gets what it needs: the planner the whole protocol and the shapes of plans, the coder the protocol with
-    the rules of its stage, reviewers the shape of their answer. ``stage`` is for roles that work on a single one;
-    ``edit``: a file is edited, no scene is made.
+    Each role gets what it needs: the planner the whole protocol and the shapes of plans, the coder what builders need
+    of the protocol, the rules of its stage and the sheets of its ``solvers``, reviewers the shape of their answer.
+    ``stage`` is for roles that work on a single one; ``edit``: a file is edited, no scene is made; without ``verifier``
+    nothing is measured; not ``staged``: everything is built at once, in ``stage``.
     """
-    parts = [role_text(role, edit=edit)]
+    parts = [role_text(role, edit=edit, verifier=verifier)]
     if role == "planner":
-        parts += [protocol_text(), rules_guide()]
+        parts += [protocol_text(), rules_guide(select_rules(_PLANNED))]
     if role == "coder":
-        parts.append(guide(with_relations=False))
+        parts.append(builders_guide())
     if _ANSWERS[role]:
         parts.append(shapes_text(role, edit=edit))
-    if stage and role == "coder":
-        parts.append(rules_guide(stage, edit=edit))
-    if stage:
-        parts.append(stage_text(stage, edit=edit))
+    if stage is None:
+        return tuple(parts)
+    if role == "coder" and verifier:
+        parts.append(_rules_text(stage, edit=edit, staged=staged))
+    parts.append(stage_text(stage, edit=edit, verifier=verifier) if staged else _read(f"{_AT_ONCE}.md"))
+    if role == "coder" and (stage in _SIMULATING or not staged):
+        parts += [sheet(solver) for solver in solvers]
     return tuple(parts)
 
 
+def _rules_text(stage: Stage, *, edit: bool, staged: bool) -> str:
+    """The rules that a coder is told of."""
+    judging, told = rules_of(stage, edit=edit), select_rules(_TOLD_RULES[stage] if staged else _TOLD_AT_ONCE)
+    return (
+        f"{rules_guide([rule for rule in judging if rule in told], with_tolerances=staged)}\n"
+        "All else that held before is measured again; a finding explains its rule."
+    )
+
+
 @cache
-def role_text(role: Role, *, edit: bool = False) -> str:
+def role_text(role: Role, *, edit: bool = False, verifier: bool = True) -> str:
     """What the role is, and how it works."""
     return _filled(
-        _mode(f"{role}.md", edit=edit), stages="\n".join(f"- {stage_title(stage)}" for stage in STAGES)
+        _mode(f"{role}.md", edit=edit, verifier=verifier),
+        stages="\n".join(f"- {stage_title(stage)}" for stage in STAGES),
     )
 
 
@@ -73,8 +119,10 @@ def team_text(*, edit: bool = False) -> str:
 
 
 @cache
-def stage_text(stage: Stage, *, edit: bool = False) -> str:
+def stage_text(stage: Stage, *, edit: bool = False, verifier: bool = True) -> str:
     """What belongs into a stage, when it is done, what goes wrong in it, and which rules judge it."""
+    if not verifier:
+        return _read(f"stages/{stage}.md")
     return f"{_read(f'stages/{stage}.md')}\n\nRules that judge this stage: {format_stage_rules(stage, edit=edit)}."
 
 
@@ -101,9 +149,10 @@ def protocol_text() -> str:
     return guide()
 
 
-def _mode(name: str, *, edit: bool) -> str:
-    """A file without the sections of the other mode."""
-    return "".join(one for one in _SECTION.split(_read(name)) if not one.startswith(_ONLY[edit]))
+def _mode(name: str, *, edit: bool, verifier: bool = True) -> str:
+    """A file without the sections of the other modes."""
+    left_out = ("## Making:" if edit else "## Editing:", *(() if verifier else ("## Measuring:",)))
+    return "".join(one for one in _SECTION.split(_read(name)) if not one.startswith(left_out))
 
 
 @cache

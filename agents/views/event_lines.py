@@ -16,6 +16,8 @@ from agents.views.formatting import (
     format_time,
     stage_title,
 )
+from agents.views.now import Now
+from agents.views.time_left import describe_time_left
 from simworlds.terminal.text import shortened
 
 if TYPE_CHECKING:
@@ -41,7 +43,7 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
         case events.Verified():
             return _verified(event)
         case events.Reviewed(review=review) if review:
-            verdict = "blocks" if review.blocking else "does not block"
+            verdict = "blocks" if review.blocks else "does not block"
             return [f"  reviewer {verdict}: {shortened(review.summary, _WORDS)}"]
         case events.RolledBack():
             return [f"  back to {event.to}"]
@@ -65,10 +67,10 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
             cost = format_cost(run_state.total)
             return [f"Run {event.outcome}{why}", f"{format_time(run_state.seconds)} of work, cost: {cost}"]
         case _:
-            return _stage_lines(event, stage) if stage else []
+            return _stage_lines(event, stage, run_state) if stage else []
 
 
-def _stage_lines(event: events.Event, stage: StageRun) -> list[str]:
+def _stage_lines(event: events.Event, stage: StageRun, run_state: RunState) -> list[str]:
     name, last = stage_title(stage.name), stage.last
     match event:
         case events.StageMoved(type="stage.began"):
@@ -77,15 +79,15 @@ def _stage_lines(event: events.Event, stage: StageRun) -> list[str]:
             return [f"{name}: skipped, the plan does not need it"]
         case events.StageMoved():
             attempts = counted(len(stage.attempts), "attempt")
-            return [f"{name} closed after {attempts}, {format_time(stage.seconds)}"]
+            left = describe_time_left(run_state, Now(run_state.seconds))
+            return [f"{name} closed after {attempts}, {format_time(stage.seconds)}{left and f' ({left})'}"]
         case events.AttemptBegan() if last:
             return [f"{name}, attempt {last.number}"]
         case events.Decided(decision=decision) if last:
             reason = decision.reason if decision else event.why
             wanted = f" (it wanted to {decision.transition})" if decision and event.overruled else ""
-            return [
-                f"{name}, attempt {last.number} {describe_attempt(last)}{wanted}: {shortened(reason, _WORDS)}"
-            ]
+            why = f": {shortened(reason, _WORDS)}" if reason else ""
+            return [f"{name}, attempt {last.number} {describe_attempt(last)}{wanted}{why}"]
         case _:
             return []
 

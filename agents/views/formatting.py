@@ -136,5 +136,5 @@ def describe_attempt(attempt: Attempt) -> str:
     }
     told = words.get(taken) or (plain(attempt.ended) if attempt.ended not in ("", "done") else "")
     faults = [counted(found.hard, "hard finding")] if found and found.hard else []
-    faults += ["the reviewer blocks"] if attempt.review and attempt.review.blocking else []
+    faults += ["the reviewer blocks"] if attempt.review and attempt.review.blocks else []
     return ": ".join(filter(None, [told, ", ".join(faults)]))

@@ -14,7 +14,8 @@ from agents.loop.reducer import after
 from agents.loop.run_state import RunState
 from agents.views.event_lines import format_event
 from agents.views.formatting import format_clock
-from agents.views.rich_views import Now, ToolProgress, run_in_progress
+from agents.views.now import Now, ToolProgress
+from agents.views.rich_views import run_in_progress
 from simworlds.terminal.console import Console
 from simworlds.terminal.lines import is_terminal, write_line
 from simworlds.terminal.live_view import LiveView

@@ -5,7 +5,6 @@ Only Text goes into what is drawn, never markup, and every text is cleaned: name
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from rich import box
@@ -17,6 +16,7 @@ from rich.text import Text
 from agents.loop.run import RENDER
 from agents.loop.run_state import ModelCall, ToolCall
 from agents.plan.part import STAGES
+from agents.views.cost_table import KINDS, costs_by_role
 from agents.views.event_lines import format_findings
 from agents.views.formatting import (
     counted,
@@ -25,14 +25,18 @@ from agents.views.formatting import (
     describe_source,
     format_clock,
     format_cost,
+    format_count,
+    format_money,
     format_time,
     format_tokens,
     stage_title,
 )
+from agents.views.now import Now, ToolProgress
+from agents.views.time_left import describe_time_left
 from simworlds.terminal.text import plain, shortened
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable
 
     from rich.console import RenderableType
 
@@ -50,30 +54,8 @@ _MARKS = {
 _OUTCOMES = {"done": "green", "aborted": "red", "failed": "red", "stopped": "yellow", "unfinished": "yellow"}
 _TALL = 22  # lines of a terminal that has room for findings
 _WIDEST = 400  # letters of a line, before the terminal cuts it
-_ENOUGH = 0.2  # of the stages have to be done before it can be told how long the rest takes
-_AT_LEAST = 0.2  # of a stage is always left
-_ENOUGH_FRAMES = 0.05  # of a film have to be there before they tell how long the rest takes
 _BAR = 20
 _SAID = 110  # letters of what is being said
-
-
-@dataclass(frozen=True, slots=True)
-class ToolProgress:
-    """How far a tool has got."""
-
-    done: float
-    total: float | None
-    text: str
-
-
-@dataclass(frozen=True, slots=True)
-class Now:
-    """What goes on between two rows: ``seconds`` of work in all, words by role, progress by tool, the run's folder."""
-
-    seconds: float
-    words: Mapping[str, str] = field(default_factory=dict[str, str])
-    progress: Mapping[str, ToolProgress] = field(default_factory=dict[str, ToolProgress])
-    folder: str = ""
 
 
 def run_in_progress(run_state: RunState, now: Now, height: int) -> RenderableType:
@@ -118,7 +100,7 @@ def run_summary(run_state: RunState, frames: int = 0) -> RenderableType:
         parts.append(_line(run_state.ending.why, _OUTCOMES.get(run_state.outcome, ""), most=_WIDEST * 4))
     film = run_state.film
     progress = {RENDER: ToolProgress(frames, film.frames, "frames")} if film and frames else {}
-    parts += [Text(), _foot(run_state, Now(run_state.seconds, progress=progress))]
+    parts += [*_costs(run_state), Text(), _foot(run_state, Now(run_state.seconds, progress=progress))]
     return Group(*parts)
 
 
@@ -219,6 +201,26 @@ def _last_words(attempt: Attempt) -> str:
     return next((turn.text for turn in turns if turn and turn.text.strip()), attempt.report)
 
 
+def _costs(run_state: RunState) -> list[RenderableType]:
+    """Tokens and dollars by role and kind, where a model was paid for."""
+    rows = costs_by_role(run_state)
+    if not rows:
+        return []
+    table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
+    table.add_column("Role", no_wrap=True)
+    for heading in ("Calls", "Pictures", *KINDS.values(), "Cost"):
+        table.add_column(heading, justify="right", no_wrap=True)
+    for row in rows:
+        kinds = [(getattr(row.usage, kind), row.dollars[kind]) for kind in KINDS]
+        table.add_row(
+            Text(shortened(row.role.replace("_", " ") or "all", 20), "" if row.role else "bold"),
+            *(Text(format_count(number)) for number in (row.calls, row.pictures)),
+            *(Text(f"{format_count(tokens)} {format_money(dollars)}") for tokens, dollars in kinds),
+            Text(format_money(row.cost) + (f" + {row.unpriced} unpriced" if row.unpriced else "")),
+        )
+    return [Text(), table]
+
+
 def _spoken(role: str, words: str, style: str = "") -> Text:
     """The end of what a role has said so far."""
     line = Text(f"{plain(role).replace('_', ' ')} ", "cyan", no_wrap=True, overflow="ellipsis")
@@ -256,9 +258,9 @@ def _judged(attempt: Attempt, most: int, *, is_cut: bool = False) -> list[Render
     told = format_findings(found, most) if found else []
     lines = [_line(one, "red" if found and found.hard else "yellow") for one in told]
     if attempt.review:
-        verdict = "blocks" if attempt.review.blocking else "does not block"
+        verdict = "blocks" if attempt.review.blocks else "does not block"
         words = f"Reviewer {verdict}: {attempt.review.summary}"
-        lines.append(_line(words, "red" if attempt.review.blocking else "green", most=200))
+        lines.append(_line(words, "red" if attempt.review.blocks else "green", most=200))
     for line in lines:
         line.no_wrap, line.overflow = is_cut, "ellipsis" if is_cut else None
     return [Padding(line, (0, 0, 0, 2)) for line in lines]
@@ -267,13 +269,8 @@ def _judged(attempt: Attempt, most: int, *, is_cut: bool = False) -> list[Render
 def _foot(run_state: RunState, now: Now) -> Text:
     total = run_state.total
     words = [format_clock(now.seconds)]
-    since, film = now.seconds - run_state.seconds, film_left(run_state, now)
-    left = seconds_left(run_state, since)
-    if film is not None and run_state.film:
-        words.append(f"about {_rounded(film + (left or 0.0))} left")
-    elif left is not None:
-        and_film = f", and at most {_rounded(film)} for the film" if film is not None else ""
-        words.append(f"about {_rounded(left)} left{and_film}")
+    if left := describe_time_left(run_state, now):
+        words.append(left)
     words.append(
         format_cost(total) if total.calls or not total.recorded else "recorded answers, nothing to pay"
     )
@@ -282,48 +279,3 @@ def _foot(run_state: RunState, now: Now) -> Text:
     if now.folder:
         words.append(plain(now.folder))
     return Text(" · ".join(words), "dim", no_wrap=True, overflow="ellipsis")
-
-
-def _rounded(seconds: float) -> str:
-    step = 60 if seconds >= 90 else 10  # it is no more exact than that
-    return format_time(max(1, round(seconds / step)) * step)
-
-
-def seconds_left(run_state: RunState, since: float = 0.0) -> float | None:
-    """How long the rest may take if its stages are like those that are done, ``since`` seconds after the last row.
-
-    A film that is still to come is not in it: see ``film_left``. None while that would be no more than a guess.
-    """
-    share, count = run_state.share_done, len(run_state.planned)
-    if run_state.ending or not _ENOUGH <= share < 1:
-        return None
-    closed = [stage for stage in run_state.stages if stage.state == "closed"]
-    each = sum(stage.seconds for stage in closed) / (share * count)
-    left = (1 - share) * count - (run_state.film_seconds is not None)
-    if left < 0.5:
-        return None
-    under_way = run_state.current.seconds if run_state.current else 0.0
-    return max(each * _AT_LEAST, each * left - under_way - since)
-
-
-def film_left(run_state: RunState, now: Now) -> float | None:
-    """Seconds of a film that is still to be rendered: by its frames once there are some, else as it was fitted.
-
-    None without one; before it is fitted, the most that it may take.
-    """
-    whole = run_state.film_seconds
-    if whole is None or run_state.ending:
-        return None
-    progress = now.progress.get(RENDER)
-    if (
-        run_state.film is None
-        or progress is None
-        or progress.total != run_state.film.frames
-        or not run_state.film.frames
-    ):
-        return whole
-    share = min(1.0, max(0.0, progress.done / run_state.film.frames))
-    pending = (step for step in run_state.pending if isinstance(step, ToolCall) and step.name == RENDER)
-    began = next((step.began for step in pending), None)
-    worked = 0.0 if began is None else now.seconds - began  # 0 where another process renders: nothing tells
-    return worked * (1 - share) / share if worked > 1 and share >= _ENOUGH_FRAMES else whole * (1 - share)

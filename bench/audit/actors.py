@@ -60,6 +60,11 @@ def find_actors(spec: Spec, scene: Scene) -> dict[str, ActorResolution]:
     resolutions |= _by_hints(
         [actor for actor in spec.actors if actor.name not in resolutions], scene, ownership, resolutions
     )
+    resolutions |= {
+        name: _within_domain(resolution, ownership, resolutions)
+        for name, resolution in resolutions.items()
+        if resolution.outcome == "missing" and resolution.actor.role == "fluid_flow"
+    }
     return {actor.name: resolutions[actor.name] for actor in spec.actors}
 
 
@@ -155,11 +160,9 @@ class _Ownership:
 
     def by_name(self, actor: SpecActor) -> ActorResolution | None:
         """The resolution of an actor by names; None if no name fits it."""
-        units, by = self._units(actor)
+        units, by = self._enough_units(actor)
         if not units:
             return None
-        while len(units) < actor.count and (finer := self._split(units, actor.name)) != units:
-            units = finer
         sorted_units = tuple(
             Unit(tuple(self._main_first(names, actor)), actor.role)
             for names in sorted(units, key=lambda names: names[0])
@@ -171,12 +174,28 @@ class _Ownership:
         }
         return ActorResolution(actor, "resolved", sorted_units, by, evidence)
 
-    def _units(self, actor: SpecActor) -> tuple[list[tuple[str, ...]], ResolvedBy]:
-        """Names of the objects of each unit, coarsest first."""
+    def _enough_units(self, actor: SpecActor) -> tuple[list[tuple[str, ...]], ResolvedBy]:
+        """The units of the collections that fit best, if those are enough; else of all that fit."""
+        groups = {
+            name: match[0] for name, match in self._collection_matches.items() if match[1] == actor.name
+        }
+        best = max((match.quality for match in groups.values()), default=0)
+        leading = [name for name, match in groups.items() if match.quality == best]
+        found: tuple[list[tuple[str, ...]], ResolvedBy] = ([], "")
+        for chosen in (leading, list(groups)):
+            units, by = self._units(actor, chosen)
+            while units and len(units) < actor.count and (finer := self._split(units, actor.name)) != units:
+                units = finer
+            found = (units, by)
+            if len(units) >= actor.count:
+                break
+        return found
+
+    def _units(self, actor: SpecActor, groups: list[str]) -> tuple[list[tuple[str, ...]], ResolvedBy]:
+        """Names of the objects of each unit, coarsest first; ``groups`` are collections that fit."""
         own = [
             name for name, owner in self.owners.items() if owner == actor.name and self.objects[name].in_scene
         ]
-        groups = [name for name, match in self._collection_matches.items() if match[1] == actor.name]
         units = [
             members for name in groups if (members := self._members(self._topmost(groups, name), actor.name))
         ]
@@ -306,6 +325,22 @@ def _add_domain(
     return replace(
         resolution, units=(joined, *rest), evidence={**resolution.evidence, "domain": free[0].name}
     )
+
+
+def _within_domain(
+    resolution: ActorResolution, ownership: _Ownership, resolutions: Mapping[str, ActorResolution]
+) -> ActorResolution:
+    """Finds flows among the parts of a fluid: many builders put a domain and its flows into one collection."""
+    actor = resolution.actor
+    parts = [
+        obj
+        for other in resolutions.values()
+        if other.actor.role == "fluid_domain" and other.outcome == "resolved"
+        for unit in other.units
+        for obj in unit.objects
+        if plays(obj, actor.role)
+    ]
+    return _by_hint(actor, parts, ownership, "resolved") if 0 < len(parts) <= actor.count else resolution
 
 
 def _by_hints(

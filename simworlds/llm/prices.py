@@ -32,9 +32,17 @@ class Price:
 
     def cost(self, usage: Usage) -> float:
         """Dollars for one request."""
-        weighed = usage.input + usage.cache_read * self.cache_read + usage.cache_write * self.cache_write
-        dollars = (weighed * self.input_usd + usage.output * self.output_usd) / _MILLION
-        return dollars * (self.long_factor if self._is_long(usage.prompt) else 1.0)
+        return sum(self.parts(usage).values())
+
+    def parts(self, usage: Usage) -> dict[str, float]:
+        """Dollars for one request by kind: the fields of Usage."""
+        factor = (self.long_factor if self._is_long(usage.prompt) else 1.0) / _MILLION
+        return {
+            "input": usage.input * self.input_usd * factor,
+            "cache_read": usage.cache_read * self.cache_read * self.input_usd * factor,
+            "cache_write": usage.cache_write * self.cache_write * self.input_usd * factor,
+            "output": usage.output * self.output_usd * factor,
+        }
 
     def worst(self, prompt: int, output: int) -> float:
         """The most that a request of so many tokens can cost: nothing of it read from the cache, all written to it."""

@@ -39,14 +39,13 @@ class EndUnfinishedSessions:
             await self._app(scope, receive, send)
             return
         asked = Headers(scope=scope).get(SESSION, "")
+        self._begun.pop(asked, None)  # it came back, however late
         await self._end_some(scope, len(self._begun) if asked else self._most - 1)
 
         async def watched(message: Message) -> None:
-            if message["type"] == "http.response.start" and message["status"] < _REFUSED:
+            if not asked and message["type"] == "http.response.start" and message["status"] < _REFUSED:
                 session = Headers(raw=message["headers"]).get(SESSION, "")
-                if asked:
-                    self._begun.pop(asked, None)
-                elif session:
+                if session:
                     self._begun[session] = time.monotonic()
             await send(message)
 

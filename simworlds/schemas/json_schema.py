@@ -15,6 +15,7 @@ LARGEST_BOUND = 10_000  # bounds beyond it only keep nonsense out
 SHORT_TEXT = 12  # characters of a description that is repeated wherever it stands, as a unit is
 BOUND_SIGNS = {"minimum": "≥", "exclusiveMinimum": ">", "maximum": "≤", "exclusiveMaximum": "<"}
 _CHECKS = frozenset({"additionalProperties", "discriminator", "maxLength", "minLength", "pattern", "title"})
+_BOUNDS = frozenset({*BOUND_SIGNS, "maxItems", "minItems"})
 
 
 class Untitled(GenerateJsonSchema):
@@ -55,8 +56,8 @@ def lean_schema_of(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def lean_arguments(schema: Mapping[str, Any]) -> dict[str, Any]:
-    """A JSON Schema of arguments that are checked elsewhere, as a model needs it: null is not named where an argument
-    may be left out.
+    """A JSON Schema of arguments that are checked elsewhere, as a model needs it: without bounds, empty defaults, and
+    null where an argument may be left out.
     """
     return cast("dict[str, Any]", _not_null(_lean(schema, set())))
 
@@ -66,7 +67,11 @@ def _not_null(schema: Any) -> Any:
         return [_not_null(item) for item in cast("list[Any]", schema)]
     if not isinstance(schema, dict):
         return schema
-    kept = {key: _not_null(value) for key, value in cast("dict[str, Any]", schema).items()}
+    kept = {
+        key: _not_null(value)
+        for key, value in cast("dict[str, Any]", schema).items()
+        if key not in _BOUNDS and not (key == "default" and value in (False, [], ""))
+    }
     choices = [one for one in kept.get("anyOf", ()) if one != {"type": "null"}]
     if len(choices) == 1:
         del kept["anyOf"]

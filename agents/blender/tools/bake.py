@@ -20,32 +20,23 @@ class BakeArguments(Arguments):
     objects: list[str] | None = Field(
         default=None,
         min_length=1,
-        description="Objects whose simulations to bake; any rigid body means the whole rigid-body world. "
-        "Default: every simulation of the scene.",
+        description="Any rigid body means the whole rigid-body world. Default: every simulation.",
     )
-    frame_start: int | None = Field(
-        default=None, ge=0, le=_LAST_FRAME, description="First frame. Default: the scene's."
-    )
-    frame_end: int | None = Field(
-        default=None, ge=1, le=_LAST_FRAME, description="Last frame. Default: the scene's."
-    )
+    frame_start: int | None = Field(default=None, ge=0, le=_LAST_FRAME, description="Default: the scene's.")
+    frame_end: int | None = Field(default=None, ge=1, le=_LAST_FRAME, description="Default: the scene's.")
     free: bool = Field(
         default=False,
-        description="Free their bakes instead, so that they simulate again.",
+        description="Free their bakes instead.",
     )
-    timeout: float = Field(
-        default=900.0, ge=1, le=86_400, description="Seconds after which Blender is stopped and put back."
-    )
+    timeout: float = Field(default=900.0, ge=1, le=86_400, description="Seconds.")
 
 
 DESCRIPTION = """\
-Bake physics: cloth, soft bodies, particles, hair, rigid bodies, dynamic paint, liquid and gas; of all objects or of \
-some. Each cache's range is set from `frame_start` and `frame_end`; earlier bakes are replaced; frames that were \
-simulated already are kept, if nothing has changed since. Afterwards every cache is checked: that it is baked, covers \
-the range, has all its frames, and that something moved; where nothing did, the likely causes are named. A bake stops \
-at the first frame that is not finite. Fluids bake with cache_type 'ALL' into a folder that the run keeps; use `free` \
-instead of bpy.ops.fluid.free_all, which goes on in a thread and crashes later calls. A bake that runs past `timeout` \
-(seconds) is undone."""
+Bake physics: cloth, soft bodies, particles, hair, rigid bodies, dynamic paint, liquid and gas. Earlier bakes are \
+replaced; frames that were simulated already are kept, if nothing has changed since. Every cache is checked: baked, \
+whole, and something moved; else the likely causes are named. Stops at the first frame that is not finite. Fluids \
+bake into a folder that the run keeps; never call bpy.ops.fluid.free_all, which crashes later calls: use `free`. A \
+bake that runs past `timeout` is undone."""
 
 
 def run(context: ToolContext, arguments: BakeArguments, call: Call) -> Result:

@@ -23,29 +23,25 @@ _LONGEST_TITLE = 40
 class ExecuteArguments(Arguments):
     """The arguments of ``blender_execute``."""
 
-    code: str = Field(max_length=LONGEST_CODE, description="Python. `bpy` is imported; import the rest.")
-    timeout: float = Field(
-        default=60.0, ge=0.1, le=3600, description="Seconds after which Blender is stopped and put back."
-    )
+    code: str = Field(max_length=LONGEST_CODE, description="Python; `bpy` is imported.")
+    timeout: float = Field(default=60.0, ge=0.1, le=3600, description="Seconds.")
     preflight: Literal["on", "off"] = Field(
         default="on",
-        description="off: run the code without checking it first.",
+        description="off: run it unchecked.",
     )
     on_error: Literal["keep", "restore"] = Field(
         default="keep",
-        description="When the code fails half-way: keep the scene as it is, or restore it as it was before.",
+        description="When it fails half-way: keep the scene, or restore it as it was.",
     )
 
 
 DESCRIPTION = """\
-Run Python in the live Blender. Each call has a fresh namespace; `bpy.data` stays from call to call. Code \
-with names, keywords or values that this Blender lacks is not run: the reply says what to write instead. \
-Else the reply has the printed output (lines are also reported while the code runs), the value of a final \
-expression, what changed in the scene and which simulations it reset, and for an \
-error the line that failed, with what the documentation of this Blender version says about the wrong \
-name. Physics: step frames one by one or bake; never jump. No network, no other processes; write files \
-below the current folder. Code that runs past `timeout` (seconds) or ends Blender is undone: Blender is \
-restarted from the last checkpoint, which is taken after every call."""
+Run Python in the live Blender. Each call has a fresh namespace; `bpy.data` stays. Code with names, keywords or \
+values that this Blender lacks is not run: the reply says what to write instead. Else it has what was printed (also \
+reported while the code runs), the value of a final expression, what changed and which simulations that reset; for \
+an error the line, and what the documentation says about the wrong name. Step physics frame by frame, never jump. No \
+network, no processes; write files below the current folder. Code that ends Blender or runs past `timeout` is \
+undone."""
 
 
 class _Fault(Claim):

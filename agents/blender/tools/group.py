@@ -8,8 +8,7 @@ from pydantic import Field
 
 from agents.blender.formatting import format_count, format_list
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
-from agents.protocol import vocabulary
-from agents.protocol.vocabulary import DeformationKind, MotionKind, meaning_of
+from agents.protocol.vocabulary import DeformationKind, MotionKind
 
 _SECONDS = 120.0
 _MOST = 500
@@ -22,42 +21,35 @@ class GroupedObject(Arguments):
     object: str = Field(
         min_length=1,
         max_length=255,
-        description="The object's name, such as 'Chair'; its collection (L3) has the same.",
+        description="Its name, and its collection's.",
     )
     system: str | None = Field(
         default=None,
         min_length=1,
         max_length=255,
-        description="The system (L2) that it belongs to, such as 'furniture'; 'ground' for what everything else stands "
-        "on. Required unless it is in one already.",
+        description="Its system (L2). Required at first.",
     )
     members: list[str] | None = Field(
         default=None,
         min_length=1,
         max_length=10_000,
-        description="Names of its meshes and of what they depend on (armatures, lattices, Empties). They are added to "
-        "what is in its collection already, which is the default.",
+        description="Its meshes, and armatures or Empties that they depend on; added to those that it has.",
     )
     location: tuple[float, float, float] | None = Field(
         default=None,
-        description="Where its root is placed, in the world. Default: the bottom centre of its geometry; an existing "
-        "root stays.",
+        description="Its root's place in the world. Default: where it is, or the bottom centre of its geometry.",
     )
     deformation_kind: DeformationKind | None = Field(
-        default=None, description=meaning_of(vocabulary.DEFORMATION_KIND, vocabulary.DEFORMATION_KINDS)
+        default=None,
+        description="rig: an armature, a lattice, shape keys or another deformer.",
     )
-    motion_kind: MotionKind | None = Field(
-        default=None, description=meaning_of(vocabulary.MOTION_KIND, vocabulary.MOTION_KINDS)
-    )
+    motion_kind: MotionKind | None = Field(default=None, description="bake: a baked simulation moves it.")
     contact_with: list[str] | None = Field(
         default=None,
         max_length=1000,
-        description="Names of what the object touches: objects (L3), including those of this call, meshes or roots. "
-        "Replaces the earlier list.",
+        description="Objects (L3), meshes or roots that it touches. Replaces the list.",
     )
-    allows_disconnected: bool | None = Field(
-        default=None, description=meaning_of(vocabulary.ALLOWS_DISCONNECTED)
-    )
+    allows_disconnected: bool | None = Field(default=None, description="Its meshes need not touch.")
 
     def for_worker(self) -> dict[str, Any]:
         """The arguments in the worker's form."""
@@ -71,17 +63,14 @@ class GroupedObject(Arguments):
 class GroupArguments(Arguments):
     """The arguments of ``blender_group``."""
 
-    groups: list[GroupedObject] = Field(min_length=1, max_length=_MOST, description="The objects to make.")
+    groups: list[GroupedObject] = Field(min_length=1, max_length=_MOST, description="The objects.")
 
 
 DESCRIPTION = """\
-Make logical objects of the scene protocol out of existing meshes, any number in one call. For each: its collection \
-(L3) and its system's (L2) are made unless they exist; the members are linked into it and unlinked from other \
-collections (except those that physics uses); a root Empty is made unless there is one; all members are parented to \
-it, directly or through members that are their parents already; and everything is tagged. Nothing moves in the world; \
-animation and deformation stay as they are. Everything is checked first: if anything cannot be done, the call is \
-refused and nothing changes. The reply says what the protocol still requires there; blender_verify checks the rest. To \
-set only tags, use blender_tag_object."""
+Make logical objects of the scene protocol out of meshes, many in one call: their collections (L3, and L2 unless \
+there), a root Empty each, parents and tags. Members are unlinked from other collections, but those of physics. \
+Nothing moves in the world. If anything cannot be done, the call is refused as a whole. The reply says what the \
+protocol still requires. For what is grouped already it sets tags: give the object and what changes."""
 
 
 def run(context: ToolContext, arguments: GroupArguments, call: Call) -> Result:

@@ -30,35 +30,32 @@ class MaterialArguments(Arguments):
     """The arguments of ``blender_material_preview``."""
 
     show: Literal["all", "scene", "objects"] = Field(
-        default="all", description="The scene's picture, each object alone, or both."
+        default="all", description="all: the scene, and each object alone."
     )
     objects: list[_Name] = Field(
         default_factory=list[_Name],
         max_length=_MOST_OBJECTS,
-        description="Names of collections tagged protocol_role='object', or of objects; by default all, those with "
-        "the same materials once.",
+        description="Default: all, those with the same materials once.",
     )
     frames: list[Frame] = Field(
         default_factory=list[Frame],
         max_length=_MOST_FRAMES,
-        description="Frames at which the scene is shown; by default the current one. Objects are shown at the first.",
+        description="Of the scene's picture; objects are shown at the first.",
     )
-    width: int = Field(default=960, ge=64, le=1536, description="Pixels, of the scene's picture.")
+    width: int = Field(default=960, ge=64, le=1536, description="Pixels.")
     seconds: float = Field(
         default=150.0,
         ge=1,
         le=3600,
-        description="After so long no further still is begun; the reply says which.",
+        description="After so long no further still is begun.",
     )
-    timeout: float = Field(
-        default=400.0, ge=1, le=3600, description="Seconds after which Blender is stopped."
-    )
+    timeout: float = Field(default=400.0, ge=1, le=3600, description="Seconds.")
 
 
 DESCRIPTION = """\
-See materials as they render: Cycles stills with the file's own shaders, textures, glass and metal included, in \
-neutral light that is not the scene's; closed rooms are bright, too. Shows the scene through its camera (lacking one, \
-from a three-quarter view), and each object alone. The scene is not changed."""
+See materials as they render: Cycles stills with the file's own shaders, textures and glass, in neutral light that \
+is not the scene's: no lamp is needed, and closed rooms are bright. Shows the scene through its camera (lacking one, \
+from a three-quarter view) and each object alone."""
 
 
 def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Result:

@@ -33,9 +33,9 @@ class PhaseArguments(BaseModel):
 
     model_config = ConfigDict(extra="forbid")
 
-    name: str = Field(min_length=1, max_length=60, description="What happens, such as 'fall' or 'settle'.")
-    start: Frame = Field(description="First frame.")
-    end: Frame = Field(description="Last frame; the next phase may begin on it.")
+    name: str = Field(min_length=1, max_length=60, description="As 'fall'.")
+    start: Frame
+    end: Frame = Field(description="The next phase may begin on it.")
 
     @model_validator(mode="after")
     def _in_order(self) -> PhaseArguments:
@@ -50,23 +50,19 @@ class MotionSheetArguments(Arguments):
     actors: list[str] = Field(
         min_length=1,
         max_length=MOST_ACTORS,
-        description="Names of objects, or of collections tagged protocol_role='object' (measured as one). An emitter "
-        "is measured by its particles, a fluid domain by its fluid.",
+        description="Objects, or collections measured as one.",
     )
     phases: list[PhaseArguments] = Field(
         default_factory=list[PhaseArguments],
         max_length=MOST_PHASES,
-        description="Parts of the motion that are measured one by one. Default: the scene's frame range as one.",
+        description="Default: the scene's frame range as one.",
     )
     frames: list[Frame] = Field(
         default_factory=list[Frame],
         max_length=MOST_PICTURES,
-        description="Frames to draw, at least two; without phases, the whole range between them is measured. Default: "
-        "starts, middles and ends of the phases, or seven over the range.",
+        description="Frames to draw, two or more.",
     )
-    timeout: float = Field(
-        default=300.0, ge=1, le=3600, description="Seconds after which Blender is stopped and restarted."
-    )
+    timeout: float = Field(default=300.0, ge=1, le=3600, description="Seconds.")
 
     @model_validator(mode="after")
     def _consistent(self) -> MotionSheetArguments:
@@ -83,13 +79,10 @@ class MotionSheetArguments(Arguments):
 
 
 DESCRIPTION = """\
-See and measure how objects move. For each actor: a strip of images at sampled frames in one fixed view of its whole \
-path (and close-ups if it is small in it), with its trail; below, displacement and speed over the frames with phases, \
-keyframes, contacts and the state of the physics caches that move it. As data, per actor and phase: displacement and \
-path length (m), peak and final speed (m/s), turn (degrees), what was touched and from which frame on. Measured on \
-evaluated geometry: the mean of the vertices (cloth, soft bodies), of the particles, of a fluid's surface. Physics \
-that is not baked is stepped frame by frame from the start of its cache, and the sheet says so. The scene is not \
-changed and stays at its frame."""
+See and measure how objects move. For each actor pictures in one view of its whole path, displacement and speed over \
+the frames with phases, keys, contacts and caches; for each phase displacement and path (m), peak and final speed \
+(m/s), turn (degrees), what was touched and from which frame on. Measured on evaluated geometry: the mean of \
+vertices, of particles, of a fluid's surface. What is not baked is stepped, and the sheet says so."""
 
 
 def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Result:

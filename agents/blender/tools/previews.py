@@ -33,25 +33,21 @@ class PreviewArguments(Arguments):
         default=None,
         ge=-_LAST_FRAME,
         le=_LAST_FRAME,
-        description="The frame to show; by default the current one. With unbaked simulations, only the current one.",
+        description="Default: the current one, and no other where a simulation is not baked.",
     )
-    timeout: float = Field(
-        default=120.0, ge=1, le=3600, description="Seconds after which Blender is stopped."
-    )
+    timeout: float = Field(default=120.0, ge=1, le=3600, description="Seconds.")
 
 
 class SingleMeshArguments(PreviewArguments):
     """The arguments of ``blender_single_mesh_preview``."""
 
-    object: str = Field(min_length=1, max_length=200, description="Name of an object with geometry.")
+    object: str = Field(min_length=1, max_length=200, description="Its name.")
 
 
 class ObjectArguments(PreviewArguments):
     """The arguments of ``blender_object_preview``."""
 
-    object: str = Field(
-        min_length=1, max_length=200, description='Name of a collection tagged protocol_role="object".'
-    )
+    object: str = Field(min_length=1, max_length=200, description="Name of its collection.")
 
 
 class LayoutArguments(PreviewArguments):
@@ -59,16 +55,14 @@ class LayoutArguments(PreviewArguments):
 
     everything: bool = Field(
         default=False,
-        description="Also fit grounds, backdrops and distant objects into the views, which otherwise cut them off.",
+        description="Also fit in grounds, backdrops and distant objects.",
     )
 
 
 class SystemLayoutArguments(LayoutArguments):
     """The arguments of ``blender_system_layout_preview``."""
 
-    system: str = Field(
-        min_length=1, max_length=200, description='Name of a collection tagged protocol_role="system".'
-    )
+    system: str = Field(min_length=1, max_length=200, description="Name of its collection.")
 
 
 class SceneLayoutArguments(LayoutArguments):
@@ -77,14 +71,13 @@ class SceneLayoutArguments(LayoutArguments):
     subjects: list[Annotated[str, Field(min_length=1, max_length=200)]] = Field(
         default_factory=list[str],
         max_length=40,
-        description="Objects to label first, and to show closely if small.",
+        description="Objects to label first, and to show closely.",
     )
 
 
 _ALIKE = """\
-The reply is one contact sheet: front, right, top and three-quarter view, each with a scale bar and the world's axes, \
-framed on the evaluated geometry at the frame (modifiers, simulations, instances), in plain \
-colours. The scene is not changed."""
+Front, right, top and three-quarter view of the evaluated geometry, with scale bars and the world's axes, in plain \
+colours."""
 _OWN_AXES = "Front and right are its own."
 
 
@@ -203,7 +196,7 @@ def _text(kind: str, preview: PreviewReply, file: str) -> str:
 SINGLE_MESH = BlenderTool(
     "blender_single_mesh_preview",
     "See one mesh",
-    f"See one object with geometry (mesh, curve, text, …), alone. {_ALIKE} {_OWN_AXES}",
+    f"See one mesh, curve or text alone. {_ALIKE} {_OWN_AXES}",
     SingleMeshArguments,
     run_single_mesh,
     read_only=True,
@@ -211,16 +204,16 @@ SINGLE_MESH = BlenderTool(
 OBJECT = BlenderTool(
     "blender_object_preview",
     "See one object with all its meshes",
-    f"See one object of the scene protocol (L3), alone, with all its meshes. {_ALIKE} {_OWN_AXES}",
+    f"See one object (L3) alone. {_ALIKE} {_OWN_AXES}",
     ObjectArguments,
     run_object,
     read_only=True,
 )
-_ROOMS = "Closed rooms are opened: the part of their shell that faces the viewer is cut away, and named."
+_ROOMS = "Closed rooms are opened towards the viewer; the reply names what was cut away."
 SYSTEM_LAYOUT = BlenderTool(
     "blender_system_layout_preview",
     "See how one system is laid out",
-    f"See one system of the scene protocol (L2) with all its objects, alone. {_ALIKE} {_ROOMS}",
+    f"See one system (L2) alone. {_ALIKE} {_ROOMS}",
     SystemLayoutArguments,
     run_system_layout,
     read_only=True,
@@ -228,7 +221,7 @@ SYSTEM_LAYOUT = BlenderTool(
 SCENE_LAYOUT = BlenderTool(
     "blender_scene_layout_preview",
     "See how the scene is laid out",
-    f"See everything that renders show, and the view of the scene's camera. {_ALIKE} {_ROOMS}",
+    f"See the whole scene, and the camera's view. {_ALIKE} {_ROOMS}",
     SceneLayoutArguments,
     run_scene_layout,
     read_only=True,

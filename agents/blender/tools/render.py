@@ -30,41 +30,33 @@ _Side = Annotated[int, Field(ge=4, le=8192)]
 class RenderArguments(Arguments):
     """The arguments of ``blender_render``."""
 
-    kind: Literal["still", "animation"] = Field(
-        default="still", description="One image, or frames and a video."
-    )
+    kind: Literal["still", "animation"] = Field(default="still", description="What to render.")
     name: str | None = Field(
         default=None,
         pattern=r"^[\w()+-][\w ().+-]{0,79}$",
-        description="Name of the result; by default 'still' or 'animation'.",
+        description="Of the result.",
     )
-    frame: _Frame | None = Field(default=None, description="Of a still; by default the current frame.")
-    frame_start: _Frame | None = Field(default=None, description="Of an animation; by default the scene's.")
-    frame_end: _Frame | None = Field(default=None, description="Of an animation; by default the scene's.")
-    step: int = Field(
-        default=1, ge=1, le=1000, description="Render every step-th frame; the video repeats each so often."
-    )
-    camera: str | None = Field(default=None, max_length=256, description="By default the scene's.")
+    frame: _Frame | None = Field(default=None, description="Of a still; default: the current one.")
+    frame_start: _Frame | None = Field(default=None, description="Of an animation.")
+    frame_end: _Frame | None = Field(default=None, description="Of an animation.")
+    step: int = Field(default=1, ge=1, le=1000, description="Render every step-th frame.")
+    camera: str | None = Field(default=None, max_length=256, description="Its name.")
     engine: Literal["cycles", "eevee", "workbench"] | None = Field(
-        default=None, description="By default the scene's; Cycles instead of EEVEE without a GPU."
+        default=None, description="Without a GPU, Cycles instead of EEVEE."
     )
-    samples: int | None = Field(default=None, ge=1, le=65536, description="By default the scene's.")
-    denoise: bool | None = Field(default=None, description="Cycles only; by default the scene's.")
-    width: _Side | None = Field(default=None, description="Pixels; the height follows if it is not given.")
-    height: _Side | None = Field(default=None, description="Pixels; the width follows if it is not given.")
+    samples: int | None = Field(default=None, ge=1, le=65536, description="A pixel.")
+    denoise: bool | None = Field(default=None, description="Cycles only.")
+    width: _Side | None = Field(default=None, description="Pixels; the other side follows.")
+    height: _Side | None = Field(default=None, description="Pixels.")
     percentage: int | None = Field(default=None, ge=1, le=400, description="Of the scene's resolution.")
     time_budget: float | None = Field(
         default=None,
         ge=1,
         le=1e6,
-        description="Seconds for the whole call: samples are lowered first, then frames left out.",
+        description="Seconds for the whole call.",
     )
-    video: bool = Field(
-        default=True, description="Make an MP4 (H.264) of an animation, at the scene's frame rate."
-    )
-    timeout: float = Field(
-        default=900.0, ge=1, le=86400, description="Seconds after which one frame counts as hung."
-    )
+    video: bool = Field(default=True, description="Make an MP4 of an animation.")
+    timeout: float = Field(default=900.0, ge=1, le=86400, description="Seconds for one frame.")
 
     @model_validator(mode="after")
     def _fit(self) -> RenderArguments:
@@ -79,12 +71,10 @@ class RenderArguments(Arguments):
 
 
 DESCRIPTION = """\
-Render what the camera sees: a still (PNG), or an animation (PNG frames and an MP4 video). The scene and its settings \
-stay as they are. Complete frames that already exist under the same `name`, made of the same scene with the same \
-settings, are kept, so a call that broke off continues where it stopped; frames of an earlier state are replaced. \
-Physics that is not baked is stepped from its first frame, never jumped; baking first is faster. With `time_budget` \
-(seconds) fewer samples are taken, and only as a last resort frames are left out; the reply says so. Begin with a \
-small still, and look at it and its numbers. Returns the image, or frames from start, middle and end."""
+Render what the camera sees: a still, or an animation (frames and an MP4). Whole frames under the same `name` of the \
+same scene and settings are kept: a call that broke off goes on where it stopped. What is not baked is stepped: bake \
+first. Within `time_budget` fewer samples are taken, then frames left out; the reply says so. Begin with a small \
+still, and look at its numbers."""
 
 
 def run(context: ToolContext, arguments: RenderArguments, call: Call) -> Result:

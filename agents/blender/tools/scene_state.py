@@ -46,38 +46,32 @@ class SceneStateArguments(Arguments):
 
     detail: Literal["summary", "normal", "full"] = Field(
         default="normal",
-        description="summary: collections with names, simulations, animation. normal: every object with its "
-        "transform, extent, modifiers and physics. full: also every channel, node and custom property.",
+        description="full: also every channel, node and custom property.",
     )
     objects: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
         default=None,
         max_length=200,
-        description="Only these: names, patterns (Brick.*) or collection names. They are not folded.",
+        description="Only these names, patterns (Brick.*) or collections, not folded.",
     )
     first: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
         default=None,
         max_length=200,
-        description="Names or words: what is called so, and the materials on it, comes before all else.",
+        description="What bears these names or words, and its materials, comes first.",
     )
     sections: list[SectionName] | None = Field(
         default=None,
         min_length=1,
-        description="Only these parts. view: cameras, lights, world, render settings. data_blocks, never by default: "
-        "a digest of every data-block in the file, as data, to tell what has changed since.",
+        description="Only these. view: cameras, lights, world, render. data_blocks, never by default: digests.",
     )
-    start: int = Field(
-        default=0, ge=0, description="Entries to skip in each section, as the last readout says."
-    )
-    max_tokens: int = Field(default=4000, ge=500, le=50_000, description="Length of the readout at most.")
+    start: int = Field(default=0, ge=0, description="Entries to skip, as the last readout says.")
+    max_tokens: int = Field(default=4000, ge=500, le=50_000, description="Of the readout.")
 
 
 DESCRIPTION = """\
-Read the live scene without changing it: collections with protocol tags; objects with world transform and \
-evaluated extent (world bounding box at the current frame), materials, modifiers and constraints in order with \
-the settings that differ from Blender's defaults; rigid bodies, cloth, soft bodies, particles, fluids, force \
-fields and the state of every cache; actions with channels and key ranges, drivers, shape keys; cameras, lights, \
-world, render settings; and, marked with !, likely mistakes. Long series are folded (Brick.001 … Brick.400). \
-What does not fit is counted, with the call that shows it."""
+Read the scene: collections with protocol tags; objects with world transform, extent (world bounding box at this \
+frame), materials, modifiers and constraints with what differs from Blender's defaults; physics with the state of \
+every cache; animation; cameras, lights, world; likely mistakes, marked with !. Long series are folded (Brick.001 … \
+Brick.400). What does not fit is counted, with the call that shows it."""
 
 
 def run(context: ToolContext, arguments: SceneStateArguments, call: Call) -> Result:

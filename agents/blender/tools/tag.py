@@ -80,11 +80,9 @@ class TagArguments(Arguments):
 DESCRIPTION = """\
 Set the scene protocol's tags on any number of collections and objects at once. A collection is a *system* (L2, \
 directly under the scene: `ground`, `lighting`, `cameras`, a room, …) or an *object* (L3, in a system: all meshes of \
-one logical object, parented to one root Empty). Collections have `role`, `deformation_kind`, `motion_kind`, \
-`allows_disconnected`; meshes and Empties have `is_object_root` and `contact_with`. A tag that is left out stays as it \
-is; null removes it. Names must exist. If anything contradicts the protocol, the call is refused and nothing changes. \
-The reply lists the tags as they are now and what the protocol still requires there. Tags are custom properties, saved \
-with the file. This tool only tags; blender_group makes collections, roots and parents, and tags them."""
+one logical object, parented to one root Empty). A tag that is left out stays as it is; null removes it. If anything \
+contradicts the protocol, the call is refused and nothing changes. The reply lists the tags as they are now and what \
+the protocol still requires there. blender_group makes collections, roots and parents, and tags them."""
 
 
 def run(context: ToolContext, arguments: TagArguments, call: Call) -> Result:

@@ -31,18 +31,18 @@ class TrialArguments(Arguments):
         default=None,
         min_length=1,
         max_length=12,
-        description="Objects to follow. Default: all that are simulated.",
+        description="Default: all that are simulated.",
     )
-    frames: int = Field(default=24, ge=2, le=1000, description="Frames to step.")
-    seconds: float = Field(default=60.0, ge=1, le=1800, description="The trial ends when this time is over.")
-    pictures: bool = Field(default=True, description="Also return small pictures.")
+    frames: int = Field(default=24, ge=2, le=1000, description="To step.")
+    seconds: float = Field(default=60.0, ge=1, le=1800, description="It ends when this time is over.")
+    pictures: bool = Field(default=True, description="Small ones.")
 
 
 DESCRIPTION = """\
-Try a simulation before you bake it: steps some frames and tells of each object, over time, heights, speed, volume and \
-depth in what it touches; shows small pictures; tells seconds a frame and what the whole bake would take. Reports \
-every frame as it comes, and stops at the first that is not finite, with the likely cause. Nothing is baked, but what \
-was simulated is kept for the bake. Baked simulations are played: free them first."""
+Try a simulation before you bake it: steps some frames; tells heights, speed, volume and depth in what it touches of \
+each object over time, seconds a frame and what the bake will take; shows small pictures. Stops at the first frame \
+that is not finite, with the likely cause. Nothing is baked; what was simulated is kept for the bake. Baked \
+simulations are played: free them first."""
 
 
 class _Sample(Claim):

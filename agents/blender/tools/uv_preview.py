@@ -29,17 +29,14 @@ class UvArguments(Arguments):
     objects: list[Annotated[str, Field(min_length=1, max_length=200)]] = Field(
         default_factory=list[str],
         max_length=_MOST_OBJECTS,
-        description="Names of meshes, or of collections of them; by default all that renders show.",
+        description="Meshes or collections. Default: all that renders show.",
     )
-    timeout: float = Field(
-        default=120.0, ge=1, le=3600, description="Seconds after which Blender is stopped."
-    )
+    timeout: float = Field(default=120.0, ge=1, le=3600, description="Seconds.")
 
 
 DESCRIPTION = """\
-See UV maps: for up to eight meshes a checker on each, and the map (stretched yellow, overlapping red, the tile from 0 \
-to 1 outlined), with bounds, scale, and the shares stretched, collapsed, mirrored, outside, overlapping. The scene is \
-not changed."""
+See the UV maps of up to eight meshes: a checker on each, and the map (stretched yellow, overlapping red), with \
+bounds, scale, and the shares stretched, collapsed, mirrored, outside, overlapping."""
 
 
 def run(context: ToolContext, arguments: UvArguments, call: Call) -> Result:

@@ -29,29 +29,25 @@ class VerifyArguments(Arguments):
 
     plan: dict[str, Any] | None = Field(
         default=None,
-        description="The scene plan (JSON) that the scene is built to. Without one, rules that compare with a plan "
-        "are skipped.",
+        description="The scene plan; without one, rules about it are skipped.",
     )
     rules: list[str] | None = Field(
         default=None,
         min_length=1,
-        description="Families (C layout, G parents, V contact and penetration, W warnings, R against the plan, T "
-        "motion) or rules, such as ['C', 'V1']. Default: all.",
+        description="Families (C layout, G parents, V contact, W warnings, R against the plan, T motion) or rules, "
+        "such as ['C', 'V1'].",
     )
     image: bool = Field(
         default=False,
-        description="Also return an image: views of the scene with faulty objects coloured, and gaps and "
-        "penetrations marked with their size.",
+        description="Also return views with faulty objects coloured, gaps and depths marked.",
     )
 
 
 DESCRIPTION = """\
-Measure what no image shows: whether the scene is what its tags and its plan say. It finds gaps between objects that \
-should touch, meshes that intersect, objects without support, wrong sizes, positions, relations and arrangements, \
-motion that is faked, unbaked, late, or never comes to rest, and a wrong layout of collections. Each finding names the \
-rule, the objects, the measured value, the tolerance, and what to change. Hard findings must be fixed; soft ones are \
-advice. What could not be decided is listed too. The scene is not changed; frames of unbaked simulations are stepped \
-through, so bake first. Call it after every change that may have broken something."""
+Measure what no image shows, by tags and plan: gaps where things should touch, meshes in each other, no support, \
+wrong sizes, places, relations, motion that is faked, unbaked, late or never at rest, a wrong layout. A finding \
+names rule, objects, measured value, tolerance, and what to change. Hard ones must be fixed; soft ones are advice. \
+What could not be decided is listed. Unbaked simulations are stepped: bake first."""
 
 
 def run(context: ToolContext, arguments: VerifyArguments, call: Call) -> Result:

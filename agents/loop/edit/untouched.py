@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from agents.loop.edit.consequences import Consequences
 from agents.loop.errors import RunError
 from agents.loop.events import Edited
-from agents.loop.run import RUNNER
+from agents.loop.run import VERIFIER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -42,7 +42,8 @@ class Blocks:
 
 def blocks(run: Run, stage: Stage) -> Blocks:
     """Those of the open scene. Raises RunError."""
-    outcome = run.use(RUNNER, stage, "blender_scene_state", {"sections": ["data_blocks"]})
+    # In the verifier's name: it asks beside the review, and calls are found again by name and number.
+    outcome = run.use(VERIFIER, stage, "blender_scene_state", {"sections": ["data_blocks"]})
     data = outcome.data
     if not isinstance(data.get("data_blocks"), dict):
         raise RunError(f"The scene's data-blocks cannot be compared: {outcome.text}")

@@ -21,6 +21,7 @@ from agents.plan.part import STAGES
 from agents.protocol.report.grouping import group_findings
 from agents.protocol.rules.catalogue import RULES
 from agents.views import formatting
+from agents.views.cost_table import KINDS, costs_by_role
 from agents.views.report import code
 from agents.views.report.links import CATEGORIES
 from agents.views.report.media import Media, MediaItem
@@ -132,6 +133,8 @@ def _render_page(run_state: RunState, run: Path, media: Media) -> str:
         objects=objects_of(run_state.plan) if run_state.plan else (),
         relations=relations_of(run_state.plan) if run_state.plan else (),
         costs=_costs(run_state),
+        kinds=KINDS,
+        by_kind=costs_by_role(run_state),
         roles=_ROLES,
         counted=formatting.counted,
         categories=CATEGORIES,

@@ -138,7 +138,7 @@ def _modeling(tape: Tape) -> None:
     tape.says("coder", stage, "Twelve dominoes stand in a row, 5 cm apart.")
     tape.add("attempt.ended", stage=stage, attempt=1, report="Twelve dominoes stand in a row.", ended="done")
     tape.looks("reviewer", stage, 1, "blender_system_preview", "dominoes")
-    tape.judged(stage, 1, "retry", (*FLOATING, LOOSE, UNSURE), blocking=True, wanted="advance")
+    tape.judged(stage, 1, "retry", (*FLOATING, LOOSE, UNSURE), blocking=True)
     tape.add("attempt.began", stage=stage, attempt=2)
     tape.codes(stage, 2, "They float: their roots were too high.", SECOND_CODE, "12 objects moved.")
     tape.looks("coder", stage, 2, "blender_scene_layout_preview", "dominoes on the table")

@@ -172,13 +172,16 @@ class Tape:
         review = {"judgements": judgements, "blocking": blocking, "summary": "The row is even."}
         self.says("reviewer", stage, json.dumps(review), cost=0.018)
         self.add("reviewed", 0.1, stage=stage, attempt=attempt, review=review)
+        if taken == "advance":
+            self.add("decided", 0.1, stage=stage, attempt=attempt, taken=taken)
+            return
         decision = {"transition": wanted or taken, "reason": "The verifier measured it; the picture agrees."}
         if decision["transition"] == "retry":
             decision["instructions"] = instructions
         self.says("planner", stage, json.dumps(decision), cost=0.04)
         self.add(
             "decided", 0.1, stage=stage, attempt=attempt, decision=decision, taken=taken,
-            overruled=bool(wanted and wanted != taken), why="2 hard findings" if wanted else "",
+            overruled=bool(wanted), why=f"It is open.{f' There is no {wanted} left.' if wanted else ''}",
         )  # fmt: skip
 
     def simple_stage(self, stage: str) -> None:

@@ -11,7 +11,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from itertools import count
-from typing import Any
+from typing import Any, TypeVar
 
 import crates
 from fake_messages_api import Reply
@@ -27,7 +27,7 @@ ROLES = {
     "# You are the final reviewer": "final_reviewer",
 }
 DONE = "The stage is built."
-ADVANCE = {"transition": "advance", "reason": "All is as planned."}
+ADVANCE = None  # a stage that nothing keeps open is closed without a decision
 RETRY = {
     "transition": "retry",
     "reason": "Something is wrong.",
@@ -41,6 +41,7 @@ FILM = {"transition": "film", "reason": "It is as planned."}
 ACCEPT = {"verdict": "accept", "summary": "As asked."}
 NEEDS_FIX = {"verdict": "needs_fix", "summary": "Too low.", "instructions": "Put the sun higher."}
 
+Turn = TypeVar("Turn")
 _numbers = count(1)
 
 
@@ -76,7 +77,8 @@ class Team:
 
     ``code`` is what the coder runs in a stage's first turn; ``coder`` has all of its turns in a stage instead, by their
     place in the conversation (the last is said again and again), as ``reviewer`` has the reviewer's. ``tactics`` are
-    the planner's tactical plans by their place in the stage, ``decisions`` its decisions by attempt.
+    the planner's tactical plans by their place in the stage, ``decisions`` its decisions by attempt: where there is
+    one, the reviewer blocks, unless the test says what it does.
     """
 
     plan: Said = field(default_factory=crates.standing)
@@ -84,7 +86,7 @@ class Team:
     coder: Mapping[str, Sequence[Said]] = field(default_factory=dict)
     reviewer: Mapping[str, Sequence[Said]] = field(default_factory=dict)
     tactics: Mapping[str, Sequence[Said]] = field(default_factory=dict)
-    decisions: Mapping[str, Sequence[Said]] = field(default_factory=dict)
+    decisions: Mapping[str, Sequence[Said | None]] = field(default_factory=dict)
     film: Said = field(default_factory=lambda: dict(FILM))
     final: Sequence[Said] = (ACCEPT,)
     first: Callable[[str, str, Params], Said | None] = lambda role, stage, params: None
@@ -105,8 +107,8 @@ class Team:
             return self.plan
         if told.startswith("Attempt"):
             attempt = int(told.split()[1])
-            return _nth(self.decisions.get(stage, (ADVANCE,)), attempt - 1)
-        before = [text for text in _texts(params) if text.startswith(f"The stage {stage} begins.")]
+            return _nth(self.decisions.get(stage, (RETRY,)), attempt - 1) or RETRY
+        before = [text for text in texts(params) if text.startswith(f"The stage {stage} begins.")]
         plain = {"stage": stage, "goal": f"Build {stage}."}
         return _nth(self.tactics.get(stage, (plain,)), len(before) - 1)
 
@@ -117,7 +119,9 @@ class Team:
         return _nth(turns, turn_of(params))
 
     def _reviewer(self, stage: str, params: Params) -> Said:
-        return _nth(self.reviewer.get(stage, (FINE,)), turn_of(params))
+        decisions = self.decisions.get(stage, (ADVANCE,))
+        reviews = tuple(FINE if one is ADVANCE else BLOCKING for one in decisions)
+        return _nth(self.reviewer.get(stage, reviews), turn_of(params))
 
     def _final_reviewer(self, stage: str, params: Params) -> Said:
         return _nth(self.final, turn_of(params))
@@ -132,7 +136,9 @@ def whose(params: Params) -> tuple[str, str]:
         return role, found[1] if found else ""
     if role == "final_reviewer":
         return role, "render"
-    return role, re.match(r"# (\w+)", system[-1])[1]  # type: ignore[index]
+    stages = (re.match(r"# ([a-z]\w*)", block) for block in reversed(system))  # a solver's sheet may follow
+    stage = next(found[1] for found in stages if found)
+    return role, "light" if stage == "everything" else stage  # the last stage stands for a run without stages
 
 
 def turn_of(params: Params) -> int:
@@ -142,25 +148,26 @@ def turn_of(params: Params) -> int:
 
 def words_of(params: Params) -> str:
     """All that is said in a request's messages, results of tools included."""
-    return "\n".join(_texts(params))
+    return "\n".join(texts(params))
 
 
 def last_words(params: Params) -> str:
     """What the user said last."""
-    return "\n".join(_texts({"messages": params["messages"][-1:]}))
+    return "\n".join(texts({"messages": params["messages"][-1:]}))
 
 
-def _nth(turns: Sequence[Said], place: int) -> Said:
+def _nth(turns: Sequence[Turn], place: int) -> Turn:
     return turns[min(place, len(turns) - 1)]
 
 
 def _task(params: Params) -> str:
     """What the planner was last asked for, complaints about its answers apart."""
     asked = ("Write the ", "The stage ", "Attempt ", "Before the film")
-    return next(text for text in reversed(list(_texts(params))) if text.startswith(asked))
+    return next(text for text in reversed(list(texts(params))) if text.startswith(asked))
 
 
-def _texts(params: Params) -> list[str]:
+def texts(params: Params) -> list[str]:
+    """All that the user said and tools answered, in words."""
     found: list[str] = []
     for message in params["messages"]:
         if message["role"] != "user":

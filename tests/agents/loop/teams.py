@@ -11,6 +11,7 @@ from team import (
     FINE,
     NEEDS_FIX,
     REPLAN,
+    RETRY,
     Params,
     Team,
     call,
@@ -28,7 +29,7 @@ MEDDLING = 'import bpy\nbpy.data.objects["Crate root"].location.x = 1'
 
 
 def mended() -> Team:
-    """A planner who wants to advance always, but once: to plan anew; all others find or make faults at first."""
+    """All find or make faults at first; the planner sends them back, and once plans anew."""
     return Team(
         coder={
             "modeling": (run(crates.FLOATING), DONE, run(crates.LOWER), DONE),
@@ -106,7 +107,7 @@ def _tactics(params: Params) -> Reply:
 
 def _decides(params: Params) -> Reply:
     if "not the requested JSON" in last_words(params):
-        return reply(ADVANCE)
+        return reply(RETRY)
     return reply({"transition": "retry", "reason": "Something is wrong."})  # but what?
 
 

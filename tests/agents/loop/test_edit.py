@@ -276,7 +276,17 @@ def test_an_actor_that_says_not_by_what_it_moves_cannot_advance(dropped: Played)
     assert finding["severity"] == "hard"
     assert "there is no collection of that name" in finding["message"]
     first = dropped.of("decided", stage="motion")[0]
-    assert (first["decision"]["transition"], first["taken"], first["overruled"]) == ("advance", "retry", True)
+    assert first["taken"] == "retry"
+    assert first["why"].startswith("The verifier has ")
+
+
+def test_what_is_asked_beside_the_review_is_numbered_apart_from_what_the_review_is_shown(
+    dropped: Played,
+) -> None:
+    states = dropped.of("tool.called", name="blender_scene_state")
+    beside = [row for row in states if row["input"].get("sections") in (["data_blocks"], ["collections"])]
+    assert len(beside) > 4
+    assert {row["role"] for row in beside} == {"verifier"}, "else a resumed run takes one answer for another"
 
 
 def test_keyframes_that_play_a_simulation_are_sent_back(dropped: Played) -> None:

@@ -14,19 +14,12 @@ from hostile_text import HOSTILE, steering
 from sample_runs import Tape
 
 from agents.loop.events import read_event
-from agents.loop.reducer import run_state_after
+from agents.loop.reducer import after, run_state_after
 from agents.loop.run_state import RunState
 from agents.views.live_view import RunLog, RunScreen, RunView, make_view
-from agents.views.rich_views import (
-    Now,
-    ToolProgress,
-    film_left,
-    run_in_progress,
-    run_row,
-    run_summary,
-    runs_table,
-    seconds_left,
-)
+from agents.views.now import Now, ToolProgress
+from agents.views.rich_views import run_in_progress, run_row, run_summary, runs_table
+from agents.views.time_left import describe_time_left, film_left, seconds_left
 from simworlds.terminal.console import Console
 
 if TYPE_CHECKING:
@@ -73,14 +66,14 @@ def test_log_lines_follow_the_run() -> None:
         "verifier: 13 hard findings, 1 soft finding",
         "V1 ×12 Domino.01 … Domino.12 (12) · Table",
         "reviewer blocks: The row is even.",
-        "attempt 1 sent back: 13 hard findings, the reviewer blocks (it wanted to advance)",
-        "Modeling closed after 2 attempts, 1 min 20 s",
+        "attempt 1 sent back: 13 hard findings, the reviewer blocks: The verifier measured it",
+        "Modeling closed after 2 attempts, 1 min 14 s",
         "UV: skipped",
         "back to checkpoints/texture.blend",
         "Resumed, session 2.",
         "Final review: needs a fix: The last domino is cut off.",
         "Run done",
-        "cost: $1.48",
+        "cost: $1.28",
     ):
         assert words in told
         told = told[told.index(words) :]
@@ -106,7 +99,7 @@ def test_log_continues_a_resumed_run() -> None:
     stream = io.StringIO()
     with RunLog(stream, until("stage.closed")) as view:
         view.take(read_event({"type": "stage.began", "stage": "texture"}))
-    assert stream.getvalue() == "01:41  Texture begins\n"
+    assert stream.getvalue() == "01:35  Texture begins\n"
 
 
 class _Gone(io.StringIO):
@@ -177,18 +170,36 @@ def test_time_left_is_shown_once_enough_is_done() -> None:
     assert seconds_left(until("stage.began")) is None
     assert seconds_left(until("stage.closed", 1)) is None, "one of six stages tells little"
     two = until("stage.closed", 2)
-    assert seconds_left(two) == pytest.approx((80.1 + 29.7) / 2 * 3, rel=0.02)
-    assert "02:12 · about 3 min left, and at most 20 min for the film" in drawn(
+    assert seconds_left(two) == pytest.approx((74.0 + 23.6) / 2 * 3, rel=0.02)
+    assert "02:12 · about 2 min left, and at most 20 min for the film" in drawn(
         run_in_progress(two, Now(132.0), 40)
     )
-    left = seconds_left(two, since=1e9)
-    assert left
-    assert left > 0, "what takes longer than thought is not over"
     assert seconds_left(until("run.ended")) is None
 
 
+def test_a_stage_that_takes_longer_than_the_others_does_not_use_up_their_time() -> None:
+    under_way = until("stage.began", 3)
+    each = (74.0 + 23.6) / 2
+    assert seconds_left(under_way) == pytest.approx(3 * each, rel=0.02)
+    assert seconds_left(under_way, since=1e9) == pytest.approx(2.2 * each, rel=0.02)
+
+
+def test_the_time_of_the_film_is_known_from_the_plan_on_and_follows_a_resume() -> None:
+    planned = until("plan")
+    assert describe_time_left(planned, Now(planned.seconds)) == "at most 20 min for the film"
+    more = after(planned, read_event({"type": "sitting.began", "pid": 1, "render_minutes": 45.0}))
+    assert describe_time_left(more, Now(more.seconds)) == "at most 45 min for the film"
+    assert describe_time_left(until("run.ended"), Now(377.0)) == ""
+
+
+def test_the_log_says_what_is_left_as_a_stage_closes() -> None:
+    first, second, *_ = [line for line in lines_of(dominoes()) if " closed after " in line]
+    assert first.endswith("(at most 20 min for the film)")
+    assert second.endswith("(about 2 min left, and at most 20 min for the film)")
+
+
 def test_costs_are_shown_and_recorded_answers_cost_nothing() -> None:
-    assert "$1.48 · 640.8k in, 15.2k out" in drawn(run_in_progress(until("run.ended"), Now(377.0), 40))
+    assert "$1.28 · 554.2k in, 13.1k out" in drawn(run_in_progress(until("run.ended"), Now(377.0), 40))
     recorded = drawn(run_in_progress(run_state_after(dominoes(live=False).rows), Now(377.0), 40))
     assert "recorded answers, nothing to pay" in recorded
     assert "No model was asked" in recorded
@@ -294,7 +305,7 @@ def test_runs_are_listed_with_how_they_stand() -> None:
     )
     told = [re.split(r"  +", line.strip()) for line in drawn(table).splitlines() if line.strip()]
     assert told[0] == ["Run", "What", "Outcome", "Stage", "Cost", "When"]
-    assert told[2][:4] == ["first", "Twelve dominoes", "done", "$1.48"]
+    assert told[2][:4] == ["first", "Twelve dominoes", "done", "$1.28"]
     assert told[3][:4] == ["second", "A cloth falls over a table", "stopped", "Motion"]
     assert told[4][:2] == ["third", "unfinished"]
 

@@ -8,12 +8,14 @@ from typing import TYPE_CHECKING, Any
 import crates
 import pytest
 from fake_messages_api import Reply
+from PIL import Image
 from processes import becomes, of_run
-from run_sessions import answered, go_on, seat, sit
-from team import ABORT, DONE, Team, reply, run
+from run_sessions import MESSAGES, answered, go_on, scenes, seat, sit
+from team import ABORT, DONE, Team, call, reply, run, texts, whose
 
 from agents.loop.errors import NoRun
 from agents.loop.journal import NAME, read_rows
+from agents.loop.leaving import LATEST
 from agents.loop.options import RunLimits
 
 if TYPE_CHECKING:
@@ -58,6 +60,48 @@ def test_no_call_is_made_beyond_the_limit_and_with_more_money_the_run_goes_on(
     more = go_on(tmp_path / "run", seat(RunLimits(max_cost=20)))
     assert more.taken == [("modeling", "abort")]
     assert len(api.requests) == len(more.of("model.answered"))
+
+
+@pytest.mark.parametrize(("camera", "is_delivered"), [(crates.CODE["camera"], True), ("1 + 1", False)])
+def test_a_limit_leaves_the_newest_sound_scene_and_a_picture(
+    api: FakeMessagesAPI, tmp_path: Path, camera: str, *, is_delivered: bool
+) -> None:
+    team = Team(coder={"camera": (run(camera), DONE), "light": (run(crates.CODE["light"]), DONE)})
+
+    def dear(params: dict[str, Any]) -> Reply:
+        given = team(params)
+        last = whose(params) == ("coder", "camera") and given.stop_reason == "end_turn"
+        return Reply(given.text, given.stop_reason, given.content, output_tokens=400_000 if last else 20)
+
+    api.answer = dear
+    root = tmp_path / "run"
+    first = sit(root, seat(RunLimits(max_cost=5)))
+    assert first.ended.how == "stopped"
+    assert first.ended.file == root / "scene.blend"
+    assert first.ended.shown == root / LATEST
+    assert [row["type"] for row in first.rows if row["type"] == "stage.closed"] == ["stage.closed"]
+    cameras, closed = scenes(tmp_path / "look", root / "scene.blend", root / "checkpoints" / "modeling.blend")
+    assert (cameras != closed) == is_delivered
+    with Image.open(root / LATEST) as picture:
+        assert picture.width >= 64
+    if is_delivered:
+        assert go_on(root, seat(RunLimits(max_cost=50))).ended.how == "done"
+
+
+def test_roles_are_told_the_minutes_that_are_left(api: FakeMessagesAPI, tmp_path: Path) -> None:
+    api.answer = _short()
+    sit(tmp_path / "run", seat(RunLimits(max_minutes=60)))
+    asked = [text for request in api.received(MESSAGES) for text in texts(request.body)]
+    assert any("About 58 minutes are left" in text for text in asked if text.startswith("The stage modeling"))
+
+
+def test_what_was_seen_of_the_same_scene_is_not_made_again(api: FakeMessagesAPI, tmp_path: Path) -> None:
+    seen = call("blender_scene_layout_preview", subjects=["Crate"])
+    turns = (run(crates.CODE["modeling"]), seen, call("blender_verify"), seen, run("1 + 1"), seen, DONE)
+    api.answer = Team(coder={"modeling": turns}, decisions={"modeling": (ABORT,)})
+    played = sit(tmp_path / "run")
+    shown = [row for row in played.of("tool.answered") if row["name"] == "blender_scene_layout_preview"]
+    assert [row["seconds"] == 0 for row in shown] == [False, True, False, True]  # anew once code ran
 
 
 def test_a_model_without_a_known_price_has_no_limit_that_could_be_kept(

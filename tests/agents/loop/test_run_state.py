@@ -54,12 +54,12 @@ def test_rejected_attempt_keeps_findings_review_and_decision(whole: RunState) ->
     assert first.review
     assert first.review.blocking
     assert first.choice
-    assert (first.choice.taken, first.choice.overruled) == ("retry", True)
+    assert (first.choice.taken, first.choice.overruled) == ("retry", False)
     assert first.choice.decision
-    assert first.choice.decision.transition == "advance"
+    assert first.choice.decision.instructions == "Move every domino down by its gap."
     assert second.tactic is None, "a retry keeps its plan"
     assert second.choice
-    assert second.choice.taken == "advance"
+    assert (second.choice.taken, second.choice.decision) == ("advance", None)
 
 
 def test_replan_has_its_own_plan_and_rollback(whole: RunState) -> None:

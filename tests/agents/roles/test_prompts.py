@@ -14,7 +14,10 @@ import pytest
 from agents.blender import docs_client, plan_check
 from agents.blender.server import entry
 from agents.blender.tool_catalogue import TOOLS
+from agents.loop.algorithm import ALL_AT_ONCE
 from agents.plan import relations
+from agents.plan.arithmetic import doubts_of
+from agents.plan.check import read_plan
 from agents.plan.edit import EditPlan
 from agents.plan.part import STAGES, Stage
 from agents.plan.scene import ScenePlan
@@ -24,14 +27,17 @@ from agents.protocol.guide import format_tolerance, rules_guide
 from agents.protocol.rules.catalogue import RULES, select_rules
 from agents.protocol.rules_by_stage import rules_of
 from agents.protocol.tolerances import TOLERANCES
-from agents.roles import prompts
+from agents.roles import coder, prompts
 from agents.roles.coder import is_needed, is_seen
 from agents.roles.prompts import FOLDER, ROLES, Role, protocol_text, system_prompt, team_text
+from agents.roles.sheets import SOLVERS, sheet
+from kb_serve.tool import tool as docs_tool
 from simworlds.llm.tokens import of_text
 from simworlds.schemas.json_schema import lean_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from pathlib import Path
 
     from pydantic import BaseModel
 
@@ -51,12 +57,20 @@ def whole(role: Role, stage: Stage | None = None, *, edit: bool = False) -> str:
 
 def composed() -> str:
     """Every text that any model may be given."""
-    return "\n\n".join([*(whole(*one[:2], edit=one[2]) for one in ALL), team_text(), team_text(edit=True)])
+    at_once = system_prompt("coder", "light", staged=False)
+    return "\n\n".join(
+        [*(whole(*one[:2], edit=one[2]) for one in ALL), *at_once, team_text(), team_text(edit=True)]
+    )
+
+
+def own_files() -> list[Path]:
+    """The texts, but for the solvers' sheets."""
+    return sorted(path for path in FOLDER.rglob("*.md") if path.parent.name != "sheets")
 
 
 def test_every_paragraph_of_every_file_is_used() -> None:
-    files = sorted(FOLDER.rglob("*.md"))
-    assert {path.stem for path in files} == {*ROLES, *STAGES, "team"}
+    files = own_files()
+    assert {path.stem for path in files} == {*ROLES, *STAGES, "team", "at_once"}
     told = composed()
     for path in files:
         for paragraph in path.read_text(encoding="utf-8").split("\n\n"):
@@ -95,20 +109,51 @@ def test_a_coder_hears_of_the_rules_that_judge_its_stage_and_a_planner_of_all() 
     assert "- V1 " not in whole("reviewer", "modeling")
 
 
-@pytest.mark.parametrize("stage", STAGES)
-def test_a_role_is_told_what_it_needs_and_no_more(stage: Stage) -> None:
-    tools = [entry(tool) for tool in TOOLS]
+def told_of_tools(needed: Callable[[str], bool]) -> int:
+    tools = [*map(entry, TOOLS), docs_tool()]
+    told = [(tool.description, lean_arguments(tool.input_schema)) for tool in tools if needed(tool.name)]
+    return sum(len((words or "").encode()) + len(json.dumps(schema).encode()) for words, schema in told)
 
-    def size(needed: Callable[[str], bool]) -> int:
-        told = [(tool.description, lean_arguments(tool.input_schema)) for tool in tools if needed(tool.name)]
-        return sum(len(words or "") + len(json.dumps(schema)) for words, schema in told)
 
-    coder = len(whole("coder", stage)) + size(lambda name: is_needed(name, stage))
-    reviewer = len(whole("reviewer", stage)) + size(
-        lambda name: ("preview" in name or "state" in name) and is_seen(name, stage)
+def asked_first(stage: Stage, *, staged: bool = True, verifier: bool = True, **more: Any) -> int:
+    """The bytes of a coder's first request, without the plans and the readout that are put into it."""
+    system = system_prompt("coder", stage, staged=staged, verifier=verifier, **more)
+    tools = told_of_tools(
+        lambda name: is_needed(name, stage, staged=staged) and (verifier or name != "blender_verify")
     )
-    assert coder < 29_200
-    assert reviewer < 14_000
+    return sum(len(part.encode()) for part in (*system, coder.BEGIN)) + tools
+
+
+@pytest.mark.parametrize("stage", STAGES)
+@pytest.mark.parametrize("edit", [False, True])
+@pytest.mark.parametrize("verifier", [False, True])
+def test_a_coder_is_told_what_it_needs_and_no_more(stage: Stage, edit: bool, verifier: bool) -> None:
+    longest = max(SOLVERS, key=lambda solver: len(sheet(solver)))
+    assert asked_first(stage, edit=edit, verifier=verifier, solvers=[longest]) <= 22_000
+
+
+@pytest.mark.parametrize("edit", [False, True])
+def test_a_coder_without_stages_is_told_of_all_in_as_little(edit: bool) -> None:
+    (stage,) = ALL_AT_ONCE
+    assert asked_first(stage, edit=edit, staged=False) <= 22_000
+    system = "\n\n".join(system_prompt("coder", stage, edit=edit, staged=False))
+    assert prompts.stage_text(stage) not in system, "its stage is but a name"
+    assert "no stages" in system
+
+
+@pytest.mark.parametrize("stage", STAGES)
+def test_a_reviewer_is_told_what_it_needs_and_no_more(stage: Stage) -> None:
+    system = sum(len(part.encode()) for part in system_prompt("reviewer", stage))
+    tools = told_of_tools(lambda name: ("preview" in name or "state" in name) and is_seen(name, stage))
+    assert system + tools <= 14_000
+
+
+def test_who_is_not_measured_hears_nothing_of_measuring() -> None:
+    for stage in STAGES:
+        without = "\n\n".join(system_prompt("coder", stage, verifier=False))
+        assert "blender_verify" not in without
+        assert "Rules are hard" not in without
+        assert "blender_verify" in whole("coder", stage)
 
 
 def test_the_protocol_names_every_rule_tolerance_tag_and_relation() -> None:
@@ -158,6 +203,30 @@ def test_a_role_is_told_every_field_of_what_it_answers(
                 assert f'"{choice}"' in block[0]
 
 
+def examples(role: Role, *, edit: bool = False) -> list[Any]:
+    text = prompts.role_text(role, edit=edit)
+    return [json.loads(code) for code in re.findall(r"^```json\n(.*?)^```$", text, re.MULTILINE | re.DOTALL)]
+
+
+def test_the_planners_examples_are_answers_that_are_taken() -> None:
+    scene, tactic, decision = examples("planner")
+    plan, faults = read_plan(scene)
+    assert plan is not None
+    assert (faults, doubts_of(plan)) == ([], [])
+    wanted = TacticalPlan.model_validate(tactic)
+    assert all(plan.object(asset.target) for asset in wanted.assets)
+    assert max(wanted.relations) < len(plan.relations)
+    assert Decision.model_validate(decision).instructions
+    assert examples("planner", edit=True) == [tactic, decision], "a file is edited by another plan"
+
+
+def test_the_reviewers_example_is_an_answer_that_is_taken_and_nobody_elses() -> None:
+    (review,) = examples("reviewer")
+    assert Review.model_validate(review).judgements
+    assert not examples("coder")
+    assert not examples("final_reviewer")
+
+
 @pytest.mark.parametrize("role", [*ROLES, "team"])
 def test_what_is_only_for_edits_is_told_for_edits_only(role: Any) -> None:
     def text(edit: bool) -> str:
@@ -192,7 +261,7 @@ def test_tools_that_are_named_are_there() -> None:
 
 
 def test_only_the_coder_hears_of_code_and_nobody_of_how_the_api_is_spelled() -> None:
-    texts = {path: path.read_text(encoding="utf-8") for path in FOLDER.rglob("*.md")}
+    texts = {path: path.read_text(encoding="utf-8") for path in own_files()}
     for path, text in texts.items():
         assert not re.search(r"bpy\.(ops|types|context)|\w+\(\)|\.\w+_\w+\b", text), path.name
         assert "bpy" not in text or path.stem == "coder"
@@ -206,4 +275,5 @@ def test_prompts_stay_short() -> None:
     sys.stdout.write("\n".join(f"{name:24} {tokens:6} tokens at most" for name, tokens in rows.items()))
     assert rows["the protocol"] < 3200
     assert max(rows[f"stage {stage}"] for stage in STAGES) < 1000
-    assert max(rows.values()) < 9200
+    assert rows.pop("planner, whole") < 10_200
+    assert max(rows.values()) < 7000

@@ -176,6 +176,24 @@ def test_objects_shown_as_particles_belong_to_their_emitter(scenes: dict[str, Sc
     assert units == {"campfire": [["Campfire", "Spark"]], "snowflakes": [["Plane", "Snowflake"]]}
 
 
+@pytest.mark.blender
+def test_what_has_an_actors_name_in_its_own_is_dressing_beside_the_actor(scenes: dict[str, Scene]) -> None:
+    units = find_actors(spec(), scenes["dressing"])["lamp"].units
+    assert [unit.names for unit in units] == [{"Mesh.3", "Mesh.4"}]
+
+
+@pytest.mark.blender
+def test_a_flow_is_found_among_the_parts_of_its_fluid(scenes: dict[str, Scene]) -> None:
+    actors = [
+        {"name": "water", "role": "fluid_domain", "must_have": ["fluid_modifier"]},
+        {"name": "column", "role": "fluid_flow", "must_have": [{"fluid_type": {"type": "FLOW", "kind": "LIQUID"}}]},
+    ]  # fmt: skip
+    asked = spec(id="fluid_D1_99", category="fluid", level="D1", actors=actors)
+    found = find_actors(asked, scenes["flow_in_its_fluid"])
+    assert [unit.name for unit in found["column"].units] == ["Water mesh"]
+    assert (found["column"].by, result(scenes["flow_in_its_fluid"], asked).mpr) == ("hints", 1.0)
+
+
 @pytest.mark.parametrize(
     ("name", "words"),
     [

@@ -137,6 +137,27 @@ def hidden_members():
     scene(names={"Base": "Mesh.3", "Shade": "Mesh.4"}, build=build)
 
 
+def dressing():
+    """Beside the lamp's collection is one of what has the lamp in its name."""
+
+    def build():
+        into("Lamp", get("Mesh.3"), get("Mesh.4"))
+        into("Lamp shelf", add("cube", "Shelf board", (-4, 2, 0.5), size=0.5))
+
+    scene(names={"Base": "Mesh.3", "Shade": "Mesh.4"}, build=build)
+
+
+def flow_in_its_fluid():
+    """A fluid's domain and its flow are in one collection, which has its name."""
+    new()
+    parts = [add("cube", name, (0, 0, 0), size=size) for name, size in (("Water box", 2), ("Water mesh", 1))]
+    for part, kind in zip(parts, ("DOMAIN", "FLOW"), strict=True):
+        part.modifiers.new("Fluid", "FLUID").fluid_type = kind
+    parts[0].modifiers[0].domain_settings.domain_type = "LIQUID"
+    parts[1].modifiers[0].flow_settings.flow_type = "LIQUID"
+    into("Water", *parts)
+
+
 def particles_shown_as_things():
     """What a campfire and an emitter without a speaking name give off is shown as objects that lie elsewhere."""
     new()
@@ -150,7 +171,7 @@ def particles_shown_as_things():
 
 GUISES = (
     *(plain, synonyms, other_units, nameless, parented, collected, duplicates, joined, instanced),
-    *(two_cloths, hidden_members, particles_shown_as_things),
+    *(two_cloths, hidden_members, dressing, flow_in_its_fluid, particles_shown_as_things),
 )
 
 

@@ -55,9 +55,9 @@ def cache_folders():
 
 
 def keep_fluids(workspace):
-    """Moves the frames of fluids from Blender's temporary folder, which ends with it, into the workspace.
+    """Moves what is in Blender's temporary folder, which ends with it, into the workspace.
 
-    A link stays in their place: to set a domain's path would make Blender drop the frames of one that is not baked.
+    A link stays in the place of a fluid: to set a domain's path would make Blender drop frames that are not baked.
     Returns {path as the open file has it: path as a copy of it should have it}, for ``write_paths``.
     """
     own, renamed = os.path.join(workspace, CACHES), {}
@@ -66,7 +66,10 @@ def keep_fluids(workspace):
             name = unused_name(folder.name, lambda name: os.path.lexists(os.path.join(own, name)))
             os.makedirs(own, exist_ok=True)
             shutil.move(folder.real, os.path.join(own, name))
-            os.symlink(os.path.join(own, name), folder.real)
+            if folder.is_fluid:
+                os.symlink(os.path.join(own, name), folder.real)
+            else:
+                folder.path = f"//{CACHES}/{name}"
         inside = relative_to(folder.real, workspace)
         if folder.is_fluid and inside is not None:
             renamed[folder.path] = f"//{inside}"

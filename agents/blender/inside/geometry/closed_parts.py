@@ -4,7 +4,7 @@
 import numpy
 from mathutils import Vector
 
-from .topology import piece_labels
+from .topology import grouped, piece_labels
 
 TOUCH = 2e-5  # metres; what is no deeper counts as touching
 _THIN = 0.002  # metres; a part that is no thicker counts as a sheet
@@ -85,14 +85,8 @@ def _pieces_of(solid):
     """(a triangle of each connected piece, low corners of the pieces' boxes, high corners); cached."""
     if solid.pieces is None:
         label = piece_labels(len(solid.welded[0]), solid.corners)[solid.corners[:, 0]]
-        order = numpy.argsort(label, kind="stable")
-        starts = numpy.flatnonzero(numpy.diff(label[order], prepend=-1))
-        low, high = solid.boxes
-        solid.pieces = (
-            order[starts],
-            numpy.minimum.reduceat(low[order], starts),
-            numpy.maximum.reduceat(high[order], starts),
-        )
+        order, starts, low, high = grouped(label, solid.boxes)
+        solid.pieces = order[starts], low, high
     return solid.pieces
 
 

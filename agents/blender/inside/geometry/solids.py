@@ -10,7 +10,7 @@ from mathutils.bvhtree import BVHTree
 
 from ..blend.fluids import is_empty_domain
 from .evaluated_meshes import Instances, TooManyInstances, TriangleMesh, are_finite, mesh_of
-from .topology import piece_labels
+from .topology import grouped, piece_labels
 
 MOST_TRIANGLES = 4_000_000
 # Arbitrary directions: a ray along an edge or through a vertex would count twice.
@@ -187,12 +187,8 @@ class _Shells:
         known, pieces = numpy.unique(label, return_inverse=True)
         pieces = pieces.reshape(-1)
         pieces = numpy.where(self._is_open(len(known), pieces)[pieces], len(known), pieces)
-        order = numpy.argsort(pieces, kind="stable")
-        starts = numpy.flatnonzero(numpy.diff(pieces[order], prepend=-1))
+        order, starts, self._low, self._high = grouped(pieces, solid.boxes)
         self._triangles = numpy.split(order, starts[1:])
-        low, high = solid.boxes
-        self._low = numpy.minimum.reduceat(low[order], starts)
-        self._high = numpy.maximum.reduceat(high[order], starts)
         self._made = {0: solid} if len(starts) == 1 else {}
 
     def _is_open(self, count, pieces):

@@ -158,6 +158,19 @@ def piece_labels(count, corners):
     return connected_labels(count, corners[:, :2], corners[:, 1:])
 
 
+def grouped(labels, boxes):
+    """(numbers in the order of their labels, where each label's begin, low corners of its boxes, high corners)."""
+    order = numpy.argsort(labels, kind="stable")
+    starts = numpy.flatnonzero(numpy.diff(labels[order], prepend=-1))
+    low, high = boxes
+    return (
+        order,
+        starts,
+        numpy.minimum.reduceat(low[order], starts),
+        numpy.maximum.reduceat(high[order], starts),
+    )
+
+
 def spread_numbers(count, most):
     """Numbers below ``count``: all, or about ``most``, spread evenly but not at a regular step, as meshes have rows."""
     if count <= most:

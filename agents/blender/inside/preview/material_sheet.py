@@ -94,8 +94,11 @@ class _Sheet:
         many, late = [], []
         for name, others in alike.items():
             owners = groups[name]
-            if len(self.objects) == _MOST_OBJECTS or (self.objects and self._is_late):
-                (many if len(self.objects) == _MOST_OBJECTS else late).append(name)
+            if len(self.objects) == _MOST_OBJECTS:
+                many.append(name)
+                continue
+            if self.objects and self._is_late:
+                late.append(name)
                 continue
             self._say(name)
             file, scale = renderer.alone(owners, _THREE_QUARTER[1], side)

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from agents.protocol.rule import NO_ROLES, NotApplicable, Rule, RuleContext
-from agents.protocol.structure import SCENE
+from agents.protocol.structure import NUMBER, SCENE
 from agents.protocol.vocabulary import GROUND
 
 if TYPE_CHECKING:
@@ -14,8 +13,6 @@ if TYPE_CHECKING:
 
     from agents.protocol.findings import Finding
     from agents.protocol.measures.requests import Measures
-
-_NUMBERED = re.compile(r"\.\d{3,}$")
 
 
 def _objects_without_system(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
@@ -65,7 +62,7 @@ def _root_count(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
 
 def _numbered_names(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     for collection in context.facts.collections:
-        if collection.role and _NUMBERED.search(collection.name):
+        if collection.role and NUMBER.search(collection.name):
             yield C5.finding(
                 (collection.name,),
                 f"The collection {collection.name!r} has a name with a duplicate's number.",

@@ -123,6 +123,19 @@ def test_a_plan_is_judged_by(session: LiveSession, tmp_path: Path) -> None:
     }
 
 
+def test_the_plan_of_the_run_that_made_a_file_is_found(session: LiveSession, tmp_path: Path) -> None:
+    scene = saved(session, SCENE, tmp_path / "scene.blend")
+    (tmp_path / "plan.json").write_text(json.dumps(PLAN))
+    words = (scene, "--json")
+    assert json.loads(verify(tmp_path, *words).stdout)["plan"] == ""
+    (tmp_path / "journal.jsonl").touch()
+    done = verify(tmp_path, *words)
+    assert json.loads(done.stdout)["plan"] == PLAN["title"]
+    assert "plan.json, of the run that made the file" in done.stderr
+    (tmp_path / "plan.json").write_text('{"title": "An edit plan"}')
+    assert json.loads(verify(tmp_path, *words).stdout)["plan"] == ""
+
+
 def test_two_hundred_unorganised_primitives_get_a_useful_report_in_seconds(
     session: LiveSession, tmp_path: Path
 ) -> None:

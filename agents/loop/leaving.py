@@ -1,0 +1,47 @@
+"""What a run leaves behind when a limit ends it: the newest sound scene, and a picture of what stands."""
+
+from __future__ import annotations
+
+import logging
+from contextlib import suppress
+from typing import TYPE_CHECKING
+
+from agents.loop.errors import RunError
+from agents.loop.evidence import still
+from agents.loop.judging import verify
+from agents.loop.run import RENDER, RUNNER, START
+from simworlds.sandbox.errors import BlenderError
+
+if TYPE_CHECKING:
+    from agents.loop.run import Run
+    from agents.loop.tool_client import ToolOutcome
+
+_LOG = logging.getLogger(__name__)
+LATEST = "latest.png"
+_LAYOUT = "blender_scene_layout_preview"
+
+
+def leave(run: Run) -> None:
+    """Delivers the scene as it is, if no rule of its stage objects, and shows what is delivered. Raises nothing.
+
+    Nothing of it is journalled: a session that goes on takes the run up where it stopped.
+    """
+    task, stage = run.task, run.stage
+    if task is None or stage is None:
+        return
+    run.is_leaving = True
+    with suppress(RunError, BlenderError, OSError):
+        if run.is_changed and verify(run, stage, task).ok:
+            run.deliver(stage)
+        elif run.is_changed and run.closed != START:
+            run.load(stage, run.checkpoints / f"{run.closed}.blend")
+        shown = _shown(run.use(RUNNER, stage, RENDER, still("latest", None)))
+        shown = shown or _shown(run.use(RUNNER, stage, _LAYOUT, {}))
+        if shown:
+            (run.root / LATEST).write_bytes(shown)
+        return
+    _LOG.info("The scene could not be shown as the run stopped.")
+
+
+def _shown(outcome: ToolOutcome) -> bytes:
+    return outcome.pictures[-1].data if outcome.pictures and not outcome.failed else b""
