@@ -59,6 +59,7 @@ class _Graph:
     trees: dict[str, tuple[str, ...]] = field(default_factory=dict)
     named: set[str] = field(default_factory=set)
     descendants: dict[str, list[str]] = field(default_factory=dict)
+    told: dict[str, str] = field(default_factory=dict)
 
     def below(self, cls: str) -> list[str]:
         """Every class below one, each before its own."""
@@ -67,8 +68,6 @@ class _Graph:
             for child in self.derived.get(cls, ()):
                 found += [child, *self.below(child)]
         return self.descendants[cls]
-
-    told: dict[str, str] = field(default_factory=dict)
 
 
 def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int]) -> _Graph:
