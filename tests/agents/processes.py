@@ -34,3 +34,11 @@ def becomes(condition: Callable[[], bool], seconds: float = 60.0) -> bool:
             return False
         time.sleep(0.005)
     return True
+
+
+def has_ended(pid: int | None) -> bool:
+    """Whether a process is gone, or waits only for its parent to notice."""
+    try:
+        return "Z" in Path(f"/proc/{pid}/stat").read_text(encoding="utf-8").rpartition(")")[2]
+    except (FileNotFoundError, ProcessLookupError):
+        return True

@@ -26,7 +26,7 @@ from .blend.cache_folders import (
     unused_name,
     write_paths,
 )
-from .blend.file_io import SCENE_FILE, make_own, read_file, reason
+from .blend.file_io import SCENE_FILE, make_own, read_file, writing_failed
 from .physics.caches import file_prefix, find_caches
 
 _UNUSED = (
@@ -62,7 +62,7 @@ def save(arguments, report):
                 filepath=path, copy=True, check_existing=False, relative_remap=False, compress=False
             )
         except RuntimeError as error:
-            raise Refused(reason(error)) from None
+            raise Refused(writing_failed(path, error)) from None
     write_paths(path, renamed)
     caches = kept_caches()
     whole, loose = _folder_files(redirected, workspace)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import os
 import random
 import signal
 import threading
@@ -388,8 +387,8 @@ def test_ctrl_c_leaves_at_once(api, claude, fault):
 
     def interrupt() -> None:
         api.wait_for(MESSAGES)
-        time.sleep(0.05)
-        os.kill(os.getpid(), signal.SIGINT)
+        time.sleep(0.5)  # until the client waits: Python drops an interrupt that meets a destructor
+        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
 
     thread = threading.Thread(target=interrupt)
     thread.start()

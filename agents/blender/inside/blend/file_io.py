@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Opens and writes .blend files for the supervisor: checkpoints, saves, the run's own file."""
 
+import errno
 import os
+import resource
+import shutil
 import sys
 import time
 
@@ -76,10 +79,21 @@ def write_file(arguments, report):
                 filepath=path, copy=True, check_existing=False, relative_remap=elsewhere, compress=False
             )
     except RuntimeError as error:
-        raise Refused(f"{path} cannot be written: {reason(error)}") from None
+        raise Refused(f"{path} cannot be written: {writing_failed(path, error)}") from None
     write_paths(path, renamed)
     sys.stdout.flush()
     return {"seconds": time.perf_counter() - started, "bytes": os.path.getsize(path)}
+
+
+def writing_failed(path, error):
+    """Why Blender could not write a file. It may say that the file is missing when it was cut off at a limit."""
+    told, folder = reason(error), os.path.dirname(path)
+    if os.strerror(errno.ENOENT) not in told or not os.path.isdir(folder):
+        return told
+    limit, _ = resource.getrlimit(resource.RLIMIT_FSIZE)
+    most = "" if limit == resource.RLIM_INFINITY else f"A file may have {limit / 1e6:.0f} MB at most. "
+    free = shutil.disk_usage(folder).free / 1e6
+    return f"Blender stopped writing before the end. {most}{free:.0f} MB are free on the disk."
 
 
 def reason(error):
