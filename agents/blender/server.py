@@ -240,9 +240,7 @@ class _ProgressReporter:
 
 
 async def _call_with_progress(context: _Context, name: str, use: _Use) -> types.CallToolResult:
-    """The result of a call; its progress is reported if the client asked for it."""
-    if context.meta is None or context.meta.get("progress_token") is None:
-        return await _result_of(name, use(call=Call()))
+    """The result of a call; its progress goes to a client that asked for it."""
     reporter = _ProgressReporter()
     async with reporter.reporting(context):
         return await _result_of(name, use(call=Call(progress=reporter)))
