@@ -78,6 +78,24 @@ _ALSO_OF = {
 }
 _CACHE_SETTINGS = ("has_cache_", "cache_frame_")
 
+# Names of one and the same value.
+_ALIASES = {
+    "ClothSettings": ("pin_stiffness goal_spring",),
+    "FieldSettings": (
+        "strength linear_drag guide_minimum",
+        "harmonic_damping quadratic_drag",
+        "flow inflow",
+        "size rest_length",
+    ),
+    "ParticleSettings": ("timestep time_tweak", "normal_factor hair_length"),
+}
+_ALIASES_BY_PROPERTY = {
+    (kind, name): tuple(names.split())
+    for kind, groups in _ALIASES.items()
+    for names in groups
+    for name in names.split()
+}
+
 _PARTS = {
     "animation_data": "animation",
     "node_tree": "nodes",
@@ -174,6 +192,11 @@ def _hidden(obj):
         for layer in scene.view_layers
         if obj.hide_get(view_layer=layer)
     ]
+
+
+def names_of(struct, name):
+    """The names under which Blender has a property of ``struct``: mostly one."""
+    return _ALIASES_BY_PROPERTY.get((struct.bl_rna.identifier, name), (name,))
 
 
 def reading_plan_of(struct, *, pictures):

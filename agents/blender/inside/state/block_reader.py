@@ -9,7 +9,7 @@ from array import array
 import bpy
 
 from ..blend.fcurves import played_curves
-from .block_parts import CACHES, CUSTOM, extra_parts_of, part_of, reading_plan_of, rest_of
+from .block_parts import CACHES, CUSTOM, extra_parts_of, names_of, part_of, reading_plan_of, rest_of
 from .file_contents import contents_of_image, contents_of_path
 
 _MANY = 64  # elements; from here on, they are read property by property
@@ -149,10 +149,11 @@ class BlockReader:
             return
         try:
             owner = struct.path_resolve(match[1]) if match[1] else struct
-            key = (owner.as_pointer(), match[2])
+            keys = [(owner.as_pointer(), name) for name in names_of(owner, match[2])]
         except (ValueError, AttributeError):
             return
-        self._animated.setdefault(key, set()).add(index)
+        for key in keys:
+            self._animated.setdefault(key, set()).add(index)
         self._animated_types.add(type(owner).__name__)
 
     def _without_animated(self, struct, name, value):

@@ -29,6 +29,15 @@ bpy.ops.mesh.primitive_uv_sphere_add(radius=0.4, location=(0, 0, 1.5))
 bpy.context.object.name = "Ball"
 bpy.context.object.modifiers.new("Collision", "COLLISION")
 """
+# Of each, Blender has the animated value under further names.
+ANIMATED = f"""{CLOTH_ON_BALL}
+settings = bpy.data.objects["Flag"].modifiers["Cloth"].settings
+bpy.ops.object.effector_add(type="WIND", location=(0, -2, 1))
+for frame, value in ((4, 50), (9, 0)):
+    settings.pin_stiffness = bpy.context.object.field.strength = value
+    settings.keyframe_insert("pin_stiffness", frame=frame)
+    bpy.context.object.keyframe_insert("field.strength", frame=frame)
+"""
 LIQUID = f"{PARTS}\ntank(use_mesh=True)\nbpy.data.objects['Tank'].modifiers[0].domain_settings.cache_frame_end = 12"
 SAVE = (
     "import os\nbpy.ops.wm.save_as_mainfile(filepath=os.path.abspath('scene.blend'))"  # as a run's own file
@@ -49,7 +58,7 @@ def visited(session: LiveSession, name: str, frame: int = 12) -> tuple[int, list
     return len(frames), answer["value"]["boxes"][name]["low"]
 
 
-@pytest.mark.parametrize(("code", "name"), [(CLOTH_ON_BALL, "Flag"), (LIQUID, "Tank")])
+@pytest.mark.parametrize(("code", "name"), [(CLOTH_ON_BALL, "Flag"), (ANIMATED, "Flag"), (LIQUID, "Tank")])
 def test_what_was_stepped_is_measured_again_without_a_step_and_becomes_the_bake(
     session: LiveSession, code: str, name: str
 ) -> None:
