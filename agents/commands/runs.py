@@ -131,7 +131,7 @@ def edit(file: Path, instruction: str, reference: Path | None, **given: Any) -> 
 @_limits
 @_blender
 def demo(name: str | None, **given: Any) -> None:
-    """Play a hand-written transcript against a real Blender; needs no key. Without a name: list them.
+    """Play a transcript against a real Blender; needs no key. Without a name: list them.
 
     What the roles say was written by people for this program; Blender, verifier, baking and rendering are real.
     """

@@ -23,10 +23,11 @@ _LOG = logging.getLogger(__name__)
 
 def listed() -> str:
     """The demos, a line each."""
-    lines = ["Hand-written transcripts; each plays against a real Blender, without a key:", ""]
+    lines = ["Each plays a transcript against a real Blender, without a key:", ""]
     for name in transcripts():
         settings = _settings(name)
         lines.append(f"  simworlds demo {name:12} about {settings['minutes']:g} min   {settings['about']}")
+        lines.append(f"  {'':42}Answered by {settings['by']}.")
     return "\n".join(lines)
 
 
@@ -37,6 +38,7 @@ def demo_options(name: str, made: Path) -> dict[str, Any]:
     asked: dict[str, Any] = {
         "origin": "session",
         "source": name,
+        "by": settings["by"],
         "planner_looks": False,
         "prompt": settings.get("instruction", settings["prompt"]),
     }

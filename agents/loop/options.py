@@ -20,8 +20,8 @@ ROLES = ("planner", "coder", "reviewer", "final_reviewer")
 class Options(BaseModel):
     """What does not change from session to session.
 
-    ``origin``: where answers come from: a live model, a ``session`` (its name) written by hand, or the ``replay`` of
-    another run (its folder). ``file``, ``reference``: what is edited, and a picture of what it should be.
+    ``origin``: where answers come from: a live model, a ``session`` (a transcript, its name) that was answered ``by``
+    somebody, or the ``replay`` of another run (its folder). ``file``, ``reference``: what is edited, and a picture of what it should be.
     ``provider``: the API that live models are reached by. ``price``: IN/OUT in dollars per million tokens, of models
     without a list price. ``verifier``, ``stages``: False leaves that out (the paper's ablations). ``early``: the scene
     is delivered as each stage closes, and a draft before the film; ``planner_looks``: the planner decides on that
@@ -36,6 +36,7 @@ class Options(BaseModel):
     reference: Path | None = None
     origin: Origin = "live"
     source: str = ""
+    by: str = "hand"
     provider: ProviderName = "anthropic"
     model: str = ""
     price: str | None = None
@@ -84,7 +85,7 @@ class Options(BaseModel):
         """Where the answers come from, in words."""
         match self.origin:
             case "session":
-                return f"hand-written session: {self.source}"
+                return f"transcript {self.source}, answered by {self.by}"
             case "replay":
                 return f"recorded: {self.source}"
             case _:

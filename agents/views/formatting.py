@@ -86,7 +86,7 @@ def describe_source(run_state: RunState) -> str:
     match run_state.answers or ("" if source in ("", "live") else "recorded"):
         case "hand-written":
             return (
-                f"No model was asked in this run: its answers were written by hand ({source}). Blender, the "
+                f"No model was asked in this run: its answers were written beforehand ({source}). Blender, the "
                 "physics, the verifier and the pictures are real."
             )
         case "recorded":

@@ -200,7 +200,7 @@ def test_live_answers_are_not_excused(page: BeautifulSoup) -> None:
 
 def test_answers_that_were_not_live_are_said_not_to_be(tmp_path: Path) -> None:
     page = report_of(dominoes(live=False), tmp_path)
-    assert "No model was asked in this run: its answers were written by hand" in words(
+    assert "No model was asked in this run: its answers were written beforehand" in words(
         page.select_one(".source")
     )
     assert "hand-written answers" in words(page.select_one(".badges"))

@@ -105,7 +105,7 @@ def test_demo_without_a_name_lists_the_demos(alone: None) -> None:
     result = said("demo")
     assert result.exit_code == 0
     assert "simworlds demo dominoes" in result.stdout
-    assert "Hand-written transcripts" in result.stdout
+    assert "Each plays a transcript against a real Blender" in result.stdout
 
 
 def test_resume_of_a_finished_run_says_where_its_result_is(
