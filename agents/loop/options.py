@@ -21,11 +21,11 @@ class Options(BaseModel):
     """What does not change from session to session.
 
     ``origin``: where answers come from: a live model, a ``session`` (a transcript, its name) that was answered ``by``
-    somebody, or the ``replay`` of another run (its folder). ``file``, ``reference``: what is edited, and a picture of what it should be.
-    ``provider``: the API that live models are reached by. ``price``: IN/OUT in dollars per million tokens, of models
-    without a list price. ``verifier``, ``stages``: False leaves that out (the paper's ablations). ``early``: the scene
-    is delivered as each stage closes, and a draft before the film; ``planner_looks``: the planner decides on that
-    draft. Runs that were begun without these go on without them.
+    somebody, or the ``replay`` of another run (its folder). ``file``, ``reference``: what is edited, and a picture of
+    what it should be. ``provider``: the API that live models are reached by. ``price``: IN/OUT in dollars per million
+    tokens, of models without a list price. ``verifier``, ``stages``: False leaves that out (the paper's ablations).
+    ``early``: the scene is delivered as each stage closes, and a draft before the film; ``planner_looks``: the planner
+    decides on that draft. Runs that were begun without these go on without them.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
