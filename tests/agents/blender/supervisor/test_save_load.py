@@ -281,6 +281,14 @@ def test_opens_a_file_of_another_folder_with_caches_and_images(session: LiveSess
         assert "may not be opened" in refusal(other, LOAD, path=str(tmp_path / "empty.blend"))
 
 
+def test_saves_a_run_that_lies_in_a_folder_that_blender_may_read(tmp_path: Path) -> None:
+    """As where an edited file lies beside the run, or a run is made in the folder of its textures."""
+    tmp_path.chmod(0o755)
+    with session_for(tmp_path / "assets" / "run", read=(tmp_path / "assets",)) as run:
+        saved = run.use(SAVE, name="here")
+    assert "A second Blender opens it" in saved.text
+
+
 # Checkpoints
 
 
