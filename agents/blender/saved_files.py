@@ -107,7 +107,7 @@ def staging(folder: RunFolder) -> Generator[Path]:
         for leftover in folder.root.glob(f"{_STAGED}*"):
             shutil.rmtree(leftover, ignore_errors=True)
         staged = Path(tempfile.mkdtemp(prefix=_STAGED, dir=folder.root))
-        staged.chmod(0o755)  # where the run's folder is in one that Blender may read, its path leads through here
+        staged.chmod(0o755)  # a Blender that may read the folder around the run's goes through here
     except OSError as error:
         raise Refusal(f"{folder.root} cannot be written to: {error.strerror or error}.") from error
     try:

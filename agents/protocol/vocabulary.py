@@ -93,7 +93,8 @@ PROPERTIES: tuple[CustomProperty, ...] = (
     CustomProperty(
         CONTACT_WITH,
         "object",
-        "Names of the meshes or roots that this mesh, or this root's object, touches. One side is enough.",
+        "Names of the meshes or roots that this mesh, or this root's object, touches. One side is enough. A root that "
+        "names itself lets its object's own parts reach into each other.",
     ),
     CustomProperty(
         STRICT_GROUNDING,

@@ -72,12 +72,14 @@ class RunLog(RunView):
         super().__init__(before)
         self._stream = stream
         self._clock = clock
+        self._taken = clock()
         self._written: dict[str, float] = {}
 
     def take(self, event: Event) -> None:
         """See Watcher."""
         with self._lock:
             super().take(event)
+            self._taken = self._clock()
             for line in format_event(event, self.run_state):
                 self._write(line)
 
@@ -89,12 +91,12 @@ class RunLog(RunView):
                 return
             self._written[tool] = now
             share = f" {min(100.0, 100 * done / total):.0f} %" if total else ""
-            self._write(f"  {tool}{share} {text}")
+            self._write(f"  {tool}{share} {text}", now - self._taken)
 
-    def _write(self, line: str) -> None:
+    def _write(self, line: str, since: float = 0.0) -> None:
         bare = line.lstrip(" ")
         indent = " " * min(8, len(line) - len(bare))
-        clock = format_clock(self.run_state.seconds)
+        clock = format_clock(self.run_state.seconds + since)
         write_line(self._stream, f"{clock}  {indent}{shortened(bare, _LETTERS)}")
 
 

@@ -62,8 +62,6 @@ def _check_together(scene, groups):
                 f"{group.name!r} cannot be both a system and an object: choose another name for one."
             )
         for name in group.contacts or ():
-            if name == group.name:
-                raise Refused(f"{name!r} cannot be in contact with itself.")
             if name not in seen and name not in scene.objects and _role(name) != OBJECT:
                 hint = _name_hint(name, [*seen, *scene.objects.keys()])
                 raise Refused(f"{group.name!r} cannot touch {name!r}: there is no such object.{hint}")

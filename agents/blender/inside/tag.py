@@ -208,8 +208,8 @@ def _contact_target(name, obj, plan):
             f"{obj.name!r} cannot touch {name!r}: the scene has no such object. "
             + _name_hint(name, plan.scene.objects, "object")
         )
-    if other == obj:
-        raise Refused(f"{obj.name!r} cannot be in contact with itself.")
+    if other == obj and not plan.of(obj, ROOT):
+        raise Refused(f"{obj.name!r} is one mesh: it cannot be in contact with itself.")
     if not _can_touch(other, plan):
         raise Refused(
             f"{obj.name!r} cannot touch {other.name!r}, which is {_article(other.type)}, not a root: it has no surface."

@@ -93,6 +93,7 @@ def test_progress_is_told_now_and_then() -> None:
             view.progress("blender_bake", second, 30, f"frame {second}")
     told = stream.getvalue().splitlines()
     assert [line.split("bake")[1] for line in told] == [" 33 % frame 10", " 67 % frame 20", " 100 % frame 30"]
+    assert [line.split()[0] for line in told] == ["00:10", "00:20", "00:30"]
 
 
 def test_log_continues_a_resumed_run() -> None:

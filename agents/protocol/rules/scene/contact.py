@@ -42,8 +42,8 @@ def _pairs(context: RuleContext) -> Iterator[_ContactPair]:
     seen: set[frozenset[Names]] = set()
     for contact in declared_contacts(context):
         a, b = context.structure.surfaces_of(contact.a), context.structure.surfaces_of(contact.b)
-        if _of_one_fluid(context, contact):
-            continue
+        if _of_one_fluid(context, contact) or (len(a) > 1 and set(a) == set(b)):
+            continue  # its parts may touch, and need not
         if set(a) & set(b):  # a part touches the rest of its object
             a, b = (a, _without(b, a)) if len(a) < len(b) else (_without(a, b), b)
         key = frozenset((a, b))

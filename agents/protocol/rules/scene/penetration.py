@@ -13,12 +13,14 @@ from agents.protocol.rule import NotApplicable, Rule, RuleContext
 from agents.protocol.tolerances import PENETRATION
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Sequence
 
     from agents.protocol.findings import Finding
     from agents.protocol.measures.requests import Names
 
 _DECLARE = "or, if they should touch or fit into each other, declare it (contact_with, the plan)"
+_DECLARE_PARTS = "or, if its parts are made to reach into each other, name it in its own contact_with"
+_NAMED = 6
 _MAX_MOVE = 2.0  # times the depth; where a move along an axis is longer, another way out is shorter
 
 
@@ -40,6 +42,7 @@ def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
     objects = context.structure.objects
     allowed = allowed_crossings(context)
     reported: set[frozenset[str]] = set()
+    within: dict[str, list[Finding]] = {}
     for request in _requests(context):
         try:
             pairs = measures[request].pairs
@@ -52,7 +55,36 @@ def _judge(context: RuleContext, measures: Measures) -> Iterator[Finding]:
                 continue
             if (finding := _finding(context, pair, request.frame)) is not None:
                 reported.add(key)
-                yield finding
+                owner = _common_object(context, pair) if finding.outcome == "broken" else ""
+                if owner:
+                    within.setdefault(owner, []).append(finding)
+                else:
+                    yield finding
+    for owner, findings in within.items():
+        yield _of_parts(owner, findings)
+
+
+def _common_object(context: RuleContext, pair: Crossing) -> str:
+    """The object that both meshes are parts of, "" for none."""
+    first, second = (context.structure.logical_object_of(name) for name in (pair.a, pair.b))
+    return first.name if first is not None and second is not None and first.name == second.name else ""
+
+
+def _of_parts(owner: str, findings: Sequence[Finding]) -> Finding:
+    """One finding for the parts of an object that reach into each other: mostly they are made so."""
+    worst = max(findings, key=lambda finding: finding.measured or 0.0)
+    told = "; ".join(finding.message.rstrip(".") for finding in findings[:_NAMED])
+    more = f"; and {len(findings) - _NAMED} pairs more" if len(findings) > _NAMED else ""
+    return V2.finding(
+        tuple(dict.fromkeys(name for finding in findings for name in finding.objects)),
+        f"Parts of {owner!r} reach into each other: {told}{more}.",
+        fix=f"Move them apart; {_DECLARE_PARTS}: blender_group(object={owner!r}, contact_with=[…, {owner!r}]).",
+        measured=worst.measured,
+        tolerance=worst.tolerance,
+        unit="m",
+        at=worst.at,
+        frame=worst.frame,
+    )
 
 
 def _finding(context: RuleContext, pair: Crossing, frame: int | None) -> Finding | None:

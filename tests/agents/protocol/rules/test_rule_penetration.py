@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from scenes import a_plan, build, the_finding, verified
 
+from agents.blender.tools.group import TOOL as GROUP
+
 if TYPE_CHECKING:
     from live_session import LiveSession
 
@@ -117,6 +119,25 @@ def test_parts_of_one_object_are_no_exception(session: LiveSession) -> None:
     found = the_finding(verified(session, "V2"))
     assert set(found.objects) == {"Mug", "Handle"}
     assert found.measured == pytest.approx(0.005, abs=3e-5)
+
+
+def test_parts_that_reach_into_each_other_are_one_finding_until_their_object_names_itself(
+    session: LiveSession,
+) -> None:
+    build(
+        session,
+        'logs = [box(f"Log_{k}", (0, 0, 0), (0.2, 1, 0.2), at=(0.15 * k, 0, 0)) for k in range(4)]\n'
+        'thing("Pile", *logs)',
+    )
+    found = the_finding(verified(session, "V2"))
+    assert set(found.objects) == {"Log_0", "Log_1", "Log_2", "Log_3"}
+    assert found.measured == pytest.approx(0.05, abs=1e-4)
+    assert "Parts of 'Pile' reach into each other" in found.message
+    assert "contact_with=[…, 'Pile']" in found.fix
+    session.use(GROUP, groups=[{"object": "Pile", "contact_with": ["Pile"]}])
+    assert verified(session, "V1,V2").findings == ()
+    session.run("bpy.data.objects['Log_3'].location.x = 9")  # they may, and need not
+    assert verified(session, "V1,V2").findings == ()
 
 
 @pytest.mark.parametrize(
