@@ -50,7 +50,12 @@ _TILT = 8.0  # degrees; what Upright and a planned rotation may differ by
 _TURNED_AWAY = 60.0  # degrees
 _DEEP = 0.25  # share of the smaller object's smallest size that two boxes share
 _SPACING = 0.03
+_REACH, _REACH_SHARE = (
+    0.05,
+    0.1,
+)  # metres, and share of the smaller extent, by which boxes may overlap in a direction
 _EXPLODES = frozenset({"rigid", "soft"})
+_FORMLESS = frozenset({"fluid", "emitter", "force"})
 _HOLLOW = frozenset({"container", "ground", "fluid", "emitter", "force"})
 
 
@@ -219,6 +224,22 @@ def _wrong_side(relation: Direction, a: PlannedBox, b: PlannedBox, plan: ScenePl
         yield (
             f"by their positions the middle of {a.name!r} is {-along:.3g} m on the other side of {b.name!r} "
             f"(frame: {relation.frame})."
+        )
+        return
+    if not {a.planned.role, b.planned.role}.isdisjoint(_FORMLESS):
+        return
+    (low, high), (other_low, other_high) = (
+        (min(places), max(places))
+        for box in (a, b)
+        for places in [
+            [sign * sum(part * at for part, at in zip(axis, corner, strict=True)) for corner in box.corners]
+        ]
+    )
+    overlap = other_high - low
+    if overlap > max(_REACH, _REACH_SHARE * min(high - low, other_high - other_low)):
+        yield (
+            f"by their positions and sizes {a.name!r} begins {overlap:.3g} m before {b.name!r} ends in the direction "
+            f"{relation.kind} (frame: {relation.frame}); they are to stand clear of each other."
         )
 
 

@@ -20,6 +20,7 @@ _OPPOSITE = {
     "Above": "Below",
     "Below": "Above",
 }
+_FIRST_AND_LAST = {"start_or_end", "end"}  # of two relations, when they must hold: each has a time of its own
 
 
 def reachable(starts: Iterable[str], links: Callable[[str], Iterable[str]]) -> dict[str, None]:
@@ -99,7 +100,8 @@ def _path(held: dict[str, set[str]], start: str, goal: str) -> list[str]:
 
 
 def _opposed_directions(relations: Sequence[Relation]) -> Iterator[Fault]:
-    stated: dict[tuple[str, str, str, str], int] = {}
+    """Left of and right of at one time; what is left of something at first may be right of it at the end."""
+    stated: dict[tuple[str, str, str, str], list[int]] = defaultdict(list)
     for place, relation in enumerate(relations):
         if not isinstance(relation, Direction):
             continue
@@ -108,7 +110,8 @@ def _opposed_directions(relations: Sequence[Relation]) -> Iterator[Fault]:
             (relation.kind, relation.b, relation.a, relation.frame),
             (opposite, relation.a, relation.b, relation.frame),
         ):
-            if key in stated:
-                words = f"{relation.a!r} cannot be {relation.kind} {relation.b!r}"
-                yield Fault(f"relations[{place}]", f"{words}: relations[{stated[key]}] contradicts it.")
-        stated[relation.kind, relation.a, relation.b, relation.frame] = place
+            for other in stated[key]:
+                if {relation.when, relations[other].when} != _FIRST_AND_LAST:
+                    words = f"{relation.a!r} cannot be {relation.kind} {relation.b!r}"
+                    yield Fault(f"relations[{place}]", f"{words}: relations[{other}] contradicts it.")
+        stated[relation.kind, relation.a, relation.b, relation.frame].append(place)

@@ -366,7 +366,7 @@ def test_progress_of_any_numbers_is_drawn() -> None:
             run_in_progress(history, Now(0.0, {}, {"bake": ToolProgress(done, total, "")}), 40)
         )
         stream = io.StringIO()
-        ticks = iter((0.0, 99.0))
+        ticks = iter((0.0, 0.0, 99.0))
         with RunLog(stream, clock=lambda ticks=ticks: next(ticks)) as view:
             view.progress("bake", done, total, "")
             view.progress("bake", done, total, "")

@@ -97,6 +97,7 @@ def test_nothing_speaks_against_a_sound_plan() -> None:
         ({"Chair__position": (0, -1.2, 0)}, "relations[5]", "0.575 m apart; the gap is to be at most 0.1 m"),
         ({"relation_5__gap": (0.3, 0.5)}, "relations[5]", "the gap is to be at least 0.3 m"),
         ({"relation_6__kind": "RightOf"}, "relations[6]", "on the other side of 'Cup' (frame: world)"),
+        ({"Bowl__dimensions": (1.3, 0.3, 0.12)}, "relations[6]", "'Bowl' begins"),
         ({"camera__position": (0, 6, 2)}, "relations[7]", "(frame: camera)"),
         ({"Cup__rotation": (0, 20, 0)}, "relations[8]", "tilts it by 20°"),
         ({"relation_9__spacing": 0.5}, "relations[9]", "0.6 m apart; the spacing is to be 0.5 m"),

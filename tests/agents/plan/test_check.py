@@ -210,6 +210,15 @@ def test_opposite_directions_contradict_each_other() -> None:
     assert [fault.partition(":")[0] for fault in faults] == ["relations[5]", "relations[6]"]
 
 
+def test_what_is_left_of_something_may_be_right_of_it_at_the_end() -> None:
+    plan = a_plan()
+    left, right = ({"kind": kind, "a": "Chair 0", "b": "Table"} for kind in ("LeftOf", "RightOf"))
+    plan["relations"] += [left, {**right, "when": "end"}]
+    assert fault_texts(plan) == []
+    plan["relations"][-1]["when"] = "always"
+    assert any("contradicts it" in fault for fault in fault_texts(plan))
+
+
 def test_a_cycle_over_several_objects_names_them_all() -> None:
     plan = a_plan()
     plan["relations"] += [
