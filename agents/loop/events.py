@@ -227,6 +227,13 @@ class Decided(Event):
     why: Str = ""
 
 
+class Withdrew(Event):
+    """The planner took back what its plan states and the ``n``-th of its findings showed to be wrong."""
+
+    type: Literal["withdrew"] = "withdrew"
+    decision: Decision | None = None
+
+
 class RolledBack(Event):
     """The scene went back to a closed stage, or to the start."""
 
@@ -350,8 +357,8 @@ class Edited(Event):
 
 KnownEvent = Annotated[
     RunBegan | SessionBegan | SceneRestored | RunEnded | PlanMade | ReferenceKept
-    | StageMoved | TacticMade | AttemptBegan | AttemptEnded
-    | Verified | Reviewed | Decided | RolledBack | ModelAsked | ModelAnswered
+    | StageMoved | TacticMade | TimeTold | AttemptBegan | AttemptEnded
+    | Verified | Reviewed | Withdrew | Decided | RolledBack | ModelAsked | ModelAnswered
     | ToolCalled | ToolAnswered | Drafted | FilmFitted | FilmDecided | SceneRendered | FinalReviewed | Edited,
     Field(discriminator="type"),
 ]  # fmt: skip

@@ -15,12 +15,12 @@ from agents.plan.tactical import Review
 from simworlds.llm.errors import Declined, Misfit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Sequence
+    from collections.abc import Callable, Iterable, Sequence
 
     from agents.loop.run import Run
     from agents.loop.task import Finding, RunTask
     from agents.plan.part import Stage
-    from agents.plan.tactical import TacticalPlan
+    from agents.plan.tactical import TacticalPlan, Withdrawal
     from agents.roles.reviewer import Reviewer
 
 _OFF = "The verifier is switched off in this run."
@@ -33,6 +33,12 @@ class VerifierVerdict:
     ok: bool
     text: str
     findings: tuple[Finding, ...] = ()
+
+    @classmethod
+    def of(cls, findings: Iterable[Finding], text: str) -> VerifierVerdict:
+        """The verdict that some findings amount to."""
+        found = tuple(findings)
+        return cls(all(one["severity"] != "hard" for one in found), text, found)
 
     @property
     def hard(self) -> int:
@@ -53,7 +59,20 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
         findings, text = [*untagged, *findings], f"{_listed(untagged)}\n{text}"
     if task.unplanned is not None and (unplanned := task.unplanned(stage)):
         findings, text = [*unplanned, *findings], f"{_listed(unplanned)}\n{text}"
-    return VerifierVerdict(all(one["severity"] != "hard" for one in findings), text, tuple(findings))
+    return without(VerifierVerdict.of(findings, text), run.withdrawn)
+
+
+def without(verdict: VerifierVerdict, withdrawn: Iterable[Withdrawal]) -> VerifierVerdict:
+    """The verdict with findings about what the plan no longer states as soft ones."""
+    covers = [one.covers for one in withdrawn]
+    gone = [
+        one for one in verdict.findings if any(covered(one["rule"], one["objects"]) for covered in covers)
+    ]
+    if not gone:
+        return verdict
+    told = "; ".join(f"{one['rule']} {', '.join(one['objects'])}" for one in gone)
+    findings = [{**one, "severity": "soft"} if one in gone else one for one in verdict.findings]
+    return VerifierVerdict.of(findings, f"Withdrawn by the planner, and not counted: {told}.\n{verdict.text}")
 
 
 def _undecided(why: str, task: RunTask) -> VerifierVerdict:

@@ -47,6 +47,7 @@ if TYPE_CHECKING:
     from agents.loop.task import RunTask
     from agents.loop.tool_client import ToolClient
     from agents.plan.part import Stage
+    from agents.plan.tactical import Withdrawal
     from agents.roles.base import WorkResult
     from simworlds.llm.messages import Model, Tool, ToolUse
 
@@ -70,9 +71,9 @@ class Run:
 
     ``stills``: the last pictures that the coder rendered in this attempt, each with what the tool said of it.
     ``acceptance``: what the plans of the closed stages wanted, and whether it holds. ``peak``: the frame of the fastest
-    motion that the motion stage's reviewer was shown. ``stage`` is being built, ``closed`` was closed last;
-    ``is_changed``: whether the scene is another since. ``is_leaving``: the run has stopped; calls are neither
-    journalled nor refused.
+    motion that the motion stage's reviewer was shown. ``withdrawn``: what of the plan no longer counts. ``stage`` is
+    being built, ``closed`` was closed last; ``is_changed``: whether the scene is another since. ``is_leaving``: the run
+    has stopped; calls are neither journalled nor refused.
     """
 
     root: Path
@@ -88,6 +89,7 @@ class Run:
     stills: list[tuple[str, Picture]] = field(default_factory=list["tuple[str, Picture]"])
     acceptance: AcceptanceRecord = field(default_factory=AcceptanceRecord)
     peak: int | None = None
+    withdrawn: list[Withdrawal] = field(default_factory=list["Withdrawal"])
     stage: Stage | None = None
     closed: str = START
     is_changed: bool = False

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from functools import partial
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from agents.loop.edit.comparison import references
 from agents.loop.errors import Aborted, NotSaved
-from agents.loop.events import Decided, StageMoved, TacticMade
-from agents.loop.judging import format_review, judge, review, still_open, verify
+from agents.loop.events import Decided, StageMoved, TacticMade, Withdrew
+from agents.loop.judging import format_review, judge, review, still_open, verify, without
 from agents.loop.topic_page import topic_page
 from agents.plan.tactical import Decision
 from agents.roles.coder import Coder
@@ -64,10 +64,8 @@ class StageLoop:
         while True:
             verdict, review = self._judged(attempt, tactic)
             reviewed = format_review(review, tactic)
-            if why := still_open(worked.how, verdict, review):
-                decision = self._decided(attempt, worked, verdict, reviewed, why)
-            else:
-                self._run.journal.note(Decided(stage=self._stage, attempt=attempt, taken="advance"))
+            verdict, decision = self._settled(attempt, worked, verdict, review, reviewed)
+            if decision is None:
                 if not (mend := self._unsaved()):
                     self._run.acceptance.close(tactic, review)
                     self._planner.closed(self._stage, worked.said, verdict.text, reviewed)
@@ -129,6 +127,21 @@ class StageLoop:
             partial(review, run, self._reviewer, tactic, task),
         )
 
+    def _settled(
+        self, attempt: int, worked: WorkResult, verdict: VerifierVerdict, review: Review, reviewed: str
+    ) -> tuple[VerifierVerdict, Decision | None]:
+        """The planner's decision, None where the stage is closed; the verdict without what the planner withdrew."""
+        taken: Decision | None = None
+        while why := still_open(worked.how, verdict, review):
+            taken = self._decided(attempt, worked, verdict, reviewed, why)
+            if taken.transition != "withdraw":
+                return verdict, taken
+            self._run.withdrawn += taken.withdraw
+            verdict = without(verdict, taken.withdraw)
+        about: dict[str, Any] = {"stage": self._stage, "attempt": attempt, "taken": "advance"}
+        self._run.journal.note(Decided(**about, decision=taken) if taken else Decided(**about))
+        return verdict, None
+
     def _decided(
         self, attempt: int, worked: WorkResult, verdict: VerifierVerdict, reviewed: str, why: str
     ) -> Decision:
@@ -146,8 +159,13 @@ class StageLoop:
             report=worked.said,
             verified=verdict.text,
             reviewed=reviewed,
+            hard=[one for one in verdict.findings if one["severity"] == "hard"],
             left=f"{tries} {self._run.time_left(self._stage, attempt + 1)}".rstrip(),
         )
+        if decision.transition == "withdraw":
+            number = len(self._run.withdrawn)
+            self._run.journal.note(Withdrew(stage=self._stage, attempt=attempt, n=number, decision=decision))
+            return decision
         is_spent = left.get(decision.transition) == 0
         if is_spent:
             why += f" There is no {decision.transition} left."

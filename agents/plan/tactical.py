@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, model_validator
 
 from agents.plan.acceptance import AcceptanceAnswer
 from agents.plan.part import Name, PlanPart, Stage
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
 
 
 class Asset(PlanPart):
@@ -30,20 +33,36 @@ class TacticalPlan(PlanPart):
     questions: tuple[str, ...] = Field(default=(), description="What the reviewer must judge by eye.")
 
 
+class Withdrawal(PlanPart):
+    """What the plan states and cannot be held to, by the rule that finds it broken and the objects of its finding."""
+
+    rule: str = Field(pattern=r"^[RT]\d+$", description="A rule that compares with the plan: R…, T….")
+    objects: tuple[str, ...] = Field(min_length=1, description="Objects of the finding, as it names them.")
+
+    def covers(self, rule: object, objects: Iterable[object]) -> bool:
+        """Whether a finding is about this."""
+        return rule == self.rule and set(self.objects) <= set(objects)
+
+
 class Decision(PlanPart):
     """What happens after an attempt that leaves a stage open."""
 
-    transition: Literal["retry", "replan", "abort"]
+    transition: Literal["retry", "replan", "withdraw", "abort"]
     reason: str = Field(min_length=1, max_length=2000)
     instructions: str = Field(
         default="", max_length=8000, description="For a retry: what the coder must fix."
     )
     tactic: TacticalPlan | None = Field(default=None, description="For a replan: the stage's new plan.")
+    withdraw: tuple[Withdrawal, ...] = Field(
+        default=(), description="To withdraw: hard findings that the plan is wrong about."
+    )
 
     @model_validator(mode="after")
-    def _retry_says_what(self) -> Decision:
+    def _says_what(self) -> Decision:
         if self.transition == "retry" and not self.instructions.strip():
             raise ValueError("instructions: a retry must say what to fix")
+        if self.transition == "withdraw" and not self.withdraw:
+            raise ValueError("withdraw: name the findings, each by its rule and objects")
         return self
 
 

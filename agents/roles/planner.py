@@ -14,7 +14,7 @@ from agents.roles.prompts import system_prompt
 from simworlds.llm.structured import fits
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence, Set
+    from collections.abc import Mapping, Sequence, Set
 
     from agents.plan.part import Stage
     from agents.roles.base import RoleContext
@@ -141,10 +141,12 @@ class Planner:
         verified: str,
         reviewed: str,
         left: str,
+        hard: Sequence[Mapping[str, Any]] = (),
     ) -> Decision:
         """What becomes of a stage that is kept open by ``why``. ``left`` tells how many retries and replans there are.
 
-        A tactical plan that comes with it is left out where it does not fit, or is another stage's.
+        ``hard`` are the findings that can be withdrawn where they are the plan's, once mending was tried. A tactical
+        plan that comes with it is left out where it does not fit, or is another stage's.
         """
 
         def reader(data: Any) -> tuple[Decision | None, Sequence[object]]:
@@ -156,6 +158,9 @@ class Planner:
                 decision = fits(Decision)(without)[0]
             if decision is not None and decision.tactic is not None and decision.tactic.stage != stage:
                 decision = decision.model_copy(update={"tactic": None})
+            if decision is not None and decision.transition == "withdraw":
+                problems = _withdrawal_faults(decision, attempt, hard)
+                decision = None if problems else decision
             return decision, problems if decision is None else ()
 
         words = _DECIDE.format(
@@ -178,6 +183,16 @@ class Planner:
         """What has happened since the last question."""
         news, self._news = self._news, ()
         return news
+
+
+def _withdrawal_faults(decision: Decision, attempt: int, hard: Sequence[Mapping[str, Any]]) -> list[str]:
+    if attempt == 1:
+        return ["withdraw: this is the first attempt; have it mended first."]
+    return [
+        f"withdraw[{place}]: there is no hard finding of {one.rule} about {', '.join(one.objects)}."
+        for place, one in enumerate(decision.withdraw)
+        if not any(one.covers(finding["rule"], finding["objects"]) for finding in hard)
+    ]
 
 
 class _PlanReader:

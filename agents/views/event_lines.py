@@ -73,16 +73,13 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
 def _stage_lines(event: events.Event, stage: StageRun, run_state: RunState) -> list[str]:
     name, last = stage_title(stage.name), stage.last
     match event:
-        case events.StageMoved(type="stage.began"):
-            return [f"{name} begins"]
-        case events.StageMoved(type="stage.skipped"):
-            return [f"{name}: skipped, the plan does not need it"]
         case events.StageMoved():
-            attempts = counted(len(stage.attempts), "attempt")
-            left = describe_time_left(run_state, Now(run_state.seconds))
-            return [f"{name} closed after {attempts}, {format_time(stage.seconds)}{left and f' ({left})'}"]
+            return [_moved(event, stage, run_state)]
         case events.AttemptBegan() if last:
             return [f"{name}, attempt {last.number}"]
+        case events.Withdrew(decision=decision) if decision:
+            told = "; ".join(f"{one.rule} {', '.join(one.objects)}" for one in decision.withdraw)
+            return [f"{name}: the planner withdraws {told}: {shortened(decision.reason, _WORDS)}"]
         case events.Decided(decision=decision) if last:
             reason = decision.reason if decision else event.why
             wanted = f" (it wanted to {decision.transition})" if decision and event.overruled else ""
@@ -90,6 +87,19 @@ def _stage_lines(event: events.Event, stage: StageRun, run_state: RunState) -> l
             return [f"{name}, attempt {last.number} {describe_attempt(last)}{wanted}{why}"]
         case _:
             return []
+
+
+def _moved(event: events.StageMoved, stage: StageRun, run_state: RunState) -> str:
+    name = stage_title(stage.name)
+    match event.type:
+        case "stage.began":
+            return f"{name} begins"
+        case "stage.skipped":
+            return f"{name}: skipped, the plan does not need it"
+        case _:
+            attempts = counted(len(stage.attempts), "attempt")
+            left = describe_time_left(run_state, Now(run_state.seconds))
+            return f"{name} closed after {attempts}, {format_time(stage.seconds)}{left and f' ({left})'}"
 
 
 def _plan(run_state: RunState) -> list[str]:

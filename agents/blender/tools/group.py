@@ -47,8 +47,7 @@ class GroupedObject(Arguments):
     contact_with: list[str] | None = Field(
         default=None,
         max_length=1000,
-        description="Objects (L3), meshes or roots that it touches; itself, if its own parts reach into each other. "
-        "Replaces the list.",
+        description="Objects (L3), meshes, roots it touches; itself: its parts may cross. Replaces the list.",
     )
     allows_disconnected: bool | None = Field(default=None, description="Its meshes need not touch.")
 

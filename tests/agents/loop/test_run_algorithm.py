@@ -8,7 +8,7 @@ import crates
 import pytest
 import teams
 from run_sessions import scenes
-from team import ABORT, DONE, REPLAN, RETRY, Team, last_words, run, turn_of, whose, words_of
+from team import ABORT, DONE, FINE, REPLAN, RETRY, Team, last_words, run, turn_of, whose, words_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -148,6 +148,31 @@ def test_motion_that_is_faked_by_keyframes_is_stopped(falling: Played) -> None:
     assert "R15" in {one["rule"] for one in first["findings"] if one["severity"] == "hard"}
     assert second["ok"]
     assert [taken for stage, taken in falling.taken if stage == "motion"] == ["retry", "advance"]
+
+
+def test_what_the_plan_states_wrongly_is_withdrawn_once_mending_was_tried(
+    play: Callable[..., Played],
+) -> None:
+    """The rules go on to measure it, and nothing is kept open by it any more."""
+    withdraw = {
+        "transition": "withdraw",
+        "reason": "It hangs there as it was asked to.",
+        "withdraw": [{"rule": "R5", "objects": ["Crate"]}, {"rule": "R3", "objects": ["Crate"]}],
+    }
+    team = Team(
+        coder={"modeling": (run(crates.FLOATING), DONE), "camera": (run(crates.CAMERA), DONE)},
+        decisions={"modeling": (RETRY, withdraw), "camera": (ABORT,)},
+        reviewer={"modeling": (FINE,)},
+    )
+    played = play(team)
+    assert played.taken[:2] == [("modeling", "retry"), ("modeling", "advance")]
+    (row,) = played.of("withdrew")
+    assert row["decision"]["reason"] == withdraw["reason"]
+    (later,) = played.of("verified", stage="camera", attempt=1)
+    assert later["ok"], later["findings"]
+    assert {one["rule"]: one["severity"] for one in later["findings"]}["R5"] == "soft"
+    heard = [words_of(request) for request in played.requests if whose(request) == ("planner", "camera")]
+    assert any("Withdrawn by the planner, and not counted: R3 " in words for words in heard)
 
 
 def test_when_retries_are_used_up_the_run_is_given_up(play: Callable[..., Played]) -> None:
