@@ -171,13 +171,21 @@ def _corners(context: RuleContext, names: Names) -> Array:
 
 
 def _opening(context: RuleContext, relation: Aperture, frame: int | None) -> OpeningRequest:
-    return OpeningRequest(*surface_pair(context, *relation.nodes), frame)
+    """The leaves of a door fill one opening together: to each, the other is a part of the rim."""
+    filler, host = surface_pair(context, *relation.nodes)
+    others = (
+        name
+        for other in (context.plan.relations if context.plan else ())
+        if isinstance(other, Aperture) and other.host == relation.host
+        for name in context.structure.surfaces_of(other.filler)
+    )
+    rim = dict.fromkeys((*host, *(name for name in others if name not in filler)))
+    return OpeningRequest(filler, tuple(rim), frame)
 
 
 def _opening_requests(context: RuleContext, relation: Aperture, frame: int | None) -> Iterator[Request[Any]]:
-    opening = _opening(context, relation, frame)
-    yield opening
-    yield DepthRequest(opening.filler, opening.host, frame)
+    yield _opening(context, relation, frame)
+    yield DepthRequest(*surface_pair(context, *relation.nodes), frame)
 
 
 def _not_filling(
@@ -196,8 +204,9 @@ def _not_filling(
             "Cut an opening into the host there, and put the filler into it.",
         )
         return
-    depth = measures[DepthRequest(request.filler, request.host, frame)]
-    if depth.depth > (most := tolerances.noise(smallest_dimension(context, request.filler, request.host))):
+    around = surface_pair(context, *relation.nodes)
+    depth = measures[DepthRequest(*around, frame)]
+    if depth.depth > (most := tolerances.noise(smallest_dimension(context, *around))):
         yield Violation(
             f"{filler!r} is {depth.depth * 1000:.1f} mm deep in {host!r} around its opening.",
             depth.depth,

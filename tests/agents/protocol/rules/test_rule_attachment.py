@@ -234,6 +234,24 @@ def test_one_side_that_gapes_is_enough(session: LiveSession, wall: str) -> None:
     assert found.at[0] == pytest.approx(-0.5, abs=1e-3)
 
 
+@pytest.mark.parametrize(("between", "fits"), [(0.005, True), (0.05, False)])
+@pytest.mark.parametrize("wall", [WALL + CUT, SHEET], ids=["cut", "sheet"])
+def test_two_leaves_fill_one_opening_together(
+    session: LiveSession, wall: str, between: float, *, fits: bool
+) -> None:
+    leaf = 'thing("{0}", box("{0} board", ({1}, 0.08, 1.005), ({2}, 0.12, 1.995)))\n'
+    leaves = leaf.format("Left", -0.495, -between / 2) + leaf.format("Right", between / 2, 0.495)
+    build(session, wall + leaves)
+    plan = a_plan(*({"kind": "Aperture", "filler": name, "host": "Wall"} for name in ("Left", "Right")))
+    report = verified(session, "R8", plan)
+    if fits:
+        assert report.passed == ("R8",)
+    else:
+        assert [found.measured for found in report.findings] == [pytest.approx(between, abs=1e-3)] * 2
+    alone = a_plan({"kind": "Aperture", "filler": "Left", "host": "Wall"})
+    assert the_finding(verified(session, "R8", alone)).measured > 0.4  # pyright: ignore[reportOptionalOperand]
+
+
 @pytest.mark.parametrize(("rim", "fits"), [(-0.0005, True), (-0.0015, False), (-0.02, False)])
 def test_a_filler_that_is_too_large_is_in_the_wall(session: LiveSession, rim: float, fits: bool) -> None:
     report = filled(session, WALL + CUT + WINDOW.format(x=0, y=0.08, rim=rim))
