@@ -102,7 +102,8 @@ class PassageMeasure(Measure):
 
 @dataclass(frozen=True)
 class PassageRequest(Request[PassageMeasure], kind="passage", answer=PassageMeasure):
-    """How deep the objects ``a`` get into the colliders ``b`` on their way; depths below ``beyond`` are ignored."""
+    """How deep the objects ``a`` get into the colliders ``b`` on their way, where that is more than ``beyond`` deeper
+    than at the first frame."""
 
     a: Names
     b: Names

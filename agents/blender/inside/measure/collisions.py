@@ -103,6 +103,7 @@ class PassageFollower:
         self.start, self.end = request["start"], request["end"]
         self._request = request
         self._seen = {}
+        self._at_first = {}  # pair → how deep it is at the first frame: a hinge in its leaf, say, which others judge
         self._passed = {}
         self._result = {"depth": 0.0, "through": False, "frame": None, "at": None}
 
@@ -120,6 +121,7 @@ class PassageFollower:
         pair = own.name, other.name
         now, before = other.to_own_space(places), self._seen.get(pair)
         self._seen[pair] = now
+        is_first = before is None
         if before is None or len(before) != len(now):
             before = now
         if not _may_be_inside(other.solid, numpy.minimum(now, before), numpy.maximum(now, before), beyond):
@@ -133,7 +135,9 @@ class PassageFollower:
                 inside and (inside[0], other.to_own_space(own.to_world(numpy.array([inside[1]])))[0])
             )
         deepest = max((deep for deep in depths if deep is not None), default=None, key=lambda deep: deep[0])
-        if deepest is not None:
+        if is_first and deepest is not None:
+            self._at_first[pair] = deepest[0]
+        elif deepest is not None and deepest[0] > self._at_first.get(pair, 0.0) + beyond:
             self._note(frame, other, deepest, through=False)
         self._sweep(frame, pair, other, (before, now))
 

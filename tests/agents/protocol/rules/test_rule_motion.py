@@ -379,6 +379,19 @@ def test_what_lands_may_be_a_twentieth_deep(session: LiveSession, depth: float, 
         assert finding.tolerance == pytest.approx(0.05)
 
 
+@pytest.mark.parametrize(("deeper", "holds"), [(0.045, True), (0.055, False)])
+def test_how_deep_a_thing_is_from_the_first_frame_on_is_no_passage(
+    session: LiveSession, deeper: float, holds: bool
+) -> None:
+    """As a hinge's sleeve is around the leaf that turns in it."""
+    script = DROP.replace("HEIGHT", "0.4") + (
+        f"key(crate, 1, location=(0, 0, 0.4))\nkey(crate, 21, location=(0.3, 0, {0.4 - deeper}))"
+    )
+    found = judged(session, "T6", script, phase("Crate", "translate", 1, 25), roles=ROLES, last=60)
+    if finding := broken(found, "T6", holds):
+        assert finding.measured == pytest.approx(0.1 + deeper, abs=1e-3)
+
+
 @pytest.mark.parametrize("floor", ["plane", "slab"])
 def test_what_is_above_at_one_frame_and_below_at_the_next_went_through(
     session: LiveSession, floor: str
