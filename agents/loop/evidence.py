@@ -23,6 +23,7 @@ WIDTH, SAMPLES = 960, 16  # of stills
 _SECONDS = 60  # for each
 _MOST_ACTORS, _MOST_PHASES, _MOST_SHEETS = 8, 24, 6  # of a motion sheet; sheets of a stage
 _MOST_SUBJECTS = 40
+_EDGE = 10  # this part of the frames at either end
 _LAYOUT, _MATERIALS, _UV = "blender_scene_layout_preview", "blender_material_preview", "blender_uv_preview"
 _MOTION, _STATE = "blender_motion_sheet_preview", "blender_scene_state"
 
@@ -144,17 +145,19 @@ def _telling_frames(task: RunTask, peak: int | None) -> list[int]:
     if task.plan is None or task.plan.render.kind == "still":
         return [task.plan.frame_start] if task.plan is not None else []
     first, last = task.plan.frame_start, task.plan.frame_end
-    middle = peak if peak is not None and first < peak < last else (first + last) // 2
+    margin = (last - first) / _EDGE  # what is fastest as it begins, such as a gas, is seen at its beginning
+    tells = peak is not None and first + margin <= peak <= last - margin
+    middle = peak if peak is not None and tells else (first + last) // 2
     return sorted({first, middle, last})
 
 
 def _coders_stills(run: Run) -> list[Block | str]:
     """The last pictures that the coder rendered in this attempt."""
-    return [
-        block
-        for text, picture in run.stills
-        for block in (Text(f"A still of the coder's own, made while it worked. {text}"), picture)
-    ]
+    blocks: list[Block | str] = []
+    for one in run.stills:
+        when = "of the scene as it is" if run.is_current(one) else "made before its last changes"
+        blocks += [Text(f"A still of the coder's own, {when}. {one.text}"), one.picture]
+    return blocks
 
 
 def edit_comparison(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:

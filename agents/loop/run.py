@@ -65,11 +65,20 @@ _LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
 _SHOWING = (*_LOOKS, VERIFY)  # what these say follows from the scene and their arguments alone
 
 
+@dataclass(frozen=True, slots=True)
+class Still:
+    """A picture that was rendered, with what the tool said of it, and the checkpoint of its scene."""
+
+    text: str
+    picture: Picture
+    checkpoint: int | None
+
+
 @dataclass
 class Run:
     """What the loop works with. Two threads may call at the same time.
 
-    ``stills``: the last pictures that the coder rendered in this attempt, each with what the tool said of it.
+    ``stills``: the last pictures that the coder rendered in this attempt.
     ``acceptance``: what the plans of the closed stages wanted, and whether it holds. ``peak``: the frame of the fastest
     motion that the motion stage's reviewer was shown. ``withdrawn``: what of the plan no longer counts. ``stage`` is
     being built, ``closed`` was closed last; ``is_changed``: whether the scene is another since. ``is_leaving``: the run
@@ -86,7 +95,7 @@ class Run:
     stop: threading.Event = field(default_factory=threading.Event)
     attempt: int | None = None
     task: RunTask | None = None
-    stills: list[tuple[str, Picture]] = field(default_factory=list["tuple[str, Picture]"])
+    stills: list[Still] = field(default_factory=list["Still"])
     acceptance: AcceptanceRecord = field(default_factory=AcceptanceRecord)
     peak: int | None = None
     withdrawn: list[Withdrawal] = field(default_factory=list["Withdrawal"])
@@ -212,6 +221,15 @@ class Run:
                 self._checkpoint = kept
             elif not outcome.failed and any(word in name for word in _SHOWING):
                 self._seen[_call(name, asked)] = replace(outcome, seconds=0.0)
+
+    def keep_stills(self, outcome: ToolOutcome) -> None:
+        """Keeps the pictures that the coder has rendered, the last few, for whoever judges its work."""
+        made = (Still(outcome.text, picture, self._checkpoint) for picture in outcome.pictures)
+        self.stills = [*self.stills, *made][-_KEPT_STILLS:]
+
+    def is_current(self, still: Still) -> bool:
+        """Whether the scene is still as a picture shows it."""
+        return still.checkpoint == self._checkpoint
 
     def _kept(self, outcome: ToolOutcome) -> tuple[ToolOutcome, int | None]:
         """The checkpoint after a call. Where none can be taken, whoever called is told: the scene may be why."""
@@ -394,8 +412,7 @@ class RoleTools:
         known = task.verification(self._stage) if task else None
         outcome = self._run.use(self._role, self._stage, call.name, call.input, known)
         if self._role == coder.NAME and call.name == RENDER and not outcome.failed:
-            self._run.stills += [(outcome.text, picture) for picture in outcome.pictures[-_KEPT_STILLS:]]
-            del self._run.stills[:-_KEPT_STILLS]
+            self._run.keep_stills(outcome)
         return ToolResult(call.id, outcome.content, outcome.failed)
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 MOST_ACTORS, MOST_PICTURES, MOST_PHASES = 8, 12, 24
 _MEASURED = {
-    "vertices": "mean of its vertices",
+    "vertices": "mean of its surface",
     "particles": "mean of its particles",
     "fluid": "centre of its fluid",
 }
@@ -82,7 +82,7 @@ DESCRIPTION = """\
 See and measure how objects move. For each actor pictures in one view of its whole path, displacement and speed over \
 the frames with phases, keys, contacts and caches; for each phase displacement and path (m), peak and final speed \
 (m/s), turn (degrees), what was touched and from which frame on. Measured on evaluated geometry: the mean of \
-vertices, of particles, of a fluid's surface. What is not baked is stepped, and the sheet says so."""
+its surface, of particles, of a fluid's surface. What is not baked is stepped, and the sheet says so."""
 
 
 def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Result:

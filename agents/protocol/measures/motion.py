@@ -15,11 +15,12 @@ class MotionPathMeasure(Measure):
     """A motion; each list has an entry per frame from ``start`` on.
 
     ``measured`` says what was followed: vertices, particles, fluid or origin. ``deforms``: its points move relative to
-    each other. ``size``: its largest extent. ``centres`` are the means of its points, ``origins`` the means of its
-    objects' origins; None where it does not exist. ``speeds`` (m/s) are means over its points, or the speed of the
-    centre where points cannot be followed; ``rotations`` are axes as long as the angle: both since the frame before,
-    None where unknown. ``ways``: the mean distance of its points from where they were at the last mark. ``reaches``:
-    how far its farthest point is from where its centre was at the last mark (or first, if it began to exist later).
+    each other. ``size``: its largest extent. ``centres`` are the means of its surface, particles or fluid, ``origins``
+    the means of its objects' origins; None where it does not exist. ``speeds`` (m/s) are means of the same, or the
+    speed of the centre where points cannot be followed; ``rotations`` are axes as long as the angle: both since the
+    frame before, None where unknown. ``ways``: the mean distance of its points from where they were at the last mark.
+    ``reaches``: how far its farthest point is from where its centre was at the last mark (or first, if it began to
+    exist later).
     """
 
     start: int
@@ -102,14 +103,17 @@ class PassageMeasure(Measure):
 
 @dataclass(frozen=True)
 class PassageRequest(Request[PassageMeasure], kind="passage", answer=PassageMeasure):
-    """How deep the objects ``a`` get into the colliders ``b`` on their way, where that is more than ``beyond`` deeper
-    than at the first frame."""
+    """How deep the objects ``a`` get into the colliders ``b`` on their way; depths below ``beyond`` are ignored.
+
+    ``but_first``: what is in each other at the first frame already is as deep as it may be.
+    """
 
     a: Names
     b: Names
     start: int
     end: int
     beyond: float
+    but_first: bool = False
 
 
 class CameraViewMeasure(Measure):

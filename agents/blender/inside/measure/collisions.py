@@ -135,7 +135,7 @@ class PassageFollower:
                 inside and (inside[0], other.to_own_space(own.to_world(numpy.array([inside[1]])))[0])
             )
         deepest = max((deep for deep in depths if deep is not None), default=None, key=lambda deep: deep[0])
-        if is_first and deepest is not None:
+        if is_first and deepest is not None and self._request["but_first"]:
             self._at_first[pair] = deepest[0]
         elif deepest is not None and deepest[0] > self._at_first.get(pair, 0.0) + beyond:
             self._note(frame, other, deepest, through=False)

@@ -120,7 +120,10 @@ def _pairs(before, after):
 
 def _mean_distance(before, after):
     pairs = _pairs(before, after)
-    return None if pairs is None else float(numpy.linalg.norm(pairs[1] - pairs[0], axis=1).mean())
+    if pairs is None:
+        return None
+    areas = after.areas if after.areas is not None and len(after.areas) == len(pairs[0]) else None
+    return float(numpy.average(numpy.linalg.norm(pairs[1] - pairs[0], axis=1), weights=areas))
 
 
 class TogetherFollower:

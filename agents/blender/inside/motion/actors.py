@@ -26,6 +26,7 @@ class Actor:
     def __init__(self, name, kind, objects, most=None):
         self.name, self.kind, self.objects = name, kind, objects
         self._most = None if most is None else max(1, most // len(objects))
+        self._areas = None
         if any(_particles(obj) for obj in objects):
             self.measured = "particles"
         elif any(domain_of(obj) for obj in objects):
@@ -64,7 +65,12 @@ class Actor:
                     for obj in evaluated
                 ]
             )
-            state = ActorState(places if len(places) else _instances(self.objects, graph))
+            if not len(places):
+                state = ActorState(_instances(self.objects, graph))
+            else:
+                if self.measured == "vertices" and (self._areas is None or len(self._areas) != len(places)):
+                    self._areas = numpy.concatenate([_areas(obj, self._most) for obj in evaluated])
+                state = ActorState(places, areas=self._areas)
         return state if state.is_there else None
 
 
@@ -72,19 +78,24 @@ class ActorState:
     """An actor at one frame.
 
     ``places`` (n × 3, metres) are those of its points, the same ones in every state with as many; ``alive`` is a mask
-    of those that exist. Points with ``weights``, as of a fluid, are not the same from frame to frame. ``centre`` is the
-    mean, ``low`` and ``high`` are the corners of the box along the world's axes.
+    of those that exist. Points with ``weights``, as of a fluid, are not the same from frame to frame; ``areas`` are
+    those of the surface around each point. ``centre`` is the mean of the places, by either, ``low`` and ``high`` are
+    the corners of the box along the world's axes.
     """
 
-    def __init__(self, places, *, alive=None, weights=None):
+    def __init__(self, places, *, alive=None, weights=None, areas=None):
         self.places = places
         self.alive = numpy.ones(len(places), bool) if alive is None else alive
         self.weights = weights
+        is_known = areas is not None and len(areas) == len(places) and areas.sum() > 0
+        self.areas = areas if is_known else None
         self.is_followed = weights is None
         there = places[self.alive]
         self.is_there = bool(len(there)) and bool(numpy.isfinite(there).all())
         if self.is_there:
-            self.centre = Vector(numpy.average(there, axis=0, weights=weights))
+            self.centre = Vector(
+                numpy.average(there, axis=0, weights=weights if self.areas is None else self.areas)
+            )
             self.low, self.high = Vector(there.min(axis=0)), Vector(there.max(axis=0))
 
     def sample(self, count):
@@ -176,6 +187,32 @@ def _surface(evaluated, most=None):
     places = transformed(thin_out(coordinates(mesh.vertices), most), evaluated.matrix_world)
     evaluated.to_mesh_clear()
     return places
+
+
+def _areas(evaluated, most=None):
+    """The area around each vertex that ``_surface`` gives, before the object is scaled; all 1 without faces."""
+    if evaluated.type == "MESH":
+        return thin_out(_vertex_areas(evaluated.data), most)
+    try:
+        mesh = evaluated.to_mesh() if evaluated.type in _EVALUATES_TO_MESH else None
+    except RuntimeError:
+        mesh = None
+    if mesh is None:
+        return numpy.empty(0)
+    areas = thin_out(_vertex_areas(mesh), most)
+    evaluated.to_mesh_clear()
+    return areas
+
+
+def _vertex_areas(mesh):
+    sizes, corners = numpy.empty(len(mesh.polygons)), numpy.empty(len(mesh.loops), numpy.int32)
+    totals = numpy.empty(len(mesh.polygons), numpy.int32)
+    mesh.polygons.foreach_get("area", sizes)
+    mesh.polygons.foreach_get("loop_total", totals)
+    mesh.loops.foreach_get("vertex_index", corners)
+    shares = numpy.repeat(sizes / numpy.maximum(totals, 1), totals)
+    areas = numpy.bincount(corners, shares, len(mesh.vertices))
+    return areas if numpy.isfinite(areas).all() and areas.sum() > 0 else numpy.ones(len(mesh.vertices))
 
 
 def _particle_places(evaluated):

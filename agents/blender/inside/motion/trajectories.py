@@ -19,9 +19,9 @@ LINE = 1e-6  # how much worse, relatively, any other rotation must fit for the b
 class Track:
     """The measured motion of one actor: lists with an entry for each of ``frames``.
 
-    ``centres`` (None where it does not exist), ``lows`` and ``highs`` are places in metres; ``speeds`` (of the
-    centre) and ``point_speeds`` (mean over the points followed) are in m/s, ``rotations`` are axes as long as the angle
-    in radians; each since the frame before, None if unknown. ``deforms``: its points move against each other.
+    ``centres`` (None where it does not exist), ``lows`` and ``highs`` are places in metres; ``speeds`` (of the centre)
+    and ``point_speeds`` (mean over what is followed) are in m/s, ``rotations`` are axes as long as the angle in
+    radians; each since the frame before, None if unknown. ``deforms``: its points move against each other.
     """
 
     def __init__(self, actor, fps):
@@ -43,7 +43,9 @@ class Track:
                 both = state.alive & last.alive
                 before, after = last.places[both], state.places[both]
                 if len(before):
-                    point_speed = float(numpy.linalg.norm(after - before, axis=1).mean()) / seconds
+                    areas = None if state.areas is None else state.areas[both]
+                    ways = numpy.linalg.norm(after - before, axis=1)
+                    point_speed = float(numpy.average(ways, weights=areas)) / seconds
                 if self.actor.measured != "particles":
                     rotation = best_rotation(before, after)
                     self.deforms = self.deforms or self._is_deformed(state)

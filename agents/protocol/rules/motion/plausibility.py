@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from agents.plan.relations import EmbeddedIn
-from agents.protocol.judging.declared_contacts import declared_contacts
+from agents.protocol.judging.declared_contacts import allowed_crossings, declared_contacts
 from agents.protocol.judging.measured_motion import measured_motion, mesh_names, path_request
 from agents.protocol.judging.phases import (
     find_onset,
@@ -295,7 +295,9 @@ def _passage(context: RuleContext, actor: str, collider: str) -> PassageRequest 
     phases = phases_of(context, actor)
     tolerances = context.tolerances
     most = max(tolerances.penetration, tolerances.tunnel_share * smallest_dimension(context, own, other))
-    return PassageRequest(own, other, phases[0].start, max(phase.end for phase in phases), most)
+    allowed = allowed_crossings(context)
+    is_declared = any(frozenset((one, two)) in allowed for one in own for two in other)
+    return PassageRequest(own, other, phases[0].start, max(phase.end for phase in phases), most, is_declared)
 
 
 def _tunnels(context: RuleContext, measures: Measures, actor: str) -> Iterator[Finding]:

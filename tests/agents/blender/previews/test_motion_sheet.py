@@ -165,6 +165,22 @@ def test_keyframed_motion_has_its_exact_speeds(session: LiveSession) -> None:
     assert "stepped_from" not in found.data
 
 
+def test_many_vertices_in_one_place_weigh_no_more_than_their_surface(session: LiveSession) -> None:
+    """A door's leaf, whose hinge has more vertices than all the rest."""
+    session.run(
+        "import math\n"
+        "bpy.ops.mesh.primitive_cylinder_add(vertices=200, radius=0.01, depth=0.2)\nhinge = bpy.context.object\n"
+        "bpy.ops.mesh.primitive_cube_add(size=1, location=(0.5, 0, 0))\nleaf = bpy.context.object\n"
+        "leaf.name, leaf.scale = 'Leaf', (1, 0.02, 2)\nbpy.ops.object.transform_apply(location=False)\n"
+        "hinge.select_set(True)\nbpy.ops.object.join()\n"
+        "bpy.context.scene.cursor.location = (0, 0, 0)\nbpy.ops.object.origin_set(type='ORIGIN_CURSOR')\n"
+        "leaf.keyframe_insert('rotation_euler', frame=1)\nleaf.rotation_euler.z = math.pi / 2\n"
+        "leaf.keyframe_insert('rotation_euler', frame=20)\nbpy.context.scene.frame_end = 20"
+    )
+    (motion,) = actor(session.use(TOOL, actors=["Leaf"]), "Leaf")["phases"]
+    assert motion["displacement"] == pytest.approx(0.5 * math.sqrt(2), rel=0.02)
+
+
 def test_cloth_is_measured_by_its_vertices_for_its_origin_stays(session: LiveSession) -> None:
     session.run(
         "s = bpy.context.scene\ns.frame_end = 30\n"
