@@ -82,7 +82,7 @@ DESCRIPTION = """\
 See and measure how objects move. For each actor pictures in one view of its whole path, displacement and speed over \
 the frames with phases, keys, contacts and caches; for each phase displacement and path (m), peak and final speed \
 (m/s), turn (degrees), what was touched and from which frame on. Measured on evaluated geometry: the mean of \
-its surface, of particles, of a fluid's surface. What is not baked is stepped, and the sheet says so."""
+its surface, particles or fluid. What is not baked is stepped, and the sheet says so."""
 
 
 def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Result:

@@ -145,9 +145,15 @@ def _force_problems(context: RuleContext, name: str, actors: list[ObjectFacts]) 
 
 
 def missing_partners(context: RuleContext, obj: LogicalObject, solver: Solver) -> Iterator[_Problem]:
-    """What an object rests on, leans on or is in, by the plan, but that takes no part in its simulation."""
+    """What an object rests on, leans on or is in, by the plan, but that takes no part in its simulation.
+
+    A gas only begins on what its source stands on: a flue that stops the gas would choke it.
+    """
+    rises = any(actor.is_gas for actor in solver.actors)
     for relation in context.plan.relations if context.plan else ():
         if not isinstance(relation, (SupportedBy, StableAgainst, Inside)) or relation.nodes[0] != obj.name:
+            continue
+        if rises and not isinstance(relation, Inside):
             continue
         for node in relation.nodes[1:]:
             partner = context.structure.logical_object_of(node)

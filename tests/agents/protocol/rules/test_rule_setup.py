@@ -151,6 +151,25 @@ def test_a_planned_joint_is_made_and_limited(session: LiveSession) -> None:
     assert "The planned hinge of 'Actor' and 'Post' is missing." in breach(session, made).message
 
 
+def test_smoke_needs_nothing_of_the_flue_that_it_comes_out_of(session: LiveSession) -> None:
+    """As an effector it would choke the smoke; what a liquid lies on must stop it."""
+    build(
+        session,
+        """
+thing("Flue", box("Bricks", (-0.1, -0.1, -1), (0.1, 0.1, 0)))
+domain = box("Domain", (-0.5, -0.5, 0), (0.5, 0.5, 1))
+thing("Actor", domain)
+domain.modifiers.new("Fluid", "FLUID").fluid_type = "DOMAIN"
+bpy.data.collections["Actor"]["deformation_kind"] = "sim_fluid"
+""",
+    )
+    rests = {"kind": "SupportedBy", "child": "Actor", "parents": ["Flue"]}
+    made = a_motion(roles={"Actor": "fluid", "Flue": "static"}, relations=(rests,))
+    assert verified(session, "R15", made).passed == ("R15",)
+    session.run('bpy.data.objects["Domain"].modifiers["Fluid"].domain_settings.domain_type = "LIQUID"')
+    assert "'Flue' takes no part in the simulation of 'Actor'" in breach(session, made).message
+
+
 def test_smoke_is_not_simulated_as_a_liquid(session: LiveSession) -> None:
     build(
         session,
