@@ -145,6 +145,12 @@ def _parameter_line(parameter: Parameter, written: str = "") -> str:
     return text
 
 
+def _listed(title: str, entries: Iterable[SymbolEntry]) -> Iterator[AnswerBlock]:
+    lines = ["- " + entry.line for entry in entries]
+    if lines:
+        yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), title.lower())
+
+
 def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
     if symbol.parameters:
         defaults = _written_defaults(symbol.signature) if symbol.kind == "function" else {}
@@ -178,10 +184,13 @@ class MarkdownRenderer:
         yield AnswerBlock(self._head(symbol), "description")
         used = AnswerBlock(self.used(symbol.path), "a use in Blender's scripts")
         if symbol.kind == "class":
+            members = list(self.reader.members(symbol.path).values())
+            # A node is asked for what goes in and out; what follows the lists below may find no room.
+            yield from _listed("Inputs and outputs", [entry for entry in members if entry.kind == "socket"])
             yield from self._passage(symbol.path)
             if used.text:
-                yield used  # the lists below it would leave no room
-            yield from self._class(symbol)
+                yield used
+            yield from self._class(symbol.path, members)
         elif symbol.kind in {"operator", "function"}:
             yield from _parameters(symbol)
         elif symbol.kind in {"module", "data"} and self.reader.members(symbol.path):
@@ -301,26 +310,18 @@ class MarkdownRenderer:
         uses = self.reader.uses(path)
         return f"**Used** ({uses[0].file}:{uses[0].line})\n```python\n{uses[0].code}\n```" if uses else ""
 
-    def _class(self, symbol: Symbol) -> Iterator[AnswerBlock]:
-        members = list(self.reader.members(symbol.path).values())
-        lineage = list(self.reader.lineage(symbol.path))[1:]
+    def _class(self, path: str, members: Sequence[SymbolEntry]) -> Iterator[AnswerBlock]:
+        lineage = list(self.reader.lineage(path))[1:]
         if lineage:
             yield AnswerBlock("base classes: " + ", ".join(f"`{entry.name}`" for entry in lineage), "bases")
-        groups: tuple[tuple[str, Iterable[SymbolEntry]], ...] = (
-            ("Inputs and outputs", [entry for entry in members if entry.kind == "socket"]),
-            ("Properties", [entry for entry in members if entry.kind in {"property", "data"}]),
-            (
-                "Functions",
-                [e for e in members if e.kind == "function" and not e.name.startswith("bl_rna_get_subclass")],
-            ),
+        yield from _listed("Properties", [entry for entry in members if entry.kind in {"property", "data"}])
+        functions = [entry for entry in members if entry.kind == "function"]
+        yield from _listed(
+            "Functions", [entry for entry in functions if not entry.name.startswith("bl_rna_get_subclass")]
         )
-        for title, entries in groups:
-            lines = ["- " + entry.line for entry in entries]
-            if lines:
-                yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), title.lower())
-        if inherited := list(self._inherited(symbol.path, lineage)):
+        if inherited := list(self._inherited(path, lineage)):
             yield AnswerBlock(f"inherited: + {', '.join(inherited)}", "inherited members")
-        below = [entry.name for entry in self.reader.subclasses(symbol.path) if entry.group in {"data", ""}]
+        below = [entry.name for entry in self.reader.subclasses(path) if entry.group in {"data", ""}]
         if below:
             yield AnswerBlock(f"**Subclasses**: {', '.join(below)}", "subclasses")
 
