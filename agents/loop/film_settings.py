@@ -66,7 +66,7 @@ def fitted(planned: FilmSettings, frame: FrameTime, seconds: float) -> FilmSetti
         lowered.append(f"{width}×{height} instead of {planned.width}×{planned.height}")
     cost = frame.seconds(samples, scale)
     if cost * planned.frames > seconds:
-        lowered.append(f"about every {math.ceil(cost * planned.frames / seconds)}th frame only")
+        lowered.append(f"one frame in {math.ceil(cost * planned.frames / seconds)} or so")
     if scale == 1:
         width, height = planned.width, planned.height
     expected = min(seconds, cost * planned.frames)

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 LEAST = 4  # samples; frames with fewer are useless
 _SECOND_TRIAL_LEAST, _SECOND_TRIAL_MOST = 8, 16  # samples
 _SECOND_TRIAL_SHARE = 0.25  # of the time left
+_SURELY = 0.9  # of the time left, for frames that are taken up again
 _SLACK = 1.05  # a little over the budget is not worth a change
 
 
@@ -88,6 +89,10 @@ class RenderBudget:
             return 1
         affordable = math.floor(left * _SLACK / self._cost(self.samples))
         return math.ceil(frames / affordable) if affordable else 0
+
+    def affords(self, frames: int) -> bool:
+        """Whether there is surely time for so many frames more."""
+        return self._cost(self.samples) * frames <= self.left * _SURELY
 
     def _fits(self, frames: int, left: float) -> bool:
         return self._cost(self.samples) * frames <= left * _SLACK

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -92,7 +93,7 @@ def render_frames(
         if budget is not None and todo:
             while (few := budget.next_trial(len(todo))) is not None:
                 budget.add_trial(few, render(todo[0], few, trial=True))
-        while todo and not call.cancelled.is_set():
+        while (todo := todo or _taken_up_again(budget, frames, outcome)) and not call.cancelled.is_set():
             samples = wanted
             if budget is not None:
                 budget.lower_samples(len(todo))
@@ -132,6 +133,21 @@ def _drop_frames(budget: RenderBudget, todo: list[int], outcome: RenderOutcome) 
     outcome.dropped += dropped
     todo[:] = stay
     return bool(dropped)
+
+
+def _taken_up_again(budget: RenderBudget | None, frames: list[int], outcome: RenderOutcome) -> list[int]:
+    """Dropped frames for which there turned out to be time: those with which every n-th is there, n the least."""
+    if budget is None or not outcome.dropped:
+        return []
+    there = {*outcome.available}
+    places = [place for place, number in enumerate(frames) if number in there]
+    widest = max((after - before for before, after in itertools.pairwise(places)), default=len(frames))
+    for step in range(1, widest):
+        again = [number for number in frames[places[0] % step :: step] if number not in there]
+        if again and budget.affords(len(again)):
+            outcome.dropped = sorted({*outcome.dropped} - {*again})
+            return again
+    return []
 
 
 def _is_reusable(frame: RenderedFrame | None, samples: int | None, hurried: bool) -> bool:

@@ -3,18 +3,22 @@
 from __future__ import annotations
 
 import io
+import itertools
 import os
 import shutil
 import signal
 import threading
 from contextlib import closing, suppress
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
 from PIL import Image
 
+from agents.blender.render.frame_cache import RenderedFrame
 from agents.blender.render.image_checks import LARGEST_PREVIEW, image_faults, look_at
 from agents.blender.render.render_budget import LEAST, RenderBudget
+from agents.blender.render.render_loop import render_frames
 from agents.blender.tools.base import Call, Result
 from agents.blender.tools.render import TOOL
 from simworlds.sandbox.confined_command import best_sandbox
@@ -512,6 +516,52 @@ def test_frames_of_an_engine_without_samples_are_left_out() -> None:
     made = paced(clock, 10, None, 30)
     assert 5 <= len(made) <= 10
     assert clock.now <= 11
+
+
+class Waiting:
+    """Renders no picture: its first frames take long, as where other programs were busy, the later ones a second."""
+
+    shot = SimpleNamespace(samples=None)
+
+    def __init__(self, clock: Clock, slow: int) -> None:
+        self._clock, self._slow = clock, slow
+
+    def render(self, number: int, samples: int | None, path: Path, done: int, total: int) -> float:
+        """Lets the time pass."""
+        del number, samples, total
+        path.write_bytes(b"a picture")
+        seconds = 10.0 if done < self._slow else 1.0
+        self._clock.now += seconds
+        return seconds
+
+
+class Kept(dict[int, RenderedFrame]):
+    """Frames in a folder."""
+
+    def __init__(self, folder: Path) -> None:
+        super().__init__()
+        self._folder = folder
+
+    def path(self, number: int) -> Path:
+        """Where a frame goes."""
+        return self._folder / f"{number}.png"
+
+    def add(self, number: int, frame: RenderedFrame) -> None:
+        """Notes a frame."""
+        self[number] = frame
+
+
+@pytest.mark.parametrize(("seconds", "made"), [(45, 24), (80, 24), (130, 48)])
+def test_frames_that_were_dropped_are_made_where_there_turns_out_to_be_time(
+    tmp_path: Path, seconds: float, made: int
+) -> None:
+    clock = Clock(0, 0)
+    budget = RenderBudget(seconds, None, clock)
+    frames = list(range(1, 49))
+    outcome = render_frames(Waiting(clock, 2), Kept(tmp_path), frames, Call(), budget)  # type: ignore[arg-type]
+    assert made <= len(outcome.available) == 48 - len(outcome.dropped)
+    assert max(after - before for before, after in itertools.pairwise(outcome.available)) <= 48 // made
+    assert clock.now <= seconds * 1.05
 
 
 def test_one_frame_is_made_however_short_the_time(session: LiveSession) -> None:

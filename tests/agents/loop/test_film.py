@@ -56,7 +56,7 @@ def test_then_the_picture_gets_smaller_and_stays_even() -> None:
 def test_what_fits_at_no_size_says_that_frames_will_be_left_out() -> None:
     film = fitted(PLANNED, FrameTime(20.0, 5.0), 100)
     assert (film.width, film.height, film.samples) == (480, 270, 4)
-    assert "th frame only" in film.lowered
+    assert "one frame in " in film.lowered
     assert film.seconds == 100
 
 
