@@ -228,6 +228,9 @@ def _wrong_side(relation: Direction, a: PlannedBox, b: PlannedBox, plan: ScenePl
         return
     if not {a.planned.role, b.planned.role}.isdisjoint(_FORMLESS):
         return
+    main = max(range(3), key=lambda place: abs(axis[place]))
+    if any(_common_share(a, b, other) < _REACH for other in range(3) if other != main):
+        return  # they are not side by side: a direction that leans a little may part them
     (low, high), (other_low, other_high) = (
         (min(places), max(places))
         for box in (a, b)
