@@ -133,7 +133,7 @@ def edit(file: Path, instruction: str, reference: Path | None, **given: Any) -> 
 def demo(name: str | None, **given: Any) -> None:
     """Play a transcript against a real Blender; needs no key. Without a name: list them.
 
-    What the roles say was written by people for this program; Blender, verifier, baking and rendering are real.
+    What the roles say was written beforehand, by whom the list tells; Blender, verifier, baking and rendering are real.
     """
     from agents.loop.demos import demo_options, listed  # noqa: PLC0415 - not for --help
     from agents.loop.errors import NoRun  # noqa: PLC0415

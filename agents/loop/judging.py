@@ -28,17 +28,15 @@ _OFF = "The verifier is switched off in this run."
 
 @dataclass(frozen=True, slots=True)
 class VerifierVerdict:
-    """The verifier's: ``ok`` unless a hard rule is broken, undecided or failed; ``text`` is for models."""
+    """What the verifier found; ``text`` says it to models."""
 
-    ok: bool
     text: str
     findings: tuple[Finding, ...] = ()
 
-    @classmethod
-    def of(cls, findings: Iterable[Finding], text: str) -> VerifierVerdict:
-        """The verdict that some findings amount to."""
-        found = tuple(findings)
-        return cls(all(one["severity"] != "hard" for one in found), text, found)
+    @property
+    def ok(self) -> bool:
+        """Whether the stage may be closed: no hard rule is broken, undecided or failed."""
+        return self.hard == 0
 
     @property
     def hard(self) -> int:
@@ -49,7 +47,7 @@ class VerifierVerdict:
 def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
     """Judges the scene by the rules of the stage. Findings that were there before the edit do not count."""
     if not run.options.verifier:
-        return VerifierVerdict(True, _OFF)
+        return VerifierVerdict(_OFF)
     outcome = run.use(VERIFIER, stage, VERIFY, {}, task.verification(stage))
     if outcome.failed or "findings" not in outcome.data:
         return _undecided(outcome.text, task)
@@ -59,7 +57,7 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
         findings, text = [*untagged, *findings], f"{_listed(untagged)}\n{text}"
     if task.unplanned is not None and (unplanned := task.unplanned(stage)):
         findings, text = [*unplanned, *findings], f"{_listed(unplanned)}\n{text}"
-    return without(VerifierVerdict.of(findings, text), run.withdrawn)
+    return without(VerifierVerdict(text, tuple(findings)), run.withdrawn)
 
 
 def without(verdict: VerifierVerdict, withdrawn: Iterable[Withdrawal]) -> VerifierVerdict:
@@ -71,8 +69,10 @@ def without(verdict: VerifierVerdict, withdrawn: Iterable[Withdrawal]) -> Verifi
     if not gone:
         return verdict
     told = "; ".join(f"{one['rule']} {', '.join(one['objects'])}" for one in gone)
-    findings = [{**one, "severity": "soft"} if one in gone else one for one in verdict.findings]
-    return VerifierVerdict.of(findings, f"Withdrawn by the planner, and not counted: {told}.\n{verdict.text}")
+    text = f"Withdrawn by the planner, and not counted: {told}.\n{verdict.text}"
+    return VerifierVerdict(
+        text, tuple({**one, "severity": "soft"} if one in gone else one for one in verdict.findings)
+    )
 
 
 def _undecided(why: str, task: RunTask) -> VerifierVerdict:
@@ -87,7 +87,7 @@ def _undecided(why: str, task: RunTask) -> VerifierVerdict:
         "outcome": "error",
     }
     text = "The verifier could not judge the scene" + (", as it could not before the edit" if before else "")
-    return VerifierVerdict(before, f"{text}: {why}", (finding,))
+    return VerifierVerdict(f"{text}: {why}", (finding,))
 
 
 def _listed(findings: Sequence[Finding]) -> str:

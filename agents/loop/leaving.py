@@ -39,7 +39,7 @@ def leave(run: Run) -> None:
         shown = shown or _shown(run.use(RUNNER, stage, _LAYOUT, {}))
         if shown:
             (run.root / LATEST).write_bytes(shown)
-        return
+            return
     _LOG.info("The scene could not be shown as the run stopped.")
 
 

@@ -151,7 +151,7 @@ class LastStage:
         if self._film is not None and self._film.lowered:
             content.append(Text(f"To keep its time, the film has {self._film.lowered}."))
         if self._run.withdrawn:
-            told = "; ".join(f"{one.rule} {', '.join(one.objects)}" for one in self._run.withdrawn)
+            told = "; ".join(map(str, self._run.withdrawn))
             content.append(
                 Text(f"The planner took back what the plan says where these rules found it broken: {told}.")
             )

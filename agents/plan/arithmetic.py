@@ -50,13 +50,12 @@ _TILT = 8.0  # degrees; what Upright and a planned rotation may differ by
 _TURNED_AWAY = 60.0  # degrees
 _DEEP = 0.25  # share of the smaller object's smallest size that two boxes share
 _SPACING = 0.03
-_REACH, _REACH_SHARE = (
-    0.05,
-    0.1,
-)  # metres, and share of the smaller extent, by which boxes may overlap in a direction
+_REACH = 0.05  # metres by which boxes may overlap in a direction
+_REACH_SHARE = 0.1  # the same as a share of the smaller extent
+_BESIDE_SHARE = 0.05  # of their extents in the other two directions, that boxes side by side have in common
 _EXPLODES = frozenset({"rigid", "soft"})
 _FORMLESS = frozenset({"fluid", "emitter", "force"})
-_HOLLOW = frozenset({"container", "ground", "fluid", "emitter", "force"})
+_HOLLOW = _FORMLESS | {"container", "ground"}
 
 
 def doubts_of(plan: ScenePlan) -> list[Fault]:
@@ -229,21 +228,22 @@ def _wrong_side(relation: Direction, a: PlannedBox, b: PlannedBox, plan: ScenePl
     if not {a.planned.role, b.planned.role}.isdisjoint(_FORMLESS):
         return
     main = max(range(3), key=lambda place: abs(axis[place]))
-    if any(_common_share(a, b, other) < _REACH for other in range(3) if other != main):
+    if any(_common_share(a, b, other) < _BESIDE_SHARE for other in range(3) if other != main):
         return  # they are not side by side: a direction that leans a little may part them
-    (low, high), (other_low, other_high) = (
-        (min(places), max(places))
-        for box in (a, b)
-        for places in [
-            [sign * sum(part * at for part, at in zip(axis, corner, strict=True)) for corner in box.corners]
-        ]
-    )
+    low, high = _extent(a, axis, sign)
+    other_low, other_high = _extent(b, axis, sign)
     overlap = other_high - low
     if overlap > max(_REACH, _REACH_SHARE * min(high - low, other_high - other_low)):
         yield (
             f"by their positions and sizes {a.name!r} begins {overlap:.3g} m before {b.name!r} ends in the direction "
             f"{relation.kind} (frame: {relation.frame}); they are to stand clear of each other."
         )
+
+
+def _extent(box: PlannedBox, axis: Vector, sign: float) -> tuple[float, float]:
+    """Where a box begins and ends along ±``axis``, metres from the origin."""
+    along = [sign * sum(part * at for part, at in zip(axis, corner, strict=True)) for corner in box.corners]
+    return min(along), max(along)
 
 
 def _tilted(box: PlannedBox) -> Iterator[str]:

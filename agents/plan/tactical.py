@@ -43,6 +43,9 @@ class Withdrawal(PlanPart):
         """Whether a finding is about this."""
         return rule == self.rule and set(self.objects) <= set(objects)
 
+    def __str__(self) -> str:
+        return f"{self.rule} {', '.join(self.objects)}"
+
 
 class Decision(PlanPart):
     """What happens after an attempt that leaves a stage open."""

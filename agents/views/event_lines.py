@@ -78,7 +78,7 @@ def _stage_lines(event: events.Event, stage: StageRun, run_state: RunState) -> l
         case events.AttemptBegan() if last:
             return [f"{name}, attempt {last.number}"]
         case events.Withdrew(decision=decision) if decision:
-            told = "; ".join(f"{one.rule} {', '.join(one.objects)}" for one in decision.withdraw)
+            told = "; ".join(map(str, decision.withdraw))
             return [f"{name}: the planner withdraws {told}: {shortened(decision.reason, _WORDS)}"]
         case events.Decided(decision=decision) if last:
             reason = decision.reason if decision else event.why
