@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
 PART_TOKENS = 80
 _BYTES_PER_TOKEN = 3  # fewer than tokenizers reach with English, Markdown and names: the budget holds
@@ -57,25 +57,31 @@ def cut(blocks: Iterable[AnswerBlock]) -> list[AnswerPart]:
     """The parts of an answer, each of at most ``PART_TOKENS``; an empty answer is one empty part."""
     parts: list[AnswerPart] = []
     for block in blocks:
-        glue, text = "\n\n", None
-        for before, piece in _pieces(block.text):
-            if text is None:
-                text = piece
-            elif _bytes(text) + len(before) + _bytes(piece) <= _PART_BYTES:
-                text += before + piece
-            else:
-                parts.append(AnswerPart(text, block.name, glue))
-                glue, text = before, piece
-        if text is not None:
-            parts.append(AnswerPart(text, block.name, glue))
+        size = len if block.text.isascii() else _bytes
+        if size(block.text) <= _PART_BYTES:
+            parts.append(AnswerPart(block.text, block.name, "\n\n"))
+            continue
+        glue, used = "\n\n", 0
+        held: list[str] = []
+        for before, piece in _pieces(block.text, size):
+            added = size(piece)
+            if held and used + len(before) + added <= _PART_BYTES:
+                held += (before, piece)
+                used += len(before) + added
+                continue
+            if held:
+                parts.append(AnswerPart("".join(held), block.name, glue))
+                glue = before
+            held, used = [piece], added
+        parts.append(AnswerPart("".join(held), block.name, glue))
     return parts or [AnswerPart("", "", "")]
 
 
-def _pieces(text: str) -> Iterator[tuple[str, str]]:
+def _pieces(text: str, size: Callable[[str], int]) -> Iterator[tuple[str, str]]:
     """(what stands before it, a line), or where a line is longer than a part, its words up to there."""
     for line in text.split("\n"):
         before, rest = "\n", line
-        while _bytes(rest) > _PART_BYTES:
+        while size(rest) > _PART_BYTES:
             head = rest.encode(errors="replace")[:_PART_BYTES].decode(errors="ignore")
             space = head.rfind(" ")
             if space > len(head) // 2:

@@ -1,0 +1,68 @@
+"""Everyday words that the documentation hardly uses, and where it speaks of what they mean."""
+
+from __future__ import annotations
+
+from importlib.resources import files
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import stem, terms
+from kb_build.index.postings import PostingLists
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Mapping
+
+    # A word's stem → the stems of each of its terms, the most likely term first.
+    EverydayWords = Mapping[str, tuple[tuple[str, ...], ...]]
+
+_KNOWN = 30  # documents; a word with more of its own says what it means by itself
+_SHARE = 0.15  # of what a term's document says of the term, what it says of the everyday word
+_LESS_LIKELY = 0.85
+
+
+def load_everyday_words() -> EverydayWords:
+    """The table of everyday words; {} where the package came without it."""
+    source = files("corpora").joinpath("words", "everyday_words.txt")
+    return read_everyday_words(source.read_text(encoding="utf-8").splitlines()) if source.is_file() else {}
+
+
+def read_everyday_words(lines: Iterable[str]) -> EverydayWords:
+    """Reads lines such as ``plume: smoke, volume scatter``; those that begin with ``#`` are comments."""
+    rows = (line.partition(": ") for line in lines if not line.startswith("#"))
+    table: dict[str, tuple[tuple[str, ...], ...]] = {}
+    for word, _, told in rows:
+        stems = tuple(tuple(terms(term)) for term in told.split(","))
+        table[stem(word.strip())] = (*table.get(stem(word.strip()), ()), *filter(None, stems))
+    return table
+
+
+def lent_postings(own: PostingLists, units: PostingLists, words: EverydayWords) -> PostingLists:
+    """What everyday words borrow of their terms' posting lists in ``own``: documents that lack the word itself.
+
+    ``units`` are the posting lists that tell whether a word is known. A term of several stems lends the documents
+    that have all of them.
+    """
+    lent = PostingLists()
+    for word, its_terms in words.items():
+        if len(units.numbers.get(word, ())) >= _KNOWN:
+            continue
+        has_it = set(own.numbers.get(word, ()))
+        weights: dict[int, float] = {}
+        share = _SHARE
+        for stems in its_terms:
+            for number, weight in _having_all(own, stems).items():
+                if number not in has_it:
+                    weights[number] = max(weights.get(number, 0.0), share * weight)
+            share *= _LESS_LIKELY
+        if weights:
+            lent.numbers[word] = sorted(weights)
+            lent.weights[word] = [weights[number] for number in lent.numbers[word]]
+    return lent
+
+
+def _having_all(postings: PostingLists, stems: Iterable[str]) -> dict[int, float]:
+    """The documents that have all of the stems, and how much they say of the one of which they say least."""
+    rows = [
+        dict(zip(postings.numbers.get(one, ()), postings.weights.get(one, ()), strict=True)) for one in stems
+    ]
+    common = set(rows[0]).intersection(*rows[1:])
+    return {number: min(row[number] for row in rows) for number in common}
