@@ -28,7 +28,7 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures lock clean
+.PHONY: help setup kb test test-fast serve bench bench-validate soak lint docs docs-check rule-pictures lock clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-15s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -54,6 +54,9 @@ serve: $(STAMP) ## Serve blender_docs and blender_check over MCP on stdio [SERVE
 
 bench: $(STAMP) ## Measure retrieval, latency and builds, beside the peers [BENCH_ARGS=]
 	@$(PY) -m measurements $(BENCH_ARGS)
+
+soak: $(STAMP) ## Keep both servers busy for MINUTES each, with rude clients among the polite [MINUTES=30]
+	@$(PY) -m measurements --only soak --load-seconds $$((60 * $(or $(MINUTES),30)))
 
 bench-validate: $(STAMP) ## Prove what the benchmark must prove about itself, over all scenes [VALIDATE_ARGS=]
 	@.venv/bin/simworlds bench validate --jobs 2 $(VALIDATE_ARGS)

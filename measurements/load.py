@@ -86,7 +86,7 @@ def _server(serve: Sequence[str], setting: Setting) -> Generator[tuple[str, int]
     )
     try:
         assert process.stderr is not None
-        yield _address(process.stderr), process.pid
+        yield address_printed(process.stderr), process.pid
     finally:
         process.terminate()
         with contextlib.suppress(subprocess.TimeoutExpired):
@@ -95,7 +95,7 @@ def _server(serve: Sequence[str], setting: Setting) -> Generator[tuple[str, int]
         process.wait()
 
 
-def _address(stream: IO[str]) -> str:
+def address_printed(stream: IO[str]) -> str:
     """Reads the address that the server prints on stderr; later output is read and dropped."""
     addresses: queue.Queue[str] = queue.Queue()
     lines: list[str] = []

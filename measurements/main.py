@@ -26,20 +26,25 @@ PARTS = (
     *("check_blender", "check_truth", "check_versions", "planted", "pyright", "migrate"),
     *("latency", "server", "builds", "blender", "verifier", "audits"),
 )
+LONG = ("soak",)  # only where they are asked for
 _SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl", "paraphrases.jsonl")
 
 
 def _parts(text: str) -> list[str]:
     names = [name.strip() for name in text.split(",") if name.strip()]
-    if unknown := [name for name in names if name not in PARTS]:
-        raise argparse.ArgumentTypeError(f"{', '.join(unknown)}: the parts are {', '.join(PARTS)}")
+    if unknown := [name for name in names if name not in (*PARTS, *LONG)]:
+        raise argparse.ArgumentTypeError(f"{', '.join(unknown)}: the parts are {', '.join((*PARTS, *LONG))}")
     return names
 
 
 def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="python -m measurements", description=__doc__)
     parser.add_argument(
-        "--only", type=_parts, default=list(PARTS), metavar="PARTS", help=f"of {','.join(PARTS)}"
+        "--only",
+        type=_parts,
+        default=list(PARTS),
+        metavar="PARTS",
+        help=f"of {','.join(PARTS)}; or {','.join(LONG)}",
     )
     parser.add_argument(
         "--queries", type=Path, action="append", metavar="FILE",
@@ -50,7 +55,10 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument("--quick", action="store_true", help="measure less often, skip what takes long")
     parser.add_argument(
-        "--load-seconds", type=float, default=30.0, help="length of the HTTP load (default: 30)"
+        "--load-seconds",
+        type=float,
+        default=30.0,
+        help="length of the HTTP load, and of each server's soak (default: 30)",
     )
     parser.add_argument("--misses", action="store_true", help="list the queries without a correct answer")
     parser.add_argument("--output", type=Path, default=REPO / "reports", help="folder of the reports")
@@ -92,7 +100,7 @@ def main(given: Sequence[str] | None = None) -> int:
         base = _base(home)
         setting = Setting(base, home, queries, options.quick, options.load_seconds)
         facts = report.machine_facts(read_meta(base), base)
-        parts = [measure(name, setting) for name in PARTS if name in options.only]
+        parts = [measure(name, setting) for name in (*PARTS, *LONG) if name in options.only]
     except (BadQueries, BuildFailed, UserError, KBServeError) as error:
         print(f"Error: {error}", file=sys.stderr)
         return 2
