@@ -26,9 +26,9 @@ LONGEST_CODE = 100_000  # characters: some 3,000 lines, which take up to three s
 MOST_LISTED = 100
 
 DESCRIPTION = """\
-Check Blender Python before it runs: names, operators, keywords, enum values, sockets and arguments that \
-this Blender does not take, each with its line, what took its place, and the mended line. The code is \
-read, not run; what is reported is sure. `blender="4.2"` checks for another version whose base was built."""
+Check Blender Python before it runs: names, operators, keywords, enum values, sockets and arguments that this \
+Blender does not take, each with its line, what took its place, and the mended line. The code is read, not run; what \
+is reported is sure. `blender="4.2"` checks for another version whose base was built."""
 
 
 class CheckArguments(BaseModel):
@@ -36,9 +36,9 @@ class CheckArguments(BaseModel):
 
     model_config = ConfigDict(extra="forbid", coerce_numbers_to_str=True, title=NAME)
 
-    code: str = Field(description="A whole script, or a piece of one; `bpy` need not be imported.")
-    blender: str | None = Field(default=None, description="Blender version, as 5.1. Default: the one in use.")
-    max_tokens: int = Field(default=1500, ge=150, description="Maximum length of the answer.")
+    code: str = Field(description="A script, or a piece of one.")
+    blender: str | None = Field(default=None, description="Default: the version in use.")
+    max_tokens: int = Field(default=1500, ge=150, description="Of the answer.")
 
 
 class CheckFinding(BaseModel):

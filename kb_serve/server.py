@@ -19,6 +19,7 @@ from starlette.responses import Response
 from kb_build.records import to_json
 from kb_serve.errors import KBServeError
 from kb_serve.served_tools import TOOL_NAMES, answer, listing
+from simworlds.mcp_transport.tool_listing import SCHEMAS, as_listed, schemas_text
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator
@@ -94,21 +95,21 @@ def make_server(service: Service) -> Server[None]:
     async def read_resource(
         _context: _Context, params: types.ReadResourceRequestParams
     ) -> types.ReadResourceResult:
-        await ready.wait()
         uri = str(params.uri)
+        if uri == SCHEMAS.uri:
+            return _contents(uri, schemas_text(listing()), _JSON)
+        await ready.wait()
         try:
             text, kind = await anyio.to_thread.run_sync(_resource, service, uri, limiter=thread)
         except KBServeError as error:
             raise MCPError(types.INVALID_PARAMS, str(error), {"uri": uri[:_FOR_ERRORS]}) from error
-        return types.ReadResourceResult(
-            contents=[types.TextResourceContents(uri=params.uri, text=text, mime_type=kind)]
-        )
+        return _contents(uri, text, kind)
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
-        return types.ListToolsResult(tools=listing())
+        return types.ListToolsResult(tools=list(map(as_listed, listing())))
 
     async def list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
-        return types.ListResourcesResult(resources=[BASE_LIST])
+        return types.ListResourcesResult(resources=[BASE_LIST, SCHEMAS])
 
     async def list_templates(_context: _Context, _page: _Listing) -> types.ListResourceTemplatesResult:
         return types.ListResourceTemplatesResult(resource_templates=TEMPLATES)
@@ -191,6 +192,10 @@ TEMPLATES = [
         mime_type=_MARKDOWN,
     ),
 ]
+
+
+def _contents(uri: str, text: str, kind: str) -> types.ReadResourceResult:
+    return types.ReadResourceResult(contents=[types.TextResourceContents(uri=uri, text=text, mime_type=kind)])
 
 
 def _resource(service: Service, uri: str) -> tuple[str, str]:

@@ -20,20 +20,19 @@ _Arguments = TypeVar("_Arguments", bound=BaseModel)
 
 DESCRIPTION = """\
 Look up Blender's Python API and manual, for the Blender version in use: exact schemas (types, defaults, ranges, enum \
-values, units), operators with their arguments, node sockets, the manual's pages. Answers come from that Blender \
-itself. Query before you write a name you are not sure of: a property from memory may belong to another version.
+values, units), operators with their arguments, node sockets, manual pages. Answers come from that Blender itself. \
+Query before you write a name you are not sure of: what you remember may belong to another version.
 
 `query`, one thing at a time:
 - a name: `ClothSettings.quality`, `bpy.ops.object.modifier_add`, `ShaderNodeBsdfPrincipled`
-- an expression from your code: `bpy.context.object.modifiers["Cloth"].settings.quality`; a name that does not exist \
-is answered with similar ones that do
-- an error message, pasted whole: `AttributeError: …`; an enum value
+- an expression from your code: `bpy.context.object.modifiers["Cloth"].settings.quality`; a wrong name is answered \
+with what took its place
+- an error message, whole: `AttributeError: …`; an enum value
 - plain words: `make cloth collide with itself`
-- a topic, when you begin a stage of work: `cloth`, `rigid body`, `uv` give an overview of pages, classes, operators
+- a topic, when you begin a stage of work (`cloth`, `rigid body`, `uv`): how it is done, pages, classes, operators
 
 The best hit is shown in full, others by `id`; query an id to see it. A long answer ends with the part to go on with: \
-repeat the call with it, as `part=23`. `blender="4.5"` asks another version's base. `notes` report corrections and \
-differences between versions."""
+repeat the call with it, as `part=23`. `blender="4.5"` asks another version's base."""
 
 
 class DocsArguments(BaseModel):
@@ -44,7 +43,7 @@ class DocsArguments(BaseModel):
     query: str = Field(description="One name, question or topic.")
     blender: str | None = Field(
         default=None,
-        description="Default: the version in use, else the newest.",
+        description="Default: the version in use.",
     )
     limit: int = Field(default=8, ge=1, description="Hits at most.")
     max_tokens: int = Field(default=1500, ge=150, description="Of the answer, at most.")
@@ -89,11 +88,13 @@ def reading_tool(
     name: str, title: str, description: str, arguments: type[BaseModel], reply: type[BaseModel]
 ) -> Tool:
     """A tool that changes nothing, and gives the same for the same question."""
+    schema = schema_of(arguments)
+    schema.pop("description", None)  # the tool has its own
     return Tool(
         name=name,
         title=title,
         description=description,
-        input_schema=schema_of(arguments),
+        input_schema=schema,
         output_schema=schema_of(reply),
         annotations=ToolAnnotations(
             title=title,

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 PARTS = (
     *("retrieval", "defaults", "passages", "signatures", "history", "old_code", "usage"),
     *("check_blender", "check_truth", "check_versions", "planted", "pyright", "migrate"),
-    *("latency", "server", "builds", "blender", "verifier", "audits"),
+    *("latency", "server", "schemas", "builds", "blender", "verifier", "audits"),
 )
 LONG = ("soak",)  # only where they are asked for
 _SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl", "paraphrases.jsonl")

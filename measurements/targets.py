@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal
 
-Unit = Literal["share", "ms", "s", "MB", "tokens", "count", "times"]
+Unit = Literal["share", "ms", "s", "MB", "bytes", "tokens", "count", "times"]
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,8 +49,8 @@ def format_value(value: float, unit: Unit) -> str:
         return f"{value:,.0f}"
     if unit == "times":
         return f"{value:.2f} ×"
-    if unit == "tokens":
-        return f"{value:,.0f} tokens"
+    if unit in {"tokens", "bytes"}:
+        return f"{value:,.0f} {unit}"
     if value < 10:
         return f"{value:.2f} {unit}"
     return f"{value:.1f} {unit}" if value < 100 else f"{value:,.0f} {unit}"
@@ -148,6 +148,9 @@ _ROWS = (
         True,
     ),
     Target("migrate_broken", "… that run there, and do not after migrating", "count", 0),
+    Target("listed_serve", "simworlds serve: what a client is sent of its tools", "bytes", 3_000),
+    Target("listed_build", "simworlds mcp: what a client is sent of its tools", "bytes", 18_000),
+    Target("told_build", "… of which models are told", "tokens", 5_000, False, "blender-mcp 6,900"),
     Target("worker_start", "Blender's start to its first reply", "s", 2),
     Target("mcp_start", "simworlds mcp: start to first blender_execute", "s", 2),
     Target("preflight", "pre-flight of 100 lines, beside execution: p50", "ms", 30),

@@ -17,6 +17,7 @@ from mcp.client.stdio import StdioServerParameters, stdio_client
 from mcp.shared.exceptions import MCPError
 
 from agents.blender.tools.base import Knowledge, NotChecked
+from simworlds.mcp_transport.tool_listing import SCHEMAS, tools_of
 
 if TYPE_CHECKING:
     from collections.abc import AsyncGenerator, Awaitable, Callable, Sequence
@@ -88,8 +89,11 @@ class DocsClient:
                 tasks.cancel_scope.cancel()
 
     async def tools(self) -> list[types.Tool]:
-        """The server's tools."""
-        return (await self._request(lambda client: client.list_tools())).tools
+        """The server's tools, with their whole schemas. Raises DocsGone."""
+        try:
+            return tools_of((await self.read(SCHEMAS.uri)).contents)
+        except ValueError as error:
+            raise DocsGone("The knowledge base's server does not tell its tools.") from error
 
     async def call(self, name: str, arguments: dict[str, Any] | None) -> types.CallToolResult:
         """The server's answer to a call of one of its tools, ``NAMES``."""

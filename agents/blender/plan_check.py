@@ -16,6 +16,7 @@ from agents.protocol.rules.catalogue import RULES
 from agents.protocol.rules_by_stage import first_stage, rules_of
 from agents.protocol.verify_request import plan_from
 from simworlds.schemas.json_schema import lean_schema_of
+from simworlds.schemas.notation import HOW_TO_READ, shape_of
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -23,20 +24,31 @@ if TYPE_CHECKING:
     from agents.plan.faults import Fault
 
 NAME = "blender_plan_check"
+SCHEMA = types.Resource(
+    uri="blender://plan/schema",
+    name="plan",
+    title="Schema of a scene plan",
+    description="The JSON Schema of what blender_plan_check and blender_verify take as `plan`.",
+    mime_type="application/json",
+)
 _TITLE = "Check a scene plan"
 DESCRIPTION = """\
-Check a scene plan before anything is built: fields and their values, unknown names, relations that contradict each \
-other or form a cycle, objects without support, contents that do not fit into their container, phases outside the \
-timeline or before their cause, tolerances. The reply lists each fault with its path, or, for a valid plan, what is in \
-it and from which stage on each rule of blender_verify applies; and doubts: relations, falls and views that cannot \
-hold by sizes, positions and frames. Blender is not used and shapes are not known."""
+Check a scene plan before anything is built. The reply lists each fault with its path, or what is in the plan and \
+from which stage on each rule of blender_verify applies; and doubts: relations, falls and views that cannot hold by \
+sizes, positions and frames. Called without a plan, it returns the shape of one."""
 _LISTED_FAULTS = 20
 _LISTED = 12
 
 
 @cache
+def schema() -> dict[str, Any]:
+    """The JSON Schema of a plan."""
+    return lean_schema_of(ScenePlan)
+
+
+@cache
 def entry() -> types.Tool:
-    """The tool's entry in the list of tools."""
+    """The tool's entry in the list of tools. The plan's schema, many times as long, is had by a call or a resource."""
     return types.Tool(
         name=NAME,
         title=_TITLE,
@@ -44,8 +56,7 @@ def entry() -> types.Tool:
         input_schema={
             "type": "object",
             "title": NAME,
-            "properties": {"plan": {**lean_schema_of(ScenePlan), "description": "The scene plan."}},
-            "required": ["plan"],
+            "properties": {"plan": {"type": "object", "description": "The scene plan."}},
         },
         annotations=types.ToolAnnotations(
             title=_TITLE,
@@ -59,6 +70,10 @@ def entry() -> types.Tool:
 
 def answer(arguments: Mapping[str, Any]) -> types.CallToolResult:
     """The tool's reply: text for the model, and the same as data."""
+    if not arguments:
+        return _result(
+            f"A scene plan is JSON of this shape. {HOW_TO_READ}\n\n```\n{shape_of(ScenePlan)}\n```"
+        )
     data = arguments.get("plan")
     if isinstance(data, str):  # models sometimes write JSON into a string
         data = data.encode(errors="replace")

@@ -20,8 +20,10 @@ from starlette.datastructures import Headers
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
 from agents.blender.tool_catalogue import BY_NAME, TOOLS
+from agents.blender.tool_profiles import DEFAULT, Profile, first_profile, is_offered
 from agents.blender.tools.base import Call
 from simworlds.mcp_transport.sessions import SESSION, UNFINISHED, EndUnfinishedSessions
+from simworlds.mcp_transport.tool_listing import SCHEMAS, as_listed, schemas_text
 from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
 from simworlds.schemas.json_schema import schema_of
 
@@ -58,6 +60,12 @@ _HABITS = (
     ("blender_save", "when a stage is done"),
     ("blender_render", "last, when everything is in place; start with a still"),
 )  # fmt: skip
+_LIVE = (
+    "You have your own live Blender, without a window. The scene stays from call to call. If Blender crashes or hangs, "
+    "it is restarted from the last checkpoint, which the error names: read the scene's state before you go on. Lengths "
+    "are in metres, angles in Python in radians."
+)
+_CARE = "Check every step: read what the call says it changed, then look at the scene."
 _PROGRESS_SECONDS = 0.25
 _LIST_SECONDS = 20.0  # what a list waits for the knowledge base
 _MANY_CLIENTS = 64
@@ -65,26 +73,32 @@ _MANY_CLIENTS = 64
 _LOG = logging.getLogger(__name__)
 
 
-def instructions(more: Iterable[str] = ()) -> str:
-    """The server's instructions for models: how to work with the tools, including ``more`` of the server's own."""
-    known = {*BY_NAME, *more, *docs_client.NAMES}
+def instructions(known: Iterable[str]) -> str:
+    """The server's instructions for models: how to work with the tools of these names."""
+    known = set(known)
     habits = [f"- {name}: {when}." for name, when in _HABITS if name in known]
     return "\n".join(
         [
-            "You have your own live Blender, without a window. The scene stays from call to call. If Blender crashes "
-            "or hangs, it is restarted from the last checkpoint, which the error names: read the scene's state "
-            "before you go on. Lengths are in metres, angles in Python in radians.",
+            *([_LIVE] if known & set(BY_NAME) else []),
             *habits,
-            "Check every step: read what the call says it changed, then look at the scene.",
+            *([_CARE] if "blender_execute" in known else []),
         ]
     )
 
 
-def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None = None) -> Server[None]:
+def make_server(
+    sessions: BlenderSessions, docs: DocsClient, team: Team | None = None, profile: Profile = DEFAULT
+) -> Server[None]:
     """The server, without a transport. Closes the sessions when it ends.
 
-    ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles.
+    ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles. ``profile`` says
+    which tools there are.
     """
+    names = [
+        name
+        for name in (*BY_NAME, *(team.names if team is not None else ()), *docs_client.NAMES)
+        if is_offered(name, profile)
+    ]
 
     @asynccontextmanager
     async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
@@ -100,16 +114,13 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
                 await anyio.to_thread.run_sync(sessions.close)
 
     async def call_tool(context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
+        if params.name not in names:
+            raise MCPError(types.INVALID_PARAMS, _not_offered(params.name, names, profile))
         if params.name in docs_client.NAMES:
             return await _look_up(docs, params.name, params.arguments)
         if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
             return answer
-        tool = BY_NAME.get(params.name)
-        if tool is None:
-            names = ", ".join([*BY_NAME, *(team.names if team is not None else ()), *docs_client.NAMES])
-            raise MCPError(
-                types.INVALID_PARAMS, f"There is no tool {params.name[:80]!r}. Available: {names}."
-            )
+        tool = BY_NAME[params.name]
         try:
             session = await sessions.get(_client(context))
         except BlenderError as error:
@@ -117,17 +128,23 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         use = partial(session.use, tool, params.arguments, about=docs.about)
         return await _call_with_progress(context, tool.name, use)
 
-    async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
-        listed = [*map(entry, TOOLS), *(team.tools() if team is not None else ())]
+    async def whole_entries() -> list[types.Tool]:
+        entries = [*map(entry, TOOLS), *(team.tools() if team is not None else ())]
         try:
             with anyio.fail_after(_LIST_SECONDS):
-                listed += await docs.tools()
+                entries += await docs.tools()
         except (DocsGone, MCPError, TimeoutError) as error:
             _LOG.error("%s cannot be listed: %s", " and ".join(docs_client.NAMES), error or "no reply")
-        return types.ListToolsResult(tools=listed)
+        return [tool for tool in entries if tool.name in names]
+
+    async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
+        entries = await whole_entries()
+        return types.ListToolsResult(tools=entries if profile == "all" else list(map(as_listed, entries)))
 
     async def list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
-        return types.ListResourcesResult(resources=await _or_empty(docs.resources))
+        own = team.resources() if team is not None else []
+        # The knowledge base's server has SCHEMAS too, which are here those of all tools.
+        return types.ListResourcesResult(resources=[*(await _or_empty(docs.resources)), *own])
 
     async def list_templates(_context: _Context, _page: _Listing) -> types.ListResourceTemplatesResult:
         return types.ListResourceTemplatesResult(resource_templates=await _or_empty(docs.templates))
@@ -135,8 +152,15 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
     async def read_resource(
         _context: _Context, params: types.ReadResourceRequestParams
     ) -> types.ReadResourceResult:
+        uri = str(params.uri)
+        text = team.read(uri) if team is not None else None
+        if uri == SCHEMAS.uri:
+            text = schemas_text(await whole_entries())
+        if text is not None:
+            contents = types.TextResourceContents(uri=uri, text=text, mime_type="application/json")
+            return types.ReadResourceResult(contents=[contents])
         try:
-            return await docs.read(str(params.uri))
+            return await docs.read(uri)
         except DocsGone as error:
             raise MCPError(types.INTERNAL_ERROR, str(error)) from error
 
@@ -144,7 +168,7 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         "simworlds-blender",
         version=_own_version(),
         title="SimWorlds: live Blender",
-        instructions=instructions(team.names if team is not None else ()),
+        instructions=instructions(names),
         lifespan=lifespan,
         get_tool_input_schema=lambda name: entry(BY_NAME[name]).input_schema if name in BY_NAME else None,
         on_list_tools=list_tools,
@@ -170,6 +194,15 @@ def _prompting(team: Team) -> dict[str, Any]:
         return types.CompleteResult(completion=types.Completion(values=values, total=len(values)))
 
     return {"on_list_prompts": list_prompts, "on_get_prompt": get_prompt, "on_completion": complete}
+
+
+def _not_offered(name: str, offered: Iterable[str], profile: Profile) -> str:
+    if name in BY_NAME:
+        return (
+            f"{name} is not among the tools that this server was started with (--tools {profile}). Restart it with "
+            f"--tools {first_profile(name)}."
+        )
+    return f"There is no tool {name[:80]!r}. Available: {', '.join(offered)}."
 
 
 def _own_version() -> str:

@@ -5,6 +5,7 @@ With these, a single model with the Blender tools can be planner, coder and revi
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
@@ -134,6 +135,14 @@ class Team:
     def tools(self) -> list[types.Tool]:
         """The entries of the tools."""
         return [plan_check.entry()]
+
+    def resources(self) -> list[types.Resource]:
+        """The entries of the resources."""
+        return [plan_check.SCHEMA]
+
+    def read(self, uri: str) -> str | None:
+        """The text of the resource of that address; None if it is not one of these."""
+        return json.dumps(plan_check.schema()) if uri == plan_check.SCHEMA.uri else None
 
     def prompts(self) -> list[types.Prompt]:
         """The entries of the prompts."""

@@ -10,11 +10,13 @@ from typing import TYPE_CHECKING, Any
 
 import click
 
+from agents.blender.tool_profiles import DEFAULT, PROFILES
 from agents.commands import options
 from agents.commands.sandbox_warning import warn
 
 if TYPE_CHECKING:
     from agents.blender.blender_sessions import SessionSetup
+    from agents.blender.tool_profiles import Profile
     from simworlds.sandbox.confined_command import Kind, Sandbox
 
 _ERROR = 2
@@ -35,6 +37,15 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
 @options.EXECUTABLE
 @click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, for assets.")
 @options.SANDBOX
+@click.option(
+    "--tools",
+    "profile",
+    type=click.Choice(PROFILES),
+    default=DEFAULT,
+    show_default=True,
+    help="docs: the documentation and the check of code, without a Blender; look: also what reads a scene; build: also "
+    "what changes it, renders and checks plans; all: every tool, with whole schemas, for programs.",
+)
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option(
@@ -62,6 +73,7 @@ def mcp(  # noqa: PLR0913 - one for each option
     blender_exe: Path | None,
     read: tuple[Path, ...],
     sandbox: Kind | None,
+    profile: Profile,
     over_http: bool,
     host: str,
     port: int,
@@ -88,33 +100,34 @@ def mcp(  # noqa: PLR0913 - one for each option
     try:
         if blender_exe is not None:
             find_blender(blender, blender_exe)
-        setup = setup_of(_confined(sandbox))
+        setup = setup_of(_confined(sandbox, announced=profile != "docs"))
         if over_http:
-            _over_http(setup, sessions, idle * 60, host, port, token or "", allow_host)
+            _over_http(setup, profile, sessions, idle * 60, host, port, token or "", allow_host)
         else:
-            _over_stdio(setup)
+            _over_stdio(setup, profile)
     except CannotStart as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
 
 
-def _over_stdio(setup: SessionSetup) -> None:
+def _over_stdio(setup: SessionSetup, profile: Profile) -> None:
     from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415 - not for --help
 
     sessions = BlenderSessions(setup)
     # Blender starts while the MCP package is loaded: each takes half a second.
-    sessions.start("")
+    if profile != "docs":
+        sessions.start("")
     from agents.blender.docs_client import DocsClient  # noqa: PLC0415
     from agents.blender.server import make_server  # noqa: PLC0415
     from agents.blender.team import Team  # noqa: PLC0415
     from simworlds.mcp_transport.stdio import run_stdio  # noqa: PLC0415
 
-    server = make_server(sessions, DocsClient(_same_blender(setup)), Team())
+    server = make_server(sessions, DocsClient(_same_blender(setup)), Team(), profile)
     _loaded()
     run_stdio(server, partial(sessions.close, _SIGNAL_SECONDS))
 
 
-def _over_http(setup: SessionSetup, at_most: int, idle: float, *address: Any) -> None:
+def _over_http(setup: SessionSetup, profile: Profile, at_most: int, idle: float, *address: Any) -> None:
     from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415
     from agents.blender.docs_client import DocsClient  # noqa: PLC0415 - not for --help
     from agents.blender.server import make_app, make_server  # noqa: PLC0415
@@ -123,7 +136,7 @@ def _over_http(setup: SessionSetup, at_most: int, idle: float, *address: Any) ->
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
 
     sessions = BlenderSessions(setup, at_most=at_most, idle=idle)
-    server = make_server(sessions, DocsClient(_same_blender(setup)), Team())
+    server = make_server(sessions, DocsClient(_same_blender(setup)), Team(), profile)
     _loaded()
     try:
         run_http(partial(make_app, server, sessions, idle), Address(*address), "Blender")
@@ -142,8 +155,8 @@ def _same_blender(setup: SessionSetup) -> list[str]:
     return [word for name, value in options.items() if value is not None for word in (name, str(value))]
 
 
-def _confined(wanted: Kind | None) -> Sandbox:
-    """The sandbox, which is described on stderr. Raises CannotStart if the wanted one does not work here."""
+def _confined(wanted: Kind | None, *, announced: bool) -> Sandbox:
+    """The sandbox, described on stderr if ``announced``. Raises CannotStart if the wanted one does not work here."""
     from simworlds.sandbox.confine_self import landlock_abi  # noqa: PLC0415 - not for --help
     from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
@@ -153,6 +166,8 @@ def _confined(wanted: Kind | None) -> Sandbox:
     if wanted == "landlock" and not (sys.platform == "linux" and landlock_abi()):
         raise CannotStart("This system's kernel has no Landlock.")
     best = best_sandbox(wanted)
+    if not announced:
+        return best
     click.echo(f"Sandbox ({best.kind}): {'; '.join(best.holds)}.", err=True)
     warn(best)
     return best

@@ -80,7 +80,7 @@ class ToolClient:
         """Starts Blender and the knowledge base's server. Raises RunError where there is none to start."""
         sessions = BlenderSessions(self._setup)
         sessions.start("")
-        server = make_server(sessions, DocsClient(self._docs_options))
+        server = make_server(sessions, DocsClient(self._docs_options), profile="all")
         with ExitStack() as stack:
             self._portal = stack.enter_context(start_blocking_portal(name="tools"))
             self._client = stack.enter_context(self._portal.wrap_async_context_manager(Client(server)))

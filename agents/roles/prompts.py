@@ -20,7 +20,7 @@ from agents.protocol.guide import builders_guide, format_stage_rules, guide, rul
 from agents.protocol.rules.catalogue import select_rules
 from agents.protocol.rules_by_stage import rules_of
 from agents.roles.sheets import sheet
-from simworlds.schemas.notation import shape_of
+from simworlds.schemas.notation import HOW_TO_READ, shape_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -136,11 +136,7 @@ def shapes_text(role: Role, *, edit: bool = False) -> str:
     """The shapes of what a role answers, without what the protocol's guide tells."""
     plans = (EditPlan if edit else ScenePlan,) if role == "planner" else ()
     told = shape_of(*plans, *_ANSWERS[role], before=protocol_text() if plans else "")
-    return (
-        "# Shapes of answers\n\n"
-        "JSON, written as types: `name?` may be left out and is then the value behind `=`, or null; what stands behind "
-        f"`//` is its meaning. No other fields are taken.\n\n```\n{told}\n```"
-    )
+    return f"# Shapes of answers\n\nJSON. {HOW_TO_READ}\n\n```\n{told}\n```"
 
 
 @cache

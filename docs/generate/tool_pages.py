@@ -8,16 +8,20 @@ from typing import TYPE_CHECKING, Any
 from agents.blender import plan_check
 from agents.blender.team import PROMPTS
 from agents.blender.tool_catalogue import TOOLS
+from agents.blender.tool_profiles import DEFAULT, PROFILES, first_profile
 from agents.plan.scene import ScenePlan
 from docs.generate.markdown import GENERATED, page, schema_table, table
-from kb_serve.served_tools import listing
+from kb_serve.served_tools import TOOL_NAMES, listing
 from kb_serve.server import BASE_LIST, INSTRUCTIONS, TEMPLATES
+from simworlds.mcp_transport.tool_listing import SCHEMAS
 from simworlds.schemas.notation import shape_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from mcp_types import PromptArgument, Tool
+
+    from agents.blender.tool_profiles import Profile
 
 
 def docs_tool_page() -> str:
@@ -51,7 +55,7 @@ def _tool(entry: Tool) -> Iterator[str]:
     yield "### Arguments"
     yield schema_table(entry.input_schema)
     yield "### Result"
-    yield "The Markdown is the result's text; the structured content is:"
+    yield "The Markdown is the result's text; the structured content, whose schema the list of tools leaves out, is:"
     yield schema_table(entry.output_schema)
     yield "### Schemas"
     yield _schema("Arguments", entry.input_schema)
@@ -63,7 +67,7 @@ def _schema(title: str, schema: Mapping[str, Any]) -> str:
 
 
 def _resources() -> str:
-    rows = [(f"`{BASE_LIST.uri}`", str(BASE_LIST.mime_type), str(BASE_LIST.description))]
+    rows = [(f"`{one.uri}`", str(one.mime_type), str(one.description)) for one in (BASE_LIST, SCHEMAS)]
     rows += [
         (f"`{template.uri_template}`", str(template.mime_type), str(template.description))
         for template in TEMPLATES
@@ -77,6 +81,7 @@ def blender_tools_page() -> str:
         "# The Blender tools",
         GENERATED,
         "`simworlds mcp` serves these, and `blender_docs` and `blender_check` ([tools.md](tools.md)) beside them.",
+        *_profiles(),
     ]
     for entry in TOOLS:
         kind = "reads only" if entry.read_only else "changes the scene or writes files"
@@ -97,6 +102,28 @@ def blender_tools_page() -> str:
             for prompt in PROMPTS
         ),
     )
+
+
+def _profiles() -> Iterator[str]:
+    yield "## Profiles"
+    yield (
+        "`--tools` says which tools a client is offered; each profile has those of the one before it too. The list "
+        "of tools has what a model needs to call them. Bounds, which the answer to a wrong call names, and schemas of "
+        f"results are in the resource `{SCHEMAS.uri}`, the plan's is in `{plan_check.SCHEMA.uri}`; `--tools all` "
+        "lists tools with their bounds."
+    )
+    names = [*TOOL_NAMES, *(tool.name for tool in TOOLS), plan_check.NAME]
+    yield table(
+        ("profile", "tools that it adds"),
+        [
+            (f"`{profile}`" + (" (default)" if profile == DEFAULT else ""), _added(names, profile))
+            for profile in PROFILES
+        ],
+    )
+
+
+def _added(names: Iterable[str], profile: Profile) -> str:
+    return ", ".join(f"`{name}`" for name in names if first_profile(name) == profile)
 
 
 def _arguments(arguments: Iterable[PromptArgument]) -> str:

@@ -57,23 +57,23 @@ def lean_schema_of(model: type[BaseModel]) -> dict[str, Any]:
 
 def lean_arguments(schema: Mapping[str, Any]) -> dict[str, Any]:
     """A JSON Schema of arguments that are checked elsewhere, as a model needs it: without bounds, empty defaults, and
-    null where an argument may be left out.
+    null where that only says that an argument is left out.
     """
-    return cast("dict[str, Any]", _not_null(_lean(schema, set())))
+    return cast("dict[str, Any]", _lean(_without_null(schema), set()))
 
 
-def _not_null(schema: Any) -> Any:
+def _without_null(schema: Any) -> Any:
     if isinstance(schema, list):
-        return [_not_null(item) for item in cast("list[Any]", schema)]
+        return [_without_null(item) for item in cast("list[Any]", schema)]
     if not isinstance(schema, dict):
         return schema
     kept = {
-        key: _not_null(value)
+        key: _without_null(value)
         for key, value in cast("dict[str, Any]", schema).items()
         if key not in _BOUNDS and not (key == "default" and value in (False, [], ""))
     }
     choices = [one for one in kept.get("anyOf", ()) if one != {"type": "null"}]
-    if len(choices) == 1:
+    if len(choices) == 1 and kept.get("default", "") is None:
         del kept["anyOf"]
         kept |= choices[0]
     return kept

@@ -12,6 +12,10 @@ if TYPE_CHECKING:
 
     from pydantic import BaseModel
 
+HOW_TO_READ = (
+    "Written as types: `name?` may be left out and is then the value behind `=`, or null; what stands behind `//` is "
+    "its meaning. No other fields are taken."
+)
 _NAMES = {"integer": "int", "number": "number", "string": "string", "boolean": "bool", "null": "null"}
 
 

@@ -20,7 +20,7 @@ class BakeArguments(Arguments):
     objects: list[str] | None = Field(
         default=None,
         min_length=1,
-        description="Any rigid body means the whole rigid-body world. Default: every simulation.",
+        description="Default: every simulation. A rigid body: its whole world.",
     )
     frame_start: int | None = Field(default=None, ge=0, le=_LAST_FRAME, description="Default: the scene's.")
     frame_end: int | None = Field(default=None, ge=1, le=_LAST_FRAME, description="Default: the scene's.")
@@ -33,10 +33,9 @@ class BakeArguments(Arguments):
 
 DESCRIPTION = """\
 Bake physics: cloth, soft bodies, particles, hair, rigid bodies, dynamic paint, liquid and gas. Earlier bakes are \
-replaced; frames that were simulated already are kept, if nothing has changed since. Every cache is checked: baked, \
-whole, and something moved; else the likely causes are named. Stops at the first frame that is not finite. Fluids \
-bake into a folder that the run keeps; never call bpy.ops.fluid.free_all, which crashes later calls: use `free`. A \
-bake that runs past `timeout` is undone."""
+replaced; frames simulated already are kept if nothing has changed. Every cache is checked: baked, whole, and \
+something moved; else the likely causes are named. Never call bpy.ops.fluid.free_all, which crashes later calls: use \
+`free`. Past `timeout` it is undone."""
 
 
 def run(context: ToolContext, arguments: BakeArguments, call: Call) -> Result:

@@ -31,17 +31,16 @@ class ExecuteArguments(Arguments):
     )
     on_error: Literal["keep", "restore"] = Field(
         default="keep",
-        description="When it fails half-way: keep the scene, or restore it as it was.",
+        description="The scene, when it fails half-way.",
     )
 
 
 DESCRIPTION = """\
 Run Python in the live Blender. Each call has a fresh namespace; `bpy.data` stays. Code with names, keywords or \
-values that this Blender lacks is not run: the reply says what to write instead. Else it has what was printed (also \
-reported while the code runs), the value of a final expression, what changed and which simulations that reset; for \
-an error the line, and what the documentation says about the wrong name. Step physics frame by frame, never jump. No \
-network, no processes; write files below the current folder. Code that ends Blender or runs past `timeout` is \
-undone."""
+values that this Blender lacks is not run: the reply says what to write instead. Else it has what was printed, the \
+value of a final expression, what changed and which simulations that reset; for an error the line, and what the \
+documentation says. Step physics frame by frame, never jump. No network, no processes; write files below the current \
+folder. Code that ends Blender or runs past `timeout` is undone."""
 
 
 class _Fault(Claim):

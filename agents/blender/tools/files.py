@@ -34,9 +34,7 @@ if TYPE_CHECKING:
 
 _OPEN_SECONDS = 60.0
 _LISTED = 10
-_TIMEOUT = Field(
-    default=300.0, ge=1, le=3600, description="Seconds after which Blender is stopped and put back."
-)
+_TIMEOUT = Field(default=300.0, ge=1, le=3600, description="Seconds.")
 
 
 class SaveArguments(Arguments):
@@ -45,21 +43,18 @@ class SaveArguments(Arguments):
     name: str | None = Field(
         default=None,
         max_length=400,
-        description="File in the run's folder: 'tower', 'saves/tower.blend'. Without a name, a checkpoint is made.",
+        description="As 'tower', 'saves/tower.blend'.",
     )
-    pack: bool = Field(default=True, description="Put images, sounds and fonts into the file.")
-    verify: bool = Field(
-        default=True, description="Open the copy in a second Blender before it replaces an older one."
-    )
+    pack: bool = Field(default=True, description="Images, sounds and fonts.")
+    verify: bool = Field(default=True, description="In the second Blender.")
     timeout: float = _TIMEOUT
 
 
 SAVE_DESCRIPTION = """\
-Save the scene as a .blend in the run's folder that opens elsewhere: images, sounds and fonts are packed into it, \
-caches on disk (fluids, point caches) are copied into the folder `blendcache_NAME` beside it; keep the two together. \
-A file of that name is replaced, as a whole or not at all. A second Blender, which has nothing else, opens the copy \
-to check that every baked cache is baked there too. The open scene is not changed. Without a name, a checkpoint is \
-made; blender_load goes back to it."""
+Save the scene as a .blend in the run's folder that opens elsewhere: images, sounds and fonts are packed, caches on \
+disk (fluids, point caches) copied to `blendcache_NAME` beside it; keep both together. A file of that name is \
+replaced, whole or not at all. A second Blender opens the copy to check that caches are baked there too. Without a \
+name: a checkpoint, for blender_load."""
 
 
 class LoadArguments(Arguments):
@@ -68,19 +63,17 @@ class LoadArguments(Arguments):
     path: str | None = Field(
         default=None,
         max_length=4096,
-        description="A .blend: relative to the run's folder, or absolute in a folder that may be read.",
+        description="Relative to the run's folder, or absolute.",
     )
-    checkpoint: int | None = Field(
-        default=None, ge=1, description="The number of a checkpoint to go back to."
-    )
+    checkpoint: int | None = Field(default=None, ge=1, description="Its number.")
     timeout: float = _TIMEOUT
 
 
 LOAD_DESCRIPTION = """\
-Open a .blend, or go back to a checkpoint; this replaces the open scene, which is kept as a checkpoint first. Files \
-come from the run's folder or from folders that the user has allowed to be read; the original is never changed. \
-Scripts in the file do not run. If a file cannot be opened, the scene stays. Without arguments: list the checkpoints \
-and saved files. Checkpoints do not hold caches on disk (fluids): those stay as they were last baked."""
+Open a .blend, or go back to a checkpoint; the open scene is kept as a checkpoint first. Files are in the run's \
+folder or where the user allows; the original is never changed, its scripts do not run. If it cannot be opened, the \
+scene stays. Without arguments: list checkpoints and files. Checkpoints hold no caches on disk (fluids): those stay \
+as last baked."""
 
 
 # Saving
@@ -275,6 +268,4 @@ def _cache(cache: CacheReport) -> str:
 
 
 SAVE = BlenderTool("blender_save", "Save the scene", SAVE_DESCRIPTION, SaveArguments, save, destructive=True)
-LOAD = BlenderTool(
-    "blender_load", "Open a file or a checkpoint", LOAD_DESCRIPTION, LoadArguments, load, destructive=True
-)
+LOAD = BlenderTool("blender_load", "Open a file", LOAD_DESCRIPTION, LoadArguments, load, destructive=True)

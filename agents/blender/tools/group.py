@@ -21,7 +21,7 @@ class GroupedObject(Arguments):
     object: str = Field(
         min_length=1,
         max_length=255,
-        description="Its name, and its collection's.",
+        description="Its name and its collection's.",
     )
     system: str | None = Field(
         default=None,
@@ -33,11 +33,11 @@ class GroupedObject(Arguments):
         default=None,
         min_length=1,
         max_length=10_000,
-        description="Its meshes, and armatures or Empties that they depend on; added to those that it has.",
+        description="Its meshes, armatures, helping Empties; added to its own.",
     )
     location: tuple[float, float, float] | None = Field(
         default=None,
-        description="Its root's place in the world. Default: where it is, or the bottom centre of its geometry.",
+        description="Its root's, in the world. Default: as it is, or the bottom centre.",
     )
     deformation_kind: DeformationKind | None = Field(
         default=None,
@@ -47,7 +47,7 @@ class GroupedObject(Arguments):
     contact_with: list[str] | None = Field(
         default=None,
         max_length=1000,
-        description="Objects (L3), meshes, roots it touches; itself: its parts may cross. Replaces the list.",
+        description="Objects, meshes, roots it touches; itself: its parts may cross. Replaces the list.",
     )
     allows_disconnected: bool | None = Field(default=None, description="Its meshes need not touch.")
 
@@ -68,9 +68,9 @@ class GroupArguments(Arguments):
 
 DESCRIPTION = """\
 Make logical objects of the scene protocol out of meshes, many in one call: their collections (L3, and L2 unless \
-there), a root Empty each, parents and tags. Members are unlinked from other collections, but those of physics. \
-Nothing moves in the world. If anything cannot be done, the call is refused as a whole. The reply says what the \
-protocol still requires. For what is grouped already it sets tags: give the object and what changes."""
+there), a root Empty each, parents and tags. Members leave other collections, but those of physics. Nothing moves in \
+the world. What cannot be done is refused as a whole. The reply says what the protocol still requires. For what is \
+grouped already it sets tags: give the object and what changes."""
 
 
 def run(context: ToolContext, arguments: GroupArguments, call: Call) -> Result:

@@ -29,33 +29,30 @@ _Name = Annotated[str, Field(min_length=1, max_length=200)]
 class MaterialArguments(Arguments):
     """The arguments of ``blender_material_preview``."""
 
-    show: Literal["all", "scene", "objects"] = Field(
-        default="all", description="all: the scene, and each object alone."
-    )
+    show: Literal["all", "scene", "objects"] = Field(default="all", description="all: both.")
     objects: list[_Name] = Field(
         default_factory=list[_Name],
         max_length=_MOST_OBJECTS,
-        description="Default: all, those with the same materials once.",
+        description="Default: all.",
     )
     frames: list[Frame] = Field(
         default_factory=list[Frame],
         max_length=_MOST_FRAMES,
-        description="Of the scene's picture; objects are shown at the first.",
+        description="Of the scene; objects: at the first.",
     )
     width: int = Field(default=960, ge=64, le=1536, description="Pixels.")
     seconds: float = Field(
         default=150.0,
         ge=1,
         le=3600,
-        description="After so long no further still is begun.",
+        description="Then no still is begun.",
     )
     timeout: float = Field(default=400.0, ge=1, le=3600, description="Seconds.")
 
 
 DESCRIPTION = """\
-See materials as they render: Cycles stills with the file's own shaders, textures and glass, in neutral light that \
-is not the scene's: no lamp is needed, and closed rooms are bright. Shows the scene through its camera (lacking one, \
-from a three-quarter view) and each object alone."""
+See materials as they render (Cycles, the file's own shaders and textures) in neutral light: no lamp is needed. \
+Shows the scene through its camera, or in three-quarter view, and each object alone."""
 
 
 def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Result:
@@ -135,7 +132,7 @@ def _line(one: LitObject) -> str:
 
 TOOL = BlenderTool(
     "blender_material_preview",
-    "See materials in neutral light",
+    "See materials",
     DESCRIPTION,
     MaterialArguments,
     run,

@@ -29,7 +29,7 @@ _MEASURED = {
 
 
 class PhaseArguments(BaseModel):
-    """A named part of the motion, both frames included."""
+    """Both frames included."""
 
     model_config = ConfigDict(extra="forbid")
 
@@ -50,17 +50,17 @@ class MotionSheetArguments(Arguments):
     actors: list[str] = Field(
         min_length=1,
         max_length=MOST_ACTORS,
-        description="Objects, or collections measured as one.",
+        description="Objects, or collections as one.",
     )
     phases: list[PhaseArguments] = Field(
         default_factory=list[PhaseArguments],
         max_length=MOST_PHASES,
-        description="Default: the scene's frame range as one.",
+        description="Default: one, the scene's frames.",
     )
     frames: list[Frame] = Field(
         default_factory=list[Frame],
         max_length=MOST_PICTURES,
-        description="Frames to draw, two or more.",
+        description="To draw, two or more.",
     )
     timeout: float = Field(default=300.0, ge=1, le=3600, description="Seconds.")
 
@@ -79,10 +79,10 @@ class MotionSheetArguments(Arguments):
 
 
 DESCRIPTION = """\
-See and measure how objects move. For each actor pictures in one view of its whole path, displacement and speed over \
-the frames with phases, keys, contacts and caches; for each phase displacement and path (m), peak and final speed \
-(m/s), turn (degrees), what was touched and from which frame on. Measured on evaluated geometry: the mean of \
-its surface, particles or fluid. What is not baked is stepped, and the sheet says so."""
+See and measure how objects move. For each actor its path in pictures, displacement and speed over the frames with \
+phases, keys, contacts and caches; for each phase displacement and path (m), peak and final speed (m/s), turn \
+(degrees), what was touched from which frame on. Measured on the mean of the evaluated surface, particles or fluid. \
+Unbaked simulations are stepped."""
 
 
 def run(context: ToolContext, arguments: MotionSheetArguments, call: Call) -> Result:

@@ -33,7 +33,7 @@ class PreviewArguments(Arguments):
         default=None,
         ge=-_LAST_FRAME,
         le=_LAST_FRAME,
-        description="Default: the current one, and no other where a simulation is not baked.",
+        description="Default: the current one.",
     )
     timeout: float = Field(default=120.0, ge=1, le=3600, description="Seconds.")
 
@@ -55,7 +55,7 @@ class LayoutArguments(PreviewArguments):
 
     everything: bool = Field(
         default=False,
-        description="Also fit in grounds, backdrops and distant objects.",
+        description="Fit in grounds, backdrops, distant objects too.",
     )
 
 
@@ -71,14 +71,11 @@ class SceneLayoutArguments(LayoutArguments):
     subjects: list[Annotated[str, Field(min_length=1, max_length=200)]] = Field(
         default_factory=list[str],
         max_length=40,
-        description="Objects to label first, and to show closely.",
+        description="Objects to label first and show closely.",
     )
 
 
-_ALIKE = """\
-Front, right, top and three-quarter view of the evaluated geometry, with scale bars and the world's axes, in plain \
-colours."""
-_OWN_AXES = "Front and right are its own."
+_ALIKE = "from front, right, top and three-quarter, as evaluated, with scale bars and axes, in plain colours."
 
 
 def run_single_mesh(context: ToolContext, arguments: SingleMeshArguments, call: Call) -> Result:
@@ -196,32 +193,32 @@ def _text(kind: str, preview: PreviewReply, file: str) -> str:
 SINGLE_MESH = BlenderTool(
     "blender_single_mesh_preview",
     "See one mesh",
-    f"See one mesh, curve or text alone. {_ALIKE} {_OWN_AXES}",
+    f"See one mesh, curve or text alone, {_ALIKE}",
     SingleMeshArguments,
     run_single_mesh,
     read_only=True,
 )
 OBJECT = BlenderTool(
     "blender_object_preview",
-    "See one object with all its meshes",
-    f"See one object (L3) alone. {_ALIKE} {_OWN_AXES}",
+    "See one object",
+    f"See one object (L3) alone, {_ALIKE}",
     ObjectArguments,
     run_object,
     read_only=True,
 )
-_ROOMS = "Closed rooms are opened towards the viewer; the reply names what was cut away."
+_ROOMS = "Closed rooms are cut open."
 SYSTEM_LAYOUT = BlenderTool(
     "blender_system_layout_preview",
-    "See how one system is laid out",
-    f"See one system (L2) alone. {_ALIKE} {_ROOMS}",
+    "See one system",
+    f"See one system (L2) alone, {_ALIKE} {_ROOMS}",
     SystemLayoutArguments,
     run_system_layout,
     read_only=True,
 )
 SCENE_LAYOUT = BlenderTool(
     "blender_scene_layout_preview",
-    "See how the scene is laid out",
-    f"See the whole scene, and the camera's view. {_ALIKE} {_ROOMS}",
+    "See the scene",
+    f"See the scene through its camera, and {_ALIKE} {_ROOMS}",
     SceneLayoutArguments,
     run_scene_layout,
     read_only=True,

@@ -30,16 +30,16 @@ _Side = Annotated[int, Field(ge=4, le=8192)]
 class RenderArguments(Arguments):
     """The arguments of ``blender_render``."""
 
-    kind: Literal["still", "animation"] = Field(default="still", description="What to render.")
+    kind: Literal["still", "animation"] = Field(default="still", description="What.")
     name: str | None = Field(
         default=None,
         pattern=r"^[\w()+-][\w ().+-]{0,79}$",
         description="Of the result.",
     )
-    frame: _Frame | None = Field(default=None, description="Of a still; default: the current one.")
+    frame: _Frame | None = Field(default=None, description="Of a still. Default: current.")
     frame_start: _Frame | None = Field(default=None, description="Of an animation.")
     frame_end: _Frame | None = Field(default=None, description="Of an animation.")
-    step: int = Field(default=1, ge=1, le=1000, description="Render every step-th frame.")
+    step: int = Field(default=1, ge=1, le=1000, description="Every step-th frame.")
     camera: str | None = Field(default=None, max_length=256, description="Its name.")
     engine: Literal["cycles", "eevee", "workbench"] | None = Field(
         default=None, description="Without a GPU, Cycles instead of EEVEE."
@@ -71,10 +71,9 @@ class RenderArguments(Arguments):
 
 
 DESCRIPTION = """\
-Render what the camera sees: a still, or an animation (frames and an MP4). Whole frames under the same `name` of the \
-same scene and settings are kept: a call that broke off goes on where it stopped. What is not baked is stepped: bake \
-first. Within `time_budget` fewer samples are taken, then frames left out; the reply says so. Begin with a small \
-still, and look at its numbers."""
+Render what the camera sees: a still, or an animation (frames and an MP4). Whole frames of the same `name`, scene \
+and settings are kept: a call that broke off goes on. Bake first: the unbaked is stepped. Within `time_budget` fewer \
+samples are taken, then frames left out; the reply says so. Begin with a small still, and look at its numbers."""
 
 
 def run(context: ToolContext, arguments: RenderArguments, call: Call) -> Result:

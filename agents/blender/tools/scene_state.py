@@ -46,32 +46,32 @@ class SceneStateArguments(Arguments):
 
     detail: Literal["summary", "normal", "full"] = Field(
         default="normal",
-        description="full: also every channel, node and custom property.",
+        description="full: also channels, nodes, custom properties.",
     )
     objects: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
         default=None,
         max_length=200,
-        description="Only these names, patterns (Brick.*) or collections, not folded.",
+        description="Names, patterns (Brick.*) or collections; unfolded.",
     )
     first: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
         default=None,
         max_length=200,
-        description="What bears these names or words, and its materials, comes first.",
+        description="What bears these names or words comes first.",
     )
     sections: list[SectionName] | None = Field(
         default=None,
         min_length=1,
-        description="Only these. view: cameras, lights, world, render. data_blocks, never by default: digests.",
+        description="view: cameras, lights, world, render. data_blocks, digests: only if named.",
     )
-    start: int = Field(default=0, ge=0, description="Entries to skip, as the last readout says.")
-    max_tokens: int = Field(default=4000, ge=500, le=50_000, description="Of the readout.")
+    start: int = Field(default=0, ge=0, description="Entries to skip.")
+    max_tokens: int = Field(default=4000, ge=500, le=50_000, description="Of the reply.")
 
 
 DESCRIPTION = """\
 Read the scene: collections with protocol tags; objects with world transform, extent (world bounding box at this \
-frame), materials, modifiers and constraints with what differs from Blender's defaults; physics with the state of \
-every cache; animation; cameras, lights, world; likely mistakes, marked with !. Long series are folded (Brick.001 … \
-Brick.400). What does not fit is counted, with the call that shows it."""
+frame), materials, modifiers and constraints where they differ from defaults; physics and caches; animation; \
+cameras, lights, world; likely mistakes, marked with !. Series are folded (Brick.001 … Brick.400); what does not fit \
+is counted, with the call that shows it."""
 
 
 def run(context: ToolContext, arguments: SceneStateArguments, call: Call) -> Result:

@@ -34,15 +34,14 @@ class TrialArguments(Arguments):
         description="Default: all that are simulated.",
     )
     frames: int = Field(default=24, ge=2, le=1000, description="To step.")
-    seconds: float = Field(default=60.0, ge=1, le=1800, description="It ends when this time is over.")
+    seconds: float = Field(default=60.0, ge=1, le=1800, description="Ends after this time.")
     pictures: bool = Field(default=True, description="Small ones.")
 
 
 DESCRIPTION = """\
 Try a simulation before you bake it: steps some frames; tells heights, speed, volume and depth in what it touches of \
-each object over time, seconds a frame and what the bake will take; shows small pictures. Stops at the first frame \
-that is not finite, with the likely cause. Nothing is baked; what was simulated is kept for the bake. Baked \
-simulations are played: free them first."""
+each object, and what the bake will take; shows small pictures. Stops where it is not finite, with the likely cause. \
+What was simulated is kept for the bake. Baked simulations are played: free them first."""
 
 
 class _Sample(Claim):

@@ -29,14 +29,14 @@ class UvArguments(Arguments):
     objects: list[Annotated[str, Field(min_length=1, max_length=200)]] = Field(
         default_factory=list[str],
         max_length=_MOST_OBJECTS,
-        description="Meshes or collections. Default: all that renders show.",
+        description="Meshes or collections. Default: all.",
     )
     timeout: float = Field(default=120.0, ge=1, le=3600, description="Seconds.")
 
 
 DESCRIPTION = """\
 See the UV maps of up to eight meshes: a checker on each, and the map (stretched yellow, overlapping red), with \
-bounds, scale, and the shares stretched, collapsed, mirrored, outside, overlapping."""
+bounds, scale, and shares stretched, collapsed, mirrored, outside, overlapping."""
 
 
 def run(context: ToolContext, arguments: UvArguments, call: Call) -> Result:

@@ -29,25 +29,25 @@ class VerifyArguments(Arguments):
 
     plan: dict[str, Any] | None = Field(
         default=None,
-        description="The scene plan; without one, rules about it are skipped.",
+        description="The scene plan, for the rules about it.",
     )
     rules: list[str] | None = Field(
         default=None,
         min_length=1,
-        description="Families (C layout, G parents, V contact, W warnings, R against the plan, T motion) or rules, "
+        description="Families (C layout, G parents, V contact, W warnings, R plan, T motion) or rules, "
         "such as ['C', 'V1'].",
     )
     image: bool = Field(
         default=False,
-        description="Also return views with faulty objects coloured, gaps and depths marked.",
+        description="Also show where.",
     )
 
 
 DESCRIPTION = """\
 Measure what no image shows, by tags and plan: gaps where things should touch, meshes in each other, no support, \
-wrong sizes, places, relations, motion that is faked, unbaked, late or never at rest, a wrong layout. A finding \
-names rule, objects, measured value, tolerance, and what to change. Hard ones must be fixed; soft ones are advice. \
-What could not be decided is listed. Unbaked simulations are stepped: bake first."""
+wrong sizes, places, relations, motion that is faked, unbaked, late or never at rest, a wrong layout. A finding has \
+rule, objects, measured value, tolerance, and what to change. Hard ones must be fixed; soft ones are advice. Bake \
+first: the unbaked is stepped."""
 
 
 def run(context: ToolContext, arguments: VerifyArguments, call: Call) -> Result:

@@ -72,7 +72,7 @@ async def test_the_bases_are_listed(service: Service) -> None:
     async with Client(make_server(service)) as client:
         listed = (await client.list_resources()).resources
         templates = (await client.list_resource_templates()).resource_templates
-    assert [str(one.uri) for one in listed] == ["blender://bases"]
+    assert [str(one.uri) for one in listed] == ["blender://bases", "blender://tools"]
     assert {one.uri_template for one in templates} == {
         "blender://{version}/symbol/{+path}",
         "blender://{version}/page/{+slug}",

@@ -47,10 +47,19 @@ async def test_the_tool_says_that_it_only_reads_and_may_be_asked_again(service: 
     async with Client(make_server(service)) as client:
         listed = (await client.list_tools()).tools
     assert [one.name for one in listed] == ["blender_docs", "blender_check"]
-    hints = listed[0].annotations
+    hints = tool().annotations
     assert hints is not None
+    assert listed[0].annotations is not None
+    assert listed[0].annotations.read_only_hint
     assert (hints.read_only_hint, hints.idempotent_hint) == (True, True)
     assert (hints.destructive_hint, hints.open_world_hint) == (False, False)
+
+
+async def test_all_that_a_client_is_sent_is_within_three_kilobytes(service: Service) -> None:
+    async with Client(make_server(service)) as client:
+        listed = await client.list_tools()
+        sent = listed.model_dump_json(by_alias=True, exclude_none=True) + (client.instructions or "")
+    assert len(sent.encode()) <= 3_000
 
 
 async def test_the_description_fits_into_what_clients_show_and_teaches_every_way_to_ask() -> None:

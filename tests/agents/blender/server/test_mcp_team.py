@@ -133,8 +133,8 @@ async def test_a_plan_is_checked(client: Client) -> None:
     assert not faulty.is_error
     assert faulty.structured_content is not None
     assert "systems" in [fault["path"] for fault in faulty.structured_content["faults"]]
-    empty = await client.call_tool("blender_plan_check", {})
-    assert empty.is_error
+    wrong = await client.call_tool("blender_plan_check", {"scene": small_plan()})
+    assert wrong.is_error
 
 
 async def test_valid_plan_is_accepted_by_the_verifier(client: Client) -> None:
