@@ -21,8 +21,9 @@ from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
 from agents.blender.tool_catalogue import BY_NAME, TOOLS
 from agents.blender.tools.base import Call
+from agents.blender.tools.failures import describe_failure
 from simworlds.mcp_transport.sessions import SESSION, UNFINISHED, EndUnfinishedSessions
-from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
+from simworlds.sandbox.errors import BlenderError
 from simworlds.schemas.json_schema import schema_of
 
 if TYPE_CHECKING:
@@ -249,22 +250,8 @@ async def _call_with_progress(context: _Context, name: str, use: _Use) -> types.
 async def _result_of(name: str, call: Awaitable[Result]) -> types.CallToolResult:
     try:
         return _as_mcp(await call)
-    except Lost as error:
-        output = error.printed.strip()
-        end = f"\n\nThe end of Blender's output:\n```\n{output}\n```" if output else ""
-        return _failed(f"{error}{end}")
-    except ToolBroke as error:
-        _LOG.error("%s failed in Blender: %s\n%s", name, error, error.details)
-        return _failed(
-            f"{name} failed because of a bug in the tool, not in your call: {error}. Blender still runs."
-        )
-    except BlenderError as error:
-        return _failed(str(error))
     except Exception as error:
-        _LOG.exception("%s failed", name)
-        return _failed(
-            f"{name} failed on this call ({type(error).__name__}). Change the call, or report it with its arguments."
-        )
+        return _failed(describe_failure(name, error))
 
 
 def _as_mcp(result: Result) -> types.CallToolResult:
