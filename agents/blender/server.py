@@ -19,7 +19,7 @@ from starlette.datastructures import Headers
 
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
-from agents.blender.tool_catalogue import BY_NAME, TOOLS
+from agents.blender.tool_catalogue import BY_NAME, FOR_CLIENTS, TOOLS
 from agents.blender.tools.base import Call
 from agents.blender.tools.failures import describe_failure
 from simworlds.mcp_transport.sessions import SESSION, UNFINISHED, EndUnfinishedSessions
@@ -58,6 +58,7 @@ _HABITS = (
     ("blender_motion_sheet_preview", "to see and measure motion over time"),
     ("blender_save", "when a stage is done"),
     ("blender_render", "last, when everything is in place; start with a still"),
+    ("blender_job", "for a bake or an animation that may take longer than a minute"),
 )  # fmt: skip
 _PROGRESS_SECONDS = 0.25
 _LIST_SECONDS = 20.0  # what a list waits for the knowledge base
@@ -68,7 +69,7 @@ _LOG = logging.getLogger(__name__)
 
 def instructions(more: Iterable[str] = ()) -> str:
     """The server's instructions for models: how to work with the tools, including ``more`` of the server's own."""
-    known = {*BY_NAME, *more, *docs_client.NAMES}
+    known = {*(tool.name for tool in TOOLS), *more, *docs_client.NAMES}
     habits = [f"- {name}: {when}." for name, when in _HABITS if name in known]
     return "\n".join(
         [
@@ -119,7 +120,9 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         return await _call_with_progress(context, tool.name, use)
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
-        listed = [*map(entry, TOOLS), *(team.tools() if team is not None else ())]
+        listed = list(map(entry, TOOLS))
+        if team is not None:
+            listed += [*map(entry, FOR_CLIENTS), *team.tools()]
         try:
             with anyio.fail_after(_LIST_SECONDS):
                 listed += await docs.tools()
@@ -145,7 +148,9 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         "simworlds-blender",
         version=_own_version(),
         title="SimWorlds: live Blender",
-        instructions=instructions(team.names if team is not None else ()),
+        instructions=instructions(
+            [*(tool.name for tool in FOR_CLIENTS), *team.names] if team is not None else ()
+        ),
         lifespan=lifespan,
         get_tool_input_schema=lambda name: entry(BY_NAME[name]).input_schema if name in BY_NAME else None,
         on_list_tools=list_tools,
