@@ -261,8 +261,6 @@ class _Ends:
     """Stands for a session's thread: every call ends at once."""
 
     def __call__(self, tool: BlenderTool, arguments: dict[str, Any] | None, call: Call) -> Any:
-        from concurrent.futures import Future
-
         del tool, arguments, call
         future: Future[Result] = Future()
         future.set_result(Result("done"))
