@@ -23,10 +23,19 @@ class ScreenshotPlaces:
     def write(self, path: str, png: bytes) -> None:
         """Writes a picture, whole or not at all. Raises Refusal."""
         ground, relative = self._find(path)
+        if not png.startswith(_PNG):
+            raise Refusal(f"What is to be written to {path[:300]} is no PNG.")
         try:
             ground.write(relative, png, over=_PNG)
         except Refusal as error:
             raise Refusal(f"The screenshot cannot be written to {path[:300]}: {error}") from error
+
+    @property
+    def spellings(self) -> tuple[str, ...]:
+        """The folders, as they are spelled and as they really are."""
+        return tuple(
+            dict.fromkeys(str(one) for folder in self._folders for one in (folder, folder.resolve()))
+        )
 
     def check(self, path: str) -> None:
         """Raises Refusal for a path that no screenshot may be written to."""

@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import json
+import re
+from contextlib import suppress
 from typing import TYPE_CHECKING, Any, Literal
 
 from PIL import Image
 from pydantic import Field
 
+from agents.blender.drop_in.delivery import Delivery
 from agents.blender.sheets.contact_sheet import draw_axes, paragraph, to_png
 from agents.blender.sheets.view_reply import DrawnView
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools import execute
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
 from simworlds.sandbox.errors import Refusal, TookTooLong
-from simworlds.sandbox.replies import Claim, Count, Name
+from simworlds.sandbox.replies import Claim, Count, Name, nothing
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -26,6 +29,7 @@ _LISTED = 10  # objects in get_scene_info
 _SIDES = (64, 2000)  # pixels of a screenshot
 _MOST_NAMES = 40_000
 _BACKGROUND = (61, 61, 61)
+_DRAWS = re.compile(r"\bgpu\b")
 
 _Number = float | None
 """None stands for what is not finite."""
@@ -91,8 +95,10 @@ class _NamedItems(Claim):
 def tools(seconds: float, places: ScreenshotPlaces) -> dict[str, BlenderTool]:
     """The tools by their commands. Code may run for ``seconds``; screenshots are written to ``places``."""
 
+    delivery = Delivery(places)
+
     def run_code(context: ToolContext, arguments: _OfCode, call: Call) -> Result:
-        return _run_code(context, arguments.code, seconds, call)
+        return _run_code(context, arguments.code, seconds, call, delivery)
 
     def take_screenshot(context: ToolContext, arguments: _OfScreenshot, call: Call) -> Result:
         return _take_screenshot(context, arguments, call, places)
@@ -141,22 +147,37 @@ def _list_items(context: ToolContext, arguments: _OfSearch, call: Call) -> Resul
     return Result("", reply.value.model_dump())
 
 
-def _run_code(context: ToolContext, code: str, seconds: float, call: Call) -> Result:
+def _run_code(context: ToolContext, code: str, seconds: float, call: Call, delivery: Delivery) -> Result:
     """Runs code unchecked, as the add-on does. Raises Refusal with the exception of the code, as JSON."""
-    wanted = execute.ExecuteArguments(code=code, timeout=seconds, preflight="off")
+    folder = context.blender.folder
+    if _DRAWS.search(code):
+        _make_drawable(context, call)
+    own = delivery.exchanged(code, folder)
     try:
-        data = execute.run(context, wanted, call).data
+        data = execute.run(
+            context, execute.ExecuteArguments(code=own, timeout=seconds, preflight="off"), call
+        ).data
     except TookTooLong as error:
         hint = "Start the server with a longer --timeout if it is to run longer."
         raise TookTooLong(f"{error} {hint}", error.printed, error.ending) from error
+    printed = "\n".join([data["stdout"], *delivery.deliver(folder)])
     if error := data["error"]:
         told = {
             "exception_type": error["type"],
             "message": error["message"],
             "traceback": error["traceback"],
         }
-        raise Refusal(json.dumps(told | ({"printed": data["stdout"]} if data["stdout"] else {})))
-    return Result("", {"executed": True, "result": data["stdout"]})
+        raise Refusal(delivery.restored(json.dumps(told | ({"printed": printed} if printed else {})), folder))
+    return Result("", {"executed": True, "result": delivery.restored(printed, folder)})
+
+
+def _make_drawable(context: ToolContext, call: Call) -> None:
+    """Lets code draw with the module ``gpu``, as a Blender with a window does, where this machine can."""
+    folder = context.blender.folder.workspace.for_blender()
+    with suppress(Refusal):
+        context.blender.call(
+            "make_drawable", {"folder": folder}, nothing, timeout=_SECONDS, cancelled=call.cancelled
+        )
 
 
 def _take_screenshot(

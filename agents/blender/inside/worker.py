@@ -29,6 +29,7 @@ TOOLS = {
     "group": ("group", "group"),
     "preview": ("preview.fixed_views", "preview"),
     "viewport": ("preview.viewport", "viewport"),
+    "make_drawable": ("preview.viewport", "make_drawable"),
     "material_sheet": ("preview.material_sheet", "material_sheet"),
     "uv_sheet": ("preview.uv_sheet", "uv_sheet"),
     "subject_mask": ("preview.subject_mask", "subject_mask"),
