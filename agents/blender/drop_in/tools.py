@@ -28,6 +28,7 @@ _SECONDS = 60.0
 _LISTED = 10  # objects in get_scene_info
 _SIDES = (64, 2000)  # pixels of a screenshot
 _MOST_NAMES = 40_000
+_LONGEST_PRINT = 1_100_000
 _BACKGROUND = (61, 61, 61)
 _DRAWS = re.compile(r"\bgpu\b")
 
@@ -57,6 +58,10 @@ class _OfScreenshot(Arguments):
 
 class _OfCode(Arguments):
     code: str = Field(max_length=execute.LONGEST_CODE)
+
+
+class _CapturedOutcome(execute.Outcome):
+    printed: str = Field(max_length=_LONGEST_PRINT)
 
 
 class _ListedObject(Claim):
@@ -152,23 +157,30 @@ def _run_code(context: ToolContext, code: str, seconds: float, call: Call, deliv
     folder = context.blender.folder
     if _DRAWS.search(code):
         _make_drawable(context, call)
-    own = delivery.exchanged(code, folder)
+    title = execute.title_of(code)
     try:
-        data = execute.run(
-            context, execute.ExecuteArguments(code=own, timeout=seconds, preflight="off"), call
-        ).data
+        outcome = context.blender.call(
+            "execute_captured",
+            {"code": delivery.exchanged(code, folder)},
+            _CapturedOutcome.model_validate,
+            timeout=seconds,
+            what=f"the code {title!r}",
+            changes=True,
+            after=f"after {title!r}",
+            cancelled=call.cancelled,
+        ).value
     except TookTooLong as error:
         hint = "Start the server with a longer --timeout if it is to run longer."
         raise TookTooLong(f"{error} {hint}", error.printed, error.ending) from error
-    printed = "\n".join([data["stdout"], *delivery.deliver(folder)])
-    if error := data["error"]:
+    printed = delivery.restored("\n".join([outcome.printed, *delivery.deliver(folder)]), folder)
+    if (error := outcome.error) is not None:
         told = {
-            "exception_type": error["type"],
-            "message": error["message"],
-            "traceback": error["traceback"],
+            "exception_type": error.type,
+            "message": delivery.restored(error.message, folder),
+            "traceback": delivery.restored(error.traceback, folder),
         }
-        raise Refusal(delivery.restored(json.dumps(told | ({"printed": printed} if printed else {})), folder))
-    return Result("", {"executed": True, "result": delivery.restored(printed, folder)})
+        raise Refusal(json.dumps(told | ({"printed": printed} if printed else {})))
+    return Result("", {"executed": True, "result": printed})
 
 
 def _make_drawable(context: ToolContext, call: Call) -> None:

@@ -10,6 +10,7 @@ from .physics import rigid_body_inputs
 # JSON data.
 TOOLS = {
     "execute": ("execute", "execute"),
+    "execute_captured": ("captured_execute", "execute_captured"),
     "present": ("api_presence", "present"),
     "open": ("blend.file_io", "open_file"),
     "write": ("blend.file_io", "write_file"),
