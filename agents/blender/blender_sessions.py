@@ -10,14 +10,17 @@ import threading
 import time
 from concurrent.futures import Future, ThreadPoolExecutor
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from functools import partial
+from typing import TYPE_CHECKING, Any, cast
 
 import anyio
 import anyio.to_thread
 
+from agents.blender.jobs import SessionJobs
 from agents.blender.launch import make_launch, runs_folder
 from agents.blender.run_folder import RunFolder, new_run
 from agents.blender.supervisor import Supervisor
+from agents.blender.tools import job
 from agents.blender.tools.base import ToolContext, parse, perform
 from simworlds.sandbox.errors import BlenderError, CannotStart, Refusal
 
@@ -59,11 +62,15 @@ class SessionSetup:
 class BlenderSession:
     """One client's Blender, with a thread that runs its calls one by one, in order.
 
-    ``folder`` is the run to continue; None: the one of ``setup``, or a new one.
+    ``folder`` is the run to continue; None: the one of ``setup``, or a new one. ``jobs``: those of an earlier session
+    of the client, whose results it may still fetch.
     """
 
-    def __init__(self, setup: SessionSetup, folder: RunFolder | None = None) -> None:
+    def __init__(
+        self, setup: SessionSetup, folder: RunFolder | None = None, jobs: SessionJobs | None = None
+    ) -> None:
         self.folder = folder
+        self.jobs = jobs or SessionJobs()
         self._setup = setup
         self._blender: Supervisor | None = None
         self._ended = False
@@ -92,21 +99,41 @@ class BlenderSession:
     ) -> Result:
         """Calls a tool; ``about`` gives the knowledge base of a Blender version.
 
-        If this is cancelled, so is the call: Blender is killed and restarted. Raises BlenderError.
+        If this is cancelled, so is the call: Blender is killed and restarted. Jobs go on. Raises BlenderError.
         """
-        self._waiting.add(call.cancelled)
         try:
-            try:
-                future = self._thread.submit(self._use, tool, arguments, call, about)
-            except RuntimeError as error:
-                raise Refusal("This session has ended.") from error
-            return await asyncio.wrap_future(future)
+            if tool is job.TOOL:
+                asked = cast("job.JobArguments", parse(tool, arguments))
+                return await self.jobs.use(asked, call, partial(self._submit, about=about))
+            self.jobs.check_free(tool.name)
+            return await asyncio.wrap_future(self._submit(tool, arguments, call, about))
         except asyncio.CancelledError:
             call.cancelled.set()
             raise
         finally:
+            self._used = time.monotonic()
+
+    def _submit(
+        self,
+        tool: BlenderTool,
+        arguments: dict[str, Any] | None,
+        call: Call,
+        about: Callable[[str], Knowledge],
+    ) -> Future[Result]:
+        """Lets the session's thread run a call after those before it. Raises Refusal."""
+
+        def end(_future: Future[Result]) -> None:
             self._waiting.discard(call.cancelled)
             self._used = time.monotonic()
+
+        self._waiting.add(call.cancelled)
+        try:
+            future = self._thread.submit(self._use, tool, arguments, call, about)
+        except RuntimeError as error:
+            self._waiting.discard(call.cancelled)
+            raise Refusal("This session has ended.") from error
+        future.add_done_callback(end)
+        return future
 
     def cancel(self) -> None:
         """From any thread: cancels running and waiting calls; new ones are refused."""
@@ -205,7 +232,7 @@ class BlenderSessions:
         self._at_most = 1 if setup.run else at_most
         self._idle = idle
         self._open: dict[str, BlenderSession] = {}
-        self._left: dict[str, RunFolder] = {}
+        self._left: dict[str, tuple[RunFolder, SessionJobs]] = {}
         self._ended = False
         self._lock = anyio.Lock()
 
@@ -223,7 +250,8 @@ class BlenderSessions:
         async with self._lock:
             if client not in self._open:
                 self._admit()
-                self._open[client] = BlenderSession(self._setup, self._left.pop(client, None))
+                folder, jobs = self._left.pop(client, (None, None))
+                self._open[client] = BlenderSession(self._setup, folder, jobs)
             return self._open[client]
 
     def _admit(self) -> None:
@@ -264,7 +292,7 @@ class BlenderSessions:
             with anyio.CancelScope(shield=True):
                 await anyio.to_thread.run_sync(session.close, _LEAVE_SECONDS)
             if session.folder is not None:
-                self._left[client] = session.folder
+                self._left[client] = session.folder, session.jobs
 
     def close(self, seconds: float = CLOSE_SECONDS) -> None:
         """Closes all sessions for good, within ``seconds``."""

@@ -19,12 +19,13 @@ from starlette.datastructures import Headers
 
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
-from agents.blender.tool_catalogue import BY_NAME, TOOLS
+from agents.blender.tool_catalogue import BY_NAME, FOR_CLIENTS, TOOLS
 from agents.blender.tool_profiles import DEFAULT, Profile, first_profile, is_offered
 from agents.blender.tools.base import Call
+from agents.blender.tools.failures import describe_failure
 from simworlds.mcp_transport.sessions import SESSION, UNFINISHED, EndUnfinishedSessions
 from simworlds.mcp_transport.tool_listing import SCHEMAS, as_listed, schemas_text
-from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
+from simworlds.sandbox.errors import BlenderError
 from simworlds.schemas.json_schema import schema_of
 
 if TYPE_CHECKING:
@@ -59,6 +60,7 @@ _HABITS = (
     ("blender_motion_sheet_preview", "to see and measure motion over time"),
     ("blender_save", "when a stage is done"),
     ("blender_render", "last, when everything is in place; start with a still"),
+    ("blender_job", "for a bake or an animation that may take longer than a minute"),
 )  # fmt: skip
 _LIVE = (
     "You have your own live Blender, without a window. The scene stays from call to call. If Blender crashes or hangs, "
@@ -94,9 +96,14 @@ def make_server(
     ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles. ``profile`` says
     which tools there are.
     """
+    tools = TOOLS if team is None else (*TOOLS, *FOR_CLIENTS)
     names = [
         name
-        for name in (*BY_NAME, *(team.names if team is not None else ()), *docs_client.NAMES)
+        for name in (
+            *(tool.name for tool in tools),
+            *(team.names if team is not None else ()),
+            *docs_client.NAMES,
+        )
         if is_offered(name, profile)
     ]
 
@@ -129,7 +136,7 @@ def make_server(
         return await _call_with_progress(context, tool.name, use)
 
     async def whole_entries() -> list[types.Tool]:
-        entries = [*map(entry, TOOLS), *(team.tools() if team is not None else ())]
+        entries = [*map(entry, tools), *(team.tools() if team is not None else ())]
         try:
             with anyio.fail_after(_LIST_SECONDS):
                 entries += await docs.tools()
@@ -282,22 +289,8 @@ async def _call_with_progress(context: _Context, name: str, use: _Use) -> types.
 async def _result_of(name: str, call: Awaitable[Result]) -> types.CallToolResult:
     try:
         return _as_mcp(await call)
-    except Lost as error:
-        output = error.printed.strip()
-        end = f"\n\nThe end of Blender's output:\n```\n{output}\n```" if output else ""
-        return _failed(f"{error}{end}")
-    except ToolBroke as error:
-        _LOG.error("%s failed in Blender: %s\n%s", name, error, error.details)
-        return _failed(
-            f"{name} failed because of a bug in the tool, not in your call: {error}. Blender still runs."
-        )
-    except BlenderError as error:
-        return _failed(str(error))
     except Exception as error:
-        _LOG.exception("%s failed", name)
-        return _failed(
-            f"{name} failed on this call ({type(error).__name__}). Change the call, or report it with its arguments."
-        )
+        return _failed(describe_failure(name, error))
 
 
 def _as_mcp(result: Result) -> types.CallToolResult:

@@ -9,6 +9,7 @@ from agents.blender.tools import (
     execute,
     files,
     group,
+    job,
     material_preview,
     motion_sheet,
     previews,
@@ -39,5 +40,7 @@ TOOLS: tuple[BlenderTool, ...] = (
     bake.TOOL,
     render.TOOL,
 )
-BY_NAME = {tool.name: tool for tool in TOOLS}
-assert len(BY_NAME) == len(TOOLS), "a tool is listed twice"
+FOR_CLIENTS: tuple[BlenderTool, ...] = (job.TOOL,)
+"""Further ones for clients that wait for a reply for some minutes only; the agent loop waits as long as it takes."""
+BY_NAME = {tool.name: tool for tool in (*TOOLS, *FOR_CLIENTS)}
+assert len(BY_NAME) == len(TOOLS) + len(FOR_CLIENTS), "a tool is listed twice"

@@ -24,6 +24,8 @@ _PORT = 8766
 _SIGNAL_SECONDS = 1.5  # clients kill two seconds after they have asked to end
 _TYPED = click.core.ParameterSource.COMMANDLINE
 _ONLY_HTTP = ("host", "port", "allow_host", "sessions", "idle")
+_ONLY_AS = ("timeout", "screenshots")
+_ADDON = "blender-mcp"
 _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=Path)
 
 
@@ -45,6 +47,26 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
     show_default=True,
     help="docs: the documentation and the check of code, without a Blender; look: also what reads a scene; build: also "
     "what changes it, renders and checks plans; all: every tool, with whole schemas, for programs.",
+)
+@click.option(
+    "--as",
+    "stands_for",
+    type=click.Choice([_ADDON]),
+    help="Instead of MCP, speak the protocol of blender-mcp's add-on, on 127.0.0.1, port 9876.",
+)
+@click.option(
+    "--timeout",
+    type=click.FloatRange(1, 3600),
+    default=170.0,
+    show_default=True,
+    metavar="SECONDS",
+    help="With --as: how long code may run. Its clients wait for 180 seconds.",
+)
+@click.option(
+    "--screenshots",
+    type=_ASSETS,
+    multiple=True,
+    help="With --as: a folder that screenshots may be written to, besides the temporary one.",
 )
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
@@ -74,6 +96,9 @@ def mcp(  # noqa: PLR0913 - one for each option
     read: tuple[Path, ...],
     sandbox: Kind | None,
     profile: Profile,
+    stands_for: str | None,
+    timeout: float,
+    screenshots: tuple[Path, ...],
     over_http: bool,
     host: str,
     port: int,
@@ -87,9 +112,7 @@ def mcp(  # noqa: PLR0913 - one for each option
     Every client has its own Blender and run folder, and finds both as it left them. On an address other than
     loopback clients must send a token: Authorization: Bearer …
     """
-    for_http = [name for name in _ONLY_HTTP if context.get_parameter_source(name) is _TYPED]
-    if for_http and not over_http:
-        raise click.UsageError(f"--{for_http[0].replace('_', '-')} needs --http.")
+    _check_options(context, over_http=over_http, stands_for=stands_for)
     # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
@@ -101,13 +124,40 @@ def mcp(  # noqa: PLR0913 - one for each option
         if blender_exe is not None:
             find_blender(blender, blender_exe)
         setup = setup_of(_confined(sandbox, announced=profile != "docs"))
-        if over_http:
+        if stands_for is not None:
+            _as_addon(setup, port if _is_typed(context, "port") else None, timeout, screenshots)
+        elif over_http:
             _over_http(setup, profile, sessions, idle * 60, host, port, token or "", allow_host)
         else:
             _over_stdio(setup, profile)
     except CannotStart as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
+
+
+def _is_typed(context: click.Context, name: str) -> bool:
+    return context.get_parameter_source(name) is _TYPED
+
+
+def _check_options(context: click.Context, *, over_http: bool, stands_for: str | None) -> None:
+    """Raises UsageError for options that do not go together."""
+    if over_http and stands_for is not None:
+        raise click.UsageError(
+            f"--http does not go with --as {stands_for}: its clients know no other protocol."
+        )
+    for_http = [name for name in _ONLY_HTTP if _is_typed(context, name)]
+    if for_http and not over_http and not (stands_for is not None and for_http == ["port"]):
+        raise click.UsageError(f"--{for_http[0].replace('_', '-')} needs --http.")
+    if stands_for is None and (for_addon := [name for name in _ONLY_AS if _is_typed(context, name)]):
+        raise click.UsageError(f"--{for_addon[0]} needs --as {_ADDON}.")
+
+
+def _as_addon(setup: SessionSetup, port: int | None, timeout: float, screenshots: tuple[Path, ...]) -> None:
+    from agents.blender.drop_in.screenshot_places import ScreenshotPlaces  # noqa: PLC0415 - not for --help
+    from agents.blender.drop_in.server import PORT, run_drop_in  # noqa: PLC0415
+
+    _loaded()
+    run_drop_in(setup, PORT if port is None else port, timeout, ScreenshotPlaces(screenshots))
 
 
 def _over_stdio(setup: SessionSetup, profile: Profile) -> None:

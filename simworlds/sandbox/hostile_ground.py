@@ -125,6 +125,25 @@ class HostileGround:
             except OSError as error:
                 raise _cannot_write(f"{self.mount.name}/{name}", error) from error
 
+    def write(self, relative: str, content: bytes, *, over: bytes) -> None:
+        """Writes a file that only its owner reads, whole or not at all. Raises Refusal.
+
+        An existing file is replaced only if it is a regular one of ours that is empty or begins with ``over``.
+        """
+        with self._within(relative) as (folder, name):
+            part = f".{secrets.token_hex(8)}.part"
+            flags = os.O_WRONLY | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW | os.O_CLOEXEC
+            try:
+                _check_replaceable(folder, name, over)
+                with os.fdopen(os.open(part, flags, 0o600, dir_fd=folder), "wb") as file:
+                    file.write(content)
+                os.replace(part, name, src_dir_fd=folder, dst_dir_fd=folder)
+            except OSError as error:
+                raise _cannot_write(relative, error) from error
+            finally:
+                with suppress(OSError):
+                    os.unlink(part, dir_fd=folder)
+
     # Removing
 
     def remove(self, relative: str) -> None:
@@ -351,6 +370,18 @@ def _open_regular(folder: int, name: str, relative: str, at_most: int) -> Binary
         os.close(number)
         raise Refusal(f"{relative[:200]} has {status.st_size:,} bytes; at most {at_most:,} are taken.")
     return os.fdopen(number, "rb")
+
+
+def _check_replaceable(folder: int, name: str, start: bytes) -> None:
+    """Raises Refusal unless ``name`` is free, or a file of ours that is empty or begins with ``start``."""
+    try:
+        with _open_regular(folder, name, name, LARGEST_FILE) as file:
+            is_ours = os.fstat(file.fileno()).st_uid == os.geteuid()
+            is_such = file.read(len(start)) in (b"", start)
+    except NotThere:
+        return
+    if not (is_ours and is_such):
+        raise Refusal(f"{name[:200]} is a file of another kind or owner, which is not replaced.")
 
 
 def _cannot_open(relative: str, error: OSError) -> Refusal:

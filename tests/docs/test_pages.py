@@ -14,7 +14,7 @@ from places import REPO
 
 from agents.blender import plan_check
 from agents.blender.team import PROMPTS
-from agents.blender.tool_catalogue import TOOLS
+from agents.blender.tool_catalogue import FOR_CLIENTS, TOOLS
 from agents.protocol.rules.catalogue import RULES
 from agents.protocol.tolerances import TOLERANCES
 from docs.generate.pages import outdated, pages, write
@@ -88,7 +88,7 @@ def test_the_tool_has_its_description_arguments_and_result() -> None:
 
 def test_every_tool_of_the_suite_has_its_description_and_arguments() -> None:
     text = pages()["blender-tools.md"]
-    for entry in TOOLS:
+    for entry in (*TOOLS, *FOR_CLIENTS):
         assert f"## `{entry.name}`" in text
         assert entry.description in text
         for name in entry.arguments.model_fields:

@@ -55,7 +55,7 @@ class _Fault(Claim):
     there: list[Text] = Field(max_length=100)
 
 
-class _Outcome(Claim):
+class Outcome(Claim):
     """The worker's report on executed code."""
 
     value: Text | None
@@ -77,11 +77,11 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
     if arguments.on_error == "restore":
         blender.keep("before code that may be undone")
     before, unkept = blender.checkpoints.last, blender.checkpoints.unkept
-    title = _title(arguments.code)
+    title = title_of(arguments.code)
     reply = blender.call(
         "execute",
         {"code": arguments.code},
-        _Outcome.model_validate,
+        Outcome.model_validate,
         timeout=arguments.timeout,
         what=f"the code {title!r}",
         changes=True,
@@ -105,7 +105,7 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
     return Result(_text(data, reply, checked), data, failed=True)
 
 
-def _title(code: str) -> str:
+def title_of(code: str) -> str:
     """The first line that is not empty, shortened."""
     lines = [line.strip() for line in code.splitlines() if line.strip()]
     first = lines[0] if lines else "(empty)"
@@ -119,7 +119,7 @@ def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     return f" To undo it{calls}: blender_load(checkpoint={before.number})."
 
 
-def _text(data: dict[str, Any], reply: WorkerReply[_Outcome], checked: PreFlight) -> str:
+def _text(data: dict[str, Any], reply: WorkerReply[Outcome], checked: PreFlight) -> str:
     parts: list[str] = []
     if error := data["error"]:
         parts.append(f"**{error['type']}**: {error['message']}")

@@ -81,6 +81,7 @@ async def test_every_tool_of_the_suite_is_listed_beside_the_documentation(client
     listed = (await client.list_tools()).tools
     assert [tool.name for tool in listed] == [
         *(tool.name for tool in TOOLS if is_offered(tool.name, DEFAULT)),
+        "blender_job",
         "blender_plan_check",
         "blender_docs",
         "blender_check",
