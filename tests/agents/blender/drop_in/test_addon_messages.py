@@ -7,7 +7,7 @@ from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from hypothesis import given
+from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 
 from agents.blender.drop_in.messages import LONGEST, MessageSplitter, NotMessages, parse
@@ -32,6 +32,7 @@ def split(pieces: Iterable[bytes]) -> list[dict[str, Any]]:
     return found
 
 
+@settings(suppress_health_check=[HealthCheck.too_slow])
 @given(st.lists(OBJECTS, max_size=4), st.booleans(), st.sampled_from(["", " ", "\r\n"]), st.data())
 def test_messages_are_found_whatever_the_pieces(
     objects: list[dict[str, Any]], escaped: bool, between: str, data: st.DataObject
