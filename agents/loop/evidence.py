@@ -145,10 +145,15 @@ def _telling_frames(task: RunTask, peak: int | None) -> list[int]:
     if task.plan is None or task.plan.render.kind == "still":
         return [task.plan.frame_start] if task.plan is not None else []
     first, last = task.plan.frame_start, task.plan.frame_end
-    margin = (last - first) / _EDGE  # what is fastest as it begins, such as a gas, is seen at its beginning
-    tells = peak is not None and first + margin <= peak <= last - margin
-    middle = peak if peak is not None and tells else (first + last) // 2
-    return sorted({first, middle, last})
+    if peak is None:
+        return sorted({first, (first + last) // 2, last})
+    # What is fastest as it begins, such as a gas or a burst, is hardly there yet.
+    margin, quarter = (last - first) / _EDGE, (last - first) // 4
+    if peak < first + margin:
+        peak = first + quarter
+    elif peak > last - margin:
+        peak = last - quarter
+    return sorted({first, peak, last})
 
 
 def _coders_stills(run: Run) -> list[Block | str]:

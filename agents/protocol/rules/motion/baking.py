@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from agents.protocol.structure import LogicalObject
 
 
+_PARTICLES = "particles"  # a kind of cache
 _BAKE = "Bake it over the whole range (blender_bake)."
 
 
@@ -74,7 +75,9 @@ def _bake_problem(cache: CacheFacts, start: int, end: int) -> str:
         return "is not baked"
     if cache.outdated:
         return "is baked, but outdated"
-    if cache.frame_start > start or cache.frame_end < end:
+    # Blender sets the range of particles itself: from the first that is born to the last that dies.
+    has_own_range = cache.kind == _PARTICLES
+    if not has_own_range and (cache.frame_start > start or cache.frame_end < end):
         return f"is baked for frames {cache.frame_start}–{cache.frame_end}, not for {start}–{end}"
     if cache.missing:
         return f"is baked, but {cache.missing} of its frames are missing"
