@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import heapq
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 _KNOWN = 30  # documents; a word with more of its own says what it means by itself
 _SHARE = 0.15  # of what a term's document says of the term, what it says of the everyday word
 _LESS_LIKELY = 0.85
+_MOST = 100  # documents that a term lends: those that say most of it
 
 
 def load_everyday_words() -> EverydayWords:
@@ -39,7 +41,7 @@ def lent_postings(own: PostingLists, units: PostingLists, words: EverydayWords) 
     """What everyday words borrow of their terms' posting lists in ``own``: documents that lack the word itself.
 
     ``units`` are the posting lists that tell whether a word is known. A term of several stems lends the documents
-    that have all of them.
+    that have all of them; any term only those that say most of it.
     """
     lent = PostingLists()
     for word, its_terms in words.items():
@@ -49,9 +51,10 @@ def lent_postings(own: PostingLists, units: PostingLists, words: EverydayWords) 
         weights: dict[int, float] = {}
         share = _SHARE
         for stems in its_terms:
-            for number, weight in _having_all(own, stems).items():
+            having = _having_all(own, stems)
+            for number in heapq.nlargest(_MOST, having, key=having.__getitem__):
                 if number not in has_it:
-                    weights[number] = max(weights.get(number, 0.0), share * weight)
+                    weights[number] = max(weights.get(number, 0.0), share * having[number])
             share *= _LESS_LIKELY
         if weights:
             lent.numbers[word] = sorted(weights)

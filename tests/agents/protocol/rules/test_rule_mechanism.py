@@ -463,7 +463,7 @@ def test_an_animation_without_phases_has_a_timeline_and_a_still_has_none(session
 
 def test_particles_are_baked_from_the_first_birth_to_the_last_death(session: LiveSession) -> None:
     begin = SOLVED["sim_particle"].replace("= 20, 1, 8, 50", "= 20, 4, 6, 3")
-    make(session, begin, baked=True)
+    make(session, begin, "sim_particle", baked=True)
     assert session.run("bpy.data.objects['Body'].particle_systems[0].point_cache.frame_start") == 4
     assert timeline(session).passed == ("T1",)
     assert mechanism(session).passed == ("R15", "R19")
