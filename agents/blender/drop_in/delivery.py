@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from agents.blender.drop_in.screenshot_places import ScreenshotPlaces
     from agents.blender.run_folder import RunFolder
 
+_FOLDER = "to-deliver"  # in the workspace
 _LARGEST = 256 << 20  # bytes of a picture
 _MOST = 1000  # paths that are remembered: code may name a path once, and write to it in later calls
 
@@ -34,6 +35,10 @@ class Delivery:
         self._meant: dict[str, str] = {}  # name in the workspace → path that the code has
         self._delivered: dict[str, tuple[int, int]] = {}  # name → time and size of what was delivered
 
+    def targets(self, folder: RunFolder) -> list[str]:
+        """The paths in the workspace that code may write pictures to."""
+        return [folder.workspace.for_blender(name) for name in self._meant]
+
     def exchanged(self, code: str, folder: RunFolder) -> str:
         """The code with paths of the workspace instead of those that pictures are to be delivered to."""
 
@@ -41,7 +46,8 @@ class Delivery:
             path = match[0]
             if ".." in path or Path(path).is_relative_to(folder.root):
                 return path
-            name = f"to-deliver-{hashlib.sha256(path.encode()).hexdigest()[:8]}-{Path(path).name}"
+            # What is loaded from a file is named after it, so the name stays.
+            name = f"{_FOLDER}/{hashlib.sha256(path.encode()).hexdigest()[:16]}/{Path(path).name}"
             if name not in self._meant and len(self._meant) >= _MOST:
                 return path
             self._meant[name] = path
@@ -52,8 +58,7 @@ class Delivery:
     def restored(self, text: str, folder: RunFolder) -> str:
         """What Blender says, with the paths that the code had."""
         for name, path in self._meant.items():
-            if name in text:
-                text = text.replace(folder.workspace.for_blender(name), path)
+            text = text.replace(folder.workspace.for_blender(name), path)
         return text
 
     def deliver(self, folder: RunFolder) -> list[str]:

@@ -99,7 +99,6 @@ class _NamedItems(Claim):
 
 def tools(seconds: float, places: ScreenshotPlaces) -> dict[str, BlenderTool]:
     """The tools by their commands. Code may run for ``seconds``; screenshots are written to ``places``."""
-
     delivery = Delivery(places)
 
     def run_code(context: ToolContext, arguments: _OfCode, call: Call) -> Result:
@@ -158,10 +157,11 @@ def _run_code(context: ToolContext, code: str, seconds: float, call: Call, deliv
     if _DRAWS.search(code):
         _make_drawable(context, call)
     title = execute.title_of(code)
+    request = {"code": delivery.exchanged(code, folder), "targets": delivery.targets(folder)}
     try:
         outcome = context.blender.call(
             "execute_captured",
-            {"code": delivery.exchanged(code, folder)},
+            request,
             _CapturedOutcome.model_validate,
             timeout=seconds,
             what=f"the code {title!r}",
