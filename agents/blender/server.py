@@ -67,9 +67,9 @@ _MANY_CLIENTS = 64
 _LOG = logging.getLogger(__name__)
 
 
-def instructions(more: Iterable[str] = ()) -> str:
-    """The server's instructions for models: how to work with the tools, including ``more`` of the server's own."""
-    known = {*(tool.name for tool in TOOLS), *more, *docs_client.NAMES}
+def instructions(own: Iterable[str]) -> str:
+    """The server's instructions for models: how to work with its ``own`` tools, and those of the knowledge base."""
+    known = {*own, *docs_client.NAMES}
     habits = [f"- {name}: {when}." for name, when in _HABITS if name in known]
     return "\n".join(
         [
@@ -85,8 +85,11 @@ def instructions(more: Iterable[str] = ()) -> str:
 def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None = None) -> Server[None]:
     """The server, without a transport. Closes the sessions when it ends.
 
-    ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles.
+    ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles, who also waits as
+    long as it takes and so has no use for jobs.
     """
+    served = TOOLS if team is None else (*TOOLS, *FOR_CLIENTS)
+    own = [*(tool.name for tool in served), *(team.names if team is not None else ())]
 
     @asynccontextmanager
     async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
@@ -106,12 +109,12 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
             return await _look_up(docs, params.name, params.arguments)
         if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
             return answer
-        tool = BY_NAME.get(params.name)
-        if tool is None:
-            names = ", ".join([*BY_NAME, *(team.names if team is not None else ()), *docs_client.NAMES])
+        if params.name not in own:
+            names = ", ".join([*own, *docs_client.NAMES])
             raise MCPError(
                 types.INVALID_PARAMS, f"There is no tool {params.name[:80]!r}. Available: {names}."
             )
+        tool = BY_NAME[params.name]
         try:
             session = await sessions.get(_client(context))
         except BlenderError as error:
@@ -120,9 +123,7 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         return await _call_with_progress(context, tool.name, use)
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
-        listed = list(map(entry, TOOLS))
-        if team is not None:
-            listed += [*map(entry, FOR_CLIENTS), *team.tools()]
+        listed = [*map(entry, served), *(team.tools() if team is not None else ())]
         try:
             with anyio.fail_after(_LIST_SECONDS):
                 listed += await docs.tools()
@@ -148,9 +149,7 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         "simworlds-blender",
         version=_own_version(),
         title="SimWorlds: live Blender",
-        instructions=instructions(
-            [*(tool.name for tool in FOR_CLIENTS), *team.names] if team is not None else ()
-        ),
+        instructions=instructions(own),
         lifespan=lifespan,
         get_tool_input_schema=lambda name: entry(BY_NAME[name]).input_schema if name in BY_NAME else None,
         on_list_tools=list_tools,
