@@ -33,11 +33,13 @@ class Delivery:
             rf"(?<![\w./-])(?:{folders})(?:/[\w.+-]{{1,200}}){{1,8}}(?<=\.png)(?![\w./-])"
         )
         self._meant: dict[str, str] = {}  # name in the workspace → path that the code has
+        self._own: dict[str, str] = {}  # path in the workspace → path that the code has
         self._delivered: dict[str, tuple[int, int]] = {}  # name → time and size of what was delivered
 
-    def targets(self, folder: RunFolder) -> list[str]:
+    @property
+    def targets(self) -> list[str]:
         """The paths in the workspace that code may write pictures to."""
-        return [folder.workspace.for_blender(name) for name in self._meant]
+        return [*self._own]
 
     def exchanged(self, code: str, folder: RunFolder) -> str:
         """The code with paths of the workspace instead of those that pictures are to be delivered to."""
@@ -51,14 +53,15 @@ class Delivery:
             if name not in self._meant and len(self._meant) >= _MOST:
                 return path
             self._meant[name] = path
+            self._own |= {folder.workspace.for_blender(name): path}
             return folder.workspace.for_blender(name)
 
         return self._path.sub(own, code)
 
-    def restored(self, text: str, folder: RunFolder) -> str:
+    def restored(self, text: str) -> str:
         """What Blender says, with the paths that the code had."""
-        for name, path in self._meant.items():
-            text = text.replace(folder.workspace.for_blender(name), path)
+        for own, path in self._own.items():
+            text = text.replace(own, path)
         return text
 
     def deliver(self, folder: RunFolder) -> list[str]:
