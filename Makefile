@@ -5,6 +5,9 @@ PYTHON_VERSION := 3.13
 PY := .venv/bin/python
 STAMP := .venv/.simworlds-installed
 STUBS := .venv/stubs/.written
+# The package blender-mcp needs another mcp than ours, so it has an environment of its own.
+BLENDER_MCP := .tools/blender-mcp/.installed
+BLENDER_MCP_LOCK := tests/agents/blender/drop_in/blender-mcp.lock
 UV := $(or $(shell command -v uv 2>/dev/null),.tools/uv/bin/uv)
 
 # uv passes over pyenv's shims, but takes an interpreter that stands in pyenv's folder when it is on PATH.
@@ -28,12 +31,14 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup kb test test-fast serve bench bench-validate soak lint docs docs-check rule-pictures lock clean
+.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check rule-pictures lock clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-15s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
 
 setup: $(STAMP) ## Make .venv with the pinned dependencies
+
+blender-mcp: $(BLENDER_MCP) ## Install the package blender-mcp, as the client of its test
 
 kb: $(STAMP) ## Build the knowledge base of BLENDER=5.1 [MANUAL= GUIDES= BLENDER_EXE= SUMMARIES= REQUIRE=]
 	@.venv/bin/simworlds kb build "$(BLENDER)" \
@@ -76,10 +81,12 @@ rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 docs-check: $(STAMP) ## Check that the generated references are up to date
 	@$(PY) -m docs.generate --check
 
+PIN = $(UV_ENV) "$(UV)" pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url \
+  --no-emit-find-links --no-annotate --no-header --quiet
+
 lock: $(UV) ## Pin the newest dependencies in requirements.lock
-	@$(UV_ENV) "$(UV)" pip compile pyproject.toml --all-extras --group dev --universal --python-version 3.11 --upgrade \
-	  --generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header --quiet \
-	  --output-file requirements.lock
+	@$(PIN) pyproject.toml --all-extras --group dev --output-file requirements.lock
+	@echo blender-mcp | $(PIN) - --output-file $(BLENDER_MCP_LOCK)
 
 clean: ## Remove what was made here (knowledge bases live elsewhere and stay)
 	rm -rf .venv .tools build dist .pytest_cache .ruff_cache .hypothesis
@@ -102,6 +109,12 @@ $(STAMP): requirements.lock pyproject.toml | $(UV)
 	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .
 	@$(PY) -m compileall -q simworlds kb_check kb_build kb_serve agents bench measurements
 	@touch $(STAMP)
+
+$(BLENDER_MCP): $(BLENDER_MCP_LOCK) | $(UV)
+	@echo "Installing blender-mcp into .tools/blender-mcp/ ..."
+	@$(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .tools/blender-mcp
+	@$(UV_ENV) "$(UV)" pip sync --quiet --python .tools/blender-mcp/bin/python --require-hashes $(BLENDER_MCP_LOCK)
+	@touch $(BLENDER_MCP)
 
 # The lock pins uv too, since the project depends on it: that very version is fetched, its hashes checked.
 .tools/uv/bin/uv:

@@ -93,14 +93,14 @@ def make_server(
 ) -> Server[None]:
     """The server, without a transport. Closes the sessions when it ends.
 
-    ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles. ``profile`` says
-    which tools there are.
+    ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles, who also waits as
+    long as it takes and so has no use for jobs. ``profile`` says which tools there are.
     """
-    tools = TOOLS if team is None else (*TOOLS, *FOR_CLIENTS)
+    served = TOOLS if team is None else (*TOOLS, *FOR_CLIENTS)
     names = [
         name
         for name in (
-            *(tool.name for tool in tools),
+            *(tool.name for tool in served),
             *(team.names if team is not None else ()),
             *docs_client.NAMES,
         )
@@ -136,7 +136,7 @@ def make_server(
         return await _call_with_progress(context, tool.name, use)
 
     async def whole_entries() -> list[types.Tool]:
-        entries = [*map(entry, tools), *(team.tools() if team is not None else ())]
+        entries = [*map(entry, served), *(team.tools() if team is not None else ())]
         try:
             with anyio.fail_after(_LIST_SECONDS):
                 entries += await docs.tools()

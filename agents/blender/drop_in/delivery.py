@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from agents.blender.drop_in.screenshot_places import ScreenshotPlaces
     from agents.blender.run_folder import RunFolder
 
+_FOLDER = "to-deliver"  # in the workspace
 _LARGEST = 256 << 20  # bytes of a picture
 _MOST = 1000  # paths that are remembered: code may name a path once, and write to it in later calls
 
@@ -32,7 +33,13 @@ class Delivery:
             rf"(?<![\w./-])(?:{folders})(?:/[\w.+-]{{1,200}}){{1,8}}(?<=\.png)(?![\w./-])"
         )
         self._meant: dict[str, str] = {}  # name in the workspace → path that the code has
+        self._own: dict[str, str] = {}  # path in the workspace → path that the code has
         self._delivered: dict[str, tuple[int, int]] = {}  # name → time and size of what was delivered
+
+    @property
+    def targets(self) -> list[str]:
+        """The paths in the workspace that code may write pictures to."""
+        return [*self._own]
 
     def exchanged(self, code: str, folder: RunFolder) -> str:
         """The code with paths of the workspace instead of those that pictures are to be delivered to."""
@@ -41,19 +48,20 @@ class Delivery:
             path = match[0]
             if ".." in path or Path(path).is_relative_to(folder.root):
                 return path
-            name = f"to-deliver-{hashlib.sha256(path.encode()).hexdigest()[:8]}-{Path(path).name}"
+            # What is loaded from a file is named after it, so the name stays.
+            name = f"{_FOLDER}/{hashlib.sha256(path.encode()).hexdigest()[:16]}/{Path(path).name}"
             if name not in self._meant and len(self._meant) >= _MOST:
                 return path
             self._meant[name] = path
+            self._own |= {folder.workspace.for_blender(name): path}
             return folder.workspace.for_blender(name)
 
         return self._path.sub(own, code)
 
-    def restored(self, text: str, folder: RunFolder) -> str:
+    def restored(self, text: str) -> str:
         """What Blender says, with the paths that the code had."""
-        for name, path in self._meant.items():
-            if name in text:
-                text = text.replace(folder.workspace.for_blender(name), path)
+        for own, path in self._own.items():
+            text = text.replace(own, path)
         return text
 
     def deliver(self, folder: RunFolder) -> list[str]:

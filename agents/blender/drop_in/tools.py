@@ -99,7 +99,6 @@ class _NamedItems(Claim):
 
 def tools(seconds: float, places: ScreenshotPlaces) -> dict[str, BlenderTool]:
     """The tools by their commands. Code may run for ``seconds``; screenshots are written to ``places``."""
-
     delivery = Delivery(places)
 
     def run_code(context: ToolContext, arguments: _OfCode, call: Call) -> Result:
@@ -158,10 +157,11 @@ def _run_code(context: ToolContext, code: str, seconds: float, call: Call, deliv
     if _DRAWS.search(code):
         _make_drawable(context, call)
     title = execute.title_of(code)
+    request = {"code": delivery.exchanged(code, folder), "targets": delivery.targets}
     try:
         outcome = context.blender.call(
             "execute_captured",
-            {"code": delivery.exchanged(code, folder)},
+            request,
             _CapturedOutcome.model_validate,
             timeout=seconds,
             what=f"the code {title!r}",
@@ -172,12 +172,12 @@ def _run_code(context: ToolContext, code: str, seconds: float, call: Call, deliv
     except TookTooLong as error:
         hint = "Start the server with a longer --timeout if it is to run longer."
         raise TookTooLong(f"{error} {hint}", error.printed, error.ending) from error
-    printed = delivery.restored("\n".join([outcome.printed, *delivery.deliver(folder)]), folder)
+    printed = delivery.restored("\n".join([outcome.printed, *delivery.deliver(folder)]))
     if (error := outcome.error) is not None:
         told = {
             "exception_type": error.type,
-            "message": delivery.restored(error.message, folder),
-            "traceback": delivery.restored(error.traceback, folder),
+            "message": delivery.restored(error.message),
+            "traceback": delivery.restored(error.traceback),
         }
         raise Refusal(json.dumps(told | ({"printed": printed} if printed else {})))
     return Result("", {"executed": True, "result": printed})

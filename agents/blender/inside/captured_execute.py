@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Runs code, and tells what it prints apart from what Blender itself prints."""
 
+import contextlib
+import os
 import sys
 
 from .execute import execute
@@ -9,7 +11,13 @@ _LONGEST = 1_000_000  # characters
 
 
 def execute_captured(arguments, report):
-    """As ``execute``; ``printed`` is what Python wrote to its standard output."""
+    """As ``execute``; ``printed`` is what Python wrote to its standard output.
+
+    ``targets`` are paths that the code may write to; their folders are made.
+    """
+    for path in arguments["targets"]:
+        with contextlib.suppress(OSError):
+            os.makedirs(os.path.dirname(path), exist_ok=True)
     tee = _Tee(sys.stdout)
     sys.stdout = tee
     try:

@@ -149,6 +149,7 @@ def test_a_picture_that_code_renders_arrives_where_the_code_says(
     path.unlink()
     client.run("bpy.ops.render.render(write_still=True)")
     assert path.exists()
+    assert client.run(f"print(bpy.data.images.load({str(path)!r}).name)") == "render.png\n"
     reply = client.ask("execute_code", code=f"open({str(server.temporary / 'x.txt')!r}, 'w')")
     assert "PermissionError" in reply["message"] or "FileNotFoundError" in reply["message"]
     assert not (server.temporary / "x.txt").exists()

@@ -97,14 +97,16 @@ def test_paths_of_pictures_are_exchanged_and_nothing_else(temporary: Path, tmp_p
     code = f'p = \'{temporary}/x/shot.png\'; q = "{{\\"f\\": \\"{temporary}/look_12.png\\"}}"'
     exchanged = delivery.exchanged(code, folder)
     assert str(temporary) not in exchanged
-    assert exchanged.count(folder.workspace.for_blender("to-deliver-")) == 2
-    assert delivery.restored(exchanged, folder) == code
+    assert exchanged.count(folder.workspace.for_blender("to-deliver/")) == 2
+    assert delivery.restored(exchanged) == code
 
 
 def test_pictures_are_delivered_once_and_again_when_they_change(temporary: Path, tmp_path: Path) -> None:
     folder = RunFolder.make(tmp_path / "run")
     delivery = Delivery(ScreenshotPlaces())
     own = Path(delivery.exchanged(f"{temporary}/shot.png", folder))
+    assert [str(own)] == delivery.targets
+    own.parent.mkdir(parents=True)
     assert delivery.deliver(folder) == []
     own.write_bytes(PNG)
     assert delivery.deliver(folder) == []
