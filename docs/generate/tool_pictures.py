@@ -50,7 +50,7 @@ for obj in (floor, top, *legs, *crates):
     obj.rigid_body.use_margin = True
     obj.rigid_body.collision_margin = 0.001
 camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
-camera.location, camera.rotation_euler = (1.6, -2.4, 1.7), (radians(66), 0, radians(33))
+camera.location, camera.rotation_euler = (1.9, -2.9, 1.7), (radians(75), 0, radians(33))
 scene.collection.objects.link(camera)
 scene.camera = camera
 lamp = bpy.data.objects.new("Lamp", bpy.data.lights.new("Lamp", "AREA"))
@@ -99,11 +99,11 @@ def draw(folder: Path = FOLDER) -> None:
 
 
 def _asked(tools: ToolClient, name: str, arguments: Mapping[str, Any]) -> bytes:
-    """The last picture of a call; empty if there is none."""
+    """The first picture of a call; empty if there is none."""
     outcome = tools.call(name, arguments)
     if outcome.failed:
         raise RuntimeError(f"{name}: {outcome.text}")
-    return outcome.pictures[-1].data if outcome.pictures else b""
+    return outcome.pictures[0].data if outcome.pictures else b""
 
 
 def _write(path: Path, png: bytes) -> None:
