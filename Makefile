@@ -31,7 +31,7 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check rule-pictures lock clean
+.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check rule-pictures lock clean site
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-15s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -74,6 +74,10 @@ lint: $(STAMP) $(STUBS) ## Check style, format and types
 
 docs: $(STAMP) ## Write the generated references
 	@$(PY) -m docs.generate
+
+site: $(STAMP) ## Build the documentation site in build/site, links checked, without a network
+	@NO_MKDOCS_2_WARNING=1 .venv/bin/mkdocs build --strict --quiet
+	@echo "build/site/index.html"
 
 rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 	@$(PY) tests/agents/protocol/rule_pictures.py $(RULES)

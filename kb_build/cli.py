@@ -6,6 +6,7 @@ import functools
 import json
 import signal
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NoReturn, ParamSpec, TypeVar
 
@@ -23,6 +24,7 @@ if TYPE_CHECKING:
     from simworlds.terminal.progress import Progress
 
 _ROLES = ("manual", "guides")
+_OTHERS = {"pack": "kb_serve.packs.cli"}
 _INTERRUPTED = 130
 _PATH = click.Path(path_type=Path)
 _P = ParamSpec("_P")
@@ -46,9 +48,27 @@ def reports_errors(command: Callable[_P, _T]) -> Callable[_P, _T]:
     return run
 
 
-@click.group()
+class _KbGroup(click.Group):
+    """The group, with the commands of parts that are built on this one: they stand here by name, as it must not
+    import them.
+    """
+
+    def list_commands(self, ctx: click.Context) -> list[str]:
+        """The names, sorted."""
+        return sorted([*super().list_commands(ctx), *_OTHERS])
+
+    def get_command(self, ctx: click.Context, cmd_name: str) -> click.Command | None:
+        """The command of that name; that of another part is loaded now."""
+        if cmd_name not in _OTHERS:
+            return super().get_command(ctx, cmd_name)
+        command = getattr(import_module(_OTHERS[cmd_name]), cmd_name)
+        assert isinstance(command, click.Command)
+        return command
+
+
+@click.group(cls=_KbGroup)
 def kb() -> None:
-    """Build, look into, check and compare knowledge bases."""
+    """Build, look into, check and compare knowledge bases, and write packs of them."""
 
 
 def _roles(_context: click.Context, _parameter: click.Parameter, value: str | None) -> frozenset[str]:

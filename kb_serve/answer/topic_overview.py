@@ -108,6 +108,13 @@ class Topics:
             blocks += _list_of(f"More {title.lower()}", lines[most:])
         return TopicOverview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
 
+    def members(self, slug: str) -> frozenset[str]:
+        """All classes and operators that belong to a topic."""
+        page = self._reader.page_entry(slug)
+        assert page is not None
+        names = self._names(slug, page.title)
+        return frozenset({*names.classes, *names.operators})
+
     def _said(self, page: PageEntry) -> str:
         """What the page is about; of a page that only lists others, what its introduction says."""
         below = self._children(page.slug)

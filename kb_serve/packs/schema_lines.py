@@ -1,0 +1,143 @@
+"""Lines of a pack that tell schemas: real defaults, sockets of nodes, the members of classes that scripts use most."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kb_build.symbol_lines import literal, usual_default
+from kb_serve.packs.section import TYPES, fitting, is_of_interface, short
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable, Iterator
+
+    from kb_build.records import Symbol
+    from kb_serve.reader import BaseReader, SymbolEntry
+
+_MEMBERS = 14  # of a class, the heaviest
+_LEAST = 1.0  # the weight of a member that is told of
+_NODE = f"{TYPES}Node"
+# Interface and registration, which scripts of add-ons use most, and models know.
+_WELL_KNOWN = frozenset(
+    {
+        "Context",
+        "ID",
+        "Operator",
+        "OperatorProperties",
+        "Panel",
+        "PropertyGroup",
+        "UILayout",
+        "bpy_prop_array",
+    }
+)
+_PLAIN = ("rna_type", "bl_rna", "name")
+
+
+class SchemaLines:
+    """What a base knows of the schemas that count most."""
+
+    def __init__(self, reader: BaseReader, concerns: Callable[[str], bool] | None = None) -> None:
+        """``concerns`` says of a class whether it is wanted; by default all that belong to scenes are."""
+        self._reader = reader
+        self._concerns = concerns
+
+    @cached_property
+    def _classes(self) -> list[Symbol]:
+        """The classes that are wanted, those that scripts use most first."""
+        paths = [path for path, _ in self._reader.data_classes if path.startswith(TYPES)]
+        weights = self._reader.weights(paths)
+        heaviest = sorted(
+            (path for path in paths if self._counts(path, weights)), key=lambda path: -weights.get(path, 0)
+        )
+        symbols = (self._reader.symbol(path) for path in heaviest)
+        return [
+            symbol
+            for symbol in symbols
+            if symbol is not None and (self._concerns or not is_of_interface(symbol))
+        ]
+
+    def _counts(self, path: str, weights: dict[str, float]) -> bool:
+        return self._concerns(path) if self._concerns else path in weights
+
+    # Defaults
+
+    def defaults(self, budget: int) -> list[str]:
+        """Lines of the properties of which new things have another value than the schema says."""
+        owners = {symbol.path for symbol in self._classes if symbol.reached or self._concerns}
+        weighed = self._reader.rows(
+            "SELECT symbols.path, owner FROM symbols LEFT JOIN weights USING (path) "
+            "WHERE kind = 'property' AND owner GLOB 'bpy.types.*' ORDER BY COALESCE(weight, 0) DESC, symbols.path"
+        )
+        differing: dict[str, list[str]] = defaultdict(list)
+        for path, owner in weighed:
+            if owner in owners and (text := self._other_default(path)):
+                differing[owner].append(text)
+        return fitting(
+            (f"- {short(owner)}: {', '.join(texts)}" for owner, texts in differing.items()), budget
+        )
+
+    def _other_default(self, path: str) -> str:
+        symbol = self._reader.symbol(path)
+        if symbol is None or not symbol.new_values or symbol.default is None:
+            return ""
+        usual = usual_default(symbol)
+        if usual == symbol.default or isinstance(usual, list):
+            return ""
+        return f"`{symbol.name}` = {literal(usual)}, not {literal(symbol.default)}"
+
+    # Sockets
+
+    def sockets(self, budget: int) -> list[str]:
+        """Lines of nodes with their sockets and what these begin with."""
+        nodes = (symbol for symbol in self._classes if self._reader.descends(symbol.path, _NODE))
+        return fitting((line for node in nodes if (line := self._node_line(node.path))), budget)
+
+    def _node_line(self, path: str) -> str:
+        members = self._reader.members(path)
+        sides = {
+            side: [_socket(name, entry) for name, entry in members.items() if name.startswith(f"{side}[")]
+            for side in ("inputs", "outputs")
+        }
+        told = "; ".join(f"{side} {', '.join(sockets)}" for side, sockets in sides.items() if sockets)
+        return f"- `{short(path)}`: {told}" if told else ""
+
+    # Classes
+
+    def members(self, budget: int) -> list[str]:
+        """Lines of classes with their most used members, their defaults and their values."""
+        plain = (
+            symbol
+            for symbol in self._classes
+            if symbol.name not in _WELL_KNOWN and not self._reader.descends(symbol.path, _NODE)
+        )
+        return fitting((line for symbol in plain if (line := self._class_line(symbol))), budget)
+
+    def _class_line(self, symbol: Symbol) -> str:
+        members = [*self._heaviest(self._reader.members(symbol.path).values())][:_MEMBERS]
+        if not members:
+            return ""
+        reached = f" (`{symbol.reached}`)" if symbol.reached else ""
+        return f"- `{short(symbol.path)}`{reached}: " + ", ".join(map(_member, members))
+
+    def _heaviest(self, entries: Iterable[SymbolEntry]) -> Iterator[SymbolEntry]:
+        found = [
+            entry for entry in entries if entry.kind in {"property", "function"} and entry.name not in _PLAIN
+        ]
+        weights = self._reader.weights([entry.path for entry in found])
+        least = 0.0 if self._concerns else _LEAST
+        for entry in sorted(found, key=lambda entry: -weights.get(entry.path, 0.0)):
+            if weights.get(entry.path, 0.0) >= least:
+                yield entry
+
+
+def _socket(name: str, entry: SymbolEntry) -> str:
+    """``"Base Color"`` = (0.8, 0.8, 0.8, 1)."""
+    said = entry.line.partition(" — ")[0]
+    _, equals, default = said.partition(" = ")
+    return name.partition("[")[2].removesuffix("]") + (f" = {default}" if equals else "")
+
+
+def _member(entry: SymbolEntry) -> str:
+    """A member as its owner's list has it, without what is said about it."""
+    return entry.line.partition(" — ")[0]

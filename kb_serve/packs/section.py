@@ -1,0 +1,59 @@
+"""What packs are made of: sections, each of which fills a budget of tokens."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kb_serve.answer.budget import tokens
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterable
+
+    from kb_build.records import Symbol
+
+TYPES = "bpy.types."
+_INTERFACE = (
+    "tool_settings", "space_data", "preferences", "window", "studio_light", "workspace", "region", "area", "brush",
+    "asset",
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Section:
+    """A titled part of a pack. ``fill`` makes its lines within a budget of tokens; ``share`` is of the whole pack.
+
+    A section that has less to say than its share leaves the rest to the sections behind it.
+    """
+
+    title: str
+    introduction: str
+    share: float
+    fill: Callable[[int], list[str]]
+
+    def text(self, budget: int) -> str:
+        """The section within ``budget`` tokens; empty if none of its lines fits."""
+        head = f"## {self.title}\n\n" + (f"{self.introduction}\n\n" if self.introduction else "")
+        lines = self.fill(budget - tokens(head))
+        return head + "\n".join(lines) if lines else ""
+
+
+def is_of_interface(symbol: Symbol) -> bool:
+    """Whether a class belongs to Blender's windows and brushes rather than to scenes."""
+    return symbol.group == "ui" or any(part in symbol.reached for part in _INTERFACE)
+
+
+def fitting(lines: Iterable[str], budget: int) -> list[str]:
+    """The first lines that fit into ``budget`` tokens, together. A long line that does not fit ends the list."""
+    kept: list[str] = []
+    for line in lines:
+        budget -= tokens(line + "\n")
+        if budget < 0:
+            break
+        kept.append(line)
+    return kept
+
+
+def short(path: str) -> str:
+    """A path as packs write it: classes without their module."""
+    return path.removeprefix(TYPES)
