@@ -28,7 +28,8 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures lock clean
+.PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures dist licences fuzz \
+  lock clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-15s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -73,6 +74,12 @@ rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 docs-check: $(STAMP) ## Check that the generated references are up to date
 	@$(PY) -m docs.generate --check
 
+dist: $(STAMP) ## Build wheel, sdist, SBOM and bundle into dist/, the same bytes each time
+	@$(PY) -m release
+
+licences: $(STAMP) ## Write and check the table of the dependencies' licences
+	@$(PY) -m release licences
+
 lock: $(UV) ## Pin the newest dependencies in requirements.lock
 	@$(UV_ENV) "$(UV)" pip compile pyproject.toml --all-extras --group dev --universal --python-version 3.11 --upgrade \
 	  --generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header --quiet \
@@ -97,7 +104,7 @@ $(STAMP): requirements.lock pyproject.toml | $(UV)
 	@test -x $(PY) || $(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .venv
 	@$(UV_ENV) "$(UV)" pip sync --quiet --compile-bytecode --python $(PY) --require-hashes requirements.lock
 	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .
-	@$(PY) -m compileall -q simworlds kb_check kb_build kb_serve agents bench measurements
+	@$(PY) -m compileall -q simworlds kb_check kb_build kb_serve agents bench measurements release
 	@touch $(STAMP)
 
 # The lock pins uv too, since the project depends on it: that very version is fetched, its hashes checked.

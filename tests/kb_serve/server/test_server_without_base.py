@@ -131,7 +131,7 @@ def test_a_client_is_answered_at_once_and_then_from_the_fetched_base(
     site: Site, packed: tuple[str, bytes], tmp_path: Path
 ) -> None:
     wire = Wire([*COMMAND, "serve", "--blender", packed[0]], tmp_path, SIMWORLDS_BASE_URL=site.url)
-    try:
+    with wire.process:
         wire.shake_hands()
         began = time.monotonic()
         answer = wire.ask("ClothSettings.quality")
@@ -140,9 +140,7 @@ def test_a_client_is_answered_at_once_and_then_from_the_fetched_base(
             answer = wire.ask("ClothSettings.quality")
         assert "quality" in answer["content"][0]["text"]
         assert not answer.get("isError")
-    finally:
         wire.close()
-        wire.process.wait(SECONDS)
 
 
 def test_commands_that_need_no_blender_work_without_one(base: Path, tmp_path: Path) -> None:
