@@ -80,6 +80,9 @@ dist: $(STAMP) ## Build wheel, sdist, SBOM and bundle into dist/, the same bytes
 licences: $(STAMP) ## Write and check the table of the dependencies' licences
 	@$(PY) -m release licences
 
+fuzz: $(STAMP) ## Give every reader broken input for FUZZ_SECONDS=60; keep what fails in tests/fuzz/corpus
+	@$(PY) tests/fuzz/run_fuzz.py --seconds $(or $(FUZZ_SECONDS),60) $(FUZZ_ARGS)
+
 lock: $(UV) ## Pin the newest dependencies in requirements.lock
 	@$(UV_ENV) "$(UV)" pip compile pyproject.toml --all-extras --group dev --universal --python-version 3.11 --upgrade \
 	  --generate-hashes --no-emit-index-url --no-emit-find-links --no-annotate --no-header --quiet \
