@@ -32,7 +32,10 @@ def corpora_folder() -> Path | None:
 
 def ready_base_source() -> str:
     """Where ready bases can be fetched from, as SIMWORLDS_BASE_URL says; empty if nothing does."""
-    return os.environ.get(BASE_URL_VARIABLE, "").strip()
+    named = os.environ.get(BASE_URL_VARIABLE, "").strip()
+    return (
+        "" if named.startswith("${") else named
+    )  # a client that fills no empty setting in passes on its name
 
 
 def base_path(home: Path, version: str) -> Path:
