@@ -206,9 +206,9 @@ def _install(version: str, entry: Release, folder: Path, progress: Report | None
                 run_group(command, environment=environment, timeout=_INSTALL_SECONDS, log=log)
     except CommandFailed as error:
         raise RuntimeMissing(
-            f"there is no bpy in this environment, and bpy {version} for CPython {entry.python} could not be fetched. "
-            f"Install SimWorlds with Blender (CPython 3.13: simworlds[blender]), run again with a network connection, "
-            f"or install that Blender and {_NAME_IT}. What uv said is in {log}: {error}"
+            f"there is no bpy in this environment, and bpy {version} for CPython {entry.python} could not be fetched: "
+            f"{error}. See {log}. Install SimWorlds with Blender (CPython 3.13: simworlds[blender]), "
+            f"run again with a network, or install that Blender and {_NAME_IT}"
         ) from error
     except OSError as error:
         raise RuntimeMissing(
