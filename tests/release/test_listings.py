@@ -63,7 +63,7 @@ def test_the_plugin_lies_apart_from_our_packages() -> None:
     folder = REPO / plugin["source"]
     assert (folder / ".claude-plugin" / "plugin.json").is_file()
     assert not (folder / "agents").exists()
-    assert read("plugin/.claude-plugin/plugin.json")["mcpServers"] == {NAME: SERVER}
+    assert read("plugin/.mcp.json")["mcpServers"] == {NAME: SERVER}
 
 
 @pytest.mark.parametrize("folder", [".", "plugin"])
