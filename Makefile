@@ -28,7 +28,7 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures dist licences fuzz \
+.PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures dist dist-validate licences fuzz \
   lock clean
 
 help: ## List the targets
@@ -76,6 +76,9 @@ docs-check: $(STAMP) ## Check that the generated references are up to date
 
 dist: $(STAMP) ## Build wheel, sdist, SBOM and bundle into dist/, the same bytes each time
 	@$(PY) -m release
+
+dist-validate: $(STAMP) ## Ask each artefact's own validator, which npx and uvx fetch
+	@PATH="$(CURDIR)/.venv/bin:$$PATH" $(PY) -m release validate
 
 licences: $(STAMP) ## Write and check the table of the dependencies' licences
 	@$(PY) -m release licences

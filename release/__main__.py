@@ -1,4 +1,4 @@
-"""``python -m release``: everything that is handed out, into one folder; ``python -m release licences``: their page."""
+"""``python -m release``: everything that is handed out, into one folder; its other commands check that."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from release.bundle_file import write_bundle
 from release.licences import Dependency, dependencies, page
 from release.requirements import runtime_requirements
 from release.sbom import hashes, sbom
+from release.validate import validate
 
 REPO = Path(__file__).resolve().parent.parent
 _PAGE = REPO / "docs" / "licences.md"
@@ -48,6 +49,13 @@ def main(context: click.Context, output: Path) -> None:
     (output / "SHA256SUMS").write_text("".join(sums), encoding="utf-8")
     for path in (wheel, sdist, bill, bundle, requirements):
         click.echo(f"{path.stat().st_size:>10,}  {path.name}")
+
+
+@main.command("validate")
+@click.argument("dist", type=click.Path(path_type=Path), default=REPO / "dist")
+def validate_command(dist: Path) -> None:
+    """Ask each artefact's own validator; npx and uvx fetch them."""
+    validate(REPO, dist)
 
 
 @main.command()
