@@ -10,11 +10,12 @@ from pathlib import Path
 
 import click
 
-_CYCLONEDX = (
-    "import sys\nfrom cyclonedx.schema import SchemaVersion\nfrom cyclonedx.validation.json import JsonStrictValidator\n"
-    "fault = JsonStrictValidator(SchemaVersion.V1_6).validate_str(open(sys.argv[1]).read())\n"
-    "sys.exit(str(fault) if fault else 0)"
-)
+_CYCLONEDX = """import sys
+from cyclonedx.schema import SchemaVersion
+from cyclonedx.validation.json import JsonStrictValidator
+fault = JsonStrictValidator(SchemaVersion.V1_6).validate_str(open(sys.argv[1]).read())
+sys.exit(str(fault) if fault else 0)
+"""
 
 
 @dataclass(frozen=True, slots=True)
