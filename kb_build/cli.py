@@ -13,6 +13,7 @@ import click
 
 from kb_build.errors import KBBuildError
 from simworlds.errors import UserError
+from simworlds.operating_system import SYSTEM
 from simworlds.settings import (
     BASE_URL_VARIABLE,
     base_path,
@@ -95,6 +96,11 @@ def build(version: str | None, **given: Any) -> None:
     VERSION is 5.1 or 5.1.2; without it, the Blender of this environment, else the newest known. Nothing is
     done when nothing has changed.
     """
+    if not SYSTEM.limits_processes:
+        raise KBBuildError(
+            "a base cannot be built on Windows, where the processes that read documentation cannot be held to limits. "
+            "Fetch a ready one (simworlds kb fetch 5.1 --from URL|FILE), or build it in WSL"
+        )
     from kb_build import pipeline  # noqa: PLC0415 - other commands do without
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 

@@ -113,11 +113,12 @@ class Upkeep:
             version = wanted or in_use or releases()[-1].minor
             if source:
                 return self._fetching(version, source)
-            if in_use is not None and minor(version) == minor(in_use):
-                return self._building(in_use, {})
+            meta: Mapping[str, str] | None = {} if in_use and minor(version) == minor(in_use) else None
+        else:
+            meta = self._nearest(in_use) if in_use is not None else None
+        if in_use is None or meta is None or not SYSTEM.limits_processes:
             return None
-        meta = self._nearest(in_use) if in_use is not None else None
-        return self._building(in_use, meta) if in_use is not None and meta is not None else None
+        return self._building(in_use, meta)
 
     def _nearest(self, in_use: str) -> Mapping[str, str] | None:
         """The meta of the nearest base that is older than the Blender in use, if there is one."""

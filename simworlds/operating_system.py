@@ -27,7 +27,12 @@ _BELOW_NORMAL = 0x4000
 
 
 class System(Protocol):
-    """An operating system, as far as the project needs to know which one it is."""
+    """An operating system, as far as the project needs to know which one it is.
+
+    ``limits_processes``: whether a process can be forked and held to limits, as reading untrusted pages takes.
+    """
+
+    limits_processes: bool
 
     def is_running(self, pid: int) -> bool:
         """Whether there is a process of that number."""
@@ -56,6 +61,8 @@ class System(Protocol):
 
 class Posix:
     """Linux and macOS."""
+
+    limits_processes: bool = True
 
     def is_running(self, pid: int) -> bool:
         """See System."""
@@ -96,6 +103,8 @@ class Windows:
 
     ``kernel`` is kernel32.dll, ``locking`` is msvcrt.locking, ``run`` starts a command and waits for it.
     """
+
+    limits_processes: bool = False
 
     def __init__(
         self,

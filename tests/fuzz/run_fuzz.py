@@ -12,7 +12,7 @@ import random
 import sys
 import time
 import traceback
-from contextlib import contextmanager
+from contextlib import ExitStack, closing, contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -22,7 +22,7 @@ sys.path[:0] = [str(FOLDER), str(FOLDER.parents[1]), str(FOLDER.parent / "agents
 import click  # noqa: E402 - the repository is on the path now
 from hypothesis import HealthCheck, given, seed, settings  # noqa: E402
 from small_plan import small_plan  # noqa: E402
-from targets import Messages, Target, targets  # noqa: E402
+from targets import Messages, Queries, Target, targets  # noqa: E402
 
 from simworlds.settings import built_bases, home_folder  # noqa: E402
 
@@ -79,12 +79,10 @@ def keep(target: str, data: bytes) -> Path:
 
 @contextmanager
 def all_targets(base: Path | None, home: Path) -> Iterator[list[Target]]:
-    """The targets, with a server that ends afterwards."""
-    messages = Messages(home)
-    try:
-        yield targets(base, [json.dumps(small_plan()).encode()], messages)
-    finally:
-        messages.close()
+    """The targets; what they hold open is closed afterwards."""
+    with closing(Messages(home)) as messages, ExitStack() as opened:
+        queries = opened.enter_context(closing(Queries(base))) if base is not None else None
+        yield targets(queries, [json.dumps(small_plan()).encode()], messages)
 
 
 @click.command()

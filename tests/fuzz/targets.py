@@ -67,6 +67,10 @@ class Queries:
     def __init__(self, base: Path) -> None:
         self._base = KnowledgeBase(base)
 
+    def close(self) -> None:
+        """Closes the base."""
+        self._base.close()
+
     def check(self, data: bytes) -> None:
         """Whatever is asked is answered within its budget, or refused."""
         try:
@@ -395,7 +399,7 @@ def journals(draw: st.DrawFn) -> bytes:
     return b"".join(rows)
 
 
-def targets(base: Path | None, plans: list[bytes], messages: Messages | None) -> list[Target]:
+def targets(queries: Queries | None, plans: list[bytes], messages: Messages) -> list[Target]:
     """All of them; without a base, all but queries."""
     found = [
         Target("archive", broken(_archives(), [b"../", b"/", b"\\", b"PK\x05\x06", b"ustar"]), archive),
@@ -416,15 +420,11 @@ def targets(base: Path | None, plans: list[bytes], messages: Messages | None) ->
         ),
         Target("plan", broken(plans, [b"null", b"NaN", b"[" * 900, b"{}", b'"', b"1e400"]), plan),
     ]
-    if base is not None:
+    if queries is not None:
         found.append(
-            Target("query", broken(QUERIES, [b".", b"[", b'"', b"(" * 60, b"a." * 300]), Queries(base).check)
+            Target("query", broken(QUERIES, [b".", b"[", b'"', b"(" * 60, b"a." * 300]), queries.check)
         )
-    if messages is not None:
-        found.append(
-            Target(
-                "message", broken(MESSAGES, [b"{}", b"null", b'"id"', b"[" * 900, b"\xff"]), messages.check
-            )
-        )
+    words = [b"{}", b"null", b'"id"', b"[" * 900, b"\xff"]
+    found.append(Target("message", broken(MESSAGES, words), messages.check))
     assert all(len(data) <= LONGEST for data in plans)
     return found

@@ -9,7 +9,10 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from click.testing import CliRunner
+from places import REPO
 
+from kb_build.cli import kb
 from simworlds.operating_system import SYSTEM, Posix, Windows, system_of
 
 if TYPE_CHECKING:
@@ -127,3 +130,38 @@ def test_a_lock_keeps_another_process_out_until_the_file_is_closed(tmp_path: Pat
         SYSTEM.lock(file, wait=False)
         assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 7
     assert subprocess.run([sys.executable, "-c", code], check=False).returncode == 0
+
+
+ABSENT_THERE = """
+import importlib, os, signal, sys
+for name in ("fcntl", "resource", "pwd", "grp", "termios"):
+    sys.modules[name] = None
+for name in ("SIGKILL", "SIGHUP", "SIGSTOP", "SIGCONT", "SIGALRM"):
+    delattr(signal, name)
+for name in ("killpg", "fork", "getuid", "geteuid", "nice", "setsid", "chown", "O_NOFOLLOW", "O_DIRECTORY"):
+    delattr(os, name)
+for name in sys.argv[1:]:
+    importlib.import_module(name)
+"""
+
+
+def test_what_windows_lacks_is_not_needed_to_answer_to_check_and_to_fetch() -> None:
+    """The MCP package asks for the system by its name; all else that these commands load is here."""
+    names = """simworlds.cli kb_serve.cli kb_serve.service kb_serve.rebuild kb_serve.knowledge_base kb_check.cli
+        kb_check.run kb_check.tool kb_check.migrate_cli kb_check.stubs_cli kb_build.cli kb_build.ready.fetch
+        kb_build.ready.export kb_build.verify simworlds.mcp_transport.connections simworlds.sandbox.runtime"""
+    done = subprocess.run(
+        [sys.executable, "-c", ABSENT_THERE, *names.split()],
+        env={**os.environ, "PYTHONPATH": str(REPO)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 0, done.stderr
+
+
+def test_a_build_is_refused_where_readers_cannot_be_limited(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("kb_build.cli.SYSTEM", Windows())
+    done = CliRunner().invoke(kb, ["build", "5.1"])
+    assert done.exit_code == 2
+    assert "simworlds kb fetch" in done.output
