@@ -31,7 +31,8 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check rule-pictures lock clean site
+.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check site rule-pictures dist \
+  dist-validate licences fuzz lock clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-15s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -85,6 +86,18 @@ rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 docs-check: $(STAMP) ## Check that the generated references are up to date
 	@$(PY) -m docs.generate --check
 
+dist: $(STAMP) ## Build wheel, sdist, SBOM and bundle into dist/, the same bytes each time
+	@$(PY) -m release
+
+dist-validate: $(STAMP) ## Ask each artefact's own validator, which npx and uvx fetch
+	@PATH="$(CURDIR)/.venv/bin:$$PATH" $(PY) -m release validate
+
+licences: $(STAMP) ## Write and check the table of the dependencies' licences
+	@$(PY) -m release licences
+
+fuzz: $(STAMP) ## Give every reader broken input for FUZZ_SECONDS=60; keep what fails in tests/fuzz/corpus
+	@$(PY) tests/fuzz/run_fuzz.py --seconds $(or $(FUZZ_SECONDS),60) $(FUZZ_ARGS)
+
 PIN = $(UV_ENV) "$(UV)" pip compile --universal --python-version 3.11 --upgrade --generate-hashes --no-emit-index-url \
   --no-emit-find-links --no-annotate --no-header --quiet
 
@@ -111,7 +124,7 @@ $(STAMP): requirements.lock pyproject.toml | $(UV)
 	@test -x $(PY) || $(UV_ENV) "$(UV)" venv --quiet --clear --python $(PYTHON_VERSION) .venv
 	@$(UV_ENV) "$(UV)" pip sync --quiet --compile-bytecode --python $(PY) --require-hashes requirements.lock
 	@$(UV_ENV) "$(UV)" pip install --quiet --python $(PY) --no-deps --no-build-isolation --editable .
-	@$(PY) -m compileall -q simworlds kb_check kb_build kb_serve agents bench measurements
+	@$(PY) -m compileall -q simworlds kb_check kb_build kb_serve agents bench measurements release
 	@touch $(STAMP)
 
 $(BLENDER_MCP): $(BLENDER_MCP_LOCK) | $(UV)

@@ -14,7 +14,15 @@ import click
 
 from kb_build.errors import KBBuildError
 from simworlds.errors import UserError
-from simworlds.settings import base_path, built_bases, corpora_folder, home_folder, summaries_path
+from simworlds.operating_system import SYSTEM
+from simworlds.settings import (
+    BASE_URL_VARIABLE,
+    base_path,
+    built_bases,
+    corpora_folder,
+    home_folder,
+    summaries_path,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -108,6 +116,11 @@ def build(version: str | None, **given: Any) -> None:
     VERSION is 5.1 or 5.1.2; without it, the Blender of this environment, else the newest known. Nothing is
     done when nothing has changed.
     """
+    if not SYSTEM.limits_processes:
+        raise KBBuildError(
+            "a base cannot be built on Windows, where the processes that read documentation cannot be held to limits. "
+            "Fetch a ready one (simworlds kb fetch 5.1 --from URL|FILE), or build it in WSL"
+        )
     from kb_build import pipeline  # noqa: PLC0415 - other commands do without
     from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
@@ -200,6 +213,61 @@ def verify(version: str | None, reference: Path | None, live: bool, as_json: boo
     verification = verify_base(_base(version) if version else bases[-1], reference, live=live)
     click.echo(json.dumps(verification.as_json(), indent=2) if as_json else "\n".join(verification.lines()))
     sys.exit(0 if verification.sound else 1)
+
+
+@kb.command("export")
+@click.argument("version")
+@click.option("--output", type=_PATH, help="The file to write (default: blender-X.Y.tar.xz, here).")
+@reports_errors
+def export_command(version: str, output: Path | None) -> None:
+    """Pack a base into one file that others can fetch.
+
+    VERSION is 5.1, or a base's path. The file holds the base without this machine's paths, a manifest (version, size,
+    SHA-256, licences and whom to name) and a notice; the same base gives the same bytes.
+    """
+    from kb_build.base_file import read_meta  # noqa: PLC0415 - only here
+    from kb_build.ready.export import export_base, ready_name  # noqa: PLC0415
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
+
+    signal.signal(signal.SIGTERM, _terminated)
+    base = _base(version)
+    target = output or Path(ready_name(read_meta(base).get("minor", "")))
+    with shown_progress() as progress:
+        exported = export_base(base, target.expanduser().absolute(), progress=progress)
+    click.echo(
+        f"{exported.path}: Blender {exported.manifest.blender}, {exported.size / 1e6:.1f} MB\n"
+        f"Fetch it: simworlds kb fetch {exported.manifest.minor} --from '{target}#sha256={exported.sha256}'\n"
+        "Pass its notice on with it: the manual's text is CC-BY-SA-4.0, what comes from Blender GPL-3.0-or-later."
+    )
+
+
+@kb.command("fetch")
+@click.argument("version")
+@click.option(
+    "--from",
+    "source",
+    envvar=BASE_URL_VARIABLE,
+    show_envvar=True,
+    required=True,
+    metavar="URL|PATH",
+    help="A file that kb export has written, its address, or the folder or address that it lies in; #sha256=… behind "
+    "it pins the file.",
+)
+@reports_errors
+def fetch_command(version: str, source: str) -> None:
+    """Fetch a ready base instead of building it.
+
+    A download that broke off is continued. A file that differs in one byte from what it should be is refused.
+    """
+    from kb_build.ready.fetch import fetch_base  # noqa: PLC0415 - only here
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
+
+    signal.signal(signal.SIGTERM, _terminated)
+    with shown_progress() as progress:
+        fetched = fetch_base(version, source, home=home_folder(), progress=progress)
+    click.echo(f"{fetched.path}: Blender {fetched.manifest.blender}, {fetched.manifest.size / 1e6:.1f} MB")
+    for row in fetched.manifest.licences:
+        click.echo(f"  {row.licence}: {row.part} ({row.attribution})")
 
 
 @kb.command("diff")

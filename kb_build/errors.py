@@ -4,7 +4,8 @@ KBBuildError
 ├── SourceError      a documentation source is missing, unreadable, hostile or of the wrong version
 ├── ExtractError     Blender started, but the extraction did not finish
 ├── SummaryError     summaries were asked for and could not be had
-└── StoreError       the knowledge-base file cannot be written or read
+├── StoreError       the knowledge-base file cannot be written or read
+└── ReadyBaseError   a ready base cannot be fetched, or is not what it says
 
 Every message says what was wrong, where, and what to do.
 """
@@ -32,3 +33,7 @@ class SummaryError(KBBuildError):
 
 class StoreError(KBBuildError):
     """The knowledge-base file cannot be written or read."""
+
+
+class ReadyBaseError(KBBuildError):
+    """A ready base cannot be fetched, or is not what it says."""

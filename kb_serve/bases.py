@@ -63,6 +63,13 @@ class Bases:
                 self._built = (time.monotonic(), built)
             return built
 
+    def wanted_but_missing(self) -> str | None:
+        """The default version if it has no base, ``""`` where no version has one, None where nothing is missing."""
+        built = self.built()
+        if self._default is not None:
+            return None if minor(self._default) in built else self._default
+        return None if built else ""
+
     @cached_property
     def in_use(self) -> str | None:
         """The full version of the Blender in use."""

@@ -21,9 +21,7 @@ def find_base(version: str | None, home: Path | None = None) -> Path:
     built = built_bases(folder)
     if version is None:
         if not built:
-            raise BaseMissing(
-                f"There is no knowledge base in {folder}. Build one first: simworlds kb build 5.1"
-            )
+            raise BaseMissing(f"There is no knowledge base in {folder}. {_how_to_get('5.1')}")
         return list(built.values())[-1]
     try:
         wanted = minor_of(version.strip().removeprefix("v"))
@@ -35,9 +33,16 @@ def find_base(version: str | None, home: Path | None = None) -> Path:
     if not path.is_file():
         raise BaseMissing(
             f"There is no knowledge base for Blender {wanted}. Built are: {_names(built)}. "
-            f"Build it: simworlds kb build {wanted}"
+            f"{_how_to_get(wanted)}"
         )
     return path
+
+
+def _how_to_get(version: str) -> str:
+    return (
+        f"Build it: simworlds kb build {version} (a minute; without Blender in this environment, its bpy package is "
+        f"fetched first, 350 MB). Or fetch a ready one: simworlds kb fetch {version} --from URL|FILE."
+    )
 
 
 def _names(built: dict[str, Path]) -> str:

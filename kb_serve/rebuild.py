@@ -1,7 +1,7 @@
-"""Rebuilds the base of the Blender in use when that Blender is newer, in a process of low priority.
+"""Gets the base that is missing or outdated, in a process apart: fetched where there is an address, else built.
 
-``python -m kb_serve.rebuild VERSION --home FOLDER`` is that process. It prints only errors, on stderr, and ends at
-once while another process is building.
+``python -m kb_serve.rebuild VERSION --home FOLDER`` is the process that builds. It prints progress and errors, on
+stderr, and ends at once while another process is building.
 """
 
 from __future__ import annotations
@@ -9,7 +9,6 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
-import os
 import signal
 import sqlite3
 import subprocess
@@ -18,9 +17,12 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NoReturn
 
-from kb_serve.errors import KBServeError
 from kb_serve.in_use import minor
-from simworlds.releases import version_key
+from simworlds.errors import UserError
+from simworlds.operating_system import SYSTEM
+from simworlds.releases import minor_of, releases, version_key
+from simworlds.settings import ready_base_source
+from simworlds.terminal.lines import write_line
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Mapping, Sequence
@@ -31,33 +33,47 @@ _BUILDING_ELSEWHERE = 3
 _LONGEST_REASON = 300
 
 State = Literal["idle", "running", "failed"]
+Doing = Literal["built", "fetched"]
+
+
+@dataclass(frozen=True, slots=True)
+class _Job:
+    """What gets a base: of which version, how, by which command."""
+
+    version: str
+    doing: Doing
+    command: list[str]
 
 
 @dataclass(slots=True)
 class Upkeep:
-    """Checks whether the base of the Blender in use is outdated, and rebuilds it."""
+    """Checks whether the base that is wanted is there and up to date, and gets it."""
 
     bases: Bases
     blender_exe: Path | None = None
     enabled: bool = True
     state: State = field(default="idle", init=False)
     reason: str = field(default="", init=False)
+    progress: str = field(default="", init=False)
+    _job: _Job | None = field(default=None, init=False)
     _process: subprocess.Popen[bytes] | None = field(default=None, init=False)
 
-    def run(self) -> None:
-        """Builds the base of the Blender in use if that Blender is newer.
+    def plan(self) -> None:
+        """Decides what ``run`` will do: from now on, calls that need a missing base are told of it."""
+        with contextlib.suppress(UserError):  # what is wrong with a base or a version, the first call is told
+            self._job = self._needed() if self.enabled else None
+        if self._job is not None:
+            self.state = "running"
 
-        Blocks until the build has ended: call it in a thread. ``state`` and ``reason`` tell how it ended.
+    def run(self) -> None:
+        """Fetches a missing base where an address is known; else builds that of the Blender in use if it is newer.
+
+        Blocks until that has ended: call it in a thread. ``state`` and ``reason`` tell how it ended.
         """
-        in_use = self.bases.in_use
-        if not self.enabled or in_use is None:
-            return
-        try:
-            meta = self._nearest(in_use)
-        except KBServeError:
-            return
-        if meta is not None:
-            self._build(in_use, meta)
+        if self._job is None:
+            self.plan()
+        if self._job is not None:
+            self._perform(self._job)
 
     def stop(self) -> None:
         """Ends a running build; the base that was there before stays."""
@@ -80,10 +96,29 @@ class Upkeep:
             then = f"Build its base: simworlds kb build {minor(in_use)}"
         return f"This is Blender {have}'s knowledge base, but Blender {in_use} is in use. {then}"
 
-    def building(self, version: str | None) -> bool:
-        """Whether the base of this version (None: of whichever is in use) is being built."""
-        in_use = self.bases.in_use if self.state == "running" else None
-        return in_use is not None and (version is None or minor(version) == minor(in_use))
+    def missing_note(self, version: str | None) -> str:
+        """What is done about a missing base of this version (None: of whichever is wanted); empty if nothing is."""
+        job = self._job
+        if job is None or (version is not None and minor(version) != minor(job.version)):
+            return ""
+        if self.state == "running":
+            so_far = f" ({self.progress})" if self.progress else ""
+            return f"It is being {job.doing} in the background{so_far}: try again in a minute."
+        return f"It could not be {job.doing}: {self.reason}" if self.state == "failed" else ""
+
+    def _needed(self) -> _Job | None:
+        in_use, source = self.bases.in_use, ready_base_source()
+        wanted = self.bases.wanted_but_missing()
+        if wanted is not None:
+            version = wanted or in_use or releases()[-1].minor
+            if source:
+                return self._fetching(version, source)
+            meta: Mapping[str, str] | None = {} if in_use and minor(version) == minor(in_use) else None
+        else:
+            meta = self._nearest(in_use) if in_use is not None else None
+        if in_use is None or meta is None or not SYSTEM.limits_processes:
+            return None
+        return self._building(in_use, meta)
 
     def _nearest(self, in_use: str) -> Mapping[str, str] | None:
         """The meta of the nearest base that is older than the Blender in use, if there is one."""
@@ -94,25 +129,44 @@ class Upkeep:
         older = [version for version in built if version_key(version) < version_key(in_use)]
         return self.bases.pick(older[-1]).meta if older else None
 
-    def _build(self, in_use: str, meta: Mapping[str, str]) -> None:
-        command = [sys.executable, "-m", "kb_serve.rebuild", in_use, "--home", str(self.bases.home)]
-        command += _as_before(meta, minor(in_use))
+    def _fetching(self, version: str, source: str) -> _Job:
+        words = ["kb_build.ready", minor_of(version), "--from", source, "--home", str(self.bases.home)]
+        return _Job(version, "fetched", [sys.executable, "-m", *words])
+
+    def _building(self, in_use: str, meta: Mapping[str, str]) -> _Job:
+        words = ["kb_serve.rebuild", in_use, "--home", str(self.bases.home), *_as_before(meta, minor(in_use))]
         if self.blender_exe is not None:
-            command += ["--blender-exe", str(self.blender_exe)]
+            words += ["--blender-exe", str(self.blender_exe)]
+        return _Job(in_use, "built", [sys.executable, "-m", *words])
+
+    def _perform(self, job: _Job) -> None:
         self.state = "running"
+        write_line(sys.stderr, f"The knowledge base of Blender {job.version} is being {job.doing} ...")
         try:
             self._process = subprocess.Popen(
-                command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
+                job.command, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE
             )
         except OSError as error:
             self.state, self.reason = "failed", str(error)
             return
-        output = self._process.communicate()[1].decode(errors="replace").strip()
-        if self._process.returncode == 0:
+        with self._process as process:
+            last = self._follow(process)
+        code = process.returncode
+        if code in {0, _BUILDING_ELSEWHERE}:
             self.state = "idle"
-        elif self._process.returncode != _BUILDING_ELSEWHERE:
-            last = (output.splitlines() or [f"exit code {self._process.returncode}"])[-1]
-            self.state, self.reason = "failed", last[:_LONGEST_REASON]
+        else:
+            self.state, self.reason = "failed", (last or f"exit code {code}")[:_LONGEST_REASON]
+        then = "is there" if code == 0 else self.reason or "is being built by another process"
+        write_line(sys.stderr, f"The knowledge base of Blender {job.version}: {then}")
+
+    def _follow(self, process: subprocess.Popen[bytes]) -> str:
+        """Keeps the last line that a process printed as the progress. Returns it when there are no more."""
+        last = ""
+        assert process.stderr is not None
+        for line in process.stderr:
+            last = line.decode(errors="replace").strip() or last
+            self.progress = last.removesuffix("...").strip()[:_LONGEST_REASON]
+        return last
 
 
 def _newer(in_use: str, have: str) -> bool:
@@ -142,6 +196,7 @@ def build_base(given: argparse.Namespace, summaries: str) -> None:
     """
     from kb_build import pipeline  # noqa: PLC0415 - the one place
     from simworlds.settings import corpora_folder  # noqa: PLC0415
+    from simworlds.terminal.progress import shown_progress  # noqa: PLC0415
 
     options = pipeline.BuildOptions(
         blender_exe=given.blender_exe,
@@ -154,7 +209,8 @@ def build_base(given: argparse.Namespace, summaries: str) -> None:
         max_cost=0.0,
         jobs=1,
     )
-    pipeline.build(given.version, options=options, home=given.home)
+    with shown_progress() as progress:
+        pipeline.build(given.version, options=options, home=given.home, progress=progress)
 
 
 @contextlib.contextmanager
@@ -191,8 +247,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     """Builds one base. Returns 0, 1 when it failed, or 3 when another process is building."""
     given = _arguments(arguments)
     signal.signal(signal.SIGTERM, _terminated)
-    if hasattr(os, "nice"):
-        os.nice(10)
+    SYSTEM.yield_to_others()
     try:
         with _alone(given.home) as is_alone:
             if not is_alone:

@@ -32,9 +32,9 @@ class Service:
         self.upkeep = upkeep
 
     def warm(self) -> None:
-        """Loads what the first answer needs, and looks up which Blender is in use."""
+        """Loads what the first answer needs, and looks up which Blender is in use and whether it has a base."""
         import_module("kb_serve.rank.search")  # else loaded by the first search
-
+        self.upkeep.plan()
         with contextlib.suppress(KBServeError):
             self.upkeep.note(self.bases.pick().meta, None)
 
@@ -85,9 +85,7 @@ class Service:
         try:
             base = self.bases.pick(blender)
         except BaseMissing as error:
-            if self.upkeep.building(blender):
-                raise BaseMissing(
-                    f"{error} It is being built in the background: try again in a minute."
-                ) from error
+            if note := self.upkeep.missing_note(blender):
+                raise BaseMissing(f"{error} {note}") from error
             raise
         return base, self.upkeep.note(base.meta, blender)

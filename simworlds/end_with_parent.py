@@ -9,10 +9,13 @@ import signal
 import sys
 from pathlib import Path
 
+# Run as a script, it finds nothing of ours beside it. Windows has no SIGKILL.
+KILL: signal.Signals = getattr(signal, "SIGKILL", signal.SIGTERM)
+
 _SET_PDEATHSIG = 1  # of <linux/prctl.h>
 
 
-def end_with_parent(parent: int, number: signal.Signals = signal.SIGKILL) -> None:
+def end_with_parent(parent: int, number: signal.Signals = KILL) -> None:
     """Has the system send this process a signal when the thread that started it ends; where it offers that (Linux).
 
     ``parent``: the process that started it, which may have ended meanwhile.

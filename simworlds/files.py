@@ -12,6 +12,8 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+from simworlds.operating_system import SYSTEM
+
 if TYPE_CHECKING:
     from collections.abc import Generator
 
@@ -90,7 +92,7 @@ def remove_unfinished_files(folder: Path) -> None:
     with contextlib.suppress(OSError):
         for path in list(folder.iterdir()):
             match = _PART.match(path.name)
-            if match and not _is_running(int(match[1])):
+            if match and not SYSTEM.is_running(int(match[1])):
                 path.unlink(missing_ok=True)
 
 
@@ -98,15 +100,5 @@ def remove_leftovers(parent: Path) -> None:
     """Remove what killed processes left in ``parent`` of their scratch folders and of folders that they staged."""
     for folder in parent.glob(f"{_PREFIX}*"):
         pid = folder.name.removeprefix(_PREFIX).partition("-")[0]
-        if pid.isdigit() and not _is_running(int(pid)):
+        if pid.isdigit() and not SYSTEM.is_running(int(pid)):
             shutil.rmtree(folder, ignore_errors=True)
-
-
-def _is_running(pid: int) -> bool:
-    try:
-        os.kill(pid, 0)
-    except ProcessLookupError:
-        return False
-    except (OSError, OverflowError):
-        return True
-    return True

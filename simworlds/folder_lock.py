@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import contextmanager
 from typing import TYPE_CHECKING
 
+from simworlds.operating_system import SYSTEM
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -15,11 +16,9 @@ if TYPE_CHECKING:
 @contextmanager
 def locked(folder: Path) -> Generator[None]:
     """Holds a folder for this process. Raises Refusal while another one has it."""
-    import fcntl  # noqa: PLC0415 - not on Windows
-
     with (folder / ".lock").open("w") as file:
         try:
-            fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            SYSTEM.lock(file, wait=False)
         except OSError as error:
             raise Refusal(f"{folder} is in use by another SimWorlds. Choose another folder.") from error
         yield

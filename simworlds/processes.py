@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import os
 import queue
 import signal
 import subprocess
 import threading
 from concurrent.futures import Future
-from contextlib import suppress
 from typing import TYPE_CHECKING, Any, cast
+
+from simworlds.operating_system import SYSTEM
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
@@ -77,14 +77,13 @@ def spawn(command: Sequence[str], **popen: Any) -> subprocess.Popen[bytes]:
 
 
 def _start(command: Sequence[str], popen: dict[str, Any]) -> subprocess.Popen[bytes]:
-    given: dict[str, Any] = {"stdin": subprocess.DEVNULL, **popen, "start_new_session": True}
+    given: dict[str, Any] = {"stdin": subprocess.DEVNULL, **popen, **SYSTEM.own_group()}
     return cast("subprocess.Popen[bytes]", subprocess.Popen(list(command), **given))
 
 
 def kill_group(pid: int) -> None:
     """Kills a process that was started in a group of its own, and whatever it left running in that group."""
-    with suppress(ProcessLookupError, PermissionError):
-        os.killpg(pid, signal.SIGKILL)
+    SYSTEM.kill_group(pid)
 
 
 def end_group(process: subprocess.Popen[bytes]) -> None:

@@ -10,6 +10,7 @@ from simworlds.releases import minor_of
 
 HOME_VARIABLE = "SIMWORLDS_HOME"
 CORPORA_VARIABLE = "SIMWORLDS_CORPORA"
+BASE_URL_VARIABLE = "SIMWORLDS_BASE_URL"
 
 _BASE = re.compile(r"blender-(\d+)\.(\d+)\.sqlite")
 
@@ -27,6 +28,14 @@ def corpora_folder() -> Path | None:
     """The folder of documentation sources that SIMWORLDS_CORPORA names, if it does."""
     named = os.environ.get(CORPORA_VARIABLE)
     return Path(named).expanduser().absolute() if named else None
+
+
+def ready_base_source() -> str:
+    """Where ready bases can be fetched from, as SIMWORLDS_BASE_URL says; empty if nothing does."""
+    named = os.environ.get(BASE_URL_VARIABLE, "").strip()
+    return (
+        "" if named.startswith("${") else named
+    )  # a client that fills no empty setting in passes on its name
 
 
 def base_path(home: Path, version: str) -> Path:

@@ -16,7 +16,17 @@ if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
     from pathlib import Path
 
-PARTS = ("simworlds", "kb_check", "kb_build", "kb_serve", "agents", "bench", "measurements", "docs")
+PARTS = (
+    "simworlds",
+    "kb_check",
+    "kb_build",
+    "kb_serve",
+    "agents",
+    "bench",
+    "measurements",
+    "release",
+    "docs",
+)
 BLENDERS_OWN = frozenset(
     (  # noqa: SIM905
         "_bpy _bpy_types _rna_manual_reference addon_utils aud bl_math bl_operators bl_ui blf bmesh bpy bpy_extras "

@@ -45,7 +45,7 @@ class _CannotCheckError(Exception):
 
 
 @click.command()
-@click.argument("scene", type=_PATH)
+@click.argument("scenes", metavar="SCENE...", nargs=-1, required=True, type=_PATH)
 @click.option(
     "--plan",
     type=_PATH,
@@ -59,26 +59,41 @@ class _CannotCheckError(Exception):
 @click.option("--read", type=_PATH, multiple=True, help="A folder that Blender may read, for linked files.")
 @options.VERSION
 @options.EXECUTABLE
-def verify(scene: Path, form: str | None, rules: str | None, **choices: Any) -> None:
+def verify(scenes: tuple[Path, ...], form: str | None, rules: str | None, **choices: Any) -> None:
     """Check a .blend against the scene protocol, and against the plan that it was built to.
 
-    The file is not changed, and no script in it runs. Exit code 0: no hard rule is broken. 1: at least one is. 2: it
-    could not be checked: the file cannot be opened, the plan has faults, or a rule could not be decided.
+    The file is not changed, and no script in it runs. Of several files, one log of SARIF holds all. Exit code 0: no
+    hard rule is broken. 1: at least one is. 2: it could not be checked: the file cannot be opened, the plan has faults,
+    or a rule could not be decided.
     """
+    if len(scenes) > 1 and (choices["plan"] or choices["image"] or form == "json"):
+        raise click.UsageError("--plan, --image and --json are of one file: give one.")
     _on_signals(_interrupt)
+    logs: list[dict[str, Any]] = []
+    code = 0
     try:
-        try:
-            code = _verify(scene, form, _rules(rules), choices)
-        except _CannotCheckError as error:
-            _print_error(error, form)
-            code = _UNCHECKED
+        for scene in scenes:
+            try:
+                done = _verify(scene, form, _rules(rules), choices, logs)
+            except _CannotCheckError as error:
+                _print_error(error, form, logs)
+                done = _UNCHECKED
+            code = max(code, done)
+        _print_logs(logs)
     except KeyboardInterrupt:
         click.echo("Interrupted.", err=True)
         code = _INTERRUPTED
     sys.exit(code)
 
 
-def _verify(scene: Path, form: str | None, rules: tuple[Rule, ...], choices: dict[str, Any]) -> int:
+def _verify(
+    scene: Path,
+    form: str | None,
+    rules: tuple[Rule, ...],
+    choices: dict[str, Any],
+    logs: list[dict[str, Any]],
+) -> int:
+    """Checks one scene and prints the report, or adds it to ``logs`` if it is to be SARIF. Returns the exit code."""
     from agents.protocol.report.summary import exit_code  # noqa: PLC0415
     from simworlds.sandbox.errors import BlenderError  # noqa: PLC0415 - not for --help
 
@@ -90,7 +105,7 @@ def _verify(scene: Path, form: str | None, rules: tuple[Rule, ...], choices: dic
         report, checked = _run(scene, rules, plan, choices)
     except BlenderError as error:
         raise _CannotCheckError(f"{scene} could not be checked: {error}") from error
-    _print(report, checked, form)
+    _print(report, checked, form, logs)
     return exit_code(report)
 
 
@@ -231,13 +246,24 @@ def _draw(blender: Supervisor, report: Report, call: Call, checked: Verification
 # Output
 
 
-def _print(report: Report, checked: VerificationScope, form: str | None) -> None:
+def _print_logs(logs: list[dict[str, Any]]) -> None:
+    """Prints logs of SARIF as one."""
+    from agents.protocol.report.json_report import dump_json  # noqa: PLC0415 - not for --help
+
+    if logs:
+        click.echo(dump_json({**logs[0], "runs": [run for log in logs for run in log["runs"]]}))
+
+
+def _print(report: Report, checked: VerificationScope, form: str | None, logs: list[dict[str, Any]]) -> None:
     from agents.protocol.report.json_report import as_json, dump_json  # noqa: PLC0415 - not for --help
     from agents.protocol.report.sarif import as_sarif  # noqa: PLC0415
     from agents.protocol.report.table import as_table  # noqa: PLC0415
 
-    if form is not None:
-        click.echo(dump_json((as_json if form == "json" else as_sarif)(report, checked)))
+    if form == "json":
+        click.echo(dump_json(as_json(report, checked)))
+        return
+    if form == "sarif":
+        logs.append(as_sarif(report, checked))
         return
     from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --json
 
@@ -247,7 +273,7 @@ def _print(report: Report, checked: VerificationScope, form: str | None) -> None
     console.print(as_table(report, checked, console.width))
 
 
-def _print_error(error: _CannotCheckError, form: str | None) -> None:
+def _print_error(error: _CannotCheckError, form: str | None, logs: list[dict[str, Any]]) -> None:
     """Prints the error on stderr, and for --json and --sarif also in their form on stdout."""
     from agents.protocol.report.json_report import dump_json  # noqa: PLC0415 - not for --help
     from agents.protocol.report.sarif import sarif_failure  # noqa: PLC0415 - not for --help
@@ -258,7 +284,7 @@ def _print_error(error: _CannotCheckError, form: str | None) -> None:
         faults = [{"path": path, "message": message} for path, message in error.faults]
         click.echo(dump_json({"error": str(error), "faults": faults}))
     elif form == "sarif":
-        click.echo(dump_json(sarif_failure("\n".join(lines))))
+        logs.append(sarif_failure("\n".join(lines)))
 
 
 class _StatusLine:

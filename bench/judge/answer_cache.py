@@ -16,6 +16,7 @@ from pydantic import BaseModel, ValidationError
 
 from bench.judge.errors import NotJudged
 from simworlds.files import write_whole
+from simworlds.operating_system import SYSTEM
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Mapping
@@ -68,8 +69,6 @@ class AnswerCache:
     @contextmanager
     def _locked(self, key: str) -> Generator[None]:
         """Locks the keys with the same first two letters for one thread of one process."""
-        import fcntl  # noqa: PLC0415 - not on Windows
-
         assert self._folder is not None
         try:
             (self._folder / "locks").mkdir(parents=True, exist_ok=True)
@@ -79,7 +78,7 @@ class AnswerCache:
                 "cache", f"Cannot keep answers in {self._folder}: {error.strerror}. Choose another --cache."
             ) from error
         with file:
-            fcntl.flock(file, fcntl.LOCK_EX)
+            SYSTEM.lock(file, wait=True)
             yield
 
     def _write(self, path: Path, value: BaseModel) -> None:

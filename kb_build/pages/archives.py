@@ -170,6 +170,8 @@ class _Job:
                     self._write(path, source)
         if guarded.last_block != bytes(tarfile.BLOCKSIZE):  # tarfile takes a missing end for an end
             raise tarfile.ReadError("it ends in the middle")
+        while guarded.read(_CHUNK):  # compressed streams keep their checksum at the end
+            pass
 
     def _is_wanted(self, path: PurePosixPath) -> bool:
         return bool(path.parts) and (self.wanted is None or self.wanted(path))

@@ -1,4 +1,4 @@
-"""Downloads an archive from the official site; resumes broken downloads and gives up on silent hosts."""
+"""Downloads an archive; resumes broken downloads and gives up on silent hosts."""
 
 from __future__ import annotations
 
@@ -17,6 +17,7 @@ import httpx2
 from kb_build.errors import SourceError
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from kb_build.pages.archives import Progress
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 _CHUNK = 1 << 16
 _STALL_SECONDS = 15.0
 _ATTEMPTS = 5
-_LARGEST = 2 << 30
 _Event = tuple[int, int | None] | Exception | None
 
 
@@ -41,8 +41,27 @@ class DownloadPatience:
         self.silent_hosts[host] = fault
 
 
-def download(url: str, target: Path, *, patience: DownloadPatience, progress: Progress | None = None) -> str:
-    """Fetch the zip archive at ``url`` into ``target``; returns its SHA-256, also written beside it.
+@dataclass(frozen=True, slots=True)
+class ArchiveKind:
+    """What a download must be: its name in messages, how it is recognised, and the most bytes that it may have."""
+
+    name: str
+    recognise: Callable[[Path], bool]
+    largest: int
+
+
+ZIP = ArchiveKind("zip archive", zipfile.is_zipfile, 2 << 30)
+
+
+def download(
+    url: str,
+    target: Path,
+    *,
+    patience: DownloadPatience,
+    progress: Progress | None = None,
+    kind: ArchiveKind = ZIP,
+) -> str:
+    """Fetch the archive at ``url`` into ``target``; returns its SHA-256, also written beside it.
 
     What has arrived stays in ``target``'s .part file when the transfer breaks off, and the next call goes on
     from there, provided the server still has the same file. Raises SourceError with address and fault.
@@ -57,26 +76,26 @@ def download(url: str, target: Path, *, patience: DownloadPatience, progress: Pr
     for attempts_left in reversed(range(_ATTEMPTS)):
         before = _size(part)
         try:
-            _Transfer(url, part, patience, progress, f"downloading {target.name}").run()
+            _Transfer(url, part, patience, progress, kind.largest).run(f"downloading {target.name}")
             break
         except _BrokeOffError as error:
             if not attempts_left or _size(part) <= before:
                 raise SourceError(
                     f"{url} broke off after {_size(part):,} bytes ({error}); run again to go on from there"
                 ) from error
-    return _accept(url, part, target)
+    return _accept(url, part, target, kind)
 
 
 def _size(path: Path) -> int:
     return path.stat().st_size if path.exists() else 0
 
 
-def _accept(url: str, part: Path, target: Path) -> str:
-    if not zipfile.is_zipfile(part):
+def _accept(url: str, part: Path, target: Path, kind: ArchiveKind) -> str:
+    if not kind.recognise(part):
         with part.open("rb") as file:
             start = file.read(40)
         part.unlink()
-        raise SourceError(f"{url} is not a zip archive (it starts with {start!r})")
+        raise SourceError(f"{url} is not a {kind.name} (it starts with {start!r})")
     with part.open("rb") as file:
         digest = hashlib.file_digest(file, "sha256").hexdigest()
     target.with_name(target.name + ".sha256").write_text(f"{digest}  {target.name}\n", encoding="ascii")
@@ -102,12 +121,12 @@ class _Transfer:
     part: Path
     patience: DownloadPatience
     progress: Progress | None
-    label: str
+    largest: int
     events: queue.SimpleQueue[_Event] = field(default_factory=queue.SimpleQueue[_Event])
     writing: threading.Lock = field(default_factory=threading.Lock)
     stopped: bool = False
 
-    def run(self) -> None:
+    def run(self, label: str) -> None:
         """Bring ``part`` to its full length; raises _BrokeOffError where trying again may help."""
         started, answered = time.monotonic(), False
         threading.Thread(target=self._work, daemon=True).start()
@@ -117,7 +136,7 @@ class _Transfer:
                     raise event
                 answered = True
                 if self.progress:
-                    self.progress(self.label, *event)
+                    self.progress(label, *event)
         except _BrokeOffError as error:
             if answered:
                 raise
@@ -183,8 +202,8 @@ class _Transfer:
     def _receive(self, response: httpx2.Response, offset: int) -> None:
         length = response.headers.get("Content-Length", "")
         total = offset + int(length) if length.isdigit() else None
-        if (total or 0) > _LARGEST:
-            raise ValueError(f"it would be {total:,} bytes, more than any documentation")
+        if (total or 0) > self.largest:
+            raise ValueError(f"it would be {total:,} bytes, more than such a file has")
         if not offset:
             note = {"url": self.url, "validator": _validator(response)}
             _validator_file(self.part).write_text(json.dumps(note), encoding="utf-8")
@@ -196,8 +215,8 @@ class _Transfer:
                     file.write(chunk)
                     file.flush()
                 offset += len(chunk)
-                if offset > _LARGEST:
-                    raise ValueError(f"it is longer than {_LARGEST:,} bytes, more than any documentation")
+                if offset > self.largest:
+                    raise ValueError(f"it is longer than {self.largest:,} bytes, more than such a file has")
                 self.events.put((offset, total))
 
 

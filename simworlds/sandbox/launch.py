@@ -15,6 +15,7 @@ from simworlds.sandbox.program import BOOT, Program
 from simworlds.sandbox.runtime import Runtime, clean_environment, find_runtime
 from simworlds.sandbox.usage import UsageMonitor
 from simworlds.settings import home_folder
+from simworlds.terminal.progress import shown_progress
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -107,9 +108,10 @@ class Launch:
 
 
 def find_blender(version: str | None = None, blender_exe: Path | None = None) -> Runtime:
-    """The Blender to work in; a missing one is installed, which takes minutes. Raises CannotStart."""
+    """The Blender to work in; a missing one is installed, which takes minutes, and is told. Raises CannotStart."""
     try:
-        return find_runtime(version, home=home_folder(), blender_exe=blender_exe)
+        with shown_progress() as progress:
+            return find_runtime(version, home=home_folder(), blender_exe=blender_exe, progress=progress)
     except RuntimeMissing as error:
         raise CannotStart(f"No Blender was found: {error}") from error
 

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Literal
 
 from simworlds.files import staged_folder
+from simworlds.operating_system import SYSTEM
 from simworlds.processes import CommandFailed, run_group
 from simworlds.releases import Release, minor_of, release, releases, same_version
 from simworlds.sandbox.errors import ProgramFailed, RuntimeMissing
@@ -176,11 +177,7 @@ def _managed(wanted: str, runtimes: Path, progress: Report | None) -> Runtime:
     folder = runtimes / version
     if not folder.is_dir():
         _install(version, entry, folder, progress)
-    return Runtime(_python_in(folder), "managed", version)
-
-
-def _python_in(folder: Path) -> Path:
-    return folder / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+    return Runtime(SYSTEM.python_in(folder), "managed", version)
 
 
 def _install(version: str, entry: Release, folder: Path, progress: Report | None) -> None:
@@ -199,7 +196,7 @@ def _install(version: str, entry: Release, folder: Path, progress: Report | None
                     "pip",
                     "install",
                     "--python",
-                    str(_python_in(staging)),
+                    str(SYSTEM.python_in(staging)),
                     "--only-binary",
                     ":all:",
                     f"bpy=={version}",
@@ -209,8 +206,9 @@ def _install(version: str, entry: Release, folder: Path, progress: Report | None
                 run_group(command, environment=environment, timeout=_INSTALL_SECONDS, log=log)
     except CommandFailed as error:
         raise RuntimeMissing(
-            f"bpy {version} for CPython {entry.python} could not be installed: {error}. The whole output is "
-            f"in {log}. Run again with a network connection, or install that Blender and {_NAME_IT}"
+            f"there is no bpy in this environment, and bpy {version} for CPython {entry.python} could not be fetched: "
+            f"{error}. See {log}. Install SimWorlds with Blender (CPython 3.13: simworlds[blender]), "
+            f"run again with a network, or install that Blender and {_NAME_IT}"
         ) from error
     except OSError as error:
         raise RuntimeMissing(

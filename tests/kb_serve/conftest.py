@@ -55,8 +55,10 @@ def serve_from() -> Iterator[Callable[..., Service]]:
     """Makes services over home folders, which build nothing unless told to; closes their bases."""
     with ExitStack() as opened:
 
-        def make(home: Path, *, blender_exe: Path | None = None, rebuild: bool = False) -> Service:
-            bases = Bases(home, blender_exe=blender_exe)
+        def make(
+            home: Path, *, blender_exe: Path | None = None, rebuild: bool = False, default: str | None = None
+        ) -> Service:
+            bases = Bases(home, default=default, blender_exe=blender_exe)
             opened.callback(bases.close)
             return Service(bases, Upkeep(bases, blender_exe, enabled=rebuild))
 

@@ -149,7 +149,7 @@ def test_a_base_that_is_being_built_is_named_as_such(
 ) -> None:
     make_base("4.5.3")
     service = serve_from(home, blender_exe=stopping_blender(home, "98.1.2", ""), rebuild=True)
-    service.upkeep.state = "running"
+    service.upkeep.plan()
     with pytest.raises(BaseMissing, match="being built"):
         ask(service, blender="98.1")
     with pytest.raises(BaseMissing, match=r"simworlds kb build 4\.4"):

@@ -198,7 +198,7 @@ def test_a_wheel_that_cannot_be_installed_is_named_with_uvs_words(tmp_path: Path
         text=True,
         check=False,
     )
-    assert "bpy 4.2.999 for CPython 3.11 could not be installed" in done.stdout, done.stderr
+    assert "bpy 4.2.999 for CPython 3.11 could not be fetched" in done.stdout, done.stderr
     assert "it said:" in done.stdout
     assert "BLENDER_EXE" in done.stdout
     assert [path.name for path in (tmp_path / "runtimes").iterdir()] == ["4.2.999.log"]

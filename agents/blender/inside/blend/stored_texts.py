@@ -6,6 +6,7 @@ structs with their fields (https://developer.blender.org/docs/features/core/blen
 """
 
 import mmap
+import os
 import re
 import struct
 
@@ -24,6 +25,8 @@ def replace_texts(path, struct_name, field_name, renamed):
 
     ``renamed``: {old text: new text}. Returns how many were changed. Raises UnknownForm.
     """
+    if not os.path.getsize(path):  # of which there is no map
+        raise UnknownForm(f"{path}: it is empty")
     with open(path, "r+b") as file, mmap.mmap(file.fileno(), 0) as data:
         try:
             order, blocks = _blocks(data)
@@ -32,12 +35,10 @@ def replace_texts(path, struct_name, field_name, renamed):
             )
         except (struct.error, ValueError, IndexError, StopIteration) as error:
             raise UnknownForm(f"{path}: {error}") from None
-        places = [
-            start + step * size + offset
-            for code, start, _, kind, count in blocks
-            if kind == number and code != b"DNA1"
-            for step in range(count)
-        ]
+        found = [block for block in blocks if block[3] == number and block[0] != b"DNA1"]
+        if any(count * size > length for _, _, length, _, count in found) or offset + room > size:
+            raise UnknownForm(f"{path}: {struct_name} does not fit where it lies")
+        places = [start + step * size + offset for _, start, _, _, count in found for step in range(count)]
         new = {place: renamed.get(_text(data, place, room)) for place in places}
         texts = {place: text.encode() for place, text in new.items() if text is not None}
         if any(len(text) >= room for text in texts.values()):

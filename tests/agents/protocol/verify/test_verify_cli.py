@@ -92,6 +92,18 @@ def test_a_sound_scene_is_0_and_says_what_was_checked(session: LiveSession, tmp_
     assert "no plan was given" in done.stdout
 
 
+def test_several_files_have_one_log_and_the_worst_exit_code(session: LiveSession, tmp_path: Path) -> None:
+    saved(session, SOUND, tmp_path / "sound.blend")
+    done = verify(tmp_path, "sound.blend", "missing.blend", "--sarif")
+    assert done.returncode == 2
+    first, second = json.loads(done.stdout)["runs"]
+    assert first["results"] == []
+    assert second["invocations"][0]["executionSuccessful"] is False
+    done = verify(tmp_path, "sound.blend", "missing.blend", "--json")
+    assert done.returncode == 2
+    assert "of one file" in done.stderr
+
+
 def test_findings_are_1_and_come_as_table_json_and_picture(session: LiveSession, tmp_path: Path) -> None:
     saved(session, SCENE, tmp_path / "broken.blend")
     done = verify(tmp_path, "broken.blend", "--json", "--image", "seen.png")

@@ -25,13 +25,13 @@ def environment(home: Path, **more: str) -> dict[str, str]:
 class Wire:
     """The other end of a server's stdin and stdout, read and written line by line."""
 
-    def __init__(self, words: list[str], home: Path) -> None:
+    def __init__(self, words: list[str], home: Path, **more: str) -> None:
         self.process = subprocess.Popen(
             words,
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.DEVNULL,
-            env=environment(home),
+            env=environment(home, **more),
             cwd=REPO,
         )
         self._number = 0

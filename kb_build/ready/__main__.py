@@ -1,0 +1,44 @@
+"""``python -m kb_build.ready VERSION --from SOURCE --home FOLDER``: what a server fetches a base with.
+
+Progress goes to stderr, line by line; so does the error that it ends with.
+"""
+
+from __future__ import annotations
+
+import argparse
+import signal
+import sys
+from pathlib import Path
+from typing import NoReturn
+
+from kb_build.ready.fetch import fetch_base
+from simworlds.errors import UserError
+from simworlds.terminal.progress import shown_progress
+
+
+def _terminated(_number: int, _frame: object) -> NoReturn:
+    """Unwinds like Ctrl-C: nothing that is half done stays."""
+    raise KeyboardInterrupt
+
+
+def main() -> int:
+    """Fetches one base. Returns 0, or 1 when it failed."""
+    parser = argparse.ArgumentParser(prog="python -m kb_build.ready", description=__doc__)
+    parser.add_argument("version")
+    parser.add_argument("--from", dest="source", required=True)
+    parser.add_argument("--home", type=Path, required=True)
+    given = parser.parse_args()
+    signal.signal(signal.SIGTERM, _terminated)
+    try:
+        with shown_progress() as progress:
+            fetch_base(given.version, given.source, home=given.home, progress=progress)
+    except UserError as error:
+        sys.stderr.write(f"{error}\n")
+        return 1
+    except KeyboardInterrupt:
+        return 130
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
