@@ -19,7 +19,7 @@ from starlette.datastructures import Headers
 
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
-from agents.blender.tool_catalogue import BY_NAME, TOOLS
+from agents.blender.tool_catalogue import BY_NAME, TOOLS, WITH_ASSETS
 from agents.blender.tools.base import Call
 from simworlds.mcp_transport.sessions import SESSION, UNFINISHED, EndUnfinishedSessions
 from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
@@ -55,6 +55,7 @@ _HABITS = (
     ("blender_trial", "to try physics over some frames before you bake it: numbers, pictures, what a bake will take"),
     ("blender_bake", "for physics, before you judge motion; never jump to a frame of an unbaked simulation"),
     ("blender_motion_sheet_preview", "to see and measure motion over time"),
+    ("blender_assets", "before you model what the user's asset library may have"),
     ("blender_save", "when a stage is done"),
     ("blender_render", "last, when everything is in place; start with a still"),
 )  # fmt: skip
@@ -85,6 +86,8 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
 
     ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles.
     """
+    own = (*TOOLS, *((WITH_ASSETS,) if sessions.has_assets else ()))
+    by_name = BY_NAME | {tool.name: tool for tool in own}
 
     @asynccontextmanager
     async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
@@ -104,9 +107,9 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
             return await _look_up(docs, params.name, params.arguments)
         if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
             return answer
-        tool = BY_NAME.get(params.name)
+        tool = by_name.get(params.name)
         if tool is None:
-            names = ", ".join([*BY_NAME, *(team.names if team is not None else ()), *docs_client.NAMES])
+            names = ", ".join([*by_name, *(team.names if team is not None else ()), *docs_client.NAMES])
             raise MCPError(
                 types.INVALID_PARAMS, f"There is no tool {params.name[:80]!r}. Available: {names}."
             )
@@ -118,7 +121,7 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         return await _call_with_progress(context, tool.name, use)
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
-        listed = [*map(entry, TOOLS), *(team.tools() if team is not None else ())]
+        listed = [*map(entry, own), *(team.tools() if team is not None else ())]
         try:
             with anyio.fail_after(_LIST_SECONDS):
                 listed += await docs.tools()
@@ -144,9 +147,9 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         "simworlds-blender",
         version=_own_version(),
         title="SimWorlds: live Blender",
-        instructions=instructions(team.names if team is not None else ()),
+        instructions=instructions([*by_name, *(team.names if team is not None else ())]),
         lifespan=lifespan,
-        get_tool_input_schema=lambda name: entry(BY_NAME[name]).input_schema if name in BY_NAME else None,
+        get_tool_input_schema=lambda name: entry(by_name[name]).input_schema if name in by_name else None,
         on_list_tools=list_tools,
         on_call_tool=call_tool,
         on_list_resources=list_resources,

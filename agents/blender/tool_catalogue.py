@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from agents.blender.tools import (
+    assets,
     bake,
     execute,
     export_file,
@@ -43,5 +44,7 @@ TOOLS: tuple[BlenderTool, ...] = (
     bake.TOOL,
     render.TOOL,
 )
+# Listed only where the server has what they need.
+WITH_ASSETS = assets.TOOL
 BY_NAME = {tool.name: tool for tool in TOOLS}
 assert len(BY_NAME) == len(TOOLS), "a tool is listed twice"

@@ -34,6 +34,7 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
 @options.VERSION
 @options.EXECUTABLE
 @click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, for assets.")
+@click.option("--assets", type=_ASSETS, help="Your asset library: .blend assets, HDRIs, texture sets.")
 @options.SANDBOX
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
@@ -61,6 +62,7 @@ def mcp(  # noqa: PLR0913 - one for each option
     blender: str | None,
     blender_exe: Path | None,
     read: tuple[Path, ...],
+    assets: Path | None,
     sandbox: Kind | None,
     over_http: bool,
     host: str,
@@ -84,7 +86,9 @@ def mcp(  # noqa: PLR0913 - one for each option
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415 - not for --help
     from simworlds.sandbox.launch import find_blender  # noqa: PLC0415
 
-    setup_of = partial(SessionSetup, version=blender, blender_exe=blender_exe, read=read, run=run)
+    setup_of = partial(
+        SessionSetup, version=blender, blender_exe=blender_exe, read=read, run=run, assets=assets
+    )
     try:
         if blender_exe is not None:
             find_blender(blender, blender_exe)

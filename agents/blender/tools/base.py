@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from agents.blender.assets.library import AssetLibrary
     from agents.blender.supervisor import Supervisor
     from simworlds.sandbox.blender_process import Progress
 
@@ -75,11 +76,15 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class ToolContext:
-    """What a tool works with: a run's Blender and the knowledge base. Without ``check``, code is not checked."""
+    """What a tool works with: a run's Blender, the knowledge base, and the user's ``assets``, if there are any.
+
+    Without ``check``, code is not checked.
+    """
 
     blender: Supervisor
     docs: Docs
     check: Check | None = None
+    assets: AssetLibrary | None = None
 
 
 @dataclass(frozen=True, slots=True)

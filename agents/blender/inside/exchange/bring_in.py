@@ -156,6 +156,8 @@ def _pack(images, root, workspace):
 
 
 def _size_notes(facts):
+    if "MESH" in facts["objects"] and not facts["meshes"]:
+        yield "its meshes have no faces: the file may be damaged"
     if facts["low"] is None:
         if facts["meshes"]:
             yield "its bounds cannot be measured: it has points that are not finite or absurdly far away"

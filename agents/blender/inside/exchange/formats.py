@@ -2,6 +2,7 @@
 """Formats that other programs read and write: which operators of this Blender do it, and with which settings."""
 
 import contextlib
+import os
 
 import addon_utils
 import bpy
@@ -86,30 +87,31 @@ def supported():
 
 def read(name, path, **settings):
     """Imports a file of the format. Raises Refused."""
-    _run(_IMPORTERS, "read", name, path, settings)
+    _run(_IMPORTERS, "reads", name, path, settings)
 
 
 def write(name, path, **settings):
     """Exports the selected objects in the format. Raises Refused."""
-    _run(_EXPORTERS, "write", name, path, {"check_existing": False, **settings})
+    _run(_EXPORTERS, "writes", name, path, {"check_existing": False, **settings})
 
 
 def _run(table, verb, name, path, settings):
     found = _find(table[name])
     if found is None:
-        can = ", ".join(known for known, does in supported().items() if does[f"{verb}s"])
+        can = ", ".join(known for known, does in supported().items() if does[verb])
         raise Refused(
-            f"This Blender ({bpy.app.version_string}) cannot {verb} {name}; its build lacks it. It {verb}s {can}."
+            f"This Blender ({bpy.app.version_string}) cannot {verb[:-1]} {name}; its build lacks it. It {verb} {can}."
         )
     operator, own = found
+    file = os.path.basename(path)
     known = {setting.identifier for setting in operator.get_rna_type().properties}
     given = {key: value for key, value in {**own, **settings}.items() if key in known and value is not None}
     try:
         ended = operator(filepath=path, **given)
     except RuntimeError as error:
-        raise Refused(f"Blender's {name} {verb}er failed: {_short(error, path)}") from None
+        raise Refused(f"Blender cannot {verb[:-1]} {file} as {name}: {_short(error, path)}") from None
     if "FINISHED" not in ended:
-        raise Refused(f"Blender's {name} {verb}er gave up without a reason; the file may be damaged.")
+        raise Refused(f"Blender cannot {verb[:-1]} {file} as {name}, and gives no reason; it may be damaged.")
 
 
 def _find(operators):

@@ -24,7 +24,7 @@ def check_file(kind, path, root):
     """Raises Refused if a file is damaged as far as can be told, or names files that are not below ``root``."""
     check = {"gltf": _check_gltf, "obj": _check_obj, "stl": _check_stl}.get(kind)
     try:
-        named = check(path) if check is not None else []
+        named = check(path, root) if check is not None else []
     except (OSError, ValueError, RecursionError, struct.error) as error:
         raise Refused(f"{os.path.basename(path)} is damaged: {str(error)[:200]}.") from None
     outside = sorted({name for folder, name in named if not is_inside(os.path.join(folder, name), root)})
@@ -38,16 +38,23 @@ def check_file(kind, path, root):
 
 
 def is_inside(path, root):
-    """Whether a path, links followed, leads to something in the folder ``root``."""
+    """Whether a path, links followed, leads to something in the folder ``root``. Nothing is opened.
+
+    A sandbox may hide where a link leads to: what is behind such a link is outside.
+    """
     real, top = os.path.realpath(path), os.path.realpath(root)
-    return real == top or real.startswith(top + os.sep)
+    while real.startswith(top + os.sep):
+        if os.path.islink(real):
+            return False
+        real = os.path.dirname(real)
+    return real == top
 
 
 # glTF
 
 
-def _check_gltf(path):
-    """Yields (folder, name) of what a .gltf or .glb refers to. Raises ValueError."""
+def _check_gltf(path, _root):
+    """Returns (folder, name) of what a .gltf or .glb refers to. Raises ValueError."""
     content = json.loads(_json_of(path))
     if not isinstance(content, dict):
         raise ValueError("it is not a glTF file")
@@ -104,8 +111,8 @@ def _dicts(content, key):
 # OBJ
 
 
-def _check_obj(path):
-    """Yields (folder, name) of the material libraries of an .obj, and of the images in them."""
+def _check_obj(path, root):
+    """Returns (folder, name) of the material libraries of an .obj, and of the images in them."""
     folder, libraries = os.path.dirname(path), []
     with open(path, "rb") as file:
         for line in file:
@@ -114,7 +121,7 @@ def _check_obj(path):
     named = [(folder, name) for name in libraries]
     for name in libraries:
         library = os.path.join(folder, name)
-        if os.path.isfile(library) and os.path.getsize(library) <= _LONGEST_MTL:
+        if is_inside(library, root) and os.path.isfile(library) and os.path.getsize(library) <= _LONGEST_MTL:
             with open(library, "rb") as file:
                 lines = [line.strip() for line in file]
             named += [(folder, image) for line in lines if (image := _image_in(line))]
@@ -138,7 +145,7 @@ def _text(line):
 # STL
 
 
-def _check_stl(path):
+def _check_stl(path, _root):
     """A binary STL has as many bytes as its count of triangles says. Raises ValueError."""
     size = os.path.getsize(path)
     with open(path, "rb") as file:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from agents.blender.exchange.replies import ImportedFile
 from agents.blender.tools import export_file
 from agents.blender.tools.export_file import TOOL as EXPORT
 from agents.blender.tools.import_file import TOOL as IMPORT
@@ -184,6 +185,7 @@ def test_a_difference_is_told_and_fails_the_call(
 
     def without_texture(*arguments: Any, **more: Any) -> Any:
         back = whole(*arguments, **more)
+        assert isinstance(back, ImportedFile)
         bare = [entry.model_copy(update={"images": []}) for entry in back.materials]
         return back.model_copy(update={"materials": bare, "triangles": 7, "high": [9.0, 9.0, 9.0]})
 
