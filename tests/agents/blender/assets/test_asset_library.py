@@ -58,7 +58,8 @@ chair.asset_data.license = "CC0"
 chair.asset_data.tags.new("furniture")
 with bpy.context.temp_override(id=chair):
     bpy.ops.ed.lib_id_load_custom_preview(filepath=os.path.abspath("library/wood/Oak01_1K-PNG_Color.png"))
-bpy.data.libraries.write(os.path.abspath("library/things.blend"), {chair, kit, red, evening, bpy.data.objects["Unmarked"]})
+everything = {chair, kit, red, evening, bpy.data.objects["Unmarked"]}
+bpy.data.libraries.write(os.path.abspath("library/things.blend"), everything)
 """
 
 
