@@ -32,6 +32,7 @@ _TOLD_IN: dict[str, tuple[Stage, ...]] = {
     "blender_object_preview": ("modeling", "uv", "texture", "deformation_setup", "render"),
     "blender_render": ("texture", "camera", "light", "render"),
     "blender_save": (),
+    "blender_assets": ("modeling", "texture", "light"),
     "blender_load": (),
     "blender_import": (),
     "blender_export": (),
