@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from live_session import LiveSession
+from mcp import Client
+from serving import over_stdio
 
 from agents.blender.assets.library import AssetLibrary, find_assets
 from agents.blender.tools.assets import TOOL
@@ -61,6 +63,12 @@ with bpy.context.temp_override(id=chair):
 everything = {chair, kit, red, evening, bpy.data.objects["Unmarked"]}
 bpy.data.libraries.write(os.path.abspath("library/things.blend"), everything)
 """
+
+
+@pytest.fixture
+def anyio_backend() -> str:
+    """The only one that the server runs on."""
+    return "asyncio"
 
 
 class Shelf:
@@ -245,3 +253,17 @@ def test_damaged_files_are_named_and_the_others_found(shelf: Shelf) -> None:
 def test_without_a_library_the_tool_says_what_is_missing(session: LiveSession) -> None:
     with pytest.raises(Refusal, match="without --assets"):
         session.use(TOOL)
+
+
+@pytest.mark.anyio
+async def test_the_server_lists_the_tool_only_with_a_library(shelf: Shelf, tmp_path: Path) -> None:
+    async with Client(over_stdio(tmp_path / "home", "--assets", str(shelf.root))) as client:
+        listed = {tool.name for tool in (await client.list_tools()).tools}
+        answer = await client.call_tool(TOOL.name, {"query": "sunset"})
+        assert client.instructions is not None
+        assert TOOL.name in client.instructions
+    assert TOOL.name in listed
+    assert answer.structured_content is not None
+    assert [asset["id"] for asset in answer.structured_content["assets"]] == ["sunset.hdr"]
+    async with Client(over_stdio(tmp_path / "home")) as client:
+        assert TOOL.name not in {tool.name for tool in (await client.list_tools()).tools}
