@@ -46,7 +46,8 @@ class SessionSetup:
     """How sessions are set up.
 
     ``run`` is the folder to work in; None: a new one for each client. ``read``: folders that Blender may read.
-    ``assets``: the user's asset library, which it may read too. ``tell`` gets lines for the server's user.
+    ``assets``: the user's asset library, which it may read too; ``online``: more may be fetched into
+    it. ``tell`` gets lines for the server's user.
     """
 
     sandbox: Sandbox
@@ -55,6 +56,7 @@ class SessionSetup:
     read: tuple[Path, ...] = ()
     run: Path | None = None
     assets: Path | None = None
+    online: bool = False
     tell: Callable[[str], object] = _on_stderr
 
     @property
@@ -83,8 +85,9 @@ class BlenderSession:
         self._assets: AssetLibrary | None = None
         if setup.assets is not None:
             from agents.blender.assets.library import open_library  # noqa: PLC0415 - slows the start
+            from agents.blender.assets.poly_haven import PolyHaven  # noqa: PLC0415
 
-            self._assets = open_library(setup.assets)
+            self._assets = open_library(setup.assets, PolyHaven() if setup.online else None)
 
     @property
     def idle(self) -> float:
@@ -225,6 +228,11 @@ class BlenderSessions:
     def has_assets(self) -> bool:
         """Whether there is an asset library."""
         return self._setup.assets is not None
+
+    @property
+    def is_online(self) -> bool:
+        """Whether more assets may be fetched into the library."""
+        return self.has_assets and self._setup.online
 
     def start(self, client: str) -> None:
         """Starts a client's Blender in the background, before its first call. Raises Refusal."""

@@ -19,7 +19,7 @@ from starlette.datastructures import Headers
 
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
-from agents.blender.tool_catalogue import BY_NAME, TOOLS, WITH_ASSETS
+from agents.blender.tool_catalogue import BY_NAME, ONLINE, TOOLS, WITH_ASSETS
 from agents.blender.tools.base import Call
 from simworlds.mcp_transport.sessions import SESSION, UNFINISHED, EndUnfinishedSessions
 from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
@@ -86,7 +86,11 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
 
     ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles.
     """
-    own = (*TOOLS, *((WITH_ASSETS,) if sessions.has_assets else ()))
+    own = (
+        *TOOLS,
+        *((WITH_ASSETS,) if sessions.has_assets else ()),
+        *((ONLINE,) if sessions.is_online else ()),
+    )
     by_name = BY_NAME | {tool.name: tool for tool in own}
 
     @asynccontextmanager
@@ -204,7 +208,7 @@ def entry(tool: BlenderTool) -> types.Tool:
             read_only_hint=tool.read_only,
             destructive_hint=tool.destructive,
             idempotent_hint=tool.read_only,
-            open_world_hint=False,
+            open_world_hint=tool.open_world,
         ),
     )
 

@@ -9,6 +9,7 @@ from agents.blender.tools import (
     bake,
     execute,
     export_file,
+    fetch_assets,
     files,
     group,
     import_file,
@@ -46,5 +47,6 @@ TOOLS: tuple[BlenderTool, ...] = (
 )
 # Listed only where the server has what they need.
 WITH_ASSETS = assets.TOOL
+ONLINE = fetch_assets.TOOL
 BY_NAME = {tool.name: tool for tool in TOOLS}
 assert len(BY_NAME) == len(TOOLS), "a tool is listed twice"

@@ -35,6 +35,7 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
 @options.EXECUTABLE
 @click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, for assets.")
 @click.option("--assets", type=_ASSETS, help="Your asset library: .blend assets, HDRIs, texture sets.")
+@click.option("--online", is_flag=True, help="Let assets be fetched from Poly Haven into --assets.")
 @options.SANDBOX
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
@@ -63,6 +64,7 @@ def mcp(  # noqa: PLR0913 - one for each option
     blender_exe: Path | None,
     read: tuple[Path, ...],
     assets: Path | None,
+    online: bool,
     sandbox: Kind | None,
     over_http: bool,
     host: str,
@@ -80,6 +82,8 @@ def mcp(  # noqa: PLR0913 - one for each option
     for_http = [name for name in _ONLY_HTTP if context.get_parameter_source(name) is _TYPED]
     if for_http and not over_http:
         raise click.UsageError(f"--{for_http[0].replace('_', '-')} needs --http.")
+    if online and assets is None:
+        raise click.UsageError("--online needs --assets, the folder that assets are fetched into.")
     # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
@@ -87,7 +91,13 @@ def mcp(  # noqa: PLR0913 - one for each option
     from simworlds.sandbox.launch import find_blender  # noqa: PLC0415
 
     setup_of = partial(
-        SessionSetup, version=blender, blender_exe=blender_exe, read=read, run=run, assets=assets
+        SessionSetup,
+        version=blender,
+        blender_exe=blender_exe,
+        read=read,
+        run=run,
+        assets=assets,
+        online=online,
     )
     try:
         if blender_exe is not None:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.blender import plan_check
 from agents.blender.team import PROMPTS
-from agents.blender.tool_catalogue import TOOLS, WITH_ASSETS
+from agents.blender.tool_catalogue import ONLINE, TOOLS, WITH_ASSETS
 from agents.plan.scene import ScenePlan
 from docs.generate.markdown import GENERATED, page, schema_table, table
 from kb_serve.served_tools import listing
@@ -78,7 +78,7 @@ def blender_tools_page() -> str:
         GENERATED,
         "`simworlds mcp` serves these, and `blender_docs` and `blender_check` ([tools.md](tools.md)) beside them.",
     ]
-    for entry in (*TOOLS, WITH_ASSETS):
+    for entry in (*TOOLS, WITH_ASSETS, ONLINE):
         kind = "reads only" if entry.read_only else "changes the scene or writes files"
         parts += [f"## `{entry.name}`", entry.description, f"It {kind}."]
         parts.append(schema_table(entry.arguments.model_json_schema()))

@@ -7,22 +7,24 @@ import json
 import time
 from collections.abc import Callable
 from contextlib import ExitStack, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
+from agents.blender.assets.licence import LONGEST, NOTE_FILE, LicenceNote
 from agents.blender.assets.map_names import IMAGES, map_of, texture_sets
 from agents.blender.assets.replies import MarkedAsset, ReadAssets
 from agents.blender.second_blender import second_blender
 from agents.blender.sheets.contact_sheet import to_png
 from simworlds.files import write_whole
-from simworlds.folder_files import FolderFile, FolderLimits, FolderTooLarge, list_files
+from simworlds.folder_files import FolderFile, FolderLimits, FolderTooLarge, list_files, read_file
 from simworlds.sandbox.errors import BlenderError, Lost, Refusal
 from simworlds.settings import cache_folder, home_folder
 
 if TYPE_CHECKING:
+    from agents.blender.assets.poly_haven import PolyHaven
     from agents.blender.supervisor import Supervisor
     from simworlds.sandbox.blender_process import BlenderProcess
     from simworlds.sandbox.hostile_ground import HostileGround
@@ -40,9 +42,9 @@ _CHUNK = 1 << 20
 _MOST_INDEX = 64 << 20  # bytes
 
 
-def open_library(root: Path) -> AssetLibrary:
+def open_library(root: Path, online: PolyHaven | None = None) -> AssetLibrary:
     """The library in a folder; what is read of it is kept in the user's folder. Nothing is read yet."""
-    return AssetLibrary(root, cache_folder(home_folder()) / "assets")
+    return AssetLibrary(root, cache_folder(home_folder()) / "assets", online)
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,10 +77,14 @@ class _Kept(BaseModel):
 
 
 class AssetLibrary:
-    """The assets of ``root``; what was read is kept in the folder ``cache``. For one thread at a time."""
+    """The assets of ``root``; what was read is kept in the folder ``cache``. For one thread at a time.
 
-    def __init__(self, root: Path, cache: Path) -> None:
+    ``online``: where more of them can be fetched from.
+    """
+
+    def __init__(self, root: Path, cache: Path, online: PolyHaven | None = None) -> None:
         self.root = root
+        self.online = online
         self._cache = cache
         self._assets: list[Asset] | None = None
         self._seen: tuple[FolderFile, ...] = ()
@@ -110,23 +116,11 @@ class AssetLibrary:
                 assets += [self._of_blend(name, marked, entry) for marked in entry.read.assets]
         for place, entry_maps in sets.items():
             if (entry := kept.get(shown[place])) is not None:
-                name = PurePosixPath(place).name
-                assets.append(
-                    Asset(
-                        f"{place}/textures",
-                        "textures",
-                        name,
-                        shown[place],
-                        maps=entry_maps,
-                        size=entry.read.size,
-                        preview=self._picture(entry, entry.read.picture),
-                    )
-                )
+                plain = Asset(f"{place}/textures", "textures", PurePosixPath(place).name, shown[place])
+                assets.append(replace(self._of_image(plain, entry), maps=entry_maps))
         for name in lights:
             if (entry := kept.get(name)) is not None:
-                picture = self._picture(entry, entry.read.picture)
-                stem = PurePosixPath(name).stem
-                assets.append(Asset(name, "hdri", stem, name, size=entry.read.size, preview=picture))
+                assets.append(self._of_image(Asset(name, "hdri", PurePosixPath(name).stem, name), entry))
         return sorted(assets, key=lambda asset: asset.id)
 
     def _of_blend(self, file: str, marked: MarkedAsset, kept: _Kept) -> Asset:
@@ -141,6 +135,15 @@ class AssetLibrary:
             marked.license,
             preview=self._picture(kept, marked.picture),
         )
+
+    def _of_image(self, asset: Asset, kept: _Kept) -> Asset:
+        """The same with what is known of its image, and of the folder that it lies in."""
+        known = replace(asset, size=kept.read.size, preview=self._picture(kept, kept.read.picture))
+        with suppress(OSError, ValueError):
+            place = PurePosixPath(asset.file).with_name(NOTE_FILE).as_posix()
+            note = LicenceNote.model_validate_json(read_file(self.root, place, most=LONGEST))
+            return replace(known, tags=tuple(note.tags), author=note.author, license=note.license)
+        return known
 
     def _picture(self, kept: _Kept, name: str) -> Path | None:
         digest = kept.pictures.get(name)
@@ -243,6 +246,8 @@ def _ending(name: str) -> str:
 
 def _is_wanted(path: PurePosixPath) -> bool:
     ending = path.suffix.lower()
+    if path.name == NOTE_FILE:
+        return True
     return ending in _HDRIS or ending == ".blend" or (ending in IMAGES and bool(map_of(path.stem)[0]))
 
 

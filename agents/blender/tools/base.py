@@ -99,7 +99,7 @@ class Call:
 class BlenderTool:
     """A tool of the suite (paper, Table "Tool suite"). ``run`` raises BlenderError.
 
-    ``destructive``: it may remove or replace what was there.
+    ``destructive``: it may remove or replace what was there. ``open_world``: it reaches beyond this machine.
     """
 
     name: str
@@ -109,6 +109,7 @@ class BlenderTool:
     run: Callable[[ToolContext, Any, Call], Result]
     read_only: bool = False
     destructive: bool = False
+    open_world: bool = False
 
 
 def parse(tool: BlenderTool, arguments: dict[str, Any] | None) -> Arguments:
