@@ -4,20 +4,28 @@ from __future__ import annotations
 
 import hashlib
 import json
+import re
 import threading
+from dataclasses import replace
 from http.server import BaseHTTPRequestHandler, ThreadingHTTPServer
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from click.testing import CliRunner
 
+from agents.blender.assets import poly_haven
+from agents.blender.assets.library import open_library
 from agents.blender.assets.licence import NOTE_FILE, LicenceNote
 from agents.blender.assets.map_names import texture_sets
 from agents.blender.assets.poly_haven import PolyHaven
+from agents.blender.blender_sessions import BlenderSessions, SessionSetup
+from agents.commands.mcp import mcp
+from simworlds.sandbox.confined_command import best_sandbox
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
-    from pathlib import Path
 
 TEXTURE = {
     "name": "Brick Floor 003",
@@ -303,3 +311,21 @@ def test_malformed_answers_and_silent_hosts_are_told(haven: Haven, tmp_path: Pat
     nobody = PolyHaven("http://127.0.0.1:9", frozenset())
     with pytest.raises(Refusal, match="cannot be reached"):
         nobody.search("brick", "textures")
+
+
+def test_no_other_address_is_in_the_code() -> None:
+    text = Path(poly_haven.__file__).read_text(encoding="utf-8")
+    hosts = set(re.findall(r"https?://([\w.-]+)", text))
+    assert hosts == {"api.polyhaven.com", "dl.polyhaven.org", "polyhaven.com"}
+
+
+def test_a_server_asks_nobody_without_the_option(tmp_path: Path) -> None:
+    given = SessionSetup(best_sandbox(), assets=tmp_path)
+    plain, online = BlenderSessions(given), BlenderSessions(replace(given, online=True))
+    assert plain.has_assets
+    assert not plain.is_online
+    assert online.is_online
+    assert open_library(tmp_path).online is None
+    called = CliRunner().invoke(mcp, ["--online"])
+    assert called.exit_code == 2
+    assert "--online needs --assets" in called.output
