@@ -48,7 +48,7 @@ def open_library(root: Path, online: PolyHaven | None = None) -> AssetLibrary:
 
 
 @dataclass(frozen=True, slots=True)
-class Asset:
+class LibraryAsset:
     """Something of the library. ``file`` is relative to its folder; ``maps`` of a texture set: {map: file}.
 
     ``size``: of an image, in pixels; ``preview``: the path of a PNG, None without one.
@@ -86,11 +86,11 @@ class AssetLibrary:
         self.root = root
         self.online = online
         self._cache = cache
-        self._assets: list[Asset] | None = None
+        self._assets: list[LibraryAsset] | None = None
         self._seen: tuple[FolderFile, ...] = ()
         self.faults: list[str] = []
 
-    def assets(self, blender: Supervisor, told: Told | None = None) -> list[Asset]:
+    def assets(self, blender: Supervisor, told: Told | None = None) -> list[LibraryAsset]:
         """All assets, by id; files that are new or changed are read first. Raises Refusal."""
         try:
             files = list_files(self.root, _is_wanted, _LIMITS).files
@@ -101,7 +101,9 @@ class AssetLibrary:
             self._seen = tuple(files)
         return self._assets
 
-    def _catalogue(self, files: list[FolderFile], blender: Supervisor, told: Told | None) -> list[Asset]:
+    def _catalogue(
+        self, files: list[FolderFile], blender: Supervisor, told: Told | None
+    ) -> list[LibraryAsset]:
         self.faults = []
         by_name = {file.name: file for file in files}
         sets = texture_sets(by_name)
@@ -110,21 +112,23 @@ class AssetLibrary:
         lights = [name for name in by_name if _ending(name) in _HDRIS and name not in maps]
         blends = [name for name in by_name if _ending(name) == ".blend"]
         kept = self._read_all([by_name[name] for name in (*blends, *shown.values(), *lights)], blender, told)
-        assets: list[Asset] = []
+        assets: list[LibraryAsset] = []
         for name in blends:
             if (entry := kept.get(name)) is not None:
                 assets += [self._of_blend(name, marked, entry) for marked in entry.read.assets]
         for place, entry_maps in sets.items():
             if (entry := kept.get(shown[place])) is not None:
-                plain = Asset(f"{place}/textures", "textures", PurePosixPath(place).name, shown[place])
+                plain = LibraryAsset(f"{place}/textures", "textures", PurePosixPath(place).name, shown[place])
                 assets.append(replace(self._of_image(plain, entry), maps=entry_maps))
         for name in lights:
             if (entry := kept.get(name)) is not None:
-                assets.append(self._of_image(Asset(name, "hdri", PurePosixPath(name).stem, name), entry))
+                assets.append(
+                    self._of_image(LibraryAsset(name, "hdri", PurePosixPath(name).stem, name), entry)
+                )
         return sorted(assets, key=lambda asset: asset.id)
 
-    def _of_blend(self, file: str, marked: MarkedAsset, kept: _Kept) -> Asset:
-        return Asset(
+    def _of_blend(self, file: str, marked: MarkedAsset, kept: _Kept) -> LibraryAsset:
+        return LibraryAsset(
             f"{file}/{marked.kind}/{marked.name}",
             marked.kind,
             marked.name,
@@ -136,7 +140,7 @@ class AssetLibrary:
             preview=self._picture(kept, marked.picture),
         )
 
-    def _of_image(self, asset: Asset, kept: _Kept) -> Asset:
+    def _of_image(self, asset: LibraryAsset, kept: _Kept) -> LibraryAsset:
         """The same with what is known of its image, and of the folder that it lies in."""
         known = replace(asset, size=kept.read.size, preview=self._picture(kept, kept.read.picture))
         with suppress(OSError, ValueError):
@@ -251,10 +255,10 @@ def _is_wanted(path: PurePosixPath) -> bool:
     return ending in _HDRIS or ending == ".blend" or (ending in IMAGES and bool(map_of(path.stem)[0]))
 
 
-def find_assets(assets: list[Asset], query: str, kind: Kind | None) -> list[Asset]:
+def find_assets(assets: list[LibraryAsset], query: str, kind: Kind | None) -> list[LibraryAsset]:
     """Those that have every word of a query in their name, tags, description or path; the best first."""
     words = query.lower().split()
-    scored: list[tuple[int, str, Asset]] = []
+    scored: list[tuple[int, str, LibraryAsset]] = []
     for asset in assets:
         if kind is not None and asset.kind != kind:
             continue

@@ -11,14 +11,14 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from agents.blender.exchange.formats import Format
-    from agents.blender.exchange.replies import SceneFacts
+    from agents.blender.exchange.replies import ExchangeFacts
 
 _NEAR = 1e-4  # of the longest side, and metres
 _LISTED = 5
 _AS_MESH = {"CURVE", "SURFACE", "FONT", "META"}  # become meshes in most formats
 
 
-def not_kept(sent: SceneFacts, known: Format) -> list[str]:
+def not_kept(sent: ExchangeFacts, known: Format) -> list[str]:
     """What of the objects a format cannot keep, in words; it is no fault of the file."""
     losses = [
         (known.materials or not sent.materials, "materials"),
@@ -31,12 +31,12 @@ def not_kept(sent: SceneFacts, known: Format) -> list[str]:
     return [word for kept, word in losses if not kept]
 
 
-def differences(sent: SceneFacts, back: SceneFacts, known: Format) -> list[str]:
+def differences(sent: ExchangeFacts, back: ExchangeFacts, known: Format) -> list[str]:
     """How what came back from the file differs from what was exported, beyond what the format cannot keep."""
     return [*_counts(sent, back, known), *_places(sent, back), *_looks(sent, back, known)]
 
 
-def _counts(sent: SceneFacts, back: SceneFacts, known: Format) -> Iterator[str]:
+def _counts(sent: ExchangeFacts, back: ExchangeFacts, known: Format) -> Iterator[str]:
     if sent.triangles != back.triangles:
         yield f"{format_count(back.triangles, 'triangle')} instead of {sent.triangles:,}"
     if known.whole and sent.meshes != back.meshes:
@@ -64,14 +64,14 @@ def _counts(sent: SceneFacts, back: SceneFacts, known: Format) -> Iterator[str]:
         yield f"{back.animated:,} animated objects instead of {sent.animated:,}"
 
 
-def _types(facts: SceneFacts) -> Counter[str]:
+def _types(facts: ExchangeFacts) -> Counter[str]:
     types = Counter(facts.objects)
     for kind in _AS_MESH:
         types["MESH"] += types.pop(kind, 0)
     return types
 
 
-def _places(sent: SceneFacts, back: SceneFacts) -> Iterator[str]:
+def _places(sent: ExchangeFacts, back: ExchangeFacts) -> Iterator[str]:
     if not _same(sent.low, sent.high, back.low, back.high):
         yield f"bounds {_bounds(back.low, back.high)} instead of {_bounds(sent.low, sent.high)}"
     after = {pose.frame: pose for pose in back.poses}
@@ -97,7 +97,7 @@ def _bounds(low: list[float] | None, high: list[float] | None) -> str:
     return " × ".join(f"{a:.4g}…{b:.4g}" for a, b in zip(low, high, strict=True)) + " m"
 
 
-def _looks(sent: SceneFacts, back: SceneFacts, known: Format) -> Iterator[str]:
+def _looks(sent: ExchangeFacts, back: ExchangeFacts, known: Format) -> Iterator[str]:
     if not known.materials:
         return
     lost = sorted({entry.name for entry in sent.materials} - {entry.name for entry in back.materials})
@@ -113,11 +113,11 @@ def _looks(sent: SceneFacts, back: SceneFacts, known: Format) -> Iterator[str]:
             yield f"without the image files {format_list(back.missing, _LISTED)}"
 
 
-def _textures(facts: SceneFacts) -> set[tuple[str, str]]:
+def _textures(facts: ExchangeFacts) -> set[tuple[str, str]]:
     """(material, input) of every image that reaches a shader."""
     return {(entry.name, image.into) for entry in facts.materials for image in entry.images}
 
 
-def describe_bounds(facts: SceneFacts) -> str:
+def describe_bounds(facts: ExchangeFacts) -> str:
     """The bounds in words."""
     return _bounds(facts.low, facts.high)

@@ -37,7 +37,7 @@ class Pose(Claim):
     high: Corner
 
 
-class SceneFacts(Claim):
+class ExchangeFacts(Claim):
     """What a set of objects is made of.
 
     ``objects`` by type; ``meshes``: how many have faces, ``uv_mapped``: how many have UV maps; ``parented``: how many
@@ -59,7 +59,7 @@ class SceneFacts(Claim):
     missing: list[Place] = Field(max_length=_MOST)
 
 
-class ImportedFile(SceneFacts):
+class ImportedFile(ExchangeFacts):
     """What came in with a file. ``outside``: images that lie where it may not refer to; ``reads_on``: files that are
     read again at every frame; ``notes``: what is odd.
     """
@@ -71,7 +71,7 @@ class ImportedFile(SceneFacts):
     notes: list[Text] = Field(max_length=100)
 
 
-class ExportedFile(SceneFacts):
+class ExportedFile(ExchangeFacts):
     """What was exported; ``files`` are relative to the folder that was given; ``notes``: what was left out, and why;
     ``timing``: the frames a second, their base, and the frame of the scene."""
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from PIL import Image
 from pydantic import Field
 
-from agents.blender.assets.library import Asset, AssetLibrary, Kind, find_assets
+from agents.blender.assets.library import AssetLibrary, Kind, LibraryAsset, find_assets
 from agents.blender.assets.replies import PlacedAsset
 from agents.blender.formatting import format_count, format_list
 from agents.blender.sheets import contact_sheet
@@ -85,7 +85,7 @@ def run(context: ToolContext, arguments: AssetArguments, call: Call) -> Result:
 
 
 def _search(
-    folder: RunFolder, library: AssetLibrary, assets: list[Asset], arguments: AssetArguments
+    folder: RunFolder, library: AssetLibrary, assets: list[LibraryAsset], arguments: AssetArguments
 ) -> Result:
     found = find_assets(assets, arguments.query, arguments.kind)
     lines = [f"{format_count(len(found), 'asset')} of {len(assets):,} in {library.root}:"]
@@ -112,7 +112,7 @@ def _search(
     return Result("\n".join(lines), data, images)
 
 
-def _line(asset: Asset) -> str:
+def _line(asset: LibraryAsset) -> str:
     parts = [f"`{asset.id}`: {asset.kind.replace('_', ' ')}"]
     if asset.size is not None:
         parts.append(f"{asset.size[0]} × {asset.size[1]}")
@@ -127,7 +127,7 @@ def _line(asset: Asset) -> str:
     return "; ".join(parts)
 
 
-def _data(asset: Asset) -> dict[str, Any]:
+def _data(asset: LibraryAsset) -> dict[str, Any]:
     return {
         "id": asset.id,
         "kind": asset.kind,
@@ -142,7 +142,7 @@ def _data(asset: Asset) -> dict[str, Any]:
     }
 
 
-def _sheet(assets: list[Asset]) -> Image.Image:
+def _sheet(assets: list[LibraryAsset]) -> Image.Image:
     panels: list[contact_sheet.Panel] = []
     for asset in assets:
         assert asset.preview is not None
@@ -161,7 +161,7 @@ def _sheet(assets: list[Asset]) -> Image.Image:
 
 
 def _bring(
-    context: ToolContext, library: AssetLibrary, asset: Asset, arguments: AssetArguments, call: Call
+    context: ToolContext, library: AssetLibrary, asset: LibraryAsset, arguments: AssetArguments, call: Call
 ) -> Result:
     blender = context.blender
     tool, request = _request(library, asset, arguments)
@@ -203,7 +203,9 @@ def _bring(
     return Result("\n".join(lines), {**placed.model_dump(), "asset": _data(asset)})
 
 
-def _request(library: AssetLibrary, asset: Asset, arguments: AssetArguments) -> tuple[str, dict[str, Any]]:
+def _request(
+    library: AssetLibrary, asset: LibraryAsset, arguments: AssetArguments
+) -> tuple[str, dict[str, Any]]:
     path = str(library.root / asset.file)
     if asset.kind == "hdri":
         more = {"strength": arguments.strength, "rotation": arguments.rotation}

@@ -10,7 +10,7 @@ from pydantic import Field
 from agents.blender.exchange.comparison import describe_bounds
 from agents.blender.exchange.formats import describe_support, format_of
 from agents.blender.exchange.lending import check_there, lent_for_import
-from agents.blender.exchange.replies import AvailableFormats, ImportedFile, SceneFacts
+from agents.blender.exchange.replies import AvailableFormats, ExchangeFacts, ImportedFile
 from agents.blender.formatting import format_count, format_list
 from agents.blender.readable_files import find_readable
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
@@ -121,7 +121,7 @@ def _faults(came: ImportedFile) -> list[str]:
     return faults
 
 
-def describe_facts(facts: SceneFacts) -> list[str]:
+def describe_facts(facts: ExchangeFacts) -> list[str]:
     """What a set of objects is made of, in lines."""
     kinds = ", ".join(f"{number:,} {kind.lower()}" for kind, number in sorted(facts.objects.items()))
     lines = [f"- objects: {kinds or 'none'}; {facts.parented:,} with a parent"]

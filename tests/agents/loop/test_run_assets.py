@@ -17,6 +17,13 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
+
+@pytest.fixture(scope="session")
+def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A home without a knowledge base: nothing is looked up here."""
+    return tmp_path_factory.mktemp("home")
+
+
 _END = {"modeling": ({"transition": "abort", "reason": "Enough."},)}
 
 
