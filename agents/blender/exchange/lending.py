@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from simworlds.sandbox.errors import NotThere, Refusal
@@ -19,14 +18,6 @@ if TYPE_CHECKING:
 _LARGEST = 8 << 30  # bytes of a file
 _MOST_BYTES = 8 << 30  # that are copied for one import
 _MOST_FILES = 2000
-
-
-@dataclass(frozen=True, slots=True)
-class LentFile:
-    """A file for Blender: its path, and the folder that it may refer to."""
-
-    path: str
-    root: str
 
 
 def check_there(file: ReadableFile, name: str) -> int:
@@ -46,17 +37,17 @@ def check_there(file: ReadableFile, name: str) -> int:
 
 
 @contextmanager
-def lent_for_import(file: ReadableFile, folder: RunFolder) -> Generator[LentFile]:
-    """Where Blender can read a file and what lies in its folder. Raises Refusal.
+def lent_for_import(file: ReadableFile, folder: RunFolder) -> Generator[dict[str, str]]:
+    """For Blender: the ``path`` at which it can read a file, and the folder that it may refer to. Raises Refusal.
 
     From folders that Blender may read, and from its own workspace, nothing is copied. Of the run's root itself, only
     the file and those that are named after it.
     """
     if file.root != folder.root:
-        yield LentFile(str(file.path), str(file.root))
+        yield {"path": str(file.path), "root": str(file.root)}
         return
     if folder.workspace.holds(file.path):
-        yield LentFile(str(file.path), folder.workspace.for_blender())
+        yield {"path": str(file.path), "root": folder.workspace.for_blender()}
         return
     if owner := folder.owner_of(file.relative):
         raise Refusal(
@@ -76,7 +67,7 @@ def lent_for_import(file: ReadableFile, folder: RunFolder) -> Generator[LentFile
                 if copied > _MOST_BYTES:
                     raise Refusal(f"{file.path.parent} has more than {_MOST_BYTES >> 30} GiB of files.")
                 copy_to(opened, lent / source.relative_to(file.path.parent), durable=False)
-        yield LentFile(str(lent / file.path.name), str(lent))
+        yield {"path": str(lent / file.path.name), "root": str(lent)}
 
 
 def _companions(file: ReadableFile, folder: RunFolder) -> Iterator[Path]:

@@ -69,8 +69,7 @@ def run(context: ToolContext, arguments: ImportArguments, call: Call) -> Result:
             with lent_for_import(file, blender.folder) as lent:
                 request: dict[str, Any] = {
                     "kind": known.kind,
-                    "path": lent.path,
-                    "root": lent.root,
+                    **lent,
                     "workspace": blender.folder.workspace.for_blender(),
                     "collection": arguments.collection or PurePosixPath(name).stem[:60],
                     "scale": arguments.scale,
