@@ -25,8 +25,8 @@ _WORDS = {
         "alb",
         "bc",
     ),
-    "normal": ("normal", "normalgl", "nor", "nrm", "norgl", "norm", "normalopengl"),
-    "normal_directx": ("normaldx", "nordx", "normaldirectx"),
+    "normal": ("normal", "normalgl", "nor", "nrm", "norgl", "norm", "normalopengl", "noropengl"),
+    "normal_directx": ("normaldx", "nordx", "normaldirectx", "nordirectx"),
     "roughness": ("roughness", "rough", "rgh"),
     "glossiness": ("glossiness", "gloss"),
     "metallic": ("metallic", "metalness", "metal", "mtl", "met"),
@@ -37,8 +37,10 @@ _WORDS = {
     "emission": ("emission", "emissive", "emit"),
 }
 _BY_WORD = {word: name for name, words in _WORDS.items() for word in words}
-_PAIRS = {("base", "color"), ("base", "colour"), ("ambient", "occlusion"), ("normal", "gl"), ("normal", "dx")}
-_PAIRS |= {("nor", "gl"), ("nor", "dx"), ("normal", "opengl"), ("normal", "directx")}
+_PAIRS = {
+    *(("base", "color"), ("base", "colour"), ("ambient", "occlusion")),
+    *((start, end) for start in ("normal", "nor") for end in ("gl", "dx", "opengl", "directx")),
+}
 _ASIDE = re.compile(r"\d{1,2}k|\d{3,5}|\d{3,5}x\d{3,5}|jpe?g|png|exr|tiff?")  # resolutions and file types
 _PARTS = re.compile(r"[ _\-.]+|(?<=[a-z])(?=[A-Z])")
 

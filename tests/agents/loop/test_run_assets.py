@@ -41,8 +41,7 @@ def test_only_a_run_with_a_library_hears_of_it(api: FakeMessagesAPI, tmp_path: P
         asked.append(params)
 
     api.answer = Team(first=remember, coder={"modeling": (DONE,)}, decisions=_END)
-    more = {"assets": shelf} if given else {}
-    sit(tmp_path / "run", verifier=False, **more)
+    sit(tmp_path / "run", verifier=False, assets=shelf if given else None)
     assert asked
     assert ("sunset.hdr" in words_of(asked[0])) == given
     told = [{tool["name"] for tool in params.get("tools", ())} for params in asked]

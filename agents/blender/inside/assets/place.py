@@ -104,7 +104,7 @@ def connect_textures(arguments, report):
     if not targets:
         material.use_fake_user = True
         notes.append("the material is in the file; no object has it yet")
-    made = {"material": [material.name], "images": [node.image.name for node in colours.values()]}
+    made = {"material": [material.name], "images": _image_names(colours.values())}
     return {"made": made, "assigned": assigned, "connected": connected, "notes": notes}
 
 
@@ -120,9 +120,9 @@ def set_world(arguments, report):
     background = tree.nodes.new("ShaderNodeBackground")
     picture = tree.nodes.new("ShaderNodeTexEnvironment")
     turn, place = tree.nodes.new("ShaderNodeMapping"), tree.nodes.new("ShaderNodeTexCoord")
-    picture.image = _packed_image(arguments["path"], coloured=True)
-    background.inputs["Strength"].default_value = arguments["strength"]
-    turn.inputs["Rotation"].default_value[2] = math.radians(arguments["rotation"])
+    _show(picture, _packed_image(arguments["path"], coloured=True))
+    _set_input(background, "Strength", arguments["strength"])
+    _set_input(turn, "Rotation", (0.0, 0.0, math.radians(arguments["rotation"])))
     tree.links.new(place.outputs["Generated"], turn.inputs["Vector"])
     tree.links.new(turn.outputs["Vector"], picture.inputs["Vector"])
     tree.links.new(picture.outputs["Color"], background.inputs["Color"])
@@ -130,11 +130,23 @@ def set_world(arguments, report):
     for number, node in enumerate((place, turn, picture, background, output)):
         node.location = (_STEP * (number - 4), 0)
     bpy.context.scene.world = world
-    made = {"world": [world.name], "images": [picture.image.name]}
+    made = {"world": [world.name], "images": _image_names([picture])}
     return {"made": made, "assigned": [], "connected": {"hdri": "World"}, "notes": []}
 
 
 # Nodes
+
+
+def _show(node, image):
+    node.image = image
+
+
+def _set_input(node, name, value):
+    node.inputs[name].default_value = value
+
+
+def _image_names(nodes):
+    return [node.image.name for node in nodes]
 
 
 def _mapping(tree, repeat):

@@ -95,8 +95,7 @@ def _image(path, folder):
     factor = _SIDE / max(width, height)
     if factor < 1:
         image.scale(max(1, round(width * factor)), max(1, round(height * factor)))
-    pixels = numpy.empty(len(image.pixels), dtype=numpy.float32)
-    image.pixels.foreach_get(pixels)
+    pixels = _pixels(image)
     if image.is_float:  # light without an upper end, made a picture
         light = numpy.maximum(numpy.nan_to_num(pixels, posinf=0.0), 0.0)
         pixels = (light / (1.0 + light)) ** (1 / 2.2)
@@ -107,10 +106,20 @@ def _image(path, folder):
     return [width, height], name
 
 
+def _pixels(image):
+    values = numpy.empty(len(image.pixels), dtype=numpy.float32)
+    image.pixels.foreach_get(values)
+    return values
+
+
+def _set_pixels(image, values):
+    image.pixels.foreach_set(values)
+
+
 def _write(pixels, width, height, folder, number):
     """The name of a new PNG."""
     picture = bpy.data.images.new("picture", width, height, alpha=True)
-    picture.pixels.foreach_set(pixels)
+    _set_pixels(picture, pixels)
     picture.file_format = "PNG"
     name = f"{number}.png"
     picture.save(filepath=os.path.join(folder, name))

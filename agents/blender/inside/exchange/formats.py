@@ -11,9 +11,14 @@ from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.file_io import reason
 
-_MODULES = {"import_scene.gltf": "io_scene_gltf2", "export_scene.gltf": "io_scene_gltf2"}
-_MODULES |= {"import_scene.fbx": "io_scene_fbx", "export_scene.fbx": "io_scene_fbx"}
-_MODULES |= {"import_mesh.stl": "io_mesh_stl", "export_mesh.stl": "io_mesh_stl"}
+_MODULES = {
+    "import_scene.gltf": "io_scene_gltf2",
+    "export_scene.gltf": "io_scene_gltf2",
+    "import_scene.fbx": "io_scene_fbx",
+    "export_scene.fbx": "io_scene_fbx",
+    "import_mesh.stl": "io_mesh_stl",
+    "export_mesh.stl": "io_mesh_stl",
+}
 # Format → operators that read it, the first that is there counts. Settings that an operator lacks are left out.
 _IMPORTERS = {
     "gltf": {

@@ -86,8 +86,7 @@ def _wanted(names):
             known = [*layer.keys(), *bpy.data.collections.keys()]
             near = quoted(nearest(name, known), 3)
             raise Refused(f"There is no object or collection {name!r}.{f' Nearest: {near}.' if near else ''}")
-        found = [obj] if obj is not None else collection.all_objects
-        for each in found:
+        for each in [obj] if collection is None or obj is not None else collection.all_objects:
             wanted |= dict.fromkeys([each, *each.children_recursive])
     return [obj for obj in wanted if obj.name in layer]
 

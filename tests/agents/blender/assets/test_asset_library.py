@@ -172,7 +172,7 @@ def test_long_cataloguing_is_told(shelf: Shelf, monkeypatch: pytest.MonkeyPatch)
     monkeypatch.setattr("agents.blender.assets.library._QUIET_SECONDS", 0.0)
     told: list[tuple[float, float | None, str]] = []
     shelf.again()
-    shelf.use(Call(lambda *report: told.append(report)))
+    shelf.use(Call(lambda done, total, text: told.append((done, total, text))))
     assert told
     assert {total for _, total, _ in told} == {3}
     assert all(text.startswith("cataloguing ") for _, _, text in told)

@@ -122,7 +122,7 @@ class Answers(BaseHTTPRequestHandler):
 
     server: Haven  # pyright: ignore[reportIncompatibleVariableOverride]
 
-    def log_message(self, *_: Any) -> None:
+    def log_message(self, format: str, *args: Any) -> None:
         """Says nothing."""
 
     def do_GET(self) -> None:
@@ -227,7 +227,9 @@ def test_what_was_fetched_is_not_fetched_again(haven: Haven, tmp_path: Path) -> 
 def test_a_transfer_that_breaks_off_goes_on_where_it_was(haven: Haven, tmp_path: Path) -> None:
     haven.cut["kiara_1_dawn_1k.hdr"] = [100_000, 200_000]
     told: list[tuple[float, float | None, str]] = []
-    fetched = online(haven).fetch("kiara_1_dawn", "1k", tmp_path, told=lambda *report: told.append(report))
+    fetched = online(haven).fetch(
+        "kiara_1_dawn", "1k", tmp_path, told=lambda done, total, text: told.append((done, total, text))
+    )
     assert (fetched.folder / fetched.main).read_bytes() == haven.contents["kiara_1_dawn_1k.hdr"]
     ranges = [wanted for path, _, wanted in haven.asked if path.startswith("/file/")]
     assert ranges == ["", "bytes=100000-", "bytes=200000-"]
