@@ -3,6 +3,7 @@
 
 import contextlib
 import os
+import re
 
 import addon_utils
 import bpy
@@ -19,6 +20,7 @@ _MODULES = {
     "import_mesh.stl": "io_mesh_stl",
     "export_mesh.stl": "io_mesh_stl",
 }
+_EXCEPTION = re.compile(r"[\w.]+(Error|Exception|Exit)\b")  # how the last line of a traceback begins
 # Format → operators that read it, the first that is there counts. Settings that an operator lacks are left out.
 _IMPORTERS = {
     "gltf": {
@@ -141,10 +143,8 @@ def _exists(operator):
 
 
 def _short(error, path):
-    """The last lines of an operator's message, without the tracebacks of add-ons and the path."""
+    """An operator's message, without the path; of the traceback of an add-on, its exception."""
     lines = [line.strip() for line in reason(error).replace(path, "the file").splitlines() if line.strip()]
-    if any(line.startswith("Traceback") for line in lines):
-        lines = [
-            line for line in lines if not line.startswith(("File ", "Traceback", "Location:", "^", "~"))
-        ][-1:]
-    return " ".join(lines)[-400:] or "it gave no reason"
+    if any("Traceback" in line for line in lines):
+        lines = [line for line in lines if _EXCEPTION.match(line)][-1:] or lines[-1:]
+    return " ".join(lines)[:400] or "it gave no reason"

@@ -19,4 +19,4 @@ def start():
         path = os.path.join(folder, "empty.usda")
         with open(path, "w", encoding="ascii") as file:
             file.write("#usda 1.0\n")
-        bpy.ops.wm.usd_import(filepath=path, set_frame_range=False, create_world_material=False)
+        bpy.ops.wm.usd_import(filepath=path)
