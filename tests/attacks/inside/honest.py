@@ -253,7 +253,13 @@ def exchanged():
 
 
 def on_import_file(arguments):
-    own = {"collection": "kept", "roots": ["Cube"], "outside": [], "reads_on": [], "notes": ["scaled unevenly"]}
+    own = {
+        "collection": "kept",
+        "roots": ["Cube"],
+        "outside": [],
+        "reads_on": [],
+        "notes": ["scaled unevenly"],
+    }
     return {**exchanged(), **own}
 
 

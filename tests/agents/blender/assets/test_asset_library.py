@@ -12,6 +12,7 @@ from mcp import Client
 from serving import over_stdio
 
 from agents.blender.assets.library import AssetLibrary, find_assets
+from agents.blender.assets.licence import NOTE_FILE, LicenceNote
 from agents.blender.tools.assets import TOOL
 from agents.blender.tools.base import Call
 from simworlds.sandbox.errors import Refusal
@@ -248,6 +249,28 @@ def test_damaged_files_are_named_and_the_others_found(shelf: Shelf) -> None:
     finally:
         (shelf.root / "broken.blend").unlink()
         (shelf.root / "broken.hdr").unlink()
+
+
+def test_the_licence_of_what_was_fetched_is_told(shelf: Shelf) -> None:
+    folder = shelf.root / "poly_haven" / "textures" / "oak_1k"
+    folder.mkdir(parents=True)
+    note = LicenceNote(
+        source="Poly Haven",
+        page="https://polyhaven.com/a/oak",
+        license="CC0",
+        author="Ada",
+        name="Oak",
+        tags=["bark"],
+    )
+    try:
+        shutil.copy(shelf.root / "wood" / "Oak01_1K-PNG_Color.png", folder / "oak_diffuse_1k.png")
+        (folder / NOTE_FILE).write_text(note.model_dump_json())
+        (found,) = shelf.use(query="bark").data["assets"]
+        used = shelf.use(use=found["id"])
+    finally:
+        shutil.rmtree(shelf.root / "poly_haven")
+    assert (found["license"], found["author"], found["tags"]) == ("CC0", "Ada", ["bark"])
+    assert "licence: CC0; author: Ada" in used.text
 
 
 def test_without_a_library_the_tool_says_what_is_missing(session: LiveSession) -> None:

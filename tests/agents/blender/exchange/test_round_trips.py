@@ -198,6 +198,13 @@ def test_a_difference_is_told_and_fails_the_call(
     assert "without the textures of 'textured' (Base Color)" in answer.text
 
 
+def test_what_is_not_baked_is_told(session: LiveSession) -> None:
+    session.run(MOTION + "box.modifiers.new('Cloth', 'CLOTH')")
+    answer = export(session, "loose.abc", verify=False)
+    assert "not baked, so its motion may be wrong in the file" in answer.text
+    assert answer.data["poses"] == []
+
+
 def test_scale_and_upward_axis_are_given_for_files_that_do_not_say(session: LiveSession) -> None:
     session.run(UNITS)
     export(session, "box.stl", verify=False)
