@@ -28,6 +28,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from agents.blender.assets.library import AssetLibrary
     from agents.blender.tools.base import BlenderTool, Call, Knowledge, Result
     from simworlds.sandbox.confined_command import Sandbox
 
@@ -48,7 +49,8 @@ class SessionSetup:
     """How sessions are set up.
 
     ``run`` is the folder to work in; None: a new one for each client. ``read``: folders that Blender may read.
-    ``tell`` gets lines for the server's user.
+    ``assets``: the user's asset library, which it may read too; ``online``: more may be fetched into
+    it. ``tell`` gets lines for the server's user.
     """
 
     sandbox: Sandbox
@@ -56,7 +58,14 @@ class SessionSetup:
     blender_exe: Path | None = None
     read: tuple[Path, ...] = ()
     run: Path | None = None
+    assets: Path | None = None
+    online: bool = False
     tell: Callable[[str], object] = _on_stderr
+
+    @property
+    def readable(self) -> tuple[Path, ...]:
+        """All folders that Blender may read."""
+        return (*self.read, *([self.assets] if self.assets is not None else []))
 
 
 class BlenderSession:
@@ -80,6 +89,12 @@ class BlenderSession:
         self._waiting: set[threading.Event] = set()
         self._used = time.monotonic()
         self._thread = ThreadPoolExecutor(1, thread_name_prefix="blender")
+        self._assets: AssetLibrary | None = None
+        if setup.assets is not None:
+            from agents.blender.assets.library import open_library  # noqa: PLC0415 - slows the start
+            from agents.blender.assets.poly_haven import PolyHaven  # noqa: PLC0415
+
+            self._assets = open_library(setup.assets, PolyHaven() if setup.online else None)
 
     @property
     def idle(self) -> float:
@@ -181,7 +196,7 @@ class BlenderSession:
             raise Refusal(f"{tool.name} was cancelled before it began.")
         self._unused = False
         known = about(blender.launch.runtime.version)
-        return perform(tool, ToolContext(blender, known.docs, known.check), parsed, call)
+        return perform(tool, ToolContext(blender, known.docs, known.check, self._assets), parsed, call)
 
     def _running(self) -> Supervisor:
         if self._ended:
@@ -202,7 +217,7 @@ class BlenderSession:
                 version=setup.version,
                 blender_exe=setup.blender_exe,
                 sandbox=setup.sandbox,
-                read=setup.read,
+                read=setup.readable,
             )
         except OSError as error:
             raise CannotStart(f"The run folder cannot be made: {error}") from error
@@ -235,6 +250,16 @@ class BlenderSessions:
         self._left: dict[str, tuple[RunFolder, SessionJobs]] = {}
         self._ended = False
         self._lock = anyio.Lock()
+
+    @property
+    def has_assets(self) -> bool:
+        """Whether there is an asset library."""
+        return self._setup.assets is not None
+
+    @property
+    def is_online(self) -> bool:
+        """Whether more assets may be fetched into the library."""
+        return self.has_assets and self._setup.online
 
     def start(self, client: str) -> None:
         """Starts a client's Blender in the background, before its first call. Raises Refusal."""

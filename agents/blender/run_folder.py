@@ -67,6 +67,10 @@ class RunFolder:
         """The folder of checkpoints, which executed code cannot reach."""
         return self.root / "checkpoints"
 
+    def owner_of(self, relative: str) -> str:
+        """Whom the folder that a relative path begins with is reserved for; "" if for nobody."""
+        return _RESERVED.get(PurePosixPath(relative).parts[0].lower(), "")
+
     def place_for(self, name: str, suffix: str) -> Path:
         """The path of a file in the run's folder, by the name a caller gives. Raises Refusal if it leads elsewhere."""
         parts = list(PurePosixPath(name.replace("\\", "/")).parts)

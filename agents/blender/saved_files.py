@@ -6,14 +6,14 @@ import re
 import shutil
 import tempfile
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
 from pathlib import Path, PurePosixPath
 from typing import TYPE_CHECKING, Literal
 
 from pydantic import Field, model_validator
 
 from agents.blender.formatting import format_list
-from simworlds.sandbox.blender_process import BlenderProcess
+from agents.blender.readable_files import find_readable
+from agents.blender.second_blender import second_blender
 from simworlds.sandbox.errors import BlenderError, NotThere, Refusal
 from simworlds.sandbox.hostile_ground import DEEPEST, HostileGround, copy_folder, copy_to
 from simworlds.sandbox.replies import Claim, Count, Name, Place
@@ -21,6 +21,7 @@ from simworlds.sandbox.replies import Claim, Count, Name, Place
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterable
 
+    from agents.blender.readable_files import ReadableFile
     from agents.blender.run_folder import RunFolder
     from simworlds.sandbox.launch import Launch
 
@@ -155,21 +156,12 @@ def put_in_place(staged: Path, target: Path) -> None:
 
 def open_elsewhere(launch: Launch, blend: Path, *, timeout: float) -> FileContents:
     """Opens a .blend in a second Blender, which has nothing but the file and its caches. Raises Refusal."""
-    with tempfile.TemporaryDirectory(prefix="simworlds-look-", ignore_cleanup_errors=True) as folder:
-        root = Path(folder).resolve()
-        read = [path for path in (blend, caches_folder(blend)) if path.exists()]
-        workspace, private = HostileGround(root / "workspace"), HostileGround(root / "private")
-        second = replace(launch, workspace=workspace, private=private, read=(*launch.read, *read), lent=None)
-        workspace.make()
-        try:
-            process = BlenderProcess(second)
-            try:
-                request = {"path": str(blend)}
-                return process.call("inspect", request, FileContents.model_validate, timeout=timeout).value
-            finally:
-                process.kill()
-        except BlenderError as error:
-            raise Refusal(f"the copy does not open in a second Blender: {error}") from error
+    try:
+        with second_blender(launch, blend, caches_folder(blend)) as (process, _):
+            request = {"path": str(blend)}
+            return process.call("inspect", request, FileContents.model_validate, timeout=timeout).value
+    except BlenderError as error:
+        raise Refusal(f"the copy does not open in a second Blender: {error}") from error
 
 
 def cache_faults(scene: FileContents, copy: FileContents | None) -> list[str]:
@@ -196,38 +188,15 @@ def cache_faults(scene: FileContents, copy: FileContents | None) -> list[str]:
 # Loading
 
 
-@dataclass(frozen=True, slots=True)
-class BlendFile:
-    """A .blend that may be opened: ``relative`` below ``root``, one of the folders that files may come from."""
-
-    root: Path
-    relative: str
-
-    @property
-    def path(self) -> Path:
-        """The whole path."""
-        return self.root / self.relative
-
-
-def find_blend_file(name: str, folder: RunFolder, read: tuple[Path, ...]) -> BlendFile:
+def find_blend_file(name: str, folder: RunFolder, read: tuple[Path, ...]) -> ReadableFile:
     """The file of that name, relative to the run's folder or absolute. Raises Refusal if it is not a .blend."""
-    if "\0" in name or len(name) > 4096:
-        raise Refusal(f"{name[:120]!r} is not a valid path.")
     spelled = name if _BLEND.search(name) else f"{name}.blend"
-    path = folder.root / spelled
-    if ".." in Path(spelled).parts:
-        raise Refusal(f"{name[:120]!r} is not allowed: give a path without '..'.")
-    for root in (folder.root, *read):
-        for base in {root, root.resolve()}:
-            if path.is_relative_to(base) and path != base:
-                blend_file = BlendFile(root, path.relative_to(base).as_posix())
-                _check(blend_file, spelled, folder)
-                return blend_file
-    allowed = ", ".join(str(root) for root in (folder.root, *read))
-    raise Refusal(f"{name[:300]} may not be opened. Files can be opened from {allowed}.")
+    blend_file = find_readable(spelled, folder, read)
+    _check(blend_file, spelled, folder)
+    return blend_file
 
 
-def _check(blend_file: BlendFile, name: str, folder: RunFolder) -> None:
+def _check(blend_file: ReadableFile, name: str, folder: RunFolder) -> None:
     path = blend_file.path
     if path.parent == folder.checkpoints:
         raise Refusal(f"{name} is a checkpoint; go back to it with checkpoint={path.stem.lstrip('0')}.")
@@ -253,7 +222,7 @@ def describe_saved_files(folder: RunFolder) -> str:
 
 
 @contextmanager
-def lent_to_blender(blend_file: BlendFile, folder: RunFolder) -> Generator[str]:
+def lent_to_blender(blend_file: ReadableFile, folder: RunFolder) -> Generator[str]:
     """A path at which Blender can read the file, and its caches beside it, but not change them. Raises Refusal.
 
     A file of the run is copied to where Blender may read; what lies in its workspace is its own anyway.

@@ -19,7 +19,7 @@ from starlette.datastructures import Headers
 
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
-from agents.blender.tool_catalogue import BY_NAME, FOR_CLIENTS, TOOLS
+from agents.blender.tool_catalogue import BY_NAME, FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS
 from agents.blender.tool_profiles import DEFAULT, Profile, first_profile, is_offered
 from agents.blender.tools.base import Call
 from agents.blender.tools.failures import describe_failure
@@ -58,6 +58,7 @@ _HABITS = (
     ("blender_trial", "to try physics over some frames before you bake it: numbers, pictures, what a bake will take"),
     ("blender_bake", "for physics, before you judge motion; never jump to a frame of an unbaked simulation"),
     ("blender_motion_sheet_preview", "to see and measure motion over time"),
+    ("blender_assets", "before you model what the user's asset library may have"),
     ("blender_save", "when a stage is done"),
     ("blender_render", "last, when everything is in place; start with a still"),
     ("blender_job", "for a bake or an animation that may take longer than a minute"),
@@ -96,7 +97,12 @@ def make_server(
     ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles, who also waits as
     long as it takes and so has no use for jobs. ``profile`` says which tools there are.
     """
-    served = TOOLS if team is None else (*TOOLS, *FOR_CLIENTS)
+    served = (
+        *TOOLS,
+        *(FOR_CLIENTS if team is not None else ()),
+        *((WITH_ASSETS,) if sessions.has_assets else ()),
+        *((ONLINE,) if sessions.is_online else ()),
+    )
     names = [
         name
         for name in (
@@ -241,7 +247,7 @@ def entry(tool: BlenderTool) -> types.Tool:
             read_only_hint=tool.read_only,
             destructive_hint=tool.destructive,
             idempotent_hint=tool.read_only,
-            open_world_hint=False,
+            open_world_hint=tool.open_world,
         ),
     )
 

@@ -22,6 +22,8 @@ _FIRST: dict[str, Profile] = {
     "blender_motion_sheet_preview": "look",
     "blender_verify": "look",
     "blender_load": "look",
+    "blender_import": "all",
+    "blender_export": "all",
     "blender_tag_object": "all",  # blender_group sets the tags of objects too, in fewer calls
 }
 

@@ -38,6 +38,8 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
 @options.VERSION
 @options.EXECUTABLE
 @click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, for assets.")
+@click.option("--assets", type=_ASSETS, help="Your asset library: .blend assets, HDRIs, texture sets.")
+@click.option("--online", is_flag=True, help="Let assets be fetched from Poly Haven into --assets.")
 @options.SANDBOX
 @click.option(
     "--tools",
@@ -94,6 +96,8 @@ def mcp(  # noqa: PLR0913 - one for each option
     blender: str | None,
     blender_exe: Path | None,
     read: tuple[Path, ...],
+    assets: Path | None,
+    online: bool,
     sandbox: Kind | None,
     profile: Profile,
     stands_for: str | None,
@@ -113,13 +117,23 @@ def mcp(  # noqa: PLR0913 - one for each option
     loopback clients must send a token: Authorization: Bearer …
     """
     _check_options(context, over_http=over_http, stands_for=stands_for)
+    if online and assets is None:
+        raise click.UsageError("--online needs --assets, the folder that assets are fetched into.")
     # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415 - not for --help
     from simworlds.sandbox.launch import find_blender  # noqa: PLC0415
 
-    setup_of = partial(SessionSetup, version=blender, blender_exe=blender_exe, read=read, run=run)
+    setup_of = partial(
+        SessionSetup,
+        version=blender,
+        blender_exe=blender_exe,
+        read=read,
+        run=run,
+        assets=assets,
+        online=online,
+    )
     try:
         if blender_exe is not None:
             find_blender(blender, blender_exe)

@@ -20,6 +20,7 @@ if TYPE_CHECKING:
     Command = TypeVar("Command", bound=Callable[..., Any])
 
 EXITS = {"done": 0, "aborted": 1, "failed": 2, "stopped": 3}
+_LIBRARY = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=Path)
 _FOLDER = click.Path(file_okay=False, resolve_path=True, path_type=Path)
 _FILE = click.Path(exists=True, dir_okay=False, resolve_path=True, path_type=Path)
 _ROLES = ("planner", "coder", "reviewer", "final_reviewer")
@@ -87,6 +88,9 @@ _blender = _options(
     ),
     *_RENDER,
 )
+_assets = _options(
+    click.option("--assets", type=_LIBRARY, help="Your asset library, which the plan may draw on."),
+)
 _ablations = _options(
     click.option("--no-verifier", is_flag=True, help="Leave the verifier out (ablation)."),
     click.option("--no-stages", is_flag=True, help="Build everything in one pass (ablation)."),
@@ -98,6 +102,7 @@ _ablations = _options(
 @_model
 @_limits
 @_blender
+@_assets
 @_ablations
 def make(prompt: str, **given: Any) -> None:
     """Make a scene from a sentence: a .blend with baked physics, a video and a report.
@@ -117,6 +122,7 @@ def make(prompt: str, **given: Any) -> None:
 @_model
 @_limits
 @_blender
+@_assets
 def edit(file: Path, instruction: str, reference: Path | None, **given: Any) -> None:
     """Change a scene as told, and leave the rest alone. The file itself stays as it is.
 
@@ -238,8 +244,8 @@ def _begin(asked: dict[str, Any], given: dict[str, Any]) -> None:
     from agents.loop.options import Options  # noqa: PLC0415
     from agents.loop.session import begin  # noqa: PLC0415
 
-    names = ("blender", "blender_exe", "read", "sandbox", "render_minutes", "samples")
-    asked = asked | {name: given[name] for name in names if given[name] is not None}
+    names = ("blender", "blender_exe", "read", "assets", "sandbox", "render_minutes", "samples")
+    asked = asked | {name: given[name] for name in names if given.get(name) is not None}
     asked |= {"verifier": not given.get("no_verifier", False), "stages": not given.get("no_stages", False)}
     try:
         options = Options(**asked)

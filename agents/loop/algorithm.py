@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import suppress
 from typing import TYPE_CHECKING
 
+from agents.loop.asset_library import prompt_with_assets
 from agents.loop.errors import NotSaved
 from agents.loop.events import PlanMade, StageMoved
 from agents.loop.rendering import LastStage
@@ -33,7 +34,7 @@ def make(run: Run) -> RenderResult:
     """From the prompt to a rendered scene (paper, Algorithm 1). Raises RunError, ModelError."""
     run.save("modeling", START)
     planner = Planner(run.context)
-    plan = planner.strategic(run.options.prompt)
+    plan = planner.strategic(prompt_with_assets(run))
     run.write("plan.json", plan_file(plan))
     run.journal.note(PlanMade(plan=plan))
     staged = run.options.stages

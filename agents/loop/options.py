@@ -25,7 +25,7 @@ class Options(BaseModel):
     what it should be. ``provider``: the API that live models are reached by. ``price``: IN/OUT in dollars per million
     tokens, of models without a list price. ``verifier``, ``stages``: False leaves that out (the paper's ablations).
     ``early``: the scene is delivered as each stage closes, and a draft before the film; ``planner_looks``: the planner
-    decides on that draft. Runs that were begun without these go on without them.
+    decides on that draft. ``assets``: the user's asset library. Runs that were begun without these go on without them.
     """
 
     model_config = ConfigDict(extra="forbid", frozen=True)
@@ -45,6 +45,7 @@ class Options(BaseModel):
     blender_exe: Path | None = None
     sandbox: Literal["bubblewrap", "landlock", "none"] | None = None
     read: tuple[Path, ...] = ()
+    assets: Path | None = None
     render_minutes: float | None = Field(default=None, gt=0)
     samples: int | None = Field(default=None, ge=1)
     verifier: bool = True

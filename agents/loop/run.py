@@ -54,6 +54,7 @@ if TYPE_CHECKING:
 RUNNER, VERIFIER = "runner", "verifier"
 VERIFY = "blender_verify"
 CHECK = "blender_check"
+_EXCHANGE = ("blender_import", "blender_export")
 RENDER = "blender_render"
 START = "start"
 _KEPT_STILLS = 2
@@ -384,8 +385,8 @@ class RoleTools:
         self._stage: Stage = stage
         self._names: Sequence[str] = ()
         if role == coder.NAME:
-            # blender_execute checks the coder's code by itself.
-            without = (CHECK,) if run.options.verifier else (CHECK, VERIFY)
+            # blender_execute checks the coder's code by itself; files of other programs are for clients with users.
+            without = (CHECK, *_EXCHANGE, *(() if run.options.verifier else (VERIFY,)))
             self._names = [name for name in run.tools.names if name not in without]
         elif role == reviewer.NAME:
             self._names = [

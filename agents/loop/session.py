@@ -188,6 +188,7 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
         blender_exe=options.blender_exe,
         read=(root / "checkpoints", *_readable(options)),
         run=root / "blender",
+        assets=options.assets,
         tell=_LOG.info,
     )
     with ExitStack() as stack:

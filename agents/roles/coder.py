@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 NAME = "coder"
 
 # The stages in which a tool is told of; what is not listed, in all. Called in another stage, a tool works all the same.
-# The loop saves and loads by itself, and blender_group sets an object's tags too.
+# The loop saves and loads by itself, brings no files in, and blender_group sets an object's tags too.
 _TOLD_IN: dict[str, tuple[Stage, ...]] = {
     "blender_single_mesh_preview": ("modeling", "uv"),
     "blender_system_layout_preview": ("modeling", "camera", "light"),
@@ -32,7 +32,10 @@ _TOLD_IN: dict[str, tuple[Stage, ...]] = {
     "blender_object_preview": ("modeling", "uv", "texture", "deformation_setup", "render"),
     "blender_render": ("texture", "camera", "light", "render"),
     "blender_save": (),
+    "blender_assets": ("modeling", "texture", "light"),
     "blender_load": (),
+    "blender_import": (),
+    "blender_export": (),
     "blender_tag_object": (),
 }
 # What a run without stages is not told of: other tools show the same.

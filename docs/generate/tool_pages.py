@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.blender import plan_check
 from agents.blender.team import PROMPTS
-from agents.blender.tool_catalogue import FOR_CLIENTS, TOOLS
+from agents.blender.tool_catalogue import FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS
 from agents.blender.tool_profiles import DEFAULT, PROFILES, first_profile
 from agents.plan.scene import ScenePlan
 from docs.generate.markdown import GENERATED, page, schema_table, table
@@ -83,7 +83,7 @@ def blender_tools_page() -> str:
         "`simworlds mcp` serves these, and `blender_docs` and `blender_check` ([tools.md](tools.md)) beside them.",
         *_profiles(),
     ]
-    for entry in (*TOOLS, *FOR_CLIENTS):
+    for entry in (*TOOLS, *FOR_CLIENTS, WITH_ASSETS, ONLINE):
         kind = "reads only" if entry.read_only else "changes the scene or writes files"
         parts += [f"## `{entry.name}`", entry.description, f"It {kind}."]
         parts.append(schema_table(entry.arguments.model_json_schema()))

@@ -23,12 +23,13 @@ SCHEMAS = Resource(
 
 def as_listed(tool: Tool) -> Tool:
     """A tool's entry as clients list it: without bounds, which its answer to a wrong call names, without the schema of
-    its result, and without hints that say what holds anyway.
+    its result, without a title beside its name, and without hints that say what holds anyway.
     """
     return tool.model_copy(
         update={
             "input_schema": lean_arguments(tool.input_schema),
             "output_schema": None,
+            "title": None,
             "annotations": _telling(tool.annotations) if tool.annotations else None,
         }
     )

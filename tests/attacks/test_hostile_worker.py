@@ -39,6 +39,12 @@ _CALLS: dict[str, tuple[Tool, ...]] = {
     "write": (Tool("blender_execute", {"code": "1"}), Tool("blender_save")),
     "open": (Tool("blender_load", {"checkpoint": 1}),),
     "load": (_SAVE, Tool("blender_load", {"path": "kept.blend"})),
+    "exchange_formats": (Tool("blender_import"),),
+    "export_file": (Tool("blender_export", {"name": "kept.stl", "verify": False}),),
+    "import_file": (
+        Tool("blender_export", {"name": "kept.stl", "verify": False}),
+        Tool("blender_import", {"path": "kept.stl"}),
+    ),
     "kept_caches": (Tool("blender_load", {"checkpoint": 1}),),
     "bake": (Tool("blender_bake"),),
     "free_bake": (Tool("blender_bake", {"free": True}),),

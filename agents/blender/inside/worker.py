@@ -4,6 +4,7 @@
 from simworlds.sandbox.inside import mantaflow, service
 
 from . import interpreter_state
+from .exchange import usd_thread
 from .physics import rigid_body_inputs
 
 # Tool → (module of this package, function). A tool takes its arguments and ``report(done, total, text)``, and returns
@@ -19,6 +20,13 @@ TOOLS = {
     "save": ("portable_copy", "save"),
     "inspect": ("portable_copy", "inspect"),
     "load": ("portable_copy", "load"),
+    "exchange_formats": ("exchange.hand_out", "available"),
+    "import_file": ("exchange.bring_in", "import_file"),
+    "export_file": ("exchange.hand_out", "export_file"),
+    "read_assets": ("assets.read", "read_assets"),
+    "place_asset": ("assets.place", "place_asset"),
+    "connect_textures": ("assets.place", "connect_textures"),
+    "set_world": ("assets.place", "set_world"),
     "kept_caches": ("portable_copy", "caches_of_file"),
     "bake": ("physics.bake", "bake"),
     "free_bake": ("physics.bake", "free"),
@@ -70,6 +78,7 @@ def main(arguments):
     """Serves the tools on the socket whose descriptor is the first argument."""
     mantaflow.mend()
     rigid_body_inputs.watch()
+    usd_thread.start()
     tools = service.Tools(__package__, TOOLS)
     service.serve(
         int(arguments[0]),

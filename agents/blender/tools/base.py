@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
 
+    from agents.blender.assets.library import AssetLibrary
     from agents.blender.supervisor import Supervisor
     from simworlds.sandbox.blender_process import Progress
 
@@ -75,11 +76,15 @@ class Result:
 
 @dataclass(frozen=True, slots=True)
 class ToolContext:
-    """What a tool works with: a run's Blender and the knowledge base. Without ``check``, code is not checked."""
+    """What a tool works with: a run's Blender, the knowledge base, and the user's ``assets``, if there are any.
+
+    Without ``check``, code is not checked.
+    """
 
     blender: Supervisor
     docs: Docs
     check: Check | None = None
+    assets: AssetLibrary | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -94,7 +99,7 @@ class Call:
 class BlenderTool:
     """A tool of the suite (paper, Table "Tool suite"). ``run`` raises BlenderError.
 
-    ``destructive``: it may remove or replace what was there.
+    ``destructive``: it may remove or replace what was there. ``open_world``: it reaches beyond this machine.
     """
 
     name: str
@@ -104,6 +109,7 @@ class BlenderTool:
     run: Callable[[ToolContext, Any, Call], Result]
     read_only: bool = False
     destructive: bool = False
+    open_world: bool = False
 
 
 def parse(tool: BlenderTool, arguments: dict[str, Any] | None) -> Arguments:

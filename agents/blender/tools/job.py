@@ -47,11 +47,10 @@ class JobArguments(Arguments):
 
 
 DESCRIPTION = """\
-Bake, render or try as a job, for what may take longer than you can wait for a call. start answers at once, with the \
-job's number. status tells how far it is; with `wait` it answers at the end, or when that time is over, and reports \
-progress meanwhile. result gives what the tool would have returned, and is kept until you fetch it. cancel ends the \
-job: a bake is undone, rendered frames stay. Meanwhile other calls that need Blender are refused. A bake has six \
-hours unless `timeout` says otherwise."""
+Bake, render or try as a job, where a call may take longer than you can wait. start gives the job's number at once; \
+status tells how far it is, with `wait` once it ends or that time is over; result gives what the tool would have \
+returned, and is kept until you fetch it; cancel ends it: a bake is undone, frames stay. Other calls that need Blender \
+are refused meanwhile."""
 
 
 def _run(context: ToolContext, arguments: JobArguments, call: Call) -> Result:

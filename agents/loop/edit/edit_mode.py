@@ -7,6 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.algorithm import ALL_AT_ONCE, build, finish
+from agents.loop.asset_library import prompt_with_assets
 from agents.loop.edit.inputs import picture
 from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
@@ -36,7 +37,7 @@ def edit(run: Run) -> RenderResult:
     state = run.state(_FIRST)
     seen = run.use(RUNNER, _FIRST, "blender_scene_layout_preview", {})
     planner = Planner(run.context, edit=True)
-    plan = planner.edit(options.prompt, state, before.names, seen.pictures, reference)
+    plan = planner.edit(prompt_with_assets(run), state, before.names, seen.pictures, reference)
     run.write("plan.json", plan_file(plan))
     run.journal.note(PlanMade(edit=plan))
     task = replace(_task(run, plan, before), goal=reference, **_still_before(run))

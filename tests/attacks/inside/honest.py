@@ -228,6 +228,48 @@ def on_load(arguments):
     return {"objects": 1, "version": "5.1", "scripts": False, "external": [], "caches": []}
 
 
+def on_exchange_formats(arguments):
+    return {"version": "5.1.2", "formats": {"stl": {"reads": True, "writes": True}}}
+
+
+def exchanged():
+    """The facts of one cube with a textured material."""
+    image = {"name": "wood", "into": "Base Color", "file": "wood.png", "packed": True, "missing": False}
+    return {
+        "objects": {"MESH": 1},
+        "vertices": 8,
+        "triangles": 12,
+        "meshes": 1,
+        "uv_mapped": 1,
+        "low": [-1.0, -1.0, -1.0],
+        "high": [1.0, 1.0, 1.0],
+        "parented": 0,
+        "animated": 1,
+        "range": [1, 24],
+        "poses": [{"frame": 1, "low": [-1.0, -1.0, -1.0], "high": [1.0, 1.0, 1.0]}],
+        "materials": [{"name": "plain", "images": [image]}],
+        "missing": [],
+    }
+
+
+def on_import_file(arguments):
+    own = {
+        "collection": "kept",
+        "roots": ["Cube"],
+        "outside": [],
+        "reads_on": [],
+        "notes": ["scaled unevenly"],
+    }
+    return {**exchanged(), **own}
+
+
+def on_export_file(arguments):
+    os.makedirs(arguments["folder"], exist_ok=True)
+    leave(arguments["path"], b"solid\nendsolid\n")
+    files = [os.path.relpath(arguments["path"], arguments["folder"])]
+    return {**exchanged(), "files": files, "timing": [24, 1.0, 1], "notes": []}
+
+
 def on_bake(arguments):
     return {"caches": [], "range": [1, 2], "seconds": 0.1, "notes": []}
 

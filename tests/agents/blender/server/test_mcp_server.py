@@ -86,7 +86,7 @@ async def test_every_tool_of_the_suite_is_listed_beside_the_documentation(client
         "blender_docs",
         "blender_check",
     ]
-    assert all(tool.title and tool.description for tool in listed)
+    assert all(tool.description for tool in listed)
 
 
 async def test_every_argument_is_described_to_the_model(client: Client) -> None:
