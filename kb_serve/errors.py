@@ -16,7 +16,11 @@ class KBServeError(UserError):
 
 
 class BaseMissing(KBServeError):  # noqa: N818 - reads as the state it names
-    """There is no knowledge base for this version."""
+    """There is no knowledge base for this version: ``what`` says so, ``advice`` how to get one."""
+
+    def __init__(self, what: str, advice: str = "") -> None:
+        self.what = what
+        super().__init__(f"{what} {advice}".rstrip())
 
 
 class BaseUnreadable(KBServeError):  # noqa: N818 - reads as the state it names

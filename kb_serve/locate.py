@@ -21,7 +21,7 @@ def find_base(version: str | None, home: Path | None = None) -> Path:
     built = built_bases(folder)
     if version is None:
         if not built:
-            raise BaseMissing(f"There is no knowledge base in {folder}. {_how_to_get('5.1')}")
+            raise BaseMissing(f"There is no knowledge base in {folder}.", _how_to_get("5.1"))
         return list(built.values())[-1]
     try:
         wanted = minor_of(version.strip().removeprefix("v"))
@@ -32,8 +32,8 @@ def find_base(version: str | None, home: Path | None = None) -> Path:
     path = base_path(folder, wanted)
     if not path.is_file():
         raise BaseMissing(
-            f"There is no knowledge base for Blender {wanted}. Built are: {_names(built)}. "
-            f"{_how_to_get(wanted)}"
+            f"There is no knowledge base for Blender {wanted}. Built are: {_names(built)}.",
+            _how_to_get(wanted),
         )
     return path
 

@@ -86,6 +86,7 @@ class Service:
             base = self.bases.pick(blender)
         except BaseMissing as error:
             if note := self.upkeep.missing_note(blender):
-                raise BaseMissing(f"{error} {note}") from error
+                what = error.what if self.upkeep.state == "running" else str(error)
+                raise BaseMissing(what, note) from error
             raise
         return base, self.upkeep.note(base.meta, blender)

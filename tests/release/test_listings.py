@@ -66,6 +66,7 @@ def test_the_plugin_lies_apart_from_our_packages() -> None:
     assert read("plugin/.mcp.json")["mcpServers"] == {NAME: SERVER}
 
 
+@pytest.mark.npm
 @pytest.mark.parametrize("folder", [".", "plugin"])
 def test_the_plugin_and_its_marketplace_are_valid_by_their_own_validator(
     folder: str, tmp_path_factory: pytest.TempPathFactory

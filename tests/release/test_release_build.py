@@ -128,6 +128,7 @@ def test_the_bundle_starts_as_a_client_starts_it(bundle: Path, tmp_path: Path) -
         wire.close()
 
 
+@pytest.mark.npm
 def test_the_bundle_is_one_by_its_own_validator(bundle: Path, tmp_path: Path) -> None:
     tool = npm_tool("mcpb")
     for words in (
