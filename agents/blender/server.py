@@ -103,15 +103,8 @@ def make_server(
         *((WITH_ASSETS,) if sessions.has_assets else ()),
         *((ONLINE,) if sessions.is_online else ()),
     )
-    names = [
-        name
-        for name in (
-            *(tool.name for tool in served),
-            *(team.names if team is not None else ()),
-            *docs_client.NAMES,
-        )
-        if is_offered(name, profile)
-    ]
+    known = (*(tool.name for tool in served), *(team.names if team is not None else ()), *docs_client.NAMES)
+    names = [name for name in known if is_offered(name, profile)]
 
     @asynccontextmanager
     async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
@@ -128,7 +121,10 @@ def make_server(
 
     async def call_tool(context: _Context, params: types.CallToolRequestParams) -> types.CallToolResult:
         if params.name not in names:
-            raise MCPError(types.INVALID_PARAMS, _not_offered(params.name, names, profile))
+            is_known = params.name in known
+            raise MCPError(
+                types.INVALID_PARAMS, _not_offered(params.name, names, profile if is_known else None)
+            )
         if params.name in docs_client.NAMES:
             return await _look_up(docs, params.name, params.arguments)
         if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
@@ -209,8 +205,9 @@ def _prompting(team: Team) -> dict[str, Any]:
     return {"on_list_prompts": list_prompts, "on_get_prompt": get_prompt, "on_completion": complete}
 
 
-def _not_offered(name: str, offered: Iterable[str], profile: Profile) -> str:
-    if name in BY_NAME:
+def _not_offered(name: str, offered: Iterable[str], profile: Profile | None) -> str:
+    """Why there is no such tool; ``profile`` is the one that leaves it out, None for a name of no tool at all."""
+    if profile is not None:
         return (
             f"{name} is not among the tools that this server was started with (--tools {profile}). Restart it with "
             f"--tools {first_profile(name)}."

@@ -17,7 +17,7 @@ import anyio
 import pytest
 from mcp import Client
 from mcp.shared.exceptions import MCPError
-from mcp_types import ImageContent
+from mcp_types import ImageContent, TextResourceContents
 from PIL import Image
 from serving import COMMAND, REPO, ByHand, below, blenders, environment, have_ended, over_stdio
 
@@ -90,10 +90,17 @@ async def test_every_tool_of_the_suite_is_listed_beside_the_documentation(client
 
 
 async def test_every_argument_is_described_to_the_model(client: Client) -> None:
+    (whole,) = (await client.read_resource("blender://tools")).contents
+    assert isinstance(whole, TextResourceContents)
+    described = {entry["name"]: entry["inputSchema"]["properties"] for entry in json.loads(whole.text)}
     for tool in (await client.list_tools()).tools:
         assert tool.input_schema["type"] == "object"
+        told = [field.get("description") for field in described[tool.name].values()]
+        assert all(told), tool.name
         for name, field in tool.input_schema["properties"].items():
-            assert "description" in field, f"{tool.name}: {name}"
+            # What an argument before it says already, as of frame_start and frame_end, is not said again.
+            text = described[tool.name][name]["description"]
+            assert field.get("description") == text or told.count(text) > 1, f"{tool.name}: {name}"
             assert "title" not in field
         assert "$ref" not in json.dumps(tool.input_schema)
 

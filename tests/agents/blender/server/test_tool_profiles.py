@@ -82,6 +82,8 @@ async def test_docs_starts_no_blender_and_look_changes_no_scene(home: Path) -> N
         } == {"blender_load"}
         with pytest.raises(MCPError, match="--tools all"):
             await client.call_tool("blender_tag_object", {})
+        with pytest.raises(MCPError, match="--tools build"):
+            await client.call_tool("blender_plan_check", {})
         state = await client.call_tool("blender_scene_state", {})
         assert not state.is_error
 
