@@ -17,7 +17,7 @@ from kb_build.errors import StoreError
 from kb_build.index.analysis import content_words, key, short_path, topic_key
 from kb_build.index.creation import creation_calls
 from kb_build.index.documents import Document, kind_of, make_units, topic_documents
-from kb_build.index.everyday_words import lent_postings, load_everyday_words
+from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
 from kb_build.index.passages import find_passages
 from kb_build.index.postings import (
     TOPIC_B,
@@ -266,14 +266,10 @@ def write_index(
     phrases = _phrases(topics, targets, expansions)
     leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, tokenize)
     connection.execute("INSERT INTO phrases VALUES (?)", (np.array(leads_to, np.int32).tobytes(),))
-    words = load_everyday_words()
-    levels = (
-        (0, of_units),
-        (0, lent_postings(of_units, of_units, words)),
-        (len(units), of_topics),
-        (len(units), lent_postings(of_topics, of_units, words)),
-        (len(units) + len(topics), of_phrases),
-    )
+    words = unknown_of(load_everyday_words(), of_units)
+    for postings in (of_units, of_topics):
+        lend(postings, words)
+    levels = (0, of_units), (len(units), of_topics), (len(units) + len(topics), of_phrases)
     _insert(connection, "postings", pack_postings(*levels), 3)
     _insert(connection, "vocabulary", vocabulary(units, tokenize), 2)
 

@@ -7,10 +7,11 @@ from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stem, terms
-from kb_build.index.postings import PostingLists
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
+
+    from kb_build.index.postings import PostingLists
 
     # A word's stem → the stems of each of its terms, the most likely term first.
     EverydayWords = Mapping[str, tuple[tuple[str, ...], ...]]
@@ -37,29 +38,36 @@ def read_everyday_words(lines: Iterable[str]) -> EverydayWords:
     return table
 
 
-def lent_postings(own: PostingLists, units: PostingLists, words: EverydayWords) -> PostingLists:
-    """What everyday words borrow of their terms' posting lists in ``own``: documents that lack the word itself.
+def unknown_of(words: EverydayWords, units: PostingLists) -> EverydayWords:
+    """Those of the words that the documentation hardly uses."""
+    return {word: told for word, told in words.items() if len(units.numbers.get(word, ())) < _KNOWN}
 
-    ``units`` are the posting lists that tell whether a word is known. A term of several stems lends the documents
-    that have all of them; any term only those that say most of it.
+
+def lend(postings: PostingLists, words: EverydayWords) -> None:
+    """Adds to the posting lists of words the documents of their terms, where these say most of them.
+
+    A term of several stems lends the documents that have all of them. Documents that have the word itself stay as they
+    are.
     """
-    lent = PostingLists()
-    for word, its_terms in words.items():
-        if len(units.numbers.get(word, ())) >= _KNOWN:
-            continue
-        has_it = set(own.numbers.get(word, ()))
-        weights: dict[int, float] = {}
-        share = _SHARE
-        for stems in its_terms:
-            having = _having_all(own, stems)
-            for number in heapq.nlargest(_MOST, having, key=having.__getitem__):
-                if number not in has_it:
-                    weights[number] = max(weights.get(number, 0.0), share * having[number])
-            share *= _LESS_LIKELY
+    lent = {word: _lent(postings, its_terms) for word, its_terms in words.items()}
+    for word, weights in lent.items():
         if weights:
-            lent.numbers[word] = sorted(weights)
-            lent.weights[word] = [weights[number] for number in lent.numbers[word]]
-    return lent
+            own = zip(postings.numbers.get(word, ()), postings.weights.get(word, ()), strict=True)
+            together = {**weights, **dict(own)}
+            postings.numbers[word] = sorted(together)
+            postings.weights[word] = [together[number] for number in postings.numbers[word]]
+
+
+def _lent(postings: PostingLists, its_terms: Iterable[Iterable[str]]) -> dict[int, float]:
+    """The documents that a word is lent by its terms, and what they say of it."""
+    weights: dict[int, float] = {}
+    share = _SHARE
+    for stems in its_terms:
+        having = _having_all(postings, stems)
+        for number in heapq.nlargest(_MOST, having, key=having.__getitem__):
+            weights[number] = max(weights.get(number, 0.0), share * having[number])
+        share *= _LESS_LIKELY
+    return weights
 
 
 def _having_all(postings: PostingLists, stems: Iterable[str]) -> dict[int, float]:

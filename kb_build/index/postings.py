@@ -96,8 +96,7 @@ def phrase_postings(
 def pack_postings(*levels: tuple[int, PostingLists]) -> Iterator[tuple[str, int, bytes]]:
     """(stem, how many units have it, numbers as uint32 then weights as float16) of all levels together.
 
-    Each level comes with the number that its first document gets; the units' comes first, and what units are lent
-    next. A stem that no unit has itself tells as much as those do that it is lent.
+    Each level comes with the number that its first document gets; the units' comes first.
     """
     for term in dict.fromkeys(term for _, postings in levels for term in postings.numbers):
         having = [(start, postings) for start, postings in levels if term in postings.numbers]
@@ -105,9 +104,7 @@ def pack_postings(*levels: tuple[int, PostingLists]) -> Iterator[tuple[str, int,
             np.asarray(postings.numbers[term], np.uint32) + np.uint32(start) for start, postings in having
         ]
         weights = [np.asarray(postings.weights[term], np.float16) for _, postings in having]
-        units = next(
-            (len(postings.numbers[term]) for _, postings in levels[:2] if term in postings.numbers), 0
-        )
+        units = len(levels[0][1].numbers.get(term, ()))
         yield term, units, np.concatenate(numbers).tobytes() + np.concatenate(weights).tobytes()
 
 

@@ -6,8 +6,8 @@ import pytest
 
 from kb_build.index.analysis import stem
 from kb_build.index.documents import Document
-from kb_build.index.everyday_words import lent_postings, load_everyday_words, read_everyday_words
-from kb_build.index.postings import document_postings, pack_postings
+from kb_build.index.everyday_words import lend, load_everyday_words, read_everyday_words, unknown_of
+from kb_build.index.postings import document_postings
 
 
 def test_words_lead_to_terms() -> None:
@@ -29,17 +29,19 @@ def test_a_word_borrows_the_documents_of_its_terms() -> None:
         Document("jelly", "property", "", body=("soft body",)),
     ]
     units = document_postings(docs, 0.35)
-    table = read_everyday_words(["plume: smoke", "blob: soft body", "gadget: widget"])
-    lent = lent_postings(units, units, table)
-    assert lent.numbers == {"plume": [0], "blob": [3]}  # those of its own are its own; all stems of a term
-    assert 0 < lent.weights["plume"][0] < units.weights["smoke"][0] / 2
-    packed = {term: having for term, having, _ in pack_postings((0, units), (0, lent))}
-    assert packed["plume"] == 1  # it tells as much as its own documents do,
-    assert packed["blob"] == 1  # or else as those that it borrows
+    own = units.weights["plume"][0]
+    words = read_everyday_words(["plume: smoke", "blob: soft body", "gadget: widget", "puff: plume"])
+    lend(units, unknown_of(words, units))
+    assert units.numbers["plume"] == [0, 1]
+    assert units.weights["plume"][1] == own
+    assert 0 < units.weights["plume"][0] < units.weights["smoke"][0] / 2
+    assert units.numbers["blob"] == [3]  # all stems of a term
+    assert "gadget" not in units.numbers
+    assert units.numbers["puff"] == [1]  # what is lent is not lent on
 
 
 @pytest.mark.parametrize(("count", "borrows"), [(29, True), (30, False)])
 def test_a_word_that_is_known_borrows_nothing(count: int, borrows: bool) -> None:
     docs = [Document(f"d{n}", "property", "", body=("plume",)) for n in range(count)]
     units = document_postings([*docs, Document("smoke", "property", "", body=("smoke",))], 0.35)
-    assert bool(lent_postings(units, units, read_everyday_words(["plume: smoke"])).numbers) is borrows
+    assert bool(unknown_of(read_everyday_words(["plume: smoke"]), units)) is borrows
