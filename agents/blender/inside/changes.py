@@ -37,7 +37,7 @@ _WHOLE = frozenset({"settings", "geometry", "keyframes", "picture", "nodes", "sh
 
 _WARNING = b"WARN (bpy.rna)"  # a setting has a value that this Blender was built without
 
-_C = ctypes.CDLL(None)
+_C = ctypes.CDLL(None) if os.name == "posix" else None
 _updated = set()
 _cache_watch = {"counts": None, "reset": {}}
 
@@ -193,7 +193,8 @@ def _flush():
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(Exception):
             stream.flush()
-    _C.fflush(None)
+    if _C is not None:
+        _C.fflush(None)
 
 
 def _names_by_kind():

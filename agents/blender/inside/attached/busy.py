@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the user is in the middle of, so that nothing is changed under their hands."""
+
+import contextlib
+import ctypes
+import os
+import struct
+import tempfile
+
+import bpy
+
+_JOBS = {
+    "RENDER": "renders",
+    "COMPOSITE": "composites",
+    "OBJECT_BAKE": "bakes textures",
+    "OBJECT_BAKE_TEXTURE": "bakes textures",
+    "OBJECT_SIM_OCEAN": "bakes an ocean",
+    "OBJECT_SIM_FLUID": "bakes a fluid",
+    "POINTCACHE": "bakes a simulation",
+    "CALCULATE_SIMULATION_NODES": "bakes simulation nodes",
+    "BAKE_GEOMETRY_NODES": "bakes geometry nodes",
+}
+_POINTER = struct.calcsize("P")
+_MOST_HANDLERS = 64
+# Of Blender's own structure for handlers: next, prev, type, flag, poll; of an operator's, then the operator, and of
+# that: next, prev, idname.
+_TYPE, _OPERATOR, _NAME = 2 * _POINTER, 4 * _POINTER, 2 * _POINTER
+_OF_INTERFACE, _OF_OPERATORS = 2, 3  # others, for dropping files say, are there at all times
+_offset = None
+
+
+def reason(*, but_addons=False):
+    """What the user or Blender is doing, with what to wait for; "" if nothing. ``but_addons``: modal operators of
+    add-ons do not count: some run as long as Blender does."""
+    for job, doing in _JOBS.items():
+        with contextlib.suppress(TypeError, ValueError):  # this version has no such job
+            if bpy.app.is_job_running(job):
+                return f"Blender {doing}. Call again when that is done, or ask the user to press Esc"
+    for window in bpy.context.window_manager.windows:
+        for name in _modal(window):
+            if not name:
+                return "a menu or a field is open, or a slider is dragged. Call again when the user is done"
+            if but_addons and _of_addon(name):
+                continue
+            return f"{_title(name)} is running. Call again when the user has confirmed it or pressed Esc"
+    return ""
+
+
+def _modal(window):
+    """The names of the modal operators of a window, "" for other things that take its events."""
+    if hasattr(window, "modal_operators"):
+        return [operator.bl_idname for operator in window.modal_operators]
+    return _read_modal(window)
+
+
+def _read_modal(window):
+    """The same, where Blender tells it to nobody: before 4.2 it is read where Blender itself keeps it."""
+    global _offset
+    if _offset is None:
+        try:
+            _offset = _offset_of("wmWindow", "modalhandlers")
+        except (OSError, ValueError, RuntimeError, struct.error, IndexError):
+            _offset = -1
+    if _offset < 0:
+        return []
+    names, handler = [], _pointer(window.as_pointer() + _offset)
+    while handler and len(names) < _MOST_HANDLERS:
+        kind = ctypes.c_int.from_address(handler + _TYPE).value
+        if kind == _OF_OPERATORS and (operator := _pointer(handler + _OPERATOR)):
+            names.append(ctypes.string_at(operator + _NAME, 64).split(b"\0")[0].decode("ascii", "replace"))
+        elif kind == _OF_INTERFACE:
+            names.append("")
+        handler = _pointer(handler)
+    return names
+
+
+def _pointer(address):
+    return ctypes.c_void_p.from_address(address).value or 0
+
+
+def _title(name):
+    group, _, own = name.partition("_OT_")
+    try:
+        label = getattr(getattr(bpy.ops, group.lower()), own).get_rna_type().name
+    except (AttributeError, KeyError, TypeError):
+        label = name
+    return f"the operator {label!r}"
+
+
+def _of_addon(name):
+    kind = getattr(bpy.types, name, None)
+    return kind is not None and not str(getattr(kind, "__module__", "")).startswith(("bpy", "bl_"))
+
+
+# Where a member stands in a structure: every .blend carries the description of the structures of its Blender.
+
+
+def _offset_of(structure, member):
+    """The offset of a member, for this Blender. Raises ValueError if there is none, OSError, RuntimeError."""
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "structures.blend")
+        bpy.data.libraries.write(path, set(), compress=False)
+        with open(path, "rb") as file:
+            data = file.read()
+    if data[:7] != b"BLENDER" or data[7:8] != b"-":
+        raise ValueError("it is not a .blend of 64 bits")
+    order, at = "<" if data[8:9] == b"v" else ">", 12
+    while data[at : at + 4] != b"DNA1":
+        at += 24 + struct.unpack_from(order + "i", data, at + 4)[0]
+    names, types, lengths, structures = _described(data, at + 24, order)
+    for kind, members in structures:
+        if types[kind] != structure:
+            continue
+        offset = 0
+        for of_type, of_name in members:
+            name = names[of_name]
+            if name == member:
+                return offset
+            size = _POINTER if name.startswith(("*", "(")) else lengths[of_type]
+            for part in name.split("[")[1:]:
+                size *= int(part.rstrip("]"))
+            offset += size
+    raise ValueError(f"{structure} has no {member}")
+
+
+def _described(data, start, order):
+    """(names, types, their lengths, [(type, [(type, name), …]), …]) of the block at ``start``."""
+    at = start + 4  # SDNA
+
+    def strings(tag):
+        nonlocal at
+        at += -(at - start) % 4
+        if data[at : at + 4] != tag:
+            raise ValueError(f"{tag} is missing")
+        (count,) = struct.unpack_from(order + "i", data, at + 4)
+        at += 8
+        found = []
+        for _ in range(count):
+            end = data.index(b"\0", at)
+            found.append(data[at:end].decode("ascii"))
+            at = end + 1
+        return found
+
+    names, types = strings(b"NAME"), strings(b"TYPE")
+    at += -(at - start) % 4 + 4
+    lengths = struct.unpack_from(f"{order}{len(types)}h", data, at)
+    at += 2 * len(types)
+    at += -(at - start) % 4 + 4
+    (count,) = struct.unpack_from(order + "i", data, at)
+    at += 4
+    structures = []
+    for _ in range(count):
+        kind, size = struct.unpack_from(order + "2h", data, at)
+        pairs = struct.unpack_from(f"{order}{2 * size}h", data, at + 4)
+        structures.append((kind, list(zip(pairs[::2], pairs[1::2]))))
+        at += 4 + 4 * size
+    return names, types, lengths, structures

@@ -1,0 +1,75 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Writes a copy of the open file; the file that the user has open, and its place, stay what they are."""
+
+import contextlib
+import os
+import time
+
+import bpy
+
+from simworlds.sandbox.inside.refusal import Refused
+
+from ..blend.temporary import temporary_settings, without_handlers
+from .user_state import in_window
+
+_ON_SAVING = ("save_pre", "save_post", "save_post_fail")
+_BYTES_A_SECOND = 150e6  # until a copy of this Blender was measured
+_OF_VERTEX, _OF_EDGE, _OF_LOOP, _OF_FACE = 40, 12, 24, 12
+_LEAST_MEASURED = 20e6
+_speed = None
+
+
+def write_copy(arguments, report):
+    """Writes a copy to ``path`` if that takes at most ``seconds``, by an estimate. Raises Refused.
+
+    Returns ``bytes``, ``seconds``, ``file`` (the open one's path), ``folders`` of other files that it uses, and
+    ``unsaved``: images that were painted and are in no file, which the copy has as they were before.
+    """
+    global _speed
+    del report
+    path, most = arguments["path"], arguments["seconds"]
+    size = _estimate()
+    expected = size / (_speed or _BYTES_A_SECOND)
+    if expected > most:
+        raise Refused(
+            f"The scene is too large to be copied in {most:g} s: about {size / 1e6:.0f} MB, {expected:.0f} s."
+        )
+    started = time.perf_counter()
+    preferences = bpy.context.preferences
+    dirty = preferences.is_dirty
+    try:
+        # Neither a thumbnail, which takes as long as writing, nor handlers: nobody saves anything here.
+        with in_window(), without_handlers(_ON_SAVING), temporary_settings(
+            [(preferences.filepaths, "file_preview_type", "NONE")]
+        ):
+            bpy.ops.wm.save_as_mainfile(
+                filepath=path, copy=True, check_existing=False, relative_remap=True, compress=False
+            )
+    except RuntimeError as error:
+        raise Refused(f"The copy cannot be written: {str(error).strip().removeprefix('Error: ')}") from None
+    finally:
+        with contextlib.suppress(AttributeError):
+            preferences.is_dirty = dirty
+    seconds = time.perf_counter() - started
+    written = os.path.getsize(path)
+    if written > _LEAST_MEASURED:
+        _speed = written / seconds
+    folders = {os.path.dirname(os.path.realpath(place)) for place in bpy.utils.blend_paths(absolute=True, packed=False)}
+    return {
+        "bytes": written,
+        "seconds": seconds,
+        "file": bpy.data.filepath,
+        "folders": sorted(folder for folder in folders if os.path.isdir(folder))[:40],
+        "unsaved": sorted(image.name for image in bpy.data.images if image.is_dirty)[:40],
+    }
+
+
+def _estimate():
+    """About how many bytes the file will have."""
+    size = 2e6
+    for mesh in bpy.data.meshes:
+        size += len(mesh.vertices) * _OF_VERTEX + len(mesh.edges) * _OF_EDGE
+        size += len(mesh.loops) * _OF_LOOP + len(mesh.polygons) * _OF_FACE
+    for owners in (bpy.data.images, bpy.data.sounds, bpy.data.volumes, bpy.data.fonts):
+        size += sum(owner.packed_file.size for owner in owners if getattr(owner, "packed_file", None))
+    return size
