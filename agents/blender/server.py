@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import logging
 from contextlib import asynccontextmanager
+from dataclasses import dataclass
 from functools import partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,7 @@ from starlette.datastructures import Headers
 
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
-from agents.blender.tool_catalogue import BY_NAME, TOOLS
+from agents.blender.tool_catalogue import TOOLS
 from agents.blender.tools.base import Call
 from simworlds.mcp_transport.sessions import SESSION, UNFINISHED, EndUnfinishedSessions
 from simworlds.sandbox.errors import BlenderError, Lost, ToolBroke
@@ -58,6 +59,11 @@ _HABITS = (
     ("blender_save", "when a stage is done"),
     ("blender_render", "last, when everything is in place; start with a still"),
 )  # fmt: skip
+_OWN_BLENDER = (
+    "You have your own live Blender, without a window. The scene stays from call to call. If Blender crashes "
+    "or hangs, it is restarted from the last checkpoint, which the error names: read the scene's state "
+    "before you go on. Lengths are in metres, angles in Python in radians."
+)
 _PROGRESS_SECONDS = 0.25
 _LIST_SECONDS = 20.0  # what a list waits for the knowledge base
 _MANY_CLIENTS = 64
@@ -65,26 +71,42 @@ _MANY_CLIENTS = 64
 _LOG = logging.getLogger(__name__)
 
 
-def instructions(more: Iterable[str] = ()) -> str:
+@dataclass(frozen=True, slots=True)
+class Suite:
+    """Tools that a server lists; ``opening`` and ``habits`` (tool, when to use it) tell models how to work with them."""
+
+    tools: tuple[BlenderTool, ...] = TOOLS
+    opening: str = _OWN_BLENDER
+    habits: tuple[tuple[str, str], ...] = _HABITS
+
+    def named(self, name: str) -> BlenderTool | None:
+        """The tool of that name."""
+        return next((tool for tool in self.tools if tool.name == name), None)
+
+
+def instructions(more: Iterable[str] = (), suite: Suite | None = None) -> str:
     """The server's instructions for models: how to work with the tools, including ``more`` of the server's own."""
-    known = {*BY_NAME, *more, *docs_client.NAMES}
-    habits = [f"- {name}: {when}." for name, when in _HABITS if name in known]
+    suite = suite or Suite()
+    known = {*(tool.name for tool in suite.tools), *more, *docs_client.NAMES}
+    habits = [f"- {name}: {when}." for name, when in suite.habits if name in known]
     return "\n".join(
         [
-            "You have your own live Blender, without a window. The scene stays from call to call. If Blender crashes "
-            "or hangs, it is restarted from the last checkpoint, which the error names: read the scene's state "
-            "before you go on. Lengths are in metres, angles in Python in radians.",
+            suite.opening,
             *habits,
             "Check every step: read what the call says it changed, then look at the scene.",
         ]
     )
 
 
-def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None = None) -> Server[None]:
+def make_server(
+    sessions: BlenderSessions, docs: DocsClient, team: Team | None = None, suite: Suite | None = None
+) -> Server[None]:
     """The server, without a transport. Closes the sessions when it ends.
 
-    ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles.
+    ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles. ``suite``: the
+    tools, by default those of a Blender of the server's own.
     """
+    served = suite or Suite()
 
     @asynccontextmanager
     async def lifespan(_server: Server[None]) -> AsyncGenerator[None]:
@@ -104,9 +126,10 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
             return await _look_up(docs, params.name, params.arguments)
         if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
             return answer
-        tool = BY_NAME.get(params.name)
+        tool = served.named(params.name)
         if tool is None:
-            names = ", ".join([*BY_NAME, *(team.names if team is not None else ()), *docs_client.NAMES])
+            own = [tool.name for tool in served.tools]
+            names = ", ".join([*own, *(team.names if team is not None else ()), *docs_client.NAMES])
             raise MCPError(
                 types.INVALID_PARAMS, f"There is no tool {params.name[:80]!r}. Available: {names}."
             )
@@ -118,7 +141,7 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         return await _call_with_progress(context, tool.name, use)
 
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
-        listed = [*map(entry, TOOLS), *(team.tools() if team is not None else ())]
+        listed = [*map(entry, served.tools), *(team.tools() if team is not None else ())]
         try:
             with anyio.fail_after(_LIST_SECONDS):
                 listed += await docs.tools()
@@ -144,9 +167,9 @@ def make_server(sessions: BlenderSessions, docs: DocsClient, team: Team | None =
         "simworlds-blender",
         version=_own_version(),
         title="SimWorlds: live Blender",
-        instructions=instructions(team.names if team is not None else ()),
+        instructions=instructions(team.names if team is not None else (), served),
         lifespan=lifespan,
-        get_tool_input_schema=lambda name: entry(BY_NAME[name]).input_schema if name in BY_NAME else None,
+        get_tool_input_schema=lambda name: entry(tool).input_schema if (tool := served.named(name)) else None,
         on_list_tools=list_tools,
         on_call_tool=call_tool,
         on_list_resources=list_resources,

@@ -12,9 +12,12 @@ import click
 
 from agents.commands import options
 from agents.commands.sandbox_warning import warn
+from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
-    from agents.blender.blender_sessions import SessionSetup
+    from mcp.server.lowlevel import Server
+
+    from agents.blender.blender_sessions import BlenderSessions, SessionSetup
     from simworlds.sandbox.confined_command import Kind, Sandbox
 
 _ERROR = 2
@@ -35,6 +38,13 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
 @options.EXECUTABLE
 @click.option("--read", type=_ASSETS, multiple=True, help="A folder that Blender may read, for assets.")
 @options.SANDBOX
+@click.option(
+    "--attach",
+    is_flag=False,
+    flag_value="open",
+    metavar="[auto|WHICH]",
+    help="Work in the Blender that is open; WHICH: its process or file, of several. auto: in one of its own if none is.",
+)
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option(
@@ -62,6 +72,7 @@ def mcp(  # noqa: PLR0913 - one for each option
     blender_exe: Path | None,
     read: tuple[Path, ...],
     sandbox: Kind | None,
+    attach: str | None,
     over_http: bool,
     host: str,
     port: int,
@@ -72,12 +83,15 @@ def mcp(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Serve a live Blender over MCP, on stdio or HTTP, with blender_docs beside it.
 
-    Every client has its own Blender and run folder, and finds both as it left them. On an address other than
+    Every client has its own Blender and run folder, and finds both as it left them. With --attach, clients work in the
+    Blender that the user has open (simworlds extension install). On an address other than
     loopback clients must send a token: Authorization: Bearer …
     """
     for_http = [name for name in _ONLY_HTTP if context.get_parameter_source(name) is _TYPED]
     if for_http and not over_http:
         raise click.UsageError(f"--{for_http[0].replace('_', '-')} needs --http.")
+    if attach is not None and (blender is not None or blender_exe is not None):
+        raise click.UsageError("--attach works in the Blender that is open: leave --blender and --blender-exe out.")
     # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
@@ -89,41 +103,88 @@ def mcp(  # noqa: PLR0913 - one for each option
         if blender_exe is not None:
             find_blender(blender, blender_exe)
         setup = setup_of(_confined(sandbox))
+        kind = _OwnBlenders() if attach is None else _attached(attach)
         if over_http:
-            _over_http(setup, sessions, idle * 60, host, port, token or "", allow_host)
+            _over_http(setup, kind, sessions, idle * 60, host, port, token or "", allow_host)
         else:
-            _over_stdio(setup)
+            _over_stdio(setup, kind)
     except CannotStart as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
 
 
-def _over_stdio(setup: SessionSetup) -> None:
-    from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415 - not for --help
+class _OwnBlenders:
+    """Clients have Blenders of the server's own."""
 
-    sessions = BlenderSessions(setup)
+    def sessions(self, setup: SessionSetup, at_most: int = 1, idle: float | None = None) -> BlenderSessions:
+        """The sessions of clients."""
+        from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415 - not for --help
+
+        return BlenderSessions(setup, at_most=at_most, idle=idle)
+
+    def server(self, setup: SessionSetup, sessions: BlenderSessions) -> Server[None]:
+        """The server of these sessions."""
+        from agents.blender.docs_client import DocsClient  # noqa: PLC0415
+        from agents.blender.server import make_server  # noqa: PLC0415
+        from agents.blender.team import Team  # noqa: PLC0415
+
+        return make_server(sessions, DocsClient(_same_blender(setup)), Team())
+
+
+class _OpenBlender(_OwnBlenders):
+    """Clients work in the user's: ``wanted`` says which, ``version`` of which version it is, as far as is known."""
+
+    def __init__(self, wanted: str, version: str | None) -> None:
+        self._wanted, self._version = wanted, version
+
+    def sessions(self, setup: SessionSetup, at_most: int = 1, idle: float | None = None) -> BlenderSessions:
+        """The sessions of clients."""
+        from agents.blender.attached.attached_session import AttachedSession  # noqa: PLC0415
+        from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415
+
+        return BlenderSessions(setup, at_most=at_most, idle=idle, new=partial(AttachedSession, self._wanted))
+
+    def server(self, setup: SessionSetup, sessions: BlenderSessions) -> Server[None]:
+        """The server of these sessions."""
+        del setup
+        from agents.blender.attached.tool_catalogue import HABITS, OPENING, TOOLS  # noqa: PLC0415
+        from agents.blender.docs_client import DocsClient  # noqa: PLC0415
+        from agents.blender.server import Suite, make_server  # noqa: PLC0415
+
+        options = ["--blender", self._version] if self._version else []
+        return make_server(sessions, DocsClient(options), suite=Suite(TOOLS, OPENING, HABITS))
+
+
+def _attached(wanted: str) -> _OwnBlenders:
+    """The Blender to work in: the open one, or with ``auto`` one of its own if none is open."""
+    from agents.blender.attached.open_blenders import AUTO, open_blenders  # noqa: PLC0415
+
+    found = open_blenders()
+    if wanted == AUTO and not found:
+        click.echo("No open Blender listens: working in a Blender of its own.", err=True)
+        return _OwnBlenders()
+    versions = {blender.about.version for blender in found}
+    return _OpenBlender(wanted, minor_of(versions.pop()) if len(versions) == 1 else None)
+
+
+def _over_stdio(setup: SessionSetup, kind: _OwnBlenders) -> None:
+    sessions = kind.sessions(setup)
     # Blender starts while the MCP package is loaded: each takes half a second.
     sessions.start("")
-    from agents.blender.docs_client import DocsClient  # noqa: PLC0415
-    from agents.blender.server import make_server  # noqa: PLC0415
-    from agents.blender.team import Team  # noqa: PLC0415
     from simworlds.mcp_transport.stdio import run_stdio  # noqa: PLC0415
 
-    server = make_server(sessions, DocsClient(_same_blender(setup)), Team())
+    server = kind.server(setup, sessions)
     _loaded()
     run_stdio(server, partial(sessions.close, _SIGNAL_SECONDS))
 
 
-def _over_http(setup: SessionSetup, at_most: int, idle: float, *address: Any) -> None:
-    from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415
-    from agents.blender.docs_client import DocsClient  # noqa: PLC0415 - not for --help
-    from agents.blender.server import make_app, make_server  # noqa: PLC0415
-    from agents.blender.team import Team  # noqa: PLC0415
+def _over_http(setup: SessionSetup, kind: _OwnBlenders, at_most: int, idle: float, *address: Any) -> None:
+    from agents.blender.server import make_app  # noqa: PLC0415 - not for --help
     from simworlds.mcp_transport.http import Address, CannotServe, run_http  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
 
-    sessions = BlenderSessions(setup, at_most=at_most, idle=idle)
-    server = make_server(sessions, DocsClient(_same_blender(setup)), Team())
+    sessions = kind.sessions(setup, at_most, idle)
+    server = kind.server(setup, sessions)
     _loaded()
     try:
         run_http(partial(make_app, server, sessions, idle), Address(*address), "Blender")

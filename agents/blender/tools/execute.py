@@ -56,7 +56,7 @@ class _Fault(Claim):
     there: list[Text] = Field(max_length=100)
 
 
-class _Outcome(Claim):
+class Outcome(Claim):
     """The worker's report on executed code."""
 
     value: Text | None
@@ -78,11 +78,11 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
     if arguments.on_error == "restore":
         blender.keep("before code that may be undone")
     before, unkept = blender.checkpoints.last, blender.checkpoints.unkept
-    title = _title(arguments.code)
+    title = title_of(arguments.code)
     reply = blender.call(
         "execute",
         {"code": arguments.code},
-        _Outcome.model_validate,
+        Outcome.model_validate,
         timeout=arguments.timeout,
         what=f"the code {title!r}",
         changes=True,
@@ -97,16 +97,16 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
     data.update(stdout=reply.stdout, stderr=reply.stderr, seconds=round(reply.seconds, 4))
     error = data["error"]
     if error is None:
-        return Result(_text(data, reply, checked), data)
+        return Result(describe(data, reply, checked), data)
     error["documentation"] = context.docs(error["ask"]) if error["ask"] else ""
     if arguments.on_error == "restore":
         data["scene"] = f"The scene was restored from {blender.restore()}."
     else:
         data["scene"] = f"The scene is as the code left it.{_how_to_undo(before, unkept)}"
-    return Result(_text(data, reply, checked), data, failed=True)
+    return Result(describe(data, reply, checked), data, failed=True)
 
 
-def _title(code: str) -> str:
+def title_of(code: str) -> str:
     """The first line that is not empty, shortened."""
     lines = [line.strip() for line in code.splitlines() if line.strip()]
     first = lines[0] if lines else "(empty)"
@@ -120,7 +120,8 @@ def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     return f" To undo it{calls}: blender_load(checkpoint={before.number})."
 
 
-def _text(data: dict[str, Any], reply: WorkerReply[_Outcome], checked: PreFlight) -> str:
+def describe(data: dict[str, Any], reply: WorkerReply[Any], checked: PreFlight) -> str:
+    """What came of executed code, as text."""
     parts: list[str] = []
     if error := data["error"]:
         parts.append(f"**{error['type']}**: {error['message']}")

@@ -10,7 +10,7 @@ from pydantic import Field
 
 from agents.blender.tools import scene_dynamics as dynamics
 from agents.blender.tools import scene_words as words
-from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
 from agents.blender.tools.scene_fit import ReadoutItem, ReadoutSection, share_tokens, tokens
 from agents.blender.tools.scene_fold import fold, fold_tree, series
 from agents.blender.tools.scene_order import asked_first
@@ -74,7 +74,7 @@ every cache; animation; cameras, lights, world; likely mistakes, marked with !. 
 Brick.400). What does not fit is counted, with the call that shows it."""
 
 
-def run(context: ToolContext, arguments: SceneStateArguments, call: Call) -> Result:
+def run(context: CallContext, arguments: SceneStateArguments, call: Call) -> Result:
     """Reads the scene."""
     usual = _OF_SUMMARY if arguments.detail == "summary" else tuple(_TITLES)
     names = [name for name in (*_TITLES, DATA_BLOCKS) if name in (arguments.sections or usual)]
