@@ -132,7 +132,18 @@ def install(archive: Path, blender: Path) -> str:
         done = "error" not in said.lower()
     else:
         code = _CLASSIC.format(name=NAME)
-        said = _said([str(blender), "--background", "--python-exit-code", "1", "--python-expr", code, "--", str(archive)])
+        said = _said(
+            [
+                str(blender),
+                "--background",
+                "--python-exit-code",
+                "1",
+                "--python-expr",
+                code,
+                "--",
+                str(archive),
+            ]
+        )
         done = _DONE in said
     if not done:
         raise CannotInstall(f"{blender} did not install the extension:\n{said[-2000:].strip()}")

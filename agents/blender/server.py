@@ -73,7 +73,7 @@ _LOG = logging.getLogger(__name__)
 
 @dataclass(frozen=True, slots=True)
 class Suite:
-    """Tools that a server lists; ``opening`` and ``habits`` (tool, when to use it) tell models how to work with them."""
+    """Tools that a server lists. ``opening`` and ``habits`` (tool, when to use it) tell models how to work."""
 
     tools: tuple[BlenderTool, ...] = TOOLS
     opening: str = _OWN_BLENDER

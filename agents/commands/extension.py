@@ -19,7 +19,9 @@ def extension() -> None:
 
 
 @extension.command()
-@click.option("--to", "folder", type=_HERE, default=".", help="Folder for the .zip. Default: the current one.")
+@click.option(
+    "--to", "folder", type=_HERE, default=".", help="Folder for the .zip. Default: the current one."
+)
 def build(*, folder: Path) -> None:
     """Write the extension as a .zip, for Blender 4.2 and later, and as an add-on for 3.4 to 4.1."""
     from agents.blender.extension import CannotInstall  # noqa: PLC0415 - not for --help

@@ -43,7 +43,7 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
     is_flag=False,
     flag_value="open",
     metavar="[auto|WHICH]",
-    help="Work in the Blender that is open; WHICH: its process or file, of several. auto: in one of its own if none is.",
+    help="Work in the open Blender; WHICH of several: its process or file. auto: if there is one, else in its own.",
 )
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
@@ -91,7 +91,9 @@ def mcp(  # noqa: PLR0913 - one for each option
     if for_http and not over_http:
         raise click.UsageError(f"--{for_http[0].replace('_', '-')} needs --http.")
     if attach is not None and (blender is not None or blender_exe is not None):
-        raise click.UsageError("--attach works in the Blender that is open: leave --blender and --blender-exe out.")
+        raise click.UsageError(
+            "--attach works in the Blender that is open: leave --blender and --blender-exe out."
+        )
     # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415

@@ -19,7 +19,6 @@ from simworlds.sandbox.inside import channel
 from simworlds.sandbox.replies import (
     AnswerMessage,
     Malformed,
-    Place,
     ProgressMessage,
     Reader,
     T,
@@ -54,7 +53,9 @@ class AttachedBlender:
     ``tell`` gets lines for the user. ``copy_to``: where a copy goes before the first change.
     """
 
-    def __init__(self, wanted: str, client: str, copy_to: Callable[[About], str], tell: Callable[[str], object]) -> None:
+    def __init__(
+        self, wanted: str, client: str, copy_to: Callable[[About], str], tell: Callable[[str], object]
+    ) -> None:
         self._wanted, self._client, self._copy_to, self._tell = wanted, client, copy_to, tell
         self._link: Any = None
         self._about: About | None = None
@@ -87,7 +88,10 @@ class AttachedBlender:
         cancelled: threading.Event | None = None,
         **_of_workers: Any,
     ) -> WorkerReply[T]:
-        """Runs a tool in the open Blender; as ``Supervisor.call``. ``after`` names the undo step. Raises BlenderError."""
+        """Runs a tool in the open Blender; see ``Supervisor.call``. ``after`` names the undo step.
+
+        Raises BlenderError.
+        """
         if changes:
             self.keep_copy()
             arguments = {**arguments, "step": after.removeprefix("after ") or tool}
@@ -181,8 +185,8 @@ class AttachedBlender:
             if sock is not None:
                 sock.close()
             raise Refusal(
-                f"{blender.about} does not answer ({type(error).__name__}). Ask the user to press Stop and Start in the "
-                "panel SimWorlds, then call again."
+                f"{blender.about} does not answer ({type(error).__name__}). Ask the user to press Stop and Start in "
+                "the panel SimWorlds, then call again."
             ) from error
         if "refused" in first:
             end.close()
@@ -193,7 +197,9 @@ class AttachedBlender:
             self._about = About.model_validate(first["welcome"])
         except (KeyError, ValidationError) as error:
             end.close()
-            raise Refusal("The extension in Blender is of another version: simworlds extension install.") from error
+            raise Refusal(
+                "The extension in Blender is of another version: simworlds extension install."
+            ) from error
         return end
 
     def _ended(self) -> str:
@@ -217,11 +223,11 @@ class AttachedBlender:
         copy = f" A copy from before the first change is {self._copy}." if self._copy else ""
         recover = "" if why else " Blender's own copy may be opened with File > Recover."
         return (
-            f"{said}{copy}{recover} Nothing of this call was done. When Blender is open again and Start was pressed in "
+            f"{said}{copy}{recover} Nothing of this call was done. When Blender is open again, with Start pressed in "
             "its panel SimWorlds, call again: the connection is then made anew. Read the scene's state first."
         )
 
-    def _ask(
+    def _ask(  # noqa: PLR0913, PLR0917 - as of a call
         self,
         tool: str,
         arguments: dict[str, Any],
@@ -239,7 +245,11 @@ class AttachedBlender:
             end.send({"ticket": ticket, "tool": tool, "arguments": arguments, "seconds": timeout})
             end.timeout(_CHECK_SECONDS)
             while True:
-                if time.monotonic() > deadline or self._ending.is_set() or (cancelled is not None and cancelled.is_set()):
+                if (
+                    time.monotonic() > deadline
+                    or self._ending.is_set()
+                    or (cancelled is not None and cancelled.is_set())
+                ):
                     return self._give_up(end, ticket, what, timeout, cancelled)
                 try:
                     message = end.receive()

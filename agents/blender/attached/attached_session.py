@@ -8,7 +8,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from agents.blender.attached.attached_blender import AttachedBlender
-from agents.blender.attached.open_blenders import About
 from agents.blender.attached.tool_catalogue import RUN
 from agents.blender.attached.tools.base import AttachedContext
 from agents.blender.attached.twin import Twin
@@ -19,6 +18,7 @@ from simworlds.sandbox.errors import BlenderError, Refusal
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from agents.blender.attached.open_blenders import About
     from agents.blender.run_folder import RunFolder
     from agents.blender.tools.base import BlenderTool
 
@@ -87,4 +87,3 @@ class AttachedSession(BlenderSession):
         if self._twin is not None:
             self._twin.close()
         super()._close()
-

@@ -109,7 +109,7 @@ def _runs(process: int) -> bool:
 
 
 def choose(wanted: str) -> OpenBlender:
-    """The Blender that is meant: ``open`` or ``auto``, a process's number, or (part of) its file's name. Raises Refusal."""
+    """The Blender that is meant: ``open``, ``auto``, a process's number, (part of) its file's name. Raises Refusal."""
     candidates = open_blenders()
     if wanted not in {OPEN, AUTO}:
         candidates = [

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from agents.blender.attached.tools import execute, show, undo, view
@@ -54,20 +55,37 @@ def _in_open(tool: BlenderTool, run: Callable[[CallContext, Any, Call], Result])
 
 def _in_twin(tool: BlenderTool) -> AttachedTool:
     """A tool that works in a copy, so that nothing of the user's is touched and their window stays alive."""
-    return AttachedTool(tool, lambda context, arguments, call: tool.run(context.of_twin(call), arguments, call))
+    return AttachedTool(
+        tool, lambda context, arguments, call: tool.run(context.of_twin(call), arguments, call)
+    )
 
 
 def _save(context: AttachedContext, arguments: files.SaveArguments, call: Call) -> Result:
     if arguments.name is None:
-        raise Refusal("Give the copy a name. There are no checkpoints here: every change is an undo step of Blender.")
-    return files.save(context.of_twin(call), arguments, call)
+        raise Refusal(
+            "Give the copy a name. There are no checkpoints here: every change is an undo step of Blender."
+        )
+    result = files.save(context.of_twin(call), arguments, call)
+    text = (
+        result.text.rpartition("\nThe scene is at checkpoint")[0] or result.text
+    )  # of the copy: nobody asked for it
+    data = {name: value for name, value in result.data.items() if name != "checkpoint"}
+    return replace(result, text=text, data=data)
 
 
-def _own(name: str, title: str, module: Any, *, read_only: bool = False, destructive: bool = False) -> AttachedTool:
+def _own(
+    name: str, title: str, module: Any, *, read_only: bool = False, destructive: bool = False
+) -> AttachedTool:
     """A tool that is there only with an open Blender."""
     arguments = {view: view.ViewArguments, show: show.ShowArguments, undo: undo.UndoArguments}[module]
     tool = BlenderTool(
-        name, title, module.DESCRIPTION, arguments, _only_attached, read_only=read_only, destructive=destructive
+        name,
+        title,
+        module.DESCRIPTION,
+        arguments,
+        _only_attached,
+        read_only=read_only,
+        destructive=destructive,
     )
     return AttachedTool(tool, module.run)
 

@@ -78,7 +78,8 @@ def _frames_held(scene):
     }
 
 
-def _listen():
+def listen():
+    """Has Blender tell of what it updates, from now on."""
     for handlers, listener in (
         (bpy.app.handlers.depsgraph_update_post, _note_updates),
         (bpy.app.handlers.frame_change_post, _note_counts),
@@ -91,7 +92,7 @@ class ChangeWatch:
     """Remembers the file before some code runs; ``report`` returns the differences after it."""
 
     def __init__(self):
-        _listen()
+        listen()
         self._settle()
         _updated.clear()
         self._before = _names_by_kind()

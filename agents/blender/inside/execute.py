@@ -31,8 +31,8 @@ def execute(arguments, report):
     return run_watched(arguments["code"], restore)
 
 
-def run_watched(code, restore=lambda loaded: None, around=contextlib.nullcontext):
-    """Runs code within ``around()``. ``restore`` mends the interpreter afterwards; it gets the modules loaded before."""
+def run_watched(code, restore=None, around=contextlib.nullcontext):
+    """Runs code within ``around()``. ``restore`` mends the interpreter afterwards, from the modules loaded before."""
     linecache.cache[FILE] = (len(code), None, code.splitlines(keepends=True), FILE)
     result = {"value": None, "error": None}
     watch = ChangeWatch()
@@ -46,7 +46,8 @@ def run_watched(code, restore=lambda loaded: None, around=contextlib.nullcontext
     # The code may have patched what is used below, or left a tracer or an alarm that raises here once.
     for _ in range(3):
         try:
-            restore(loaded)
+            if restore is not None:
+                restore(loaded)
             break
         except Exception:
             continue

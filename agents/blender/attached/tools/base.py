@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from agents.blender.tools.base import BlenderTool, CallContext, ToolContext
+from agents.blender.tools.base import CallContext, ToolContext
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from agents.blender.attached.attached_blender import AttachedBlender
     from agents.blender.attached.twin import Twin
-    from agents.blender.tools.base import Call, Check, Docs, Result
+    from agents.blender.tools.base import BlenderTool, Call, Check, Docs, Result
 
 
 @dataclass(frozen=True, slots=True)

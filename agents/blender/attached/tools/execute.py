@@ -32,11 +32,11 @@ class RehearsedArguments(ExecuteArguments):
 
 
 DESCRIPTION = """\
-Run Python in the user's open Blender. It is checked, then rehearsed in a sandboxed copy of the scene; code that fails, \
-hangs, crashes, writes files, opens sockets or quits never reaches the open Blender. Then it runs there as one undo \
-step, named after its first line (a comment says best what it does). The reply has what was printed, the value of a \
-final expression and what changed. Each call has a fresh namespace; `bpy.data` stays. Use data, and operators that need \
-no editor; the user may be selecting and moving things meanwhile: find objects by name."""
+Run Python in the user's open Blender. It is checked, then rehearsed in a sandboxed copy of the scene; code that \
+fails, hangs, crashes, writes files, opens sockets or quits never reaches the open Blender. Then it runs there as one \
+undo step, named after its first line (a comment says best what it does). The reply has what was printed, the value of \
+a final expression and what changed. Each call has a fresh namespace; `bpy.data` stays. Use data, and operators that \
+need no editor; the user may be selecting and moving things meanwhile: find objects by name."""
 
 
 class _Applied(Outcome):
@@ -152,7 +152,9 @@ def _apply(
     if rehearsal.changed is not None:
         data["rehearsal"] = {"seconds": rehearsal.seconds, "same": rehearsal.changed == applied.changed}
         if rehearsal.changed != applied.changed:
-            notes.append(f"In the rehearsal, other things changed: {_listed(rehearsal.changed) or 'nothing'}.")
+            notes.append(
+                f"In the rehearsal, other things changed: {_listed(rehearsal.changed) or 'nothing'}."
+            )
     if applied.error is not None:
         data["scene"] = "The scene is as the code left it. To undo it: blender_undo()."
         if arguments.on_error == "restore":

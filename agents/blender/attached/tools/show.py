@@ -29,13 +29,14 @@ class ShowArguments(Arguments):
     view: bool = Field(default=True, description="Fit the 3D view to the objects.")
     select: bool = Field(default=True, description="Select the objects, and nothing else.")
     mark: bool | None = Field(
-        default=None, description="true: ring the objects with an annotation; false, without objects: remove all rings."
+        default=None,
+        description="true: draw a ring with its name around each, over the view; false: remove all rings.",
     )
 
 
 DESCRIPTION = """\
-Show the user something in their own window: fit the 3D view to objects, select them, go to a frame, ring objects with \
-an annotation. This moves what they see: use it when they are to look at something, or asked."""
+Show the user something in their own window: fit the 3D view to objects, select them, go to a frame, ring objects. \
+Nothing that they made changes. This moves what they see: use it when they are to look at something, or asked."""
 
 
 class _Rings(Claim):
@@ -56,19 +57,23 @@ def run(context: AttachedContext, arguments: ShowArguments, call: Call) -> Resul
         names = ", ".join(arguments.objects[:3]) or f"frame {arguments.frame}"
         lines.append(
             context.open.call(
-                "show", {**request, "step": f"show {names}"}, read_state, timeout=_SECONDS, cancelled=call.cancelled
+                "show",
+                {**request, "step": f"show {names}"},
+                read_state,
+                timeout=_SECONDS,
+                cancelled=call.cancelled,
             ).value
         )
     if arguments.mark is not None:
         rings = context.open.call(
-            "annotate",
+            "mark",
             {"objects": arguments.objects if arguments.mark else []},
             _Rings.model_validate,
             timeout=_SECONDS,
-            changes=True,
-            after="after marking" if arguments.mark else "after removing marks",
             cancelled=call.cancelled,
         ).value
         data = rings.model_dump()
-        lines.append(f"Drew {format_count(rings.rings, 'ring')}." if rings.rings else f"Removed {rings.removed} rings.")
+        lines.append(
+            f"Drew {format_count(rings.rings, 'ring')}." if rings.rings else f"Removed {rings.removed} rings."
+        )
     return Result("\n".join(lines), data)

@@ -8,6 +8,7 @@ import threading
 
 import bpy
 
+from ..changes import listen
 from ..execute import run_watched
 from .code_guard import CodeGuard
 
@@ -20,6 +21,7 @@ def apply(arguments, report):
     @contextlib.contextmanager
     def guarded():
         with guard, _deadline(arguments["seconds"]):
+            guard.check_operators(arguments["code"])
             yield
 
     return {**run_watched(arguments["code"], around=guarded), "noted": guard.noted}
@@ -28,6 +30,7 @@ def apply(arguments, report):
 def rehearse(arguments, report):
     """The same in a sandbox. ``wrote`` lists files that appeared below ``folders`` meanwhile, whoever wrote them;
     ``stays`` what undo would not take back."""
+    listen()
     before, kept = _files(arguments["folders"]), _stays()
     result = apply(arguments, report)
     after = _files(arguments["folders"])
@@ -41,7 +44,8 @@ def _stays():
     lists = (getattr(bpy.app.handlers, name, None) for name in dir(bpy.app.handlers))
     return {
         "handlers": sum(len(handlers) for handlers in lists if isinstance(handlers, list)),
-        "registered classes": len(bpy.types.Operator.__subclasses__()) + len(bpy.types.Panel.__subclasses__()),
+        "registered classes": len(bpy.types.Operator.__subclasses__())
+        + len(bpy.types.Panel.__subclasses__()),
     }
 
 

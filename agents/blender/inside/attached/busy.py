@@ -26,7 +26,7 @@ _MOST_HANDLERS = 64
 # that: next, prev, idname.
 _TYPE, _OPERATOR, _NAME = 2 * _POINTER, 4 * _POINTER, 2 * _POINTER
 _OF_INTERFACE, _OF_OPERATORS = 2, 3  # others, for dropping files say, are there at all times
-_offset = None
+_known = {"offset": None}  # of the member in its structure; below 0 if it cannot be found
 
 
 def reason(*, but_addons=False):
@@ -55,15 +55,14 @@ def _modal(window):
 
 def _read_modal(window):
     """The same, where Blender tells it to nobody: before 4.2 it is read where Blender itself keeps it."""
-    global _offset
-    if _offset is None:
+    if _known["offset"] is None:
         try:
-            _offset = _offset_of("wmWindow", "modalhandlers")
+            _known["offset"] = _offset_of("wmWindow", "modalhandlers")
         except (OSError, ValueError, RuntimeError, struct.error, IndexError):
-            _offset = -1
-    if _offset < 0:
+            _known["offset"] = -1
+    if _known["offset"] < 0:
         return []
-    names, handler = [], _pointer(window.as_pointer() + _offset)
+    names, handler = [], _pointer(window.as_pointer() + _known["offset"])
     while handler and len(names) < _MOST_HANDLERS:
         kind = ctypes.c_int.from_address(handler + _TYPE).value
         if kind == _OF_OPERATORS and (operator := _pointer(handler + _OPERATOR)):
@@ -152,6 +151,6 @@ def _described(data, start, order):
     for _ in range(count):
         kind, size = struct.unpack_from(order + "2h", data, at)
         pairs = struct.unpack_from(f"{order}{2 * size}h", data, at + 4)
-        structures.append((kind, list(zip(pairs[::2], pairs[1::2]))))
+        structures.append((kind, list(zip(pairs[::2], pairs[1::2], strict=True))))
         at += 4 + 4 * size
     return names, types, lengths, structures

@@ -17,7 +17,7 @@ from bpy.app.handlers import persistent
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from . import announcement, busy
+from . import announcement, busy, marks
 from .listener import Listener
 from .undo_steps import UndoSteps, digest
 from .user_state import main_window
@@ -32,7 +32,7 @@ TOOLS = {
     "scene_state": ("state.readout", "scene_state", LOOK),
     "present": ("api_presence", "present", LOOK),
     "show": ("attached.show", "show", SHOW),
-    "annotate": ("attached.show", "annotate", CHANGE),
+    "mark": ("attached.show", "mark", LOOK),
     "undo": ("", "", CHANGE),
     "tag": ("tag", "tag", CHANGE),
     "group": ("group", "group", CHANGE),
@@ -105,6 +105,7 @@ class CallRunner:
             return
         self.leave(why)
         self._head = None
+        marks.set_marks([])
         for name, handler in self._handlers().items():
             with contextlib.suppress(ValueError):
                 getattr(bpy.app.handlers, name).remove(handler)
@@ -193,7 +194,7 @@ class CallRunner:
     def _perform(self, request, printed):
         entry = TOOLS.get(request.tool)
         if entry is None:
-            raise Refused(f"The SimWorlds extension in Blender has no {request.tool!r}: install it again, in this version.")
+            raise Refused(f"The extension in Blender has no {request.tool!r}: simworlds extension install.")
         kind = entry[2]
         self._check_right(kind, request)
         step = str(request.arguments.pop("step", "") or request.tool)
@@ -220,24 +221,26 @@ class CallRunner:
     def _check_right(self, kind, request):
         rights = self._rights()
         if kind in {CHANGE, CODE} and not rights.change:
-            raise Refused("The user allows SimWorlds only to look, not to change anything (panel SimWorlds in Blender).")
+            raise Refused(
+                "The user allows SimWorlds only to look, not to change anything (panel SimWorlds in Blender)."
+            )
         if kind == CODE and not rights.code:
             raise Refused("The user does not allow SimWorlds to run code (panel SimWorlds in Blender).")
         if kind == CODE and not request.arguments.pop("rehearsed", False) and not rights.unrehearsed:
             raise Refused(
-                "The code was not rehearsed, and the user does not allow code that was not (panel SimWorlds in Blender)."
+                "The code was not rehearsed, and the user allows no other (panel SimWorlds in Blender)."
             )
 
     @staticmethod
     def _check_undo():
         if not bpy.context.preferences.edit.use_global_undo:
             raise Refused(
-                "Global Undo is off, so nothing could be taken back: ask the user to turn it on in Preferences > System."
+                "Global Undo is off, so nothing could be undone: ask the user to turn it on (Preferences > System)."
             )
         active = main_window().view_layer.objects.active
         if active is not None and active.mode != "OBJECT":
             raise Refused(
-                f"The user works in {active.mode} mode on {active.name!r}, where Blender's undo keeps that object alone. "
+                f"The user is in {active.mode} mode on {active.name!r}, where Blender's undo knows that object alone. "
                 "Ask them to go back to Object mode (Tab), and call again."
             )
 
@@ -247,7 +250,11 @@ class CallRunner:
         well = "value" in answer
         seconds = answer["seconds"]
         self._longest = max(self._longest, seconds)
-        text = request.tool if well else f"{request.tool}: {answer.get('refused') or answer.get('failed') or 'failed'}"
+        text = (
+            request.tool
+            if well
+            else f"{request.tool}: {answer.get('refused') or answer.get('failed') or 'failed'}"
+        )
         self.log.appendleft(LogEntry(text, seconds, well=well))
         self._done(request)
         self._redraw()
@@ -273,7 +280,9 @@ class CallRunner:
         def loaded(*_):
             self.undo_steps.forget()
             name = bpy.data.filepath or "a new file"
-            self._tell(f"The user has opened {name}: what you knew of the scene no longer holds. Read its state.")
+            self._tell(
+                f"The user has opened {name}: what you knew of the scene no longer holds. Read its state."
+            )
             self._announce_quietly()
 
         @persistent

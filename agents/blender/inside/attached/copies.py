@@ -16,7 +16,7 @@ _ON_SAVING = ("save_pre", "save_post", "save_post_fail")
 _BYTES_A_SECOND = 150e6  # until a copy of this Blender was measured
 _OF_VERTEX, _OF_EDGE, _OF_LOOP, _OF_FACE = 40, 12, 24, 12
 _LEAST_MEASURED = 20e6
-_speed = None
+_measured = {"speed": _BYTES_A_SECOND}  # of the last large copy
 
 
 def write_copy(arguments, report):
@@ -25,11 +25,10 @@ def write_copy(arguments, report):
     Returns ``bytes``, ``seconds``, ``file`` (the open one's path), ``folders`` of other files that it uses, and
     ``unsaved``: images that were painted and are in no file, which the copy has as they were before.
     """
-    global _speed
     del report
     path, most = arguments["path"], arguments["seconds"]
     size = _estimate()
-    expected = size / (_speed or _BYTES_A_SECOND)
+    expected = size / _measured["speed"]
     if expected > most:
         raise Refused(
             f"The scene is too large to be copied in {most:g} s: about {size / 1e6:.0f} MB, {expected:.0f} s."
@@ -39,8 +38,10 @@ def write_copy(arguments, report):
     dirty = preferences.is_dirty
     try:
         # Neither a thumbnail, which takes as long as writing, nor handlers: nobody saves anything here.
-        with in_window(), without_handlers(_ON_SAVING), temporary_settings(
-            [(preferences.filepaths, "file_preview_type", "NONE")]
+        with (
+            in_window(),
+            without_handlers(_ON_SAVING),
+            temporary_settings([(preferences.filepaths, "file_preview_type", "NONE")]),
         ):
             bpy.ops.wm.save_as_mainfile(
                 filepath=path, copy=True, check_existing=False, relative_remap=True, compress=False
@@ -53,8 +54,11 @@ def write_copy(arguments, report):
     seconds = time.perf_counter() - started
     written = os.path.getsize(path)
     if written > _LEAST_MEASURED:
-        _speed = written / seconds
-    folders = {os.path.dirname(os.path.realpath(place)) for place in bpy.utils.blend_paths(absolute=True, packed=False)}
+        _measured["speed"] = written / seconds
+    folders = {
+        os.path.dirname(os.path.realpath(place))
+        for place in bpy.utils.blend_paths(absolute=True, packed=False)
+    }
     return {
         "bytes": written,
         "seconds": seconds,

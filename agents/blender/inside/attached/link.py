@@ -5,9 +5,11 @@ Both ends know the token and neither sends it: each sends random bytes first, an
 made of both and of the token. What was recorded of one connection is worth nothing on another.
 """
 
+import contextlib
 import hashlib
 import hmac
 import secrets
+import socket
 
 from simworlds.sandbox.inside import channel
 
@@ -62,8 +64,6 @@ class Link:
 
     def close(self):
         """Closes the socket, in any state, from any thread."""
-        try:
-            self._sock.shutdown(2)
-        except OSError:
-            pass
+        with contextlib.suppress(OSError):
+            self._sock.shutdown(socket.SHUT_RDWR)
         self._sock.close()

@@ -60,10 +60,12 @@ class Client:
                 try:
                     self._link.send(message)
                 except (channel.TooLarge, TypeError, ValueError, RecursionError) as error:
-                    self._link.send({
-                        "ticket": message.get("ticket", ""),
-                        "refused": f"The reply cannot be sent: {error}.",
-                    })
+                    self._link.send(
+                        {
+                            "ticket": message.get("ticket", ""),
+                            "refused": f"The reply cannot be sent: {error}.",
+                        }
+                    )
         except OSError:
             pass
         finally:
@@ -78,8 +80,8 @@ class Client:
 
 
 class Listener:
-    """Listens from ``start`` to ``stop``. ``about`` is what clients are told at first, ``several`` whether more than one
-    may be connected; the main thread may replace both at any time."""
+    """Listens until ``stop``. ``about`` is what clients are told at first, ``several`` whether more than one may be
+    connected; the main thread may replace both at any time."""
 
     def __init__(self, token, about):
         self.about = about

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The extension's panel and settings in Blender. Nothing starts by itself unless the user says so."""
 
+# pyright: reportInvalidTypeForm=false - Blender reads the properties of a class from its annotations
+
 import atexit
 
 import bpy
@@ -12,21 +14,28 @@ VERSION = "0.1.0"
 _SHORT = 46
 _START_SECONDS = 1.0
 
-runner = None
+_state = {"runner": None}
+
+
+def _runner():
+    """The runner, while the extension is enabled."""
+    return _state["runner"]
 
 
 def _rights_changed(_preferences, _context):
-    if runner is not None and runner.listener is not None:
-        runner.announce()
+    if _runner() is not None and _runner().listener is not None:
+        _runner().announce()
 
 
-class SIMWORLDS_Preferences(bpy.types.AddonPreferences):
+class SimWorldsPreferences(bpy.types.AddonPreferences):
     """What clients may do."""
 
     bl_idname = ROOT
 
     may_change: bpy.props.BoolProperty(name="Change the scene", default=True, update=_rights_changed)
-    may_run: bpy.props.BoolProperty(name="Run code, rehearsed in a copy", default=True, update=_rights_changed)
+    may_run: bpy.props.BoolProperty(
+        name="Run code, rehearsed in a copy", default=True, update=_rights_changed
+    )
     may_run_unrehearsed: bpy.props.BoolProperty(
         name="Run code that was not rehearsed",
         description="Such code can hang or crash this Blender",
@@ -46,7 +55,7 @@ class SIMWORLDS_Preferences(bpy.types.AddonPreferences):
         _draw_rights(self.layout, self)
 
 
-class SIMWORLDS_OT_start(bpy.types.Operator):
+class StartOperator(bpy.types.Operator):
     """Let SimWorlds on this machine connect to this Blender."""
 
     bl_idname = "simworlds.start"
@@ -55,14 +64,14 @@ class SIMWORLDS_OT_start(bpy.types.Operator):
     def execute(self, _context):
         """Starts to listen."""
         try:
-            runner.start()
+            _runner().start()
         except (OSError, LookupError) as error:
             self.report({"ERROR"}, f"SimWorlds cannot listen: {error}")
             return {"CANCELLED"}
         return {"FINISHED"}
 
 
-class SIMWORLDS_OT_stop(bpy.types.Operator):
+class StopOperator(bpy.types.Operator):
     """End the connection."""
 
     bl_idname = "simworlds.stop"
@@ -70,11 +79,11 @@ class SIMWORLDS_OT_stop(bpy.types.Operator):
 
     def execute(self, _context):
         """Stops listening."""
-        runner.stop()
+        _runner().stop()
         return {"FINISHED"}
 
 
-class SIMWORLDS_OT_undo(bpy.types.Operator):
+class UndoOperator(bpy.types.Operator):
     """Take back SimWorlds' newest step."""
 
     bl_idname = "simworlds.undo"
@@ -83,25 +92,26 @@ class SIMWORLDS_OT_undo(bpy.types.Operator):
     @classmethod
     def poll(cls, _context):
         """Whether there is a step."""
-        return runner is not None and runner.listener is not None and bool(runner.undo_steps.steps)
+        return _runner() is not None and _runner().listener is not None and bool(_runner().undo_steps.steps)
 
     def execute(self, _context):
         """Undoes, once this operator has ended."""
 
         def undo():
             try:
-                runner.undo_steps.undo(1)
+                _runner().undo_steps.undo(1)
             except calls.Refused as error:
-                runner.log.appendleft(calls.LogEntry(str(error), 0.0, well=False))
+                _runner().log.appendleft(calls.LogEntry(str(error), 0.0, well=False))
             _redraw()
 
-        runner.want(undo)
+        _runner().want(undo)
         return {"FINISHED"}
 
 
-class SIMWORLDS_PT_panel(bpy.types.Panel):
+class SimWorldsPanel(bpy.types.Panel):
     """Who is connected, what they may do, and what they did."""
 
+    bl_idname = "SIMWORLDS_PT_panel"
     bl_label = "SimWorlds"
     bl_space_type = "VIEW_3D"
     bl_region_type = "UI"
@@ -110,8 +120,8 @@ class SIMWORLDS_PT_panel(bpy.types.Panel):
     def draw(self, _context):
         """Draws the panel."""
         layout = self.layout
-        listens = runner.listener is not None
-        names = runner.clients
+        listens = _runner().listener is not None
+        names = _runner().clients
         if not listens:
             layout.label(text="Not listening", icon="UNLINKED")
             layout.operator("simworlds.start", icon="PLAY")
@@ -120,12 +130,12 @@ class SIMWORLDS_PT_panel(bpy.types.Panel):
             layout.label(text=text, icon="LINKED" if names else "TIME")
             layout.operator("simworlds.stop", icon="PAUSE")
         _draw_rights(layout, _preferences())
-        if runner.log:
+        if _runner().log:
             box = layout.box()
             row = box.row()
             row.label(text="Last calls")
             row.operator("simworlds.undo", text="Undo", icon="LOOP_BACK")
-            for entry in list(runner.log):
+            for entry in list(_runner().log):
                 text = entry.text if len(entry.text) <= _SHORT else f"{entry.text[:_SHORT]}…"
                 box.label(text=f"{text}  {entry.seconds:.2f} s", icon="CHECKMARK" if entry.well else "CANCEL")
 
@@ -168,33 +178,37 @@ def _redraw():
 
 
 def _start_by_itself():
-    if runner is not None and not bpy.app.background and _preferences().start_by_itself:
-        runner.start()
+    if _runner() is not None and not bpy.app.background and _preferences().start_by_itself:
+        _runner().start()
 
 
 def _at_exit():
-    if runner is not None:
-        runner.leave("The user has closed Blender.")
+    if _runner() is not None:
+        _runner().leave("The user has closed Blender.")
 
 
-_CLASSES = (SIMWORLDS_Preferences, SIMWORLDS_OT_start, SIMWORLDS_OT_stop, SIMWORLDS_OT_undo, SIMWORLDS_PT_panel)
+_CLASSES = (
+    SimWorldsPreferences,
+    StartOperator,
+    StopOperator,
+    UndoOperator,
+    SimWorldsPanel,
+)
 
 
 def register():
     """Called by Blender when the extension is enabled."""
-    global runner
     for kind in _CLASSES:
         bpy.utils.register_class(kind)
-    runner = calls.CallRunner(_rights, VERSION, _redraw)
+    _state["runner"] = calls.CallRunner(_rights, VERSION, _redraw)
     atexit.register(_at_exit)
     bpy.app.timers.register(_start_by_itself, first_interval=_START_SECONDS)
 
 
 def unregister():
     """Called by Blender when the extension is disabled."""
-    global runner
     atexit.unregister(_at_exit)
-    runner.stop("The user has disabled the SimWorlds extension.")
-    runner = None
+    _runner().stop("The user has closed Blender, or disabled the SimWorlds extension.")
+    _state["runner"] = None
     for kind in reversed(_CLASSES):
         bpy.utils.unregister_class(kind)

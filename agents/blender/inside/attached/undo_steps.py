@@ -50,7 +50,9 @@ class UndoSteps:
         them (None: not known). Raises Refused where the user's own work would be undone."""
         self._drop_undone()
         if not self.steps:
-            raise Refused("There is no step of SimWorlds to undo: none was made in this file, or the user has undone them.")
+            raise Refused(
+                "There is no step of SimWorlds to undo: none was made in this file, or the user has undone them."
+            )
         if count > len(self.steps):
             raise Refused(f"Only {len(self.steps)} steps of SimWorlds can be undone, not {count}.")
         taken = self.steps[-count:]

@@ -91,28 +91,33 @@ def digests(arguments=None, report=None):
     del arguments, report
     parts = {"windows": [], "scenes": [], "data": _names()}
     for window in bpy.context.window_manager.windows:
-        parts["windows"].append([
-            window.scene.name,
-            window.view_layer.name,
-            window.workspace.name,
+        parts["windows"].append(
             [
-                (
-                    area.ui_type,
-                    area.x,
-                    area.y,
-                    area.width,
-                    area.height,
-                    _view(area) if area.type == "VIEW_3D" else None,
-                )
-                for area in window.screen.areas
-            ],
-        ])
+                window.scene.name,
+                window.view_layer.name,
+                window.workspace.name,
+                [
+                    (
+                        area.ui_type,
+                        area.x,
+                        area.y,
+                        area.width,
+                        area.height,
+                        _view(area) if area.type == "VIEW_3D" else None,
+                    )
+                    for area in window.screen.areas
+                ],
+            ]
+        )
     for scene in bpy.data.scenes:
         layers = [
             [
                 layer.name,
                 layer.objects.active.name if layer.objects.active else None,
-                [(obj.name, obj.select_get(view_layer=layer), obj.mode, obj.hide_viewport) for obj in layer.objects],
+                [
+                    (obj.name, obj.select_get(view_layer=layer), obj.mode, obj.hide_viewport)
+                    for obj in layer.objects
+                ],
             ]
             for layer in scene.view_layers
         ]
@@ -120,17 +125,22 @@ def digests(arguments=None, report=None):
         settings += [_settings(scene.render.image_settings)]
         settings += [_settings(own) for name in ("eevee", "cycles") if (own := getattr(scene, name, None))]
         camera = scene.camera.name if scene.camera else None
-        parts["scenes"].append([
-            scene.name,
-            scene.frame_current,
-            scene.frame_subframe,
-            camera,
-            list(scene.cursor.location),
-            layers,
-            settings,
-        ])
+        parts["scenes"].append(
+            [
+                scene.name,
+                scene.frame_current,
+                scene.frame_subframe,
+                camera,
+                list(scene.cursor.location),
+                layers,
+                settings,
+            ]
+        )
     parts["dirty"] = [bpy.data.is_dirty, bpy.data.filepath]
-    return {name: hashlib.sha256(repr(part).encode("utf-8", "replace")).hexdigest()[:16] for name, part in parts.items()}
+    return {
+        name: hashlib.sha256(repr(part).encode("utf-8", "replace")).hexdigest()[:16]
+        for name, part in parts.items()
+    }
 
 
 def _settings(owner):

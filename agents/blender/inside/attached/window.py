@@ -13,13 +13,15 @@ from .user_state import main_window, state
 def user_state(arguments, report):
     """What the user has before them, and files that are missing, linked libraries and unused data-blocks."""
     del arguments, report
-    missing = [path for path in bpy.utils.blend_paths(absolute=True, packed=False) if not os.path.exists(path)]
+    missing = [
+        path for path in bpy.utils.blend_paths(absolute=True, packed=False) if not os.path.exists(path)
+    ]
     unused = [
         f"{prop.identifier}: {block.name}"
         for prop in bpy.data.bl_rna.properties
         if prop.type == "COLLECTION" and prop.identifier in _UNUSED
         for block in getattr(bpy.data, prop.identifier)
-        if block.users == 0
+        if block.users == 0 and getattr(block, "type", "") not in {"RENDER_RESULT", "COMPOSITING"}
     ]
     return {
         **state(),
@@ -30,7 +32,18 @@ def user_state(arguments, report):
 
 
 _UNUSED = frozenset(
-    ("objects", "meshes", "materials", "images", "node_groups", "actions", "collections", "curves", "textures", "lights")
+    (
+        "objects",
+        "meshes",
+        "materials",
+        "images",
+        "node_groups",
+        "actions",
+        "collections",
+        "curves",
+        "textures",
+        "lights",
+    )
 )
 
 
@@ -47,7 +60,9 @@ def screenshot(arguments, report):
             types = ", ".join(sorted({area.ui_type for area in window.screen.areas}))
             raise Refused(f"The window has no editor {editor!r}. It has: {types}.")
         area = max(areas, key=lambda area: area.width * area.height)
-        with bpy.context.temp_override(window=window, screen=window.screen, area=area, region=area.regions[-1]):
+        with bpy.context.temp_override(
+            window=window, screen=window.screen, area=area, region=area.regions[-1]
+        ):
             bpy.ops.screen.screenshot_area(filepath=path, check_existing=False)
     if not os.path.isfile(path):
         raise Refused("Blender made no picture of its window.")
