@@ -7,7 +7,7 @@ import secrets
 import socket
 import threading
 import time
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field, ValidationError
 
@@ -36,6 +36,7 @@ _LOG = logging.getLogger(__name__)
 _GRACE_SECONDS = 10.0  # after a call's deadline: what Blender itself does cannot be interrupted
 _CHECK_SECONDS = 0.05
 _SEND_SECONDS = 20.0
+_LEAVING_SECONDS = 2.0
 _COPY_SECONDS = 5.0
 _LONGEST_NOTE = 4000
 
@@ -44,7 +45,23 @@ class _OpenAnswer(AnswerMessage):
     """An answer of the open Blender: also what was printed, and what the user did since the last one."""
 
     stdout: Text = ""
+    kind: Literal["", "busy", "large"] = ""
     events: list[Text] = Field(default_factory=list[Text], max_length=20)
+
+
+class Busy(Refusal):
+    """The user is in the middle of something."""
+
+
+class TooLarge(Refusal):
+    """The scene is too large to be copied in time."""
+
+
+_REFUSALS: dict[str, type[Refusal]] = {"": Refusal, "busy": Busy, "large": TooLarge}
+
+
+class _Occupied(Refusal):
+    """Another client is connected."""
 
 
 class AttachedBlender:
@@ -101,7 +118,7 @@ class AttachedBlender:
         if answer.missing is not None:
             raise MissingModule(answer.missing)
         if answer.refused is not None:
-            raise Refusal(answer.refused)
+            raise _REFUSALS[answer.kind](answer.refused)
         if answer.failed is not None:
             raise ToolBroke(answer.failed, answer.traceback)
         try:
@@ -167,10 +184,21 @@ class AttachedBlender:
             raise Refusal(fault)
         if self._link is None:
             blender = choose(self._wanted)
-            self._link = self._met(blender)
+            self._link = self._admitted(blender)
             self._tell(f"Attached to {self._about}")
             self._add_note(f"Attached to the user's open {self._about}.")
         return self._link
+
+    def _admitted(self, blender: OpenBlender) -> Any:
+        """A connection, once a client that is just leaving has left. Raises Refusal."""
+        deadline = time.monotonic() + _LEAVING_SECONDS
+        while True:
+            try:
+                return self._met(blender)
+            except _Occupied:
+                if time.monotonic() > deadline:
+                    raise
+                time.sleep(_CHECK_SECONDS)
 
     def _met(self, blender: OpenBlender) -> Any:
         """A connection to it. Raises Refusal."""
@@ -190,7 +218,7 @@ class AttachedBlender:
             ) from error
         if "refused" in first:
             end.close()
-            raise Refusal(
+            raise _Occupied(
                 f"{first['refused']} Ask the user to disconnect it, or to allow several clients in the panel SimWorlds."
             )
         try:

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
+from agents.blender.attached.attached_blender import TooLarge
 from agents.blender.preflight import PreFlight, check_before_running
 from agents.blender.tools import execute
 from agents.blender.tools.base import BlenderTool, Call, Result
@@ -84,7 +85,7 @@ def _rehearse(
     """Runs the code in a copy. Raises Refusal where that cannot be, and must be."""
     try:
         twin = context.twin.refreshed(context.open, call.cancelled)
-    except Refusal as error:
+    except TooLarge as error:
         if not context.open.about.may.unrehearsed:
             raise Refusal(
                 f"{error} So the code cannot be rehearsed, and the user does not allow code that was not (panel "
@@ -140,7 +141,7 @@ def _apply(
         timeout=arguments.timeout,
         what=f"the code {title!r}",
         changes=True,
-        after=title.lstrip("# "),
+        after=_step_of(arguments.code),
         progress=call.progress,
         cancelled=call.cancelled,
     )
@@ -162,6 +163,12 @@ def _apply(
             data["scene"] = "What the code had done was undone."
     text = "\n\n".join([describe(data, reply, checked), *notes])
     return Result(text, data, failed=applied.error is not None)
+
+
+def _step_of(code: str) -> str:
+    """What the undo step is called: the first line, which may be a comment."""
+    lines = [line.strip() for line in code.splitlines() if line.strip()]
+    return lines[0].lstrip("# ") if lines else "nothing"
 
 
 def _reply_data(context: AttachedContext, outcome: _Applied, reply: WorkerReply[Any]) -> dict[str, Any]:

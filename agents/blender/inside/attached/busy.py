@@ -3,11 +3,11 @@
 
 import contextlib
 import ctypes
-import os
 import struct
-import tempfile
 
 import bpy
+
+from . import structures
 
 _JOBS = {
     "RENDER": "renders",
@@ -26,7 +26,6 @@ _MOST_HANDLERS = 64
 # that: next, prev, idname.
 _TYPE, _OPERATOR, _NAME = 2 * _POINTER, 4 * _POINTER, 2 * _POINTER
 _OF_INTERFACE, _OF_OPERATORS = 2, 3  # others, for dropping files say, are there at all times
-_known = {"offset": None}  # of the member in its structure; below 0 if it cannot be found
 
 
 def reason(*, but_addons=False):
@@ -55,14 +54,10 @@ def _modal(window):
 
 def _read_modal(window):
     """The same, where Blender tells it to nobody: before 4.2 it is read where Blender itself keeps it."""
-    if _known["offset"] is None:
-        try:
-            _known["offset"] = _offset_of("wmWindow", "modalhandlers")
-        except (OSError, ValueError, RuntimeError, struct.error, IndexError):
-            _known["offset"] = -1
-    if _known["offset"] < 0:
+    offset = structures.offset_of("wmWindow", "modalhandlers")
+    if offset is None:
         return []
-    names, handler = [], _pointer(window.as_pointer() + _known["offset"])
+    names, handler = [], _pointer(window.as_pointer() + offset)
     while handler and len(names) < _MOST_HANDLERS:
         kind = ctypes.c_int.from_address(handler + _TYPE).value
         if kind == _OF_OPERATORS and (operator := _pointer(handler + _OPERATOR)):
@@ -89,68 +84,3 @@ def _title(name):
 def _of_addon(name):
     kind = getattr(bpy.types, name, None)
     return kind is not None and not str(getattr(kind, "__module__", "")).startswith(("bpy", "bl_"))
-
-
-# Where a member stands in a structure: every .blend carries the description of the structures of its Blender.
-
-
-def _offset_of(structure, member):
-    """The offset of a member, for this Blender. Raises ValueError if there is none, OSError, RuntimeError."""
-    with tempfile.TemporaryDirectory() as folder:
-        path = os.path.join(folder, "structures.blend")
-        bpy.data.libraries.write(path, set(), compress=False)
-        with open(path, "rb") as file:
-            data = file.read()
-    if data[:7] != b"BLENDER" or data[7:8] != b"-":
-        raise ValueError("it is not a .blend of 64 bits")
-    order, at = "<" if data[8:9] == b"v" else ">", 12
-    while data[at : at + 4] != b"DNA1":
-        at += 24 + struct.unpack_from(order + "i", data, at + 4)[0]
-    names, types, lengths, structures = _described(data, at + 24, order)
-    for kind, members in structures:
-        if types[kind] != structure:
-            continue
-        offset = 0
-        for of_type, of_name in members:
-            name = names[of_name]
-            if name == member:
-                return offset
-            size = _POINTER if name.startswith(("*", "(")) else lengths[of_type]
-            for part in name.split("[")[1:]:
-                size *= int(part.rstrip("]"))
-            offset += size
-    raise ValueError(f"{structure} has no {member}")
-
-
-def _described(data, start, order):
-    """(names, types, their lengths, [(type, [(type, name), …]), …]) of the block at ``start``."""
-    at = start + 4  # SDNA
-
-    def strings(tag):
-        nonlocal at
-        at += -(at - start) % 4
-        if data[at : at + 4] != tag:
-            raise ValueError(f"{tag} is missing")
-        (count,) = struct.unpack_from(order + "i", data, at + 4)
-        at += 8
-        found = []
-        for _ in range(count):
-            end = data.index(b"\0", at)
-            found.append(data[at:end].decode("ascii"))
-            at = end + 1
-        return found
-
-    names, types = strings(b"NAME"), strings(b"TYPE")
-    at += -(at - start) % 4 + 4
-    lengths = struct.unpack_from(f"{order}{len(types)}h", data, at)
-    at += 2 * len(types)
-    at += -(at - start) % 4 + 4
-    (count,) = struct.unpack_from(order + "i", data, at)
-    at += 4
-    structures = []
-    for _ in range(count):
-        kind, size = struct.unpack_from(order + "2h", data, at)
-        pairs = struct.unpack_from(f"{order}{2 * size}h", data, at + 4)
-        structures.append((kind, list(zip(pairs[::2], pairs[1::2], strict=True))))
-        at += 4 + 4 * size
-    return names, types, lengths, structures

@@ -17,7 +17,7 @@ from bpy.app.handlers import persistent
 
 from simworlds.sandbox.inside.refusal import Refused
 
-from . import announcement, busy, marks
+from . import announcement, busy, copies, marks
 from .listener import Listener
 from .undo_steps import UndoSteps, digest
 from .user_state import main_window
@@ -154,6 +154,7 @@ class CallRunner:
         return _QUICK if now < self._lively or self._head is not None else _SLOW
 
     def _step(self):
+        copies.keep_unsaved()
         while self._wanted:
             self._wanted.popleft()()
         if self._head is None:
@@ -169,7 +170,10 @@ class CallRunner:
         doing = busy.reason(but_addons=self._rights().ignore_addons)
         if doing:
             if now - request.arrived > _PATIENCE_SECONDS:
-                self._answer(request, {"refused": f"The user is busy in Blender: {doing}.", "seconds": 0.0})
+                self._answer(
+                    request,
+                    {"refused": f"The user is busy in Blender: {doing}.", "kind": "busy", "seconds": 0.0},
+                )
             return
         self._run(request)
 
@@ -178,6 +182,8 @@ class CallRunner:
         printed = io.StringIO()
         try:
             answer = {"value": self._perform(request, printed)}
+        except copies.TooLarge as error:
+            answer = {"refused": str(error)[:_LONGEST], "kind": "large"}
         except Refused as error:
             answer = {"refused": str(error)[:_LONGEST]}
         except ModuleNotFoundError as error:

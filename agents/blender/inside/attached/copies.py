@@ -2,6 +2,7 @@
 """Writes a copy of the open file; the file that the user has open, and its place, stay what they are."""
 
 import contextlib
+import ctypes
 import os
 import time
 
@@ -10,6 +11,7 @@ import bpy
 from simworlds.sandbox.inside.refusal import Refused
 
 from ..blend.temporary import temporary_settings, without_handlers
+from . import structures
 from .user_state import in_window
 
 _ON_SAVING = ("save_pre", "save_post", "save_post_fail")
@@ -17,6 +19,33 @@ _BYTES_A_SECOND = 150e6  # until a copy of this Blender was measured
 _OF_VERTEX, _OF_EDGE, _OF_LOOP, _OF_FACE = 40, 12, 24, 12
 _LEAST_MEASURED = 20e6
 _measured = {"speed": _BYTES_A_SECOND}  # of the last large copy
+
+
+_unsaved = {
+    "changes": False
+}  # whether a copy was written of a file with changes, until Blender knows of them again
+
+
+class TooLarge(Refused):
+    """It would take too long to copy the scene."""
+
+
+def keep_unsaved():
+    """Has Blender know again that the file has changes: soon after a copy was written, it takes them for saved.
+
+    To be called before anything else is done.
+    """
+    if not _unsaved["changes"]:
+        return
+    _unsaved["changes"] = False
+    if bpy.data.is_dirty:
+        return
+    offset = structures.offset_of("wmWindowManager", "file_saved")
+    if offset is not None:
+        ctypes.c_short.from_address(bpy.context.window_manager.as_pointer() + offset).value = 0
+    if not bpy.data.is_dirty:
+        with in_window():
+            bpy.ops.ed.undo_push(message="SimWorlds: looked")
 
 
 def write_copy(arguments, report):
@@ -30,9 +59,10 @@ def write_copy(arguments, report):
     size = _estimate()
     expected = size / _measured["speed"]
     if expected > most:
-        raise Refused(
+        raise TooLarge(
             f"The scene is too large to be copied in {most:g} s: about {size / 1e6:.0f} MB, {expected:.0f} s."
         )
+    _unsaved["changes"] = _unsaved["changes"] or bpy.data.is_dirty
     started = time.perf_counter()
     preferences = bpy.context.preferences
     dirty = preferences.is_dirty
