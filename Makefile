@@ -47,7 +47,7 @@ test: $(STAMP) ## Run the tests, a file at a time on each core [PYTEST_ARGS=]
 	@$(PY) -m pytest --numprocesses=$(TEST_PROCESSES) --dist=loadfile --no-loadscope-reorder $(PYTEST_ARGS)
 
 test-fast: $(STAMP) ## Run the tests that need no Blender, in under a minute [PYTEST_ARGS=]
-	@$(PY) -m pytest --numprocesses=2 --dist=loadfile -m "not blender and not corpora and not slow" $(PYTEST_ARGS)
+	@$(PY) -m pytest --numprocesses=2 --dist=loadfile -m "not blender and not corpora and not slow and not window" $(PYTEST_ARGS)
 
 serve: $(STAMP) ## Serve blender_docs and blender_check over MCP on stdio [SERVE_ARGS=]
 	@.venv/bin/simworlds serve $(SERVE_ARGS)

@@ -6,6 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from agents.blender import plan_check
+from agents.blender.attached.tool_catalogue import TOOLS as ATTACHED_TOOLS
 from agents.blender.team import PROMPTS
 from agents.blender.tool_catalogue import TOOLS
 from agents.plan.scene import ScenePlan
@@ -18,6 +19,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from mcp_types import PromptArgument, Tool
+
+    from agents.blender.tools.base import BlenderTool
 
 
 def docs_tool_page() -> str:
@@ -79,9 +82,10 @@ def blender_tools_page() -> str:
         "`simworlds mcp` serves these, and `blender_docs` and `blender_check` ([tools.md](tools.md)) beside them.",
     ]
     for entry in TOOLS:
-        kind = "reads only" if entry.read_only else "changes the scene or writes files"
-        parts += [f"## `{entry.name}`", entry.description, f"It {kind}."]
-        parts.append(schema_table(entry.arguments.model_json_schema()))
+        parts += _blender_tool(entry)
+    own = {entry.name for entry in TOOLS}
+    shared = [entry.name for entry in ATTACHED_TOOLS if entry.name in own and entry.name != "blender_execute"]
+    attached = [part for tool in ATTACHED_TOOLS if tool.name not in shared for part in _blender_tool(tool)]
     return page(
         *parts,
         f"## `{plan_check.NAME}`",
@@ -89,6 +93,10 @@ def blender_tools_page() -> str:
         "It reads only, and needs no Blender. Its one argument, `plan`, is JSON of this shape (`name?` may be left "
         "out; its default stands behind `=`, or is null):",
         f"```\n{shape_of(ScenePlan)}\n```",
+        "# In the Blender that is open",
+        "`simworlds mcp --attach` serves these instead ([live-blender.md](live-blender.md)): as above "
+        f"{', '.join(f'`{name}`' for name in shared)}, `blender_docs` and `blender_check`; and",
+        *attached,
         "# The prompts",
         "Clients offer these to their users, as commands or in a menu. With them a model acts as the team that "
         "`simworlds make` has: it plans, builds stage by stage, verifies, reviews and renders.",
@@ -97,6 +105,12 @@ def blender_tools_page() -> str:
             for prompt in PROMPTS
         ),
     )
+
+
+def _blender_tool(entry: BlenderTool) -> list[str]:
+    kind = "reads only" if entry.read_only else "changes the scene or writes files"
+    table_of = schema_table(entry.arguments.model_json_schema())
+    return [f"## `{entry.name}`", entry.description, f"It {kind}.", table_of]
 
 
 def _arguments(arguments: Iterable[PromptArgument]) -> str:

@@ -88,7 +88,7 @@ def run(context: AttachedContext, arguments: ViewArguments, call: Call) -> Resul
     editor = None if arguments.picture == "window" else arguments.picture
     context.open.call(
         "screenshot",
-        {"path": str(twin.folder.workspace.mount / name), "editor": editor},
+        {"path": twin.folder.workspace.for_blender(name), "editor": editor},
         mapping,
         timeout=_SECONDS,
         cancelled=call.cancelled,
