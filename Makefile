@@ -28,7 +28,7 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures lock clean
+.PHONY: help setup kb test test-fast serve bench bench-validate lint docs docs-check rule-pictures window-figures lock clean
 
 help: ## List the targets
 	@awk -F ':.*## ' '/^[a-z-]+:.*## /{printf "  make %-15s %s\n", $$1, $$2}' $(MAKEFILE_LIST)
@@ -69,6 +69,9 @@ docs: $(STAMP) ## Write the generated references
 
 rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 	@$(PY) tests/agents/protocol/rule_pictures.py $(RULES)
+
+window-figures: $(STAMP) ## Measure SimWorlds in an open Blender, and draw its picture
+	@$(PY) tests/agents/blender/attached/window_figures.py docs/open-blender.png
 
 docs-check: $(STAMP) ## Check that the generated references are up to date
 	@$(PY) -m docs.generate --check

@@ -38,6 +38,16 @@ TOOLS = {
     "group": ("group", "group", CHANGE),
     "apply": ("attached.apply", "apply", CODE),
 }
+_IN_WORDS = {
+    "user_state": "read what is selected",
+    "screenshot": "looked at the window",
+    "write_copy": "copied the scene",
+    "scene_state": "read the scene",
+    "present": "looked names up",
+    "undo": "undid steps",
+    "mark": "marked objects",
+}
+_LONGEST_STEP = 100
 _WORKER = __package__.rpartition(".")[0]
 _PATIENCE_SECONDS = 1.5  # in which what the user does may end before a call is refused
 _QUICK, _SLOW = 0.01, 0.1  # seconds between two looks into the queue
@@ -73,7 +83,6 @@ class CallRunner:
         self._rights, self._version, self._redraw = rights, version, redraw
         self._head = None
         self._lively = 0.0
-        self._longest = 0.0
         self._wanted = deque()
 
     # Main thread
@@ -203,7 +212,7 @@ class CallRunner:
             raise Refused(f"The extension in Blender has no {request.tool!r}: simworlds extension install.")
         kind = entry[2]
         self._check_right(kind, request)
-        step = str(request.arguments.pop("step", "") or request.tool)
+        step = request.step = str(request.arguments.pop("step", ""))[:_LONGEST_STEP]
         if request.tool == "undo":
             return self.undo_steps.undo(int(request.arguments["count"]))
 
@@ -222,7 +231,7 @@ class CallRunner:
                 return function(request.arguments, report)
         finally:
             if before is None or digest() != before or kind == SHOW:
-                self.undo_steps.keep(step, before)
+                self.undo_steps.keep(step or request.tool, before)
 
     def _check_right(self, kind, request):
         rights = self._rights()
@@ -254,14 +263,10 @@ class CallRunner:
         events, request.client.events = request.client.events[:20], []
         request.reply(**answer, left=[], events=events)
         well = "value" in answer
-        seconds = answer["seconds"]
-        self._longest = max(self._longest, seconds)
-        text = (
-            request.tool
-            if well
-            else f"{request.tool}: {answer.get('refused') or answer.get('failed') or 'failed'}"
-        )
-        self.log.appendleft(LogEntry(text, seconds, well=well))
+        text = request.step or _IN_WORDS.get(request.tool, request.tool)
+        if not well:
+            text += f": {answer.get('refused') or answer.get('failed') or 'failed'}"
+        self.log.appendleft(LogEntry(text, answer["seconds"], well=well))
         self._done(request)
         self._redraw()
 

@@ -33,6 +33,7 @@ class Request:
         self.deadline = time.monotonic() + self.seconds
         self.arrived = time.monotonic()
         self.withdrawn = False
+        self.step = ""  # what the call does to the scene, in words
 
     def reply(self, **answer):
         """Sends the answer, from any thread; it never waits."""

@@ -34,18 +34,21 @@ class SimWorldsPreferences(bpy.types.AddonPreferences):
 
     may_change: bpy.props.BoolProperty(name="Change the scene", default=True, update=_rights_changed)
     may_run: bpy.props.BoolProperty(
-        name="Run code, rehearsed in a copy", default=True, update=_rights_changed
+        name="Run rehearsed code",
+        description="Code that ran in a copy of the scene before",
+        default=True,
+        update=_rights_changed,
     )
     may_run_unrehearsed: bpy.props.BoolProperty(
-        name="Run code that was not rehearsed",
+        name="Run other code",
         description="Such code can hang or crash this Blender",
         default=False,
         update=_rights_changed,
     )
-    several: bpy.props.BoolProperty(name="Several clients at once", default=False, update=_rights_changed)
+    several: bpy.props.BoolProperty(name="Several clients", default=False, update=_rights_changed)
     ignore_addons: bpy.props.BoolProperty(
-        name="Work beside add-ons' modal operators",
-        description="For add-ons that run as long as Blender does, such as those that show pressed keys",
+        name="Despite add-ons' tools",
+        description="Work while a modal operator of an add-on runs, for add-ons that run as long as Blender does",
         default=False,
     )
     start_by_itself: bpy.props.BoolProperty(name="Start with Blender", default=False)
@@ -126,7 +129,7 @@ class SimWorldsPanel(bpy.types.Panel):
             layout.label(text="Not listening", icon="UNLINKED")
             layout.operator("simworlds.start", icon="PLAY")
         else:
-            text = f"Connected: {', '.join(names)}" if names else "Waiting: simworlds mcp --attach"
+            text = f"Connected: {', '.join(names)}" if names else "Waiting for a client"
             layout.label(text=text, icon="LINKED" if names else "TIME")
             layout.operator("simworlds.stop", icon="PAUSE")
         _draw_rights(layout, _preferences())
@@ -141,8 +144,8 @@ class SimWorldsPanel(bpy.types.Panel):
 
 
 def _draw_rights(layout, preferences):
-    column = layout.column(heading="May")
-    column.label(text="Look, and show you things", icon="HIDE_OFF")
+    column = layout.column()
+    column.label(text="Clients may look, and", icon="HIDE_OFF")
     column.prop(preferences, "may_change")
     row = column.row()
     row.enabled = preferences.may_change
