@@ -13,7 +13,7 @@ from agents.blender.tools import execute
 from agents.blender.tools.base import BlenderTool, Call, Result
 from agents.blender.tools.execute import ExecuteArguments, Outcome, describe, title_of
 from simworlds.sandbox.errors import Lost, Refusal
-from simworlds.sandbox.replies import Text, mapping
+from simworlds.sandbox.replies import Text  # noqa: TC001 - annotates fields of models
 
 if TYPE_CHECKING:
     from agents.blender.attached.tools.base import AttachedContext
@@ -82,15 +82,10 @@ def run(context: AttachedContext, arguments: RehearsedArguments, call: Call) -> 
 def _rehearse(
     context: AttachedContext, arguments: RehearsedArguments, checked: PreFlight, call: Call
 ) -> _Rehearsal:
-    """Runs the code in a copy. Raises Refusal where that cannot be, and must be."""
+    """Runs the code in a copy, unless the scene is too large for one: then the user's panel decides."""
     try:
         twin = context.twin.refreshed(context.open, call.cancelled)
     except TooLarge as error:
-        if not context.open.about.may.unrehearsed:
-            raise Refusal(
-                f"{error} So the code cannot be rehearsed, and the user does not allow code that was not (panel "
-                "SimWorlds in Blender): ask them, or use the other tools."
-            ) from error
         return _Rehearsal(notes=(f"Not rehearsed: {error}",))
     folders = [place.for_blender() for place in twin.launch.folders]
     try:
@@ -133,18 +128,10 @@ def _apply(
     rehearsal: _Rehearsal,
     call: Call,
 ) -> Result:
-    title = title_of(arguments.code)
-    reply = context.open.call(
-        "apply",
-        {"code": arguments.code, "seconds": arguments.timeout, "rehearsed": rehearsal.changed is not None},
-        _Applied.model_validate,
-        timeout=arguments.timeout,
-        what=f"the code {title!r}",
-        changes=True,
-        after=_step_of(arguments.code),
-        progress=call.progress,
-        cancelled=call.cancelled,
-    )
+    try:
+        reply = _called(context, arguments, rehearsal, call)
+    except Refusal as error:
+        raise Refusal(" ".join([*rehearsal.notes, str(error)])) from error
     applied = reply.value
     data = _reply_data(context, applied, reply)
     if checked.warnings:
@@ -159,10 +146,30 @@ def _apply(
     if applied.error is not None:
         data["scene"] = "The scene is as the code left it. To undo it: blender_undo()."
         if arguments.on_error == "restore":
-            context.open.call("undo", {"count": 1}, mapping, timeout=60.0, what="undoing")
             data["scene"] = "What the code had done was undone."
     text = "\n\n".join([describe(data, reply, checked), *notes])
     return Result(text, data, failed=applied.error is not None)
+
+
+def _called(
+    context: AttachedContext, arguments: RehearsedArguments, rehearsal: _Rehearsal, call: Call
+) -> WorkerReply[_Applied]:
+    return context.open.call(
+        "apply",
+        {
+            "code": arguments.code,
+            "seconds": arguments.timeout,
+            "rehearsed": rehearsal.changed is not None,
+            "restores": arguments.on_error == "restore",
+        },
+        _Applied.model_validate,
+        timeout=arguments.timeout,
+        what=f"the code {title_of(arguments.code)!r}",
+        changes=True,
+        after=_step_of(arguments.code),
+        progress=call.progress,
+        cancelled=call.cancelled,
+    )
 
 
 def _step_of(code: str) -> str:

@@ -22,9 +22,8 @@ _JOBS = {
 }
 _POINTER = struct.calcsize("P")
 _MOST_HANDLERS = 64
-# Of Blender's own structure for handlers: next, prev, type, flag, poll; of an operator's, then the operator, and of
-# that: next, prev, idname.
-_TYPE, _OPERATOR, _NAME = 2 * _POINTER, 4 * _POINTER, 2 * _POINTER
+# Of Blender's own structure for handlers, which no file describes: next, prev, type, flag, poll; then the operator.
+_PREVIOUS, _TYPE, _OPERATOR = _POINTER, 2 * _POINTER, 4 * _POINTER
 _OF_INTERFACE, _OF_OPERATORS = 2, 3  # others, for dropping files say, are there at all times
 
 
@@ -55,17 +54,20 @@ def _modal(window):
 def _read_modal(window):
     """The same, where Blender tells it to nobody: before 4.2 it is read where Blender itself keeps it."""
     offset = structures.offset_of("wmWindow", "modalhandlers")
-    if offset is None:
+    name = structures.offset_of("wmOperator", "idname")
+    if offset is None or name is None:
         return []
-    names, handler = [], _pointer(window.as_pointer() + offset)
-    while handler and len(names) < _MOST_HANDLERS:
+    found, before, handler = [], 0, _pointer(window.as_pointer() + offset)
+    while handler and len(found) < _MOST_HANDLERS:
+        if _pointer(handler + _PREVIOUS) != before:
+            return []  # it is no list of handlers, so nothing in it is what it seems
         kind = ctypes.c_int.from_address(handler + _TYPE).value
         if kind == _OF_OPERATORS and (operator := _pointer(handler + _OPERATOR)):
-            names.append(ctypes.string_at(operator + _NAME, 64).split(b"\0")[0].decode("ascii", "replace"))
+            found.append(ctypes.string_at(operator + name, 64).split(b"\0")[0].decode("ascii", "replace"))
         elif kind == _OF_INTERFACE:
-            names.append("")
-        handler = _pointer(handler)
-    return names
+            found.append("")
+        before, handler = handler, _pointer(handler)
+    return found
 
 
 def _pointer(address):

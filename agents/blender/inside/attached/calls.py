@@ -223,15 +223,22 @@ class CallRunner:
         if kind == LOOK:
             return function(request.arguments, report)
         self._check_undo()
-        before = digest()
+        restores = bool(request.arguments.pop("restores", False))
+        before, changed = digest(), False
         try:
-            if kind != CODE:
-                return function(request.arguments, report)
-            with contextlib.redirect_stdout(_Both(sys.stdout, printed)):
-                return function(request.arguments, report)
+            with (
+                contextlib.redirect_stdout(_Both(sys.stdout, printed))
+                if kind == CODE
+                else contextlib.nullcontext()
+            ):
+                value = function(request.arguments, report)
         finally:
-            if before is None or digest() != before or kind == SHOW:
+            changed = before is None or digest() != before
+            if changed or kind == SHOW:
                 self.undo_steps.keep(step or request.tool, before)
+        if restores and changed and value.get("error"):
+            self.undo_steps.undo(1)
+        return value
 
     def _check_right(self, kind, request):
         rights = self._rights()
@@ -290,6 +297,7 @@ class CallRunner:
         @persistent
         def loaded(*_):
             self.undo_steps.forget()
+            copies.forget_unsaved()
             name = bpy.data.filepath or "a new file"
             self._tell(
                 f"The user has opened {name}: what you knew of the scene no longer holds. Read its state."
@@ -298,6 +306,7 @@ class CallRunner:
 
         @persistent
         def saved(*_):
+            copies.forget_unsaved()
             self._tell(f"The user has saved the file as {bpy.data.filepath}.")
             self._announce_quietly()
 

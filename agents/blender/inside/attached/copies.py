@@ -48,6 +48,11 @@ def keep_unsaved():
             bpy.ops.ed.undo_push(message="SimWorlds: looked")
 
 
+def forget_unsaved():
+    """The user has saved, or opened another file."""
+    _unsaved["changes"] = False
+
+
 def write_copy(arguments, report):
     """Writes a copy to ``path`` if that takes at most ``seconds``, by an estimate. Raises Refused.
 

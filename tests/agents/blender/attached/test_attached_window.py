@@ -168,6 +168,23 @@ def test_a_wrong_token_gets_no_answer(direct: Callable[[], AttachedBlender]) -> 
         direct()._met(replace(blender, token="0" * 64))
 
 
+@pytest.mark.parametrize("change", ["bpy.data.objects['Cube'].location.y = 4", "pass"])
+def test_code_that_fails_is_undone_if_wanted(direct: Callable[[], AttachedBlender], change: str) -> None:
+    blender = direct()
+    first = {
+        "code": "bpy.data.objects['Cube'].location.z = 4",
+        "seconds": 30,
+        "rehearsed": True,
+        "step": "kept",
+    }
+    blender.call("apply", first, unread, timeout=30)
+    second = {"code": f"{change}\n1/0", "seconds": 30, "rehearsed": True, "step": "undone", "restores": True}
+    failed = blender.call("apply", second, dict, timeout=30).value
+    assert failed["error"]["type"] == "ZeroDivisionError"
+    undone = blender.call("undo", {"count": 1}, dict, timeout=60).value
+    assert undone == {"undone": ["SimWorlds: kept"], "matches": True, "left": 0}
+
+
 def test_code_that_runs_on_is_ended_at_its_deadline(direct: Callable[[], AttachedBlender]) -> None:
     arguments = {"code": "while True: pass", "seconds": 0.5, "rehearsed": True}
     ended = direct().call("apply", arguments, dict, timeout=30).value
@@ -281,6 +298,18 @@ async def test_waits_until_the_user_has_finished_what_they_drag(client: Client, 
     assert await digests(client) == before
 
 
+async def test_a_scene_that_is_too_large_to_copy_is_told(client: Client, window: OpenWindow) -> None:
+    """Here a slow disk: Blender is told that it writes a byte a second."""
+    name = "simworlds_live.worker.attached.copies"
+    window.choose(f"import sys; sys.modules[{name!r}]._measured['speed'] = 1.0")
+    for tool, arguments in (("blender_execute", {"code": "1+1"}), ("blender_scene_layout_preview", {})):
+        refused = await use(client, tool, **arguments)
+        assert refused.is_error
+        assert "The scene is too large to be copied in 5 s" in text(refused)
+    window.choose(f"import sys; sys.modules[{name!r}]._measured['speed'] = 1e9")
+    assert not (await use(client, "blender_execute", code="1+1")).is_error
+
+
 async def test_never_undoes_the_users_own_work(client: Client, window: OpenWindow) -> None:
     await build(client, "Theirs", 2)
     window.act("mousemove", "500", "380", "key", "a")
@@ -325,3 +354,11 @@ async def test_a_crash_is_told_and_the_next_window_is_attached_to(client: Client
     again = await use(client, "blender_scene_state")
     assert not again.is_error
     assert "Attached to the user's open Blender" in text(again)
+
+
+async def test_closing_blender_is_told(client: Client, window: OpenWindow) -> None:
+    window.choose("bpy.ops.wm.quit_blender()")
+    window.process.wait(60)
+    said = text(await use(client, "blender_scene_state"))
+    assert "The user has closed Blender" in said
+    assert not list((window.home / "open-blenders").glob("*.json"))
