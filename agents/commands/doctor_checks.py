@@ -360,9 +360,9 @@ def _open_blender() -> DoctorResult:
     data = {"open": [blender.about.model_dump() for blender in listening]}
     if listening:
         text = "listens to --attach: " + "; ".join(str(blender.about) for blender in listening)
-        return DoctorResult("Open Blender", "good", text, data=data)
+        return DoctorResult("Attach", "good", text, data=data)
     advice = "to work in the Blender that you have open: simworlds extension install, then Start in its panel SimWorlds"
-    return DoctorResult("Open Blender", "good", "none listens to --attach", advice=advice, data=data)
+    return DoctorResult("Attach", "good", "none listens to --attach", advice=advice, data=data)
 
 
 def _room(sandbox: Sandbox) -> DoctorResult:

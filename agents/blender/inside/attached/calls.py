@@ -224,7 +224,7 @@ class CallRunner:
             return function(request.arguments, report)
         self._check_undo()
         restores = bool(request.arguments.pop("restores", False))
-        before, changed = digest(), False
+        before, changed, value = digest(), False, None
         try:
             with (
                 contextlib.redirect_stdout(_Both(sys.stdout, printed))
@@ -233,10 +233,11 @@ class CallRunner:
             ):
                 value = function(request.arguments, report)
         finally:
-            changed = before is None or digest() != before
+            nothing = kind == CODE and value is not None and not value["changed"]
+            changed = not nothing if before is None else digest() != before
             if changed or kind == SHOW:
                 self.undo_steps.keep(step or request.tool, before)
-        if restores and changed and value.get("error"):
+        if restores and changed and value["error"]:
             self.undo_steps.undo(1)
         return value
 

@@ -18,10 +18,14 @@ _LONGEST = 60
 
 
 class Step:
-    """A step: its ``name``, and the digests of the scene ``before`` and ``after`` it; None if not known."""
+    """A step: its ``name``, and the digests of the scene ``before`` and ``after`` it; None if not known.
+
+    ``operators``: what tells that the user has called none since.
+    """
 
     def __init__(self, name, before, after):
         self.name, self.before, self.after = name, before, after
+        self.operators = _operators()
 
 
 class UndoSteps:
@@ -74,17 +78,28 @@ class UndoSteps:
 
     def _drop_undone(self):
         """Forgets steps that the user has undone. Raises Refused if the user has worked after the last one."""
-        now = digest()
-        if not self.steps or now is None or self.steps[-1].after in {None, now}:
+        if not self.steps:
+            return
+        now, last = digest(), self.steps[-1]
+        if now is None or last.after is None:
+            if _operators() == last.operators:
+                return
+        elif last.after == now:
             return
         for number in range(len(self.steps) - 1, -1, -1):
-            if self.steps[number].before == now:
+            if now is not None and self.steps[number].before == now:
                 del self.steps[number:]
                 return
         raise Refused(
             "The user has changed the scene after SimWorlds' last step, so undoing would take back their work. "
             "Ask them to use Edit > Undo History, where the steps are named 'SimWorlds: …'."
         )
+
+
+def _operators():
+    """Which operators the user has called: Blender keeps the last ones, and none that was called by Python."""
+    called = bpy.context.window_manager.operators
+    return len(called), called[-1].as_pointer() if called else 0
 
 
 def digest():
