@@ -332,6 +332,45 @@ async def test_a_second_client_is_refused_and_told_why(
         direct().about  # noqa: B018 - connects
 
 
+async def test_the_user_decides_what_may_be_done(client: Client, window: OpenWindow) -> None:
+    chosen = "bpy.context.preferences.addons['simworlds_live'].preferences.{} = {}"
+    for right, said in (("may_run", "does not allow SimWorlds to run code"), ("may_change", "only to look")):
+        window.choose(chosen.format(right, False))
+        refused = await use(client, "blender_execute", code="bpy.data.objects['Cube'].location.x = 1")
+        window.choose(chosen.format(right, True))
+        assert refused.is_error
+        assert said in text(refused)
+
+
+async def test_the_panel_undoes_and_stops(client: Client, window: OpenWindow) -> None:
+    before = await digests(client)
+    await build(client, "Undone by hand", 2)
+    window.choose("bpy.ops.simworlds.undo()")
+    assert await digests(client) == before
+    window.choose("bpy.ops.simworlds.stop()")
+    assert "The user has stopped SimWorlds in Blender's panel" in text(
+        await use(client, "blender_scene_state")
+    )
+    window.choose("bpy.ops.simworlds.start()")
+    again = await use(client, "blender_scene_state")
+    assert "Attached to the user's open Blender" in text(again)
+
+
+async def test_what_the_user_saves_is_told(client: Client, window: OpenWindow) -> None:
+    file = window.root / "kitchen.blend"
+    await build(client, "Saved", 2)
+    window.choose(f"bpy.ops.wm.save_as_mainfile(filepath={str(file)!r})")
+    seen = await use(client, "blender_view", picture="none")
+    assert f"The user has saved the file as {file}" in text(seen)
+    assert seen.structured_content is not None
+    assert seen.structured_content["file"] == str(file)
+    assert (await state(client))["unsaved"] is False  # Blender notes it a moment after it has saved
+    looked = await use(client, "blender_scene_layout_preview")
+    assert not looked.is_error, text(looked)
+    assert (await state(client))["unsaved"] is False
+    await use(client, "blender_undo")
+
+
 async def test_another_file_is_told_and_its_undo_is_gone(client: Client, window: OpenWindow) -> None:
     await build(client, "Gone", 2)
     window.choose("bpy.ops.wm.read_homefile(app_template='')")
