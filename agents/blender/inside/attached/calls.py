@@ -271,7 +271,7 @@ class CallRunner:
         events, request.client.events = request.client.events[:20], []
         request.reply(**answer, left=[], events=events)
         well = "value" in answer
-        text = request.step or _IN_WORDS.get(request.tool, request.tool)
+        text = str(request.step or _IN_WORDS.get(request.tool, request.tool))
         if not well:
             text += f": {answer.get('refused') or answer.get('failed') or 'failed'}"
         self.log.appendleft(LogEntry(text, answer["seconds"], well=well))

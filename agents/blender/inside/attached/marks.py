@@ -78,6 +78,6 @@ def _line_shader():
 
 def _set_size(pixels):
     if bpy.app.version < (4, 0, 0):
-        blf.size(0, pixels, 72)
+        blf.size(0, pixels, 72)  # pyright: ignore[reportCallIssue]
     else:
         blf.size(0, pixels)

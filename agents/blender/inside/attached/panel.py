@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The extension's panel and settings in Blender. Nothing starts by itself unless the user says so."""
 
-# pyright: reportInvalidTypeForm=false - Blender reads the properties of a class from its annotations
+# Blender reads the properties of a class from its annotations.
+# pyright: reportInvalidTypeForm=false
 
 import atexit
+from typing import Any
 
 import bpy
 
@@ -17,7 +19,7 @@ _START_SECONDS = 1.0
 _state = {"runner": None}
 
 
-def _runner():
+def _runner() -> Any:
     """The runner, while the extension is enabled."""
     return _state["runner"]
 

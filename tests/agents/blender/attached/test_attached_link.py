@@ -30,7 +30,7 @@ ABOUT: dict[str, Any] = {
     "blender": "4.2.1 LTS",
     "executable": "/opt/blender/blender",
     "extension": "0.1.0",
-    "file": "/home/someone/kitchen.blend",
+    "file": "/projects/kitchen.blend",
     "scene": "Scene",
     "may": {"change": True, "code": True, "unrehearsed": False},
 }
@@ -66,7 +66,7 @@ def test_finds_what_was_announced(home: Path, listener: Listener) -> None:
 def test_tells_several_apart(listener: Listener) -> None:
     other = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
     try:
-        about = {**ABOUT, "process": other.pid, "file": "/home/someone/garden.blend"}
+        about = {**ABOUT, "process": other.pid, "file": "/projects/garden.blend"}
         file = os.open(announcement.path_of(other.pid), os.O_WRONLY | os.O_CREAT, 0o600)
         with open(file, "w") as written:  # noqa: PTH123 - a descriptor
             json.dump({"port": listener.port, "token": TOKEN, **about}, written)
