@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from agents.blender.attached.attached_blender import TooLarge
 from agents.blender.attached.tools import execute, show, undo, view
 from agents.blender.attached.tools.base import AttachedTool
 from agents.blender.tools import (
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
     from agents.blender.attached.tools.base import AttachedContext
     from agents.blender.tools.base import Call, CallContext, Result
 
+_MOST_OBJECTS = 1000  # whose state is read while the user's window waits
 OPENING = (
     "You work in the Blender that the user has open, beside them. Everything you change is one undo step with a name; "
     "the user may change, save or close things at any time, which the next reply tells. Code is rehearsed in a copy "
@@ -58,6 +60,19 @@ def _in_twin(tool: BlenderTool) -> AttachedTool:
     return AttachedTool(
         tool, lambda context, arguments, call: tool.run(context.of_twin(call), arguments, call)
     )
+
+
+def _scene_state(context: AttachedContext, arguments: scene_state.SceneStateArguments, call: Call) -> Result:
+    """Reads a scene of many objects in the copy, unless that cannot be had."""
+    try:
+        return scene_state.run(context.of_open, arguments, call, {"at_most": _MOST_OBJECTS})
+    except TooLarge:
+        pass
+    try:
+        copy: CallContext = context.of_twin(call)
+    except TooLarge:
+        copy = context.of_open
+    return scene_state.run(copy, arguments, call)
 
 
 def _save(context: AttachedContext, arguments: files.SaveArguments, call: Call) -> Result:
@@ -96,7 +111,7 @@ def _only_attached(*_: Any) -> Result:
 
 ATTACHED: tuple[AttachedTool, ...] = (
     _own(view.NAME, "See what the user sees", view, read_only=True),
-    _in_open(scene_state.TOOL, scene_state.run),
+    AttachedTool(scene_state.TOOL, _scene_state),
     *(_in_twin(tool) for tool in previews.TOOLS),
     _in_twin(material_preview.TOOL),
     _in_twin(uv_preview.TOOL),

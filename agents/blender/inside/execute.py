@@ -10,7 +10,7 @@ import traceback
 import bpy
 
 from .api_suspects import documentation_query, existing_names
-from .changes import ChangeWatch
+from .changes import MOST_BLOCKS, ChangeWatch
 
 FILE = "<blender_execute>"
 _LONGEST_VALUE = 4000
@@ -31,11 +31,14 @@ def execute(arguments, report):
     return run_watched(arguments["code"], restore)
 
 
-def run_watched(code, restore=None, around=contextlib.nullcontext):
-    """Runs code within ``around()``. ``restore`` mends the interpreter afterwards, from the modules loaded before."""
+def run_watched(code, restore=None, around=contextlib.nullcontext, most=MOST_BLOCKS):
+    """Runs code within ``around()``, as ``execute``; changes are told by ``ChangeWatch(most)``.
+
+    ``restore`` mends the interpreter afterwards; it gets the modules that were loaded before.
+    """
     linecache.cache[FILE] = (len(code), None, code.splitlines(keepends=True), FILE)
     result = {"value": None, "error": None}
-    watch = ChangeWatch()
+    watch = ChangeWatch(most)
     loaded = {*sys.modules}
     failure = None
     try:

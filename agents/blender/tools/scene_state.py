@@ -16,7 +16,7 @@ from agents.blender.tools.scene_fold import fold, fold_tree, series
 from agents.blender.tools.scene_order import asked_first
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from agents.blender.tools.scene_fold import Entry
 
@@ -74,13 +74,15 @@ every cache; animation; cameras, lights, world; likely mistakes, marked with !. 
 Brick.400). What does not fit is counted, with the call that shows it."""
 
 
-def run(context: CallContext, arguments: SceneStateArguments, call: Call) -> Result:
-    """Reads the scene."""
+def run(
+    context: CallContext, arguments: SceneStateArguments, call: Call, more: Mapping[str, Any] | None = None
+) -> Result:
+    """Reads the scene; ``more`` are arguments for the Blender."""
     usual = _OF_SUMMARY if arguments.detail == "summary" else tuple(_TITLES)
     names = [name for name in (*_TITLES, DATA_BLOCKS) if name in (arguments.sections or usual)]
     reply = context.blender.call(
         "scene_state",
-        {"detail": arguments.detail, "objects": arguments.objects, "sections": names},
+        {"detail": arguments.detail, "objects": arguments.objects, "sections": names, **(more or {})},
         lambda facts: readout(facts, arguments),
         timeout=TIMEOUT,
         progress=call.progress,

@@ -11,6 +11,7 @@ import bpy
 from ..changes import listen
 from ..execute import run_watched
 from .code_guard import CodeGuard
+from .undo_steps import MOST_BLOCKS
 
 
 def apply(arguments, report):
@@ -24,7 +25,7 @@ def apply(arguments, report):
             guard.check_operators(arguments["code"])
             yield
 
-    return {**run_watched(arguments["code"], around=guarded), "noted": guard.noted}
+    return {**run_watched(arguments["code"], around=guarded, most=MOST_BLOCKS), "noted": guard.noted}
 
 
 def rehearse(arguments, report):

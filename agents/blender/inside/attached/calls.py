@@ -29,7 +29,7 @@ TOOLS = {
     "user_state": ("attached.window", "user_state", LOOK),
     "screenshot": ("attached.window", "screenshot", LOOK),
     "write_copy": ("attached.copies", "write_copy", LOOK),
-    "scene_state": ("state.readout", "scene_state", LOOK),
+    "scene_state": ("attached.window", "scene_state", LOOK),
     "present": ("api_presence", "present", LOOK),
     "show": ("attached.show", "show", SHOW),
     "mark": ("attached.show", "mark", LOOK),
@@ -224,7 +224,7 @@ class CallRunner:
             return function(request.arguments, report)
         self._check_undo()
         restores = bool(request.arguments.pop("restores", False))
-        before, changed, value = digest(), False, None
+        before, changed = digest(), False
         try:
             with (
                 contextlib.redirect_stdout(_Both(sys.stdout, printed))
@@ -233,8 +233,7 @@ class CallRunner:
             ):
                 value = function(request.arguments, report)
         finally:
-            nothing = kind == CODE and value is not None and not value["changed"]
-            changed = not nothing if before is None else digest() != before
+            changed = before is None or digest() != before
             if changed or kind == SHOW:
                 self.undo_steps.keep(step or request.tool, before)
         if restores and changed and value["error"]:

@@ -13,7 +13,7 @@ from ..state.fingerprint import digests_by_part
 from .user_state import in_window
 
 PREFIX = "SimWorlds: "
-_MOST_BLOCKS = 2000  # of more, whether a state is the same is not known
+MOST_BLOCKS = 300  # that are read while the window waits; of more, whether a state is the same is not known
 _LONGEST = 60
 
 
@@ -104,7 +104,7 @@ def _operators():
 
 def digest():
     """A digest of the file's data-blocks; None if there are too many to read in a moment."""
-    if sum(len(getattr(bpy.data, kind)) for kind in KINDS) > _MOST_BLOCKS:
+    if sum(len(getattr(bpy.data, kind)) for kind in KINDS) > MOST_BLOCKS:
         return None
     layer = getattr(bpy.context, "view_layer", None)
     if layer is not None:

@@ -7,7 +7,17 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..state import readout
+from .copies import TooLarge
 from .user_state import main_window, state
+
+
+def scene_state(arguments, report):
+    """As ``readout.scene_state``. Raises TooLarge for more objects than ``at_most``: the window waits meanwhile."""
+    most = arguments.pop("at_most", None)
+    if most is not None and len(bpy.data.objects) > most:
+        raise TooLarge(f"{len(bpy.data.objects):,} objects are too many to be read while the window waits.")
+    return readout.scene_state(arguments, report)
 
 
 def user_state(arguments, report):

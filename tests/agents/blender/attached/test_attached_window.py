@@ -332,6 +332,19 @@ async def test_a_second_client_is_refused_and_told_why(
         direct().about  # noqa: B018 - connects
 
 
+async def test_many_objects_are_read_in_the_copy(client: Client) -> None:
+    code = """# many
+for number in range(1001):
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new(f"Many {number}", None))
+"""
+    assert not (await use(client, "blender_execute", code=code)).is_error
+    read = await use(client, "blender_scene_state", detail="summary")
+    assert "1004 objects" in text(read)
+    undone = await use(client, "blender_undo")
+    assert "as it was before them" in text(undone)
+    assert "3 objects" in text(await use(client, "blender_scene_state", detail="summary"))
+
+
 async def test_the_user_decides_what_may_be_done(client: Client, window: OpenWindow) -> None:
     chosen = "bpy.context.preferences.addons['simworlds_live'].preferences.{} = {}"
     for right, said in (("may_run", "does not allow SimWorlds to run code"), ("may_change", "only to look")):
