@@ -31,7 +31,7 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check site rule-pictures dist \
+.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check site rule-pictures window-figures dist \
   dist-validate licences fuzz lock clean
 
 help: ## List the targets
@@ -53,7 +53,7 @@ test: $(STAMP) ## Run the tests, a file at a time on each core [PYTEST_ARGS=]
 	@$(PY) -m pytest --numprocesses=$(TEST_PROCESSES) --dist=loadfile --no-loadscope-reorder $(PYTEST_ARGS)
 
 test-fast: $(STAMP) ## Run the tests that need no Blender, in under a minute [PYTEST_ARGS=]
-	@$(PY) -m pytest --numprocesses=2 --dist=loadfile -m "not blender and not corpora and not slow" $(PYTEST_ARGS)
+	@$(PY) -m pytest --numprocesses=2 --dist=loadfile -m "not blender and not corpora and not slow and not window" $(PYTEST_ARGS)
 
 serve: $(STAMP) ## Serve blender_docs and blender_check over MCP on stdio [SERVE_ARGS=]
 	@.venv/bin/simworlds serve $(SERVE_ARGS)
@@ -82,6 +82,9 @@ site: $(STAMP) ## Build the documentation site in build/site, links checked, wit
 
 rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 	@$(PY) tests/agents/protocol/rule_pictures.py $(RULES)
+
+window-figures: $(STAMP) ## Measure SimWorlds in an open Blender, and draw its picture
+	@$(PY) tests/agents/blender/attached/window_figures.py docs/open-blender.png
 
 docs-check: $(STAMP) ## Check that the generated references are up to date
 	@$(PY) -m docs.generate --check

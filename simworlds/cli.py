@@ -25,6 +25,9 @@ _COMMANDS = {
     "edit": _Command(
         "agents.commands.runs", "edit", "Edit a scene as described, and leave the rest unchanged."
     ),
+    "extension": _Command(
+        "agents.commands.extension", "extension", "Build or install the extension for an open Blender."
+    ),
     "kb": _Command("kb_build.cli", "kb", "Build, inspect, check and compare knowledge bases."),
     "make": _Command("agents.commands.runs", "make", "Make a scene from a sentence."),
     "mcp": _Command("agents.commands.mcp", "mcp", "Serve a live Blender and its documentation over MCP."),

@@ -209,11 +209,9 @@ class BlenderSession:
     def _begin(self) -> Supervisor:
         setup = self._setup
         try:
-            if self.folder is None:
-                self._unused = setup.run is None
-                self.folder = RunFolder.make(setup.run) if setup.run else new_run(runs_folder())
+            folder = self._in_folder()
             launch = make_launch(
-                self.folder.workspace,
+                folder.workspace,
                 version=setup.version,
                 blender_exe=setup.blender_exe,
                 sandbox=setup.sandbox,
@@ -222,12 +220,19 @@ class BlenderSession:
         except OSError as error:
             raise CannotStart(f"The run folder cannot be made: {error}") from error
         try:
-            blender = Supervisor(launch, self.folder)
+            blender = Supervisor(launch, folder)
         except BaseException:
             launch.clean()
             raise
-        setup.tell(f"Blender {launch.runtime.version} works in {self.folder.root}")
+        setup.tell(f"Blender {launch.runtime.version} works in {folder.root}")
         return blender
+
+    def _in_folder(self) -> RunFolder:
+        """The session's folder, made if there is none yet. Raises OSError."""
+        if self.folder is None:
+            self._unused = self._setup.run is None
+            self.folder = RunFolder.make(self._setup.run) if self._setup.run else new_run(runs_folder())
+        return self.folder
 
     def _close(self) -> None:
         if self._blender is not None:
@@ -239,11 +244,19 @@ class BlenderSession:
 class BlenderSessions:
     """The sessions of a server by client: ``at_most`` at once, each closed after ``idle`` seconds without a call.
 
-    A client whose session was closed that way continues its run with the next call.
+    A client whose session was closed that way continues its run with the next call. ``new`` makes a session.
     """
 
-    def __init__(self, setup: SessionSetup, *, at_most: int = 1, idle: float | None = None) -> None:
+    def __init__(
+        self,
+        setup: SessionSetup,
+        *,
+        at_most: int = 1,
+        idle: float | None = None,
+        new: Callable[[SessionSetup, RunFolder | None, SessionJobs | None], BlenderSession] = BlenderSession,
+    ) -> None:
         self._setup = setup
+        self._new = new
         self._at_most = 1 if setup.run else at_most
         self._idle = idle
         self._open: dict[str, BlenderSession] = {}
@@ -264,7 +277,7 @@ class BlenderSessions:
     def start(self, client: str) -> None:
         """Starts a client's Blender in the background, before its first call. Raises Refusal."""
         self._admit()
-        session = self._open[client] = BlenderSession(self._setup)
+        session = self._open[client] = self._new(self._setup, None, None)
         session.start()
 
     async def get(self, client: str) -> BlenderSession:
@@ -276,7 +289,7 @@ class BlenderSessions:
             if client not in self._open:
                 self._admit()
                 folder, jobs = self._left.pop(client, (None, None))
-                self._open[client] = BlenderSession(self._setup, folder, jobs)
+                self._open[client] = self._new(self._setup, folder, jobs)
             return self._open[client]
 
     def _admit(self) -> None:

@@ -19,7 +19,7 @@ from agents.blender.tools.base import NotChecked
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from agents.blender.tools.base import Call, ToolContext
+    from agents.blender.tools.base import Call, CallContext
 
 _OF_BLENDER = re.compile(r"\b(?:bpy|mathutils|bmesh)\b")
 _SYNTAX = "syntax-error"  # Blender's own Python decides, and executes nothing either
@@ -99,7 +99,7 @@ def _clipped(text: str) -> str:
     return text if len(text) <= _LONGEST else f"{text[:_LONGEST]} …"
 
 
-def check_before_running(context: ToolContext, code: str, call: Call) -> PreFlight:
+def check_before_running(context: CallContext, code: str, call: Call) -> PreFlight:
     """What is wrong in code, as far as it can be known before it runs. Why nothing is known is noted once.
 
     Raises BlenderError if Blender is lost when it is asked.
@@ -118,7 +118,7 @@ def check_before_running(context: ToolContext, code: str, call: Call) -> PreFlig
     return PreFlight(tuple(errors), tuple(f for f in found if f not in errors), reply.blender)
 
 
-def _present(context: ToolContext, paths: Iterable[str], call: Call) -> set[str]:
+def _present(context: CallContext, paths: Iterable[str], call: Call) -> set[str]:
     """Those of the paths that the live Blender has."""
     asked = list(dict.fromkeys(paths))[:_MOST_ASKED]
     if not asked:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import base64
 import logging
 from contextlib import asynccontextmanager
+from dataclasses import dataclass
 from functools import partial
 from importlib import metadata
 from typing import TYPE_CHECKING, Any
@@ -19,7 +20,7 @@ from starlette.datastructures import Headers
 
 from agents.blender import docs_client
 from agents.blender.docs_client import DocsGone
-from agents.blender.tool_catalogue import BY_NAME, FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS
+from agents.blender.tool_catalogue import FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS
 from agents.blender.tool_profiles import DEFAULT, Profile, first_profile, is_offered
 from agents.blender.tools.base import Call
 from agents.blender.tools.failures import describe_failure
@@ -63,7 +64,7 @@ _HABITS = (
     ("blender_render", "last, when everything is in place; start with a still"),
     ("blender_job", "for a bake or an animation that may take longer than a minute"),
 )  # fmt: skip
-_LIVE = (
+_OWN_BLENDER = (
     "You have your own live Blender, without a window. The scene stays from call to call. If Blender crashes or hangs, "
     "it is restarted from the last checkpoint, which the error names: read the scene's state before you go on. Lengths "
     "are in metres, angles in Python in radians."
@@ -76,13 +77,34 @@ _MANY_CLIENTS = 64
 _LOG = logging.getLogger(__name__)
 
 
-def instructions(known: Iterable[str]) -> str:
-    """The server's instructions for models: how to work with the tools of these names."""
+@dataclass(frozen=True, slots=True)
+class Suite:
+    """Tools that a server has. ``opening`` and ``habits`` (tool, when to use it) tell models how to work."""
+
+    tools: tuple[BlenderTool, ...] = TOOLS
+    opening: str = _OWN_BLENDER
+    habits: tuple[tuple[str, str], ...] = _HABITS
+
+    def named(self, name: str) -> BlenderTool | None:
+        """The tool of that name."""
+        return next((tool for tool in self.tools if tool.name == name), None)
+
+
+def _own_suite(sessions: BlenderSessions, *, for_clients: bool) -> Suite:
+    """The tools of a Blender of the server's own."""
+    more = FOR_CLIENTS if for_clients else ()
+    assets = (WITH_ASSETS,) if sessions.has_assets else ()
+    return Suite((*TOOLS, *more, *assets, *((ONLINE,) if sessions.is_online else ())))
+
+
+def instructions(known: Iterable[str], suite: Suite | None = None) -> str:
+    """The server's instructions for models: how to work with the tools of these names, of the suite and others."""
+    suite = suite or Suite()
     known = set(known)
-    habits = [f"- {name}: {when}." for name, when in _HABITS if name in known]
+    habits = [f"- {name}: {when}." for name, when in suite.habits if name in known]
     return "\n".join(
         [
-            *([_LIVE] if known & set(BY_NAME) else []),
+            *([suite.opening] if any(tool.name in known for tool in suite.tools) else []),
             *habits,
             *([_CARE] if "blender_execute" in known else []),
         ]
@@ -90,20 +112,21 @@ def instructions(known: Iterable[str]) -> str:
 
 
 def make_server(
-    sessions: BlenderSessions, docs: DocsClient, team: Team | None = None, profile: Profile = DEFAULT
+    sessions: BlenderSessions,
+    docs: DocsClient,
+    team: Team | None = None,
+    profile: Profile = DEFAULT,
+    suite: Suite | None = None,
 ) -> Server[None]:
     """The server, without a transport. Closes the sessions when it ends.
 
     ``team`` adds what a model needs to plan and review as well; None for a caller with its own roles, who also waits as
-    long as it takes and so has no use for jobs. ``profile`` says which tools there are.
+    long as it takes and so has no use for jobs. ``profile`` says which tools there are, of ``suite``: by default those
+    of a Blender of the server's own.
     """
-    served = (
-        *TOOLS,
-        *(FOR_CLIENTS if team is not None else ()),
-        *((WITH_ASSETS,) if sessions.has_assets else ()),
-        *((ONLINE,) if sessions.is_online else ()),
-    )
-    known = (*(tool.name for tool in served), *(team.names if team is not None else ()), *docs_client.NAMES)
+    served = suite or _own_suite(sessions, for_clients=team is not None)
+    own = [tool.name for tool in served.tools]
+    known = (*own, *(team.names if team is not None else ()), *docs_client.NAMES)
     names = [name for name in known if is_offered(name, profile)]
 
     @asynccontextmanager
@@ -129,7 +152,9 @@ def make_server(
             return await _look_up(docs, params.name, params.arguments)
         if team is not None and (answer := team.use(params.name, params.arguments or {})) is not None:
             return answer
-        tool = BY_NAME[params.name]
+        tool = served.named(params.name)
+        if tool is None:
+            raise MCPError(types.INVALID_PARAMS, _not_offered(params.name, names, profile))
         try:
             session = await sessions.get(_client(context))
         except BlenderError as error:
@@ -138,7 +163,7 @@ def make_server(
         return await _call_with_progress(context, tool.name, use)
 
     async def whole_entries() -> list[types.Tool]:
-        entries = [*map(entry, served), *(team.tools() if team is not None else ())]
+        entries = [*map(entry, served.tools), *(team.tools() if team is not None else ())]
         try:
             with anyio.fail_after(_LIST_SECONDS):
                 entries += await docs.tools()
@@ -149,6 +174,25 @@ def make_server(
     async def list_tools(_context: _Context, _page: _Listing) -> types.ListToolsResult:
         entries = await whole_entries()
         return types.ListToolsResult(tools=entries if profile == "all" else list(map(as_listed, entries)))
+
+    return Server(
+        "simworlds-blender",
+        version=_own_version(),
+        title="SimWorlds: live Blender",
+        instructions=instructions(names, served),
+        lifespan=lifespan,
+        get_tool_input_schema=lambda name: entry(tool).input_schema if (tool := served.named(name)) else None,
+        on_list_tools=list_tools,
+        on_call_tool=call_tool,
+        **_reading(docs, team, whole_entries),
+        **(_prompting(team) if team is not None else {}),
+    )
+
+
+def _reading(
+    docs: DocsClient, team: Team | None, whole_entries: Callable[[], Awaitable[list[types.Tool]]]
+) -> dict[str, Any]:
+    """The handlers of resources: the knowledge base's, the team's, and the whole schemas of the tools."""
 
     async def list_resources(_context: _Context, _page: _Listing) -> types.ListResourcesResult:
         own = team.resources() if team is not None else []
@@ -173,20 +217,11 @@ def make_server(
         except DocsGone as error:
             raise MCPError(types.INTERNAL_ERROR, str(error)) from error
 
-    return Server(
-        "simworlds-blender",
-        version=_own_version(),
-        title="SimWorlds: live Blender",
-        instructions=instructions(names),
-        lifespan=lifespan,
-        get_tool_input_schema=lambda name: entry(BY_NAME[name]).input_schema if name in BY_NAME else None,
-        on_list_tools=list_tools,
-        on_call_tool=call_tool,
-        on_list_resources=list_resources,
-        on_list_resource_templates=list_templates,
-        on_read_resource=read_resource,
-        **(_prompting(team) if team is not None else {}),
-    )
+    return {
+        "on_list_resources": list_resources,
+        "on_list_resource_templates": list_templates,
+        "on_read_resource": read_resource,
+    }
 
 
 def _prompting(team: Team) -> dict[str, Any]:

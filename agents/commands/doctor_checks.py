@@ -15,6 +15,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
+from agents.blender.attached.open_blenders import open_blenders
 from agents.blender.fluid_support import check_fluids
 from agents.blender.launch import launch_in, runs_folder
 from agents.blender.run_folder import RunFolder
@@ -123,6 +124,7 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
             "looking for the knowledge base",
             lambda: _knowledge(runtimes[0].version if runtimes else choice.version),
         )
+        yield "looking for an open Blender", _open_blender
         yield "measuring free space", lambda: _room(sandbox)
 
 
@@ -350,6 +352,17 @@ def _knowledge(version: str | None) -> DoctorResult:
         advice=advice,
         data=data,
     )
+
+
+def _open_blender() -> DoctorResult:
+    """What ``simworlds mcp --attach`` would find; lacking it nothing else suffers."""
+    listening = open_blenders()
+    data = {"open": [blender.about.model_dump() for blender in listening]}
+    if listening:
+        text = "listens to --attach: " + "; ".join(str(blender.about) for blender in listening)
+        return DoctorResult("Attach", "good", text, data=data)
+    advice = "to work in the Blender that you have open: simworlds extension install, then Start in its panel SimWorlds"
+    return DoctorResult("Attach", "good", "none listens to --attach", advice=advice, data=data)
 
 
 def _room(sandbox: Sandbox) -> DoctorResult:

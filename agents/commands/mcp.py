@@ -13,9 +13,12 @@ import click
 from agents.blender.tool_profiles import DEFAULT, PROFILES
 from agents.commands import options
 from agents.commands.sandbox_warning import warn
+from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
-    from agents.blender.blender_sessions import SessionSetup
+    from mcp.server.lowlevel import Server
+
+    from agents.blender.blender_sessions import BlenderSessions, SessionSetup
     from agents.blender.tool_profiles import Profile
     from simworlds.sandbox.confined_command import Kind, Sandbox
 
@@ -70,6 +73,13 @@ _ASSETS = click.Path(exists=True, file_okay=False, resolve_path=True, path_type=
     multiple=True,
     help="With --as: a folder that screenshots may be written to, besides the temporary one.",
 )
+@click.option(
+    "--attach",
+    is_flag=False,
+    flag_value="open",
+    metavar="[auto|WHICH]",
+    help="Work in the open Blender; WHICH of several: its process or file. auto: if there is one, else in its own.",
+)
 @click.option("--http", "over_http", is_flag=True, help="Serve streamable HTTP instead of stdio.")
 @click.option("--host", default="127.0.0.1", show_default=True, help="Address to listen on.")
 @click.option(
@@ -103,6 +113,7 @@ def mcp(  # noqa: PLR0913 - one for each option
     stands_for: str | None,
     timeout: float,
     screenshots: tuple[Path, ...],
+    attach: str | None,
     over_http: bool,
     host: str,
     port: int,
@@ -113,12 +124,21 @@ def mcp(  # noqa: PLR0913 - one for each option
 ) -> None:
     """Serve a live Blender over MCP, on stdio or HTTP, with blender_docs beside it.
 
-    Every client has its own Blender and run folder, and finds both as it left them. On an address other than
+    Every client has its own Blender and run folder, and finds both as it left them. With --attach, clients work in the
+    Blender that the user has open (simworlds extension install). On an address other than
     loopback clients must send a token: Authorization: Bearer …
     """
     _check_options(context, over_http=over_http, stands_for=stands_for)
     if online and assets is None:
         raise click.UsageError("--online needs --assets, the folder that assets are fetched into.")
+    if attach is not None and (blender is not None or blender_exe is not None):
+        raise click.UsageError(
+            "--attach works in the Blender that is open: leave --blender and --blender-exe out."
+        )
+    if attach is not None and stands_for is not None:
+        raise click.UsageError(
+            f"--attach does not go with --as {stands_for}: that serves a Blender of its own."
+        )
     # Nothing that is loaded is garbage, and looking for it would slow the start.
     gc.disable()
     from agents.blender.blender_sessions import SessionSetup  # noqa: PLC0415
@@ -138,12 +158,13 @@ def mcp(  # noqa: PLR0913 - one for each option
         if blender_exe is not None:
             find_blender(blender, blender_exe)
         setup = setup_of(_confined(sandbox, announced=profile != "docs"))
+        kind = _OwnBlenders(profile) if attach is None else _attached(attach, profile)
         if stands_for is not None:
             _as_addon(setup, port if _is_typed(context, "port") else None, timeout, screenshots)
         elif over_http:
-            _over_http(setup, profile, sessions, idle * 60, host, port, token or "", allow_host)
+            _over_http(setup, kind, sessions, idle * 60, host, port, token or "", allow_host)
         else:
-            _over_stdio(setup, profile)
+            _over_stdio(setup, kind)
     except CannotStart as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
@@ -174,33 +195,84 @@ def _as_addon(setup: SessionSetup, port: int | None, timeout: float, screenshots
     run_drop_in(setup, PORT if port is None else port, timeout, ScreenshotPlaces(screenshots))
 
 
-def _over_stdio(setup: SessionSetup, profile: Profile) -> None:
-    from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415 - not for --help
+class _OwnBlenders:
+    """Clients have Blenders of the server's own, and the tools of a profile."""
 
-    sessions = BlenderSessions(setup)
+    def __init__(self, profile: Profile) -> None:
+        self.profile: Profile = profile
+
+    def sessions(self, setup: SessionSetup, at_most: int = 1, idle: float | None = None) -> BlenderSessions:
+        """The sessions of clients."""
+        from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415 - not for --help
+
+        return BlenderSessions(setup, at_most=at_most, idle=idle)
+
+    def server(self, setup: SessionSetup, sessions: BlenderSessions) -> Server[None]:
+        """The server of these sessions."""
+        from agents.blender.docs_client import DocsClient  # noqa: PLC0415
+        from agents.blender.server import make_server  # noqa: PLC0415
+        from agents.blender.team import Team  # noqa: PLC0415
+
+        return make_server(sessions, DocsClient(_same_blender(setup)), Team(), self.profile)
+
+
+class _OpenBlender(_OwnBlenders):
+    """Clients work in the user's: ``wanted`` says which, ``version`` of which version it is, as far as is known."""
+
+    def __init__(self, profile: Profile, wanted: str, version: str | None) -> None:
+        super().__init__(profile)
+        self._wanted, self._version = wanted, version
+
+    def sessions(self, setup: SessionSetup, at_most: int = 1, idle: float | None = None) -> BlenderSessions:
+        """The sessions of clients."""
+        from agents.blender.attached.attached_session import AttachedSession  # noqa: PLC0415
+        from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415
+
+        return BlenderSessions(setup, at_most=at_most, idle=idle, new=partial(AttachedSession, self._wanted))
+
+    def server(self, setup: SessionSetup, sessions: BlenderSessions) -> Server[None]:
+        """The server of these sessions."""
+        del setup
+        from agents.blender.attached.tool_catalogue import HABITS, OPENING, TOOLS  # noqa: PLC0415
+        from agents.blender.docs_client import DocsClient  # noqa: PLC0415
+        from agents.blender.server import Suite, make_server  # noqa: PLC0415
+
+        options = ["--blender", self._version] if self._version else []
+        suite = Suite(TOOLS, OPENING, HABITS)
+        return make_server(sessions, DocsClient(options), profile=self.profile, suite=suite)
+
+
+def _attached(wanted: str, profile: Profile) -> _OwnBlenders:
+    """The Blender to work in: the open one, or with ``auto`` one of its own if none is open."""
+    from agents.blender.attached.open_blenders import AUTO, open_blenders  # noqa: PLC0415
+
+    found = open_blenders()
+    if wanted == AUTO and not found:
+        click.echo("No open Blender listens: working in a Blender of its own.", err=True)
+        return _OwnBlenders(profile)
+    versions = {blender.about.version for blender in found}
+    return _OpenBlender(profile, wanted, minor_of(versions.pop()) if len(versions) == 1 else None)
+
+
+def _over_stdio(setup: SessionSetup, kind: _OwnBlenders) -> None:
+    sessions = kind.sessions(setup)
     # Blender starts while the MCP package is loaded: each takes half a second.
-    if profile != "docs":
+    if kind.profile != "docs":
         sessions.start("")
-    from agents.blender.docs_client import DocsClient  # noqa: PLC0415
-    from agents.blender.server import make_server  # noqa: PLC0415
-    from agents.blender.team import Team  # noqa: PLC0415
     from simworlds.mcp_transport.stdio import run_stdio  # noqa: PLC0415
 
-    server = make_server(sessions, DocsClient(_same_blender(setup)), Team(), profile)
+    server = kind.server(setup, sessions)
     _loaded()
     run_stdio(server, partial(sessions.close, _SIGNAL_SECONDS))
 
 
-def _over_http(setup: SessionSetup, profile: Profile, at_most: int, idle: float, *address: Any) -> None:
-    from agents.blender.blender_sessions import BlenderSessions  # noqa: PLC0415
-    from agents.blender.docs_client import DocsClient  # noqa: PLC0415 - not for --help
-    from agents.blender.server import make_app, make_server  # noqa: PLC0415
-    from agents.blender.team import Team  # noqa: PLC0415
+def _over_http(setup: SessionSetup, kind: _OwnBlenders, at_most: int, idle: float, *address: Any) -> None:
+    from agents.blender.server import make_app  # noqa: PLC0415 - not for --help
     from simworlds.mcp_transport.http import Address, CannotServe, run_http  # noqa: PLC0415
     from simworlds.sandbox.errors import CannotStart  # noqa: PLC0415
 
-    sessions = BlenderSessions(setup, at_most=at_most, idle=idle)
-    server = make_server(sessions, DocsClient(_same_blender(setup)), Team(), profile)
+    sessions = kind.sessions(setup, at_most, idle)
+    server = kind.server(setup, sessions)
     _loaded()
     try:
         run_http(partial(make_app, server, sessions, idle), Address(*address), "Blender")

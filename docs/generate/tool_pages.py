@@ -6,6 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from agents.blender import plan_check
+from agents.blender.attached.tool_catalogue import TOOLS as ATTACHED_TOOLS
 from agents.blender.team import PROMPTS
 from agents.blender.tool_catalogue import FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS
 from agents.blender.tool_profiles import DEFAULT, PROFILES, first_profile
@@ -22,6 +23,7 @@ if TYPE_CHECKING:
     from mcp_types import PromptArgument, Tool
 
     from agents.blender.tool_profiles import Profile
+    from agents.blender.tools.base import BlenderTool
 
 
 def docs_tool_page() -> str:
@@ -84,9 +86,10 @@ def blender_tools_page() -> str:
         *_profiles(),
     ]
     for entry in (*TOOLS, *FOR_CLIENTS, WITH_ASSETS, ONLINE):
-        kind = "reads only" if entry.read_only else "changes the scene or writes files"
-        parts += [f"## `{entry.name}`", entry.description, f"It {kind}."]
-        parts.append(schema_table(entry.arguments.model_json_schema()))
+        parts += _blender_tool(entry)
+    own = {entry.name for entry in TOOLS}
+    shared = [entry.name for entry in ATTACHED_TOOLS if entry.name in own and entry.name != "blender_execute"]
+    attached = [part for tool in ATTACHED_TOOLS if tool.name not in shared for part in _blender_tool(tool)]
     return page(
         *parts,
         f"## `{plan_check.NAME}`",
@@ -94,6 +97,10 @@ def blender_tools_page() -> str:
         "It reads only, and needs no Blender. Its one argument, `plan`, is JSON of this shape (`name?` may be left "
         "out; its default stands behind `=`, or is null):",
         f"```\n{shape_of(ScenePlan)}\n```",
+        "# In the Blender that is open",
+        "`simworlds mcp --attach` serves these instead ([live-blender.md](live-blender.md)): as above "
+        f"{', '.join(f'`{name}`' for name in shared)}, `blender_docs` and `blender_check`; and",
+        *attached,
         "# The prompts",
         "Clients offer these to their users, as commands or in a menu. With them a model acts as the team that "
         "`simworlds make` has: it plans, builds stage by stage, verifies, reviews and renders.",
@@ -124,6 +131,12 @@ def _profiles() -> Iterator[str]:
 
 def _added(names: Iterable[str], profile: Profile) -> str:
     return ", ".join(f"`{name}`" for name in names if first_profile(name) == profile)
+
+
+def _blender_tool(entry: BlenderTool) -> list[str]:
+    kind = "reads only" if entry.read_only else "changes the scene or writes files"
+    table_of = schema_table(entry.arguments.model_json_schema())
+    return [f"## `{entry.name}`", entry.description, f"It {kind}.", table_of]
 
 
 def _arguments(arguments: Iterable[PromptArgument]) -> str:

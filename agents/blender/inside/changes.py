@@ -29,15 +29,13 @@ KINDS = (
     *("images", "textures", "particles", "armatures", "lattices", "shape_keys", "scenes", "worlds"),
 )
 LISTED = 40  # names of one kind in a report; the rest are counted
-_MOST_BLOCKS = (
-    3000  # whose settings are compared; of more, those that Blender evaluated anew count as changed
-)
+MOST_BLOCKS = 3000  # whose settings are compared; of more, those that Blender evaluated anew count as changed
 _ELSEWHERE = frozenset({"collection", "view layers"})  # parts of scenes that other data-blocks tell of
 _WHOLE = frozenset({"settings", "geometry", "keyframes", "picture", "nodes", "shapes", "bones"})
 
 _WARNING = b"WARN (bpy.rna)"  # a setting has a value that this Blender was built without
 
-_C = ctypes.CDLL(None)
+_C = ctypes.CDLL(None) if os.name == "posix" else None
 _updated = set()
 _cache_watch = {"counts": None, "reset": {}}
 
@@ -78,7 +76,8 @@ def _frames_held(scene):
     }
 
 
-def _listen():
+def listen():
+    """Has Blender tell of what it updates, from now on."""
     for handlers, listener in (
         (bpy.app.handlers.depsgraph_update_post, _note_updates),
         (bpy.app.handlers.frame_change_post, _note_counts),
@@ -88,16 +87,20 @@ def _listen():
 
 
 class ChangeWatch:
-    """Remembers the file before some code runs; ``report`` returns the differences after it."""
+    """Remembers the file before some code runs; ``report`` returns the differences after it.
 
-    def __init__(self):
-        _listen()
+    The settings of at most ``most`` data-blocks are compared; of more, those that Blender evaluated anew have changed.
+    """
+
+    def __init__(self, most=MOST_BLOCKS):
+        self._most = most
+        listen()
         self._settle()
         _updated.clear()
         self._before = _names_by_kind()
         self._modifiers = _modifiers()
         with _silenced():
-            self._digests = _digests()
+            self._digests = _digests(self._most)
         self._caches = _frames_held(bpy.context.scene)
         _cache_watch.update(counts=self._caches, reset={})
 
@@ -116,7 +119,7 @@ class ChangeWatch:
         self._settle()
         report = {}
         with _silenced(but_threads=True):
-            digests = _digests() if self._digests is not None else None
+            digests = _digests(self._most) if self._digests is not None else None
         for kind, new in _names_by_kind().items():
             old = self._before[kind]
             both = [key for key in new if key in old]
@@ -152,10 +155,10 @@ class ChangeWatch:
         return sorted(reset.values())
 
 
-def _digests():
+def _digests(most):
     """{uid: {part: digest}} of the data-blocks; None if there are too many to compare."""
     blocks = [block for kind in KINDS for block in getattr(bpy.data, kind)]
-    if len(blocks) > _MOST_BLOCKS:
+    if len(blocks) > most:
         return None
     return {uid(block): parts for block, parts in digests_by_part(blocks).items()}
 
@@ -193,7 +196,8 @@ def _flush():
     for stream in (sys.stdout, sys.stderr):
         with contextlib.suppress(Exception):
             stream.flush()
-    _C.fflush(None)
+    if _C is not None:
+        _C.fflush(None)
 
 
 def _names_by_kind():

@@ -2,15 +2,15 @@
 """Runs code in a fresh namespace and returns its value, its changes to the file, and its error."""
 
 import ast
+import contextlib
 import linecache
 import sys
 import traceback
 
 import bpy
 
-from . import interpreter_state
 from .api_suspects import documentation_query, existing_names
-from .changes import ChangeWatch
+from .changes import MOST_BLOCKS, ChangeWatch
 
 FILE = "<blender_execute>"
 _LONGEST_VALUE = 4000
@@ -21,22 +21,36 @@ _LINES_AROUND = 3  # lines shown before and after the one that failed
 def execute(arguments, report):
     """Runs ``code``. Returns ``value`` (of a final expression), ``changed``, and ``error`` if it failed."""
     del report
-    code = arguments["code"]
+    from . import interpreter_state  # the user's own Blender, where code runs too, keeps no such state
+
+    def restore(loaded):
+        interpreter_state.current.stop_alarms_and_tracers()  # pyright: ignore[reportAttributeAccessIssue]
+        interpreter_state.current.forget_modules(loaded)  # pyright: ignore[reportAttributeAccessIssue]
+        interpreter_state.current.restore_names()  # pyright: ignore[reportAttributeAccessIssue]
+
+    return run_watched(arguments["code"], restore)
+
+
+def run_watched(code, restore=None, around=contextlib.nullcontext, most=MOST_BLOCKS):
+    """Runs code within ``around()``, as ``execute``; changes are told by ``ChangeWatch(most)``.
+
+    ``restore`` mends the interpreter afterwards; it gets the modules that were loaded before.
+    """
     linecache.cache[FILE] = (len(code), None, code.splitlines(keepends=True), FILE)
     result = {"value": None, "error": None}
-    watch = ChangeWatch()
+    watch = ChangeWatch(most)
     loaded = {*sys.modules}
     failure = None
     try:
-        result["value"] = _run(code)
+        with around():
+            result["value"] = _run(code)
     except BaseException as error:
         failure = error
     # The code may have patched what is used below, or left a tracer or an alarm that raises here once.
     for _ in range(3):
         try:
-            interpreter_state.current.stop_alarms_and_tracers()  # pyright: ignore[reportAttributeAccessIssue]
-            interpreter_state.current.forget_modules(loaded)  # pyright: ignore[reportAttributeAccessIssue]
-            interpreter_state.current.restore_names()  # pyright: ignore[reportAttributeAccessIssue]
+            if restore is not None:
+                restore(loaded)
             break
         except Exception:
             continue

@@ -74,12 +74,12 @@ class _Guard:
         return self._interpreter.after()
 
 
-def main(arguments):
-    """Serves the tools on the socket whose descriptor is the first argument."""
+def main(arguments, more=()):
+    """Serves the tools, and ``more`` (as TOOLS), on the socket whose descriptor is the first argument."""
     mantaflow.mend()
     rigid_body_inputs.watch()
     usd_thread.start()
-    tools = service.Tools(__package__, TOOLS)
+    tools = service.Tools(__package__, {**TOOLS, **dict(more)})
     service.serve(
         int(arguments[0]),
         lambda tool, arguments, report: tools.find(tool)(arguments, report),

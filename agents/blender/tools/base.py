@@ -16,7 +16,8 @@ if TYPE_CHECKING:
 
     from agents.blender.assets.library import AssetLibrary
     from agents.blender.supervisor import Supervisor
-    from simworlds.sandbox.blender_process import Progress
+    from simworlds.sandbox.blender_process import Progress, WorkerReply
+    from simworlds.sandbox.replies import Reader, T
 
 
 class Arguments(BaseModel):
@@ -74,17 +75,49 @@ class Result:
     failed: bool = False
 
 
+class CalledBlender(Protocol):
+    """A Blender that tools call, whoever it belongs to: a run's own, or the one that the user has open."""
+
+    def call(  # noqa: PLR0913 - what a caller may want to say of a call
+        self,
+        tool: str,
+        arguments: dict[str, Any],
+        read: Reader[T],
+        *,
+        timeout: float,
+        what: str = "",
+        changes: bool = False,
+        after: str = "",
+        progress: Progress | None = None,
+        cancelled: threading.Event | None = None,
+    ) -> WorkerReply[T]:
+        """Runs a tool of the worker; see ``Supervisor.call``. Raises BlenderError."""
+        ...
+
+    def take_note(self) -> str:
+        """What happened to it that no reply has mentioned yet."""
+        ...
+
+    def note_once(self, note: str) -> None:
+        """Puts a note before the next reply, unless it stood before an earlier one."""
+        ...
+
+
 @dataclass(frozen=True, slots=True)
-class ToolContext:
-    """What a tool works with: a run's Blender, the knowledge base, and the user's ``assets``, if there are any.
+class CallContext:
+    """What any tool works with: a Blender and the knowledge base. Without ``check``, code is not checked."""
 
-    Without ``check``, code is not checked.
-    """
-
-    blender: Supervisor
+    blender: CalledBlender
     docs: Docs
     check: Check | None = None
     assets: AssetLibrary | None = None
+
+
+@dataclass(frozen=True, slots=True)
+class ToolContext(CallContext):
+    """The same with a run's own Blender, which has checkpoints and a folder."""
+
+    blender: Supervisor
 
 
 @dataclass(frozen=True, slots=True)

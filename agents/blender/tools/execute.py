@@ -96,13 +96,13 @@ def run(context: ToolContext, arguments: ExecuteArguments, call: Call) -> Result
     data.update(stdout=reply.stdout, stderr=reply.stderr, seconds=round(reply.seconds, 4))
     error = data["error"]
     if error is None:
-        return Result(_text(data, reply, checked), data)
+        return Result(describe(data, reply, checked), data)
     error["documentation"] = context.docs(error["ask"]) if error["ask"] else ""
     if arguments.on_error == "restore":
         data["scene"] = f"The scene was restored from {blender.restore()}."
     else:
         data["scene"] = f"The scene is as the code left it.{_how_to_undo(before, unkept)}"
-    return Result(_text(data, reply, checked), data, failed=True)
+    return Result(describe(data, reply, checked), data, failed=True)
 
 
 def title_of(code: str) -> str:
@@ -119,7 +119,8 @@ def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     return f" To undo it{calls}: blender_load(checkpoint={before.number})."
 
 
-def _text(data: dict[str, Any], reply: WorkerReply[Outcome], checked: PreFlight) -> str:
+def describe(data: dict[str, Any], reply: WorkerReply[Any], checked: PreFlight) -> str:
+    """What came of executed code, as text."""
     parts: list[str] = []
     if error := data["error"]:
         parts.append(f"**{error['type']}**: {error['message']}")

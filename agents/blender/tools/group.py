@@ -7,7 +7,7 @@ from typing import Any
 from pydantic import Field
 
 from agents.blender.formatting import format_count, format_list
-from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
 from agents.protocol.vocabulary import DeformationKind, MotionKind
 
 _SECONDS = 120.0
@@ -73,7 +73,7 @@ the world. What cannot be done is refused as a whole. The reply says what the pr
 grouped already it sets tags: give the object and what changes."""
 
 
-def run(context: ToolContext, arguments: GroupArguments, call: Call) -> Result:
+def run(context: CallContext, arguments: GroupArguments, call: Call) -> Result:
     """Makes the objects."""
     reply = context.blender.call(
         "group",

@@ -10,13 +10,13 @@ from pydantic import Field
 
 from agents.blender.tools import scene_dynamics as dynamics
 from agents.blender.tools import scene_words as words
-from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
 from agents.blender.tools.scene_fit import ReadoutItem, ReadoutSection, share_tokens, tokens
 from agents.blender.tools.scene_fold import fold, fold_tree, series
 from agents.blender.tools.scene_order import asked_first
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
     from agents.blender.tools.scene_fold import Entry
 
@@ -74,13 +74,15 @@ cameras, lights, world; likely mistakes, marked with !. Series are folded (Brick
 is counted, with the call that shows it."""
 
 
-def run(context: ToolContext, arguments: SceneStateArguments, call: Call) -> Result:
-    """Reads the scene."""
+def run(
+    context: CallContext, arguments: SceneStateArguments, call: Call, more: Mapping[str, Any] | None = None
+) -> Result:
+    """Reads the scene; ``more`` are arguments for the Blender."""
     usual = _OF_SUMMARY if arguments.detail == "summary" else tuple(_TITLES)
     names = [name for name in (*_TITLES, DATA_BLOCKS) if name in (arguments.sections or usual)]
     reply = context.blender.call(
         "scene_state",
-        {"detail": arguments.detail, "objects": arguments.objects, "sections": names},
+        {"detail": arguments.detail, "objects": arguments.objects, "sections": names, **(more or {})},
         lambda facts: readout(facts, arguments),
         timeout=TIMEOUT,
         progress=call.progress,

@@ -6,7 +6,7 @@ from typing import Any
 
 from pydantic import ConfigDict, Field
 
-from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
+from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
 from agents.protocol import vocabulary
 from agents.protocol.vocabulary import DeformationKind, MotionKind, Role, meaning_of
 from simworlds.sandbox.errors import Refusal
@@ -85,7 +85,7 @@ contradicts the protocol, the call is refused and nothing changes. The reply lis
 the protocol still requires there. blender_group makes collections, roots and parents, and tags them."""
 
 
-def run(context: ToolContext, arguments: TagArguments, call: Call) -> Result:
+def run(context: CallContext, arguments: TagArguments, call: Call) -> Result:
     """Sets the tags."""
     scene: dict[str, Any] = {}
     if vocabulary.STRICT_GROUNDING in arguments.model_fields_set:

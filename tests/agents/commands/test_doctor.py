@@ -71,6 +71,7 @@ def test_this_machine_is_found_to_work(here: subprocess.CompletedProcess[str]) -
         "Films",
         "Fluids",
         "Knowledge",
+        "Attach",
         "Room",
     ]
     assert found["Blender"]["data"]["version"] == installed_bpy()
@@ -119,7 +120,7 @@ def test_wrong_executable_exits_with_1(tmp_path: Path) -> None:
     assert "✗  Blender cannot work here." in done.stdout
     named = run("--json", home=tmp_path, BLENDER_EXE=str(tmp_path))
     assert (named.returncode, json.loads(named.stdout)["works"]) == (1, False)
-    assert list(findings(named)) == ["Blender", "Knowledge", "Room"]
+    assert list(findings(named)) == ["Blender", "Knowledge", "Attach", "Room"]
     unknown = run("--json", "--blender", "4.9", home=tmp_path)
     assert unknown.returncode == 1
     assert "there is no bpy package for Blender 4.9" in findings(unknown)["Blender"]["text"]

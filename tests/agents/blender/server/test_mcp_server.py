@@ -283,14 +283,14 @@ async def test_progress_is_reported_at_a_limited_rate(
 
 
 async def test_an_unforeseen_error_shows_no_traceback(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
 ) -> None:
     def broken(*_: object) -> Any:
         return {}["a secret of ours"]
 
-    monkeypatch.setitem(served.BY_NAME, "blender_execute", replace(execute.TOOL, run=broken))
+    suite = served.Suite((replace(execute.TOOL, run=broken),))
     blender_sessions = BlenderSessions(SessionSetup(best_sandbox(), run=tmp_path / "run"))
-    async with Client(served.make_server(blender_sessions, DocsClient())) as connected:
+    async with Client(served.make_server(blender_sessions, DocsClient(), suite=suite)) as connected:
         answer = await run(connected, "1")
     assert answer.is_error
     assert "KeyError" in said(answer)

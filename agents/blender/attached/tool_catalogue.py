@@ -1,0 +1,129 @@
+"""The tools of an open Blender, in the order in which clients list them."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from agents.blender.attached.attached_blender import TooLarge
+from agents.blender.attached.tools import execute, show, undo, view
+from agents.blender.attached.tools.base import AttachedTool
+from agents.blender.tools import (
+    files,
+    group,
+    material_preview,
+    motion_sheet,
+    previews,
+    scene_state,
+    tag,
+    trial,
+    uv_preview,
+    verify,
+)
+from agents.blender.tools.base import BlenderTool
+from simworlds.sandbox.errors import Refusal
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any
+
+    from agents.blender.attached.tools.base import AttachedContext
+    from agents.blender.tools.base import Call, CallContext, Result
+
+_MOST_OBJECTS = 1000  # whose state is read while the user's window waits
+OPENING = (
+    "You work in the Blender that the user has open, beside them. Everything you change is one undo step with a name; "
+    "the user may change, save or close things at any time, which the next reply tells. Code is rehearsed in a copy "
+    "first. Find objects by name, keep what the user has made, and ask before you replace it. Lengths are in metres, "
+    "angles in Python in radians."
+)
+HABITS = (
+    (view.NAME, "first, and whenever the user speaks of 'this' or 'here': what they see and have selected"),
+    ("blender_docs", "before you use an API name that you have not looked up for this version"),
+    ("blender_scene_state", "for numbers: positions, sizes, modifiers, caches"),
+    ("blender_execute", "to build in small steps: one object or idea per call, with meaningful names"),
+    ("blender_scene_layout_preview", "to see the scene from all sides, without moving the user's view"),
+    ("blender_motion_sheet_preview", "to see and measure motion over time"),
+    (undo.NAME, "to take back your own steps"),
+    (show.NAME, "to point the user to something"),
+    ("blender_save", "to save a copy; the user saves their own file"),
+)
+
+
+def _in_open(tool: BlenderTool, run: Callable[[CallContext, Any, Call], Result]) -> AttachedTool:
+    """A tool that works in the open Blender as in any other."""
+    return AttachedTool(tool, lambda context, arguments, call: run(context.of_open, arguments, call))
+
+
+def _in_twin(tool: BlenderTool) -> AttachedTool:
+    """A tool that works in a copy, so that nothing of the user's is touched and their window stays alive."""
+    return AttachedTool(
+        tool, lambda context, arguments, call: tool.run(context.of_twin(call), arguments, call)
+    )
+
+
+def _scene_state(context: AttachedContext, arguments: scene_state.SceneStateArguments, call: Call) -> Result:
+    """Reads a scene of many objects in the copy, unless that cannot be had."""
+    try:
+        return scene_state.run(context.of_open, arguments, call, {"at_most": _MOST_OBJECTS})
+    except TooLarge:
+        pass
+    try:
+        copy: CallContext = context.of_twin(call)
+    except TooLarge:
+        copy = context.of_open
+    return scene_state.run(copy, arguments, call)
+
+
+def _save(context: AttachedContext, arguments: files.SaveArguments, call: Call) -> Result:
+    if arguments.name is None:
+        raise Refusal(
+            "Give the copy a name. There are no checkpoints here: every change is an undo step of Blender."
+        )
+    result = files.save(context.of_twin(call), arguments, call)
+    text = (
+        result.text.rpartition("\nThe scene is at checkpoint")[0] or result.text
+    )  # of the copy: nobody asked for it
+    data = {name: value for name, value in result.data.items() if name != "checkpoint"}
+    return replace(result, text=text, data=data)
+
+
+def _own(
+    name: str, title: str, module: Any, *, read_only: bool = False, destructive: bool = False
+) -> AttachedTool:
+    """A tool that is there only with an open Blender."""
+    arguments = {view: view.ViewArguments, show: show.ShowArguments, undo: undo.UndoArguments}[module]
+    tool = BlenderTool(
+        name,
+        title,
+        module.DESCRIPTION,
+        arguments,
+        _only_attached,
+        read_only=read_only,
+        destructive=destructive,
+    )
+    return AttachedTool(tool, module.run)
+
+
+def _only_attached(*_: Any) -> Result:
+    raise Refusal("This tool needs an open Blender: simworlds mcp --attach.")
+
+
+ATTACHED: tuple[AttachedTool, ...] = (
+    _own(view.NAME, "See what the user sees", view, read_only=True),
+    AttachedTool(scene_state.TOOL, _scene_state),
+    *(_in_twin(tool) for tool in previews.TOOLS),
+    _in_twin(material_preview.TOOL),
+    _in_twin(uv_preview.TOOL),
+    _in_twin(motion_sheet.TOOL),
+    AttachedTool(execute.TOOL, execute.run),
+    _own(undo.NAME, "Undo your steps", undo, destructive=True),
+    _own(show.NAME, "Show the user something", show),
+    _in_open(tag.TOOL, tag.run),
+    _in_open(group.TOOL, group.run),
+    _in_twin(verify.TOOL),
+    AttachedTool(files.SAVE, _save),
+    _in_twin(trial.TOOL),
+)
+TOOLS: tuple[BlenderTool, ...] = tuple(attached.tool for attached in ATTACHED)
+RUN = {attached.tool.name: attached.run for attached in ATTACHED}

@@ -1,0 +1,140 @@
+"""A copy of the open scene in a sandboxed Blender of our own: for looking, and for rehearsing code."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from pydantic import Field
+
+from agents.blender.launch import WORKER, launch_in
+from agents.blender.supervisor import Supervisor
+from simworlds.sandbox.errors import CannotStart, Refusal
+from simworlds.sandbox.launch import find_blender
+from simworlds.sandbox.program import Program
+from simworlds.sandbox.replies import Claim, Count, Name, Place, mapping
+
+if TYPE_CHECKING:
+    import threading
+    from collections.abc import Callable
+
+    from agents.blender.attached.attached_blender import AttachedBlender
+    from agents.blender.run_folder import RunFolder
+    from simworlds.sandbox.confined_command import Sandbox
+    from simworlds.sandbox.runtime import Runtime
+
+COPY_SECONDS = 5.0
+_WRITE_SECONDS = 60.0
+_LOAD_SECONDS = 120.0
+_PROGRAM = Program("simworlds_worker.attached.twin_worker", WORKER.packages)
+
+
+class _Copy(Claim):
+    bytes: Count
+    seconds: float = Field(ge=0)
+    file: Place
+    folders: list[Place] = Field(max_length=40)
+    unsaved: list[Name] = Field(max_length=40)
+
+
+class Twin:
+    """The sandboxed Blender beside the open one: of the same program if that starts there, else this environment's."""
+
+    def __init__(self, folder: RunFolder, sandbox: Sandbox, tell: Callable[[str], object]) -> None:
+        self._folder, self._sandbox, self._tell = folder, sandbox, tell
+        self._supervisor: Supervisor | None = None
+        self._read: set[str] = set()
+        self._program = ""
+
+    def refreshed(self, attached: AttachedBlender, cancelled: threading.Event | None = None) -> Supervisor:
+        """The supervisor of a Blender that has the open scene as it is now. Raises BlenderError."""
+        supervisor = self.started(attached)
+        with self._folder.lending() as lent:
+            path = lent / "open.blend"
+            copy = attached.call(
+                "write_copy",
+                {"path": str(path), "seconds": COPY_SECONDS},
+                _Copy.model_validate,
+                timeout=_WRITE_SECONDS,
+                what="copying the scene",
+                cancelled=cancelled,
+            ).value
+            new = {*copy.folders} - self._read
+            if not new:
+                self._load(supervisor, path, cancelled)
+        if new:  # the sandbox must let it read other folders, which it learns when it starts
+            self._read |= new
+            self.close()
+            return self.refreshed(attached, cancelled)
+        if copy.unsaved:
+            attached.note_once(
+                f"Painted and not saved, so as before in pictures: {', '.join(copy.unsaved)} (Image > Save or Pack)."
+            )
+        return supervisor
+
+    @staticmethod
+    def _load(supervisor: Supervisor, path: Path, cancelled: threading.Event | None) -> None:
+        path.chmod(0o644)
+        supervisor.call(
+            "load",
+            {"path": str(path), "workspace": supervisor.folder.workspace.for_blender()},
+            mapping,
+            timeout=_LOAD_SECONDS,
+            what="opening the copy",
+            cancelled=cancelled,
+        )
+        supervisor.take_note()
+
+    def started(self, attached: AttachedBlender) -> Supervisor:
+        """The supervisor, of whatever scene. Raises CannotStart."""
+        about = attached.about
+        if self._supervisor is not None and self._program == about.executable:
+            return self._supervisor
+        self.close()
+        try:
+            supervisor = self._start(find_blender(None, Path(about.executable)))
+        except CannotStart as error:
+            supervisor = self._start(find_blender())
+            other = supervisor.launch.runtime.version
+            if tuple(map(int, other.split(".")[:2])) < tuple(map(int, about.version.split(".")[:2])):
+                supervisor.close()
+                raise CannotStart(
+                    f"Blender {about.version} does not start in the sandbox ({error}), and {other} is older: nothing "
+                    "can be drawn or rehearsed here"
+                ) from error
+            attached.note_once(
+                f"Copies are looked at and code is rehearsed in Blender {other}, not {about.version}: {error}."
+            )
+        self._supervisor, self._program = supervisor, about.executable
+        return supervisor
+
+    def _start(self, runtime: Runtime) -> Supervisor:
+        read = tuple(Path(folder) for folder in sorted(self._read))
+        launch = launch_in(self._folder.workspace, runtime, sandbox=self._sandbox, read=read)
+        supervisor = Supervisor(replace(launch, program=_PROGRAM), self._folder)
+        try:
+            supervisor.start()
+        except BaseException:
+            supervisor.close()
+            raise
+        return supervisor
+
+    @property
+    def running(self) -> Supervisor:
+        """The supervisor that runs. Raises Refusal if none does."""
+        if self._supervisor is None:
+            raise Refusal("The copy's Blender does not run.")
+        return self._supervisor
+
+    def end(self) -> None:
+        """From any thread: a running call ends, and nothing is started again."""
+        if self._supervisor is not None:
+            self._supervisor.end()
+            self._supervisor.kill()
+
+    def close(self) -> None:
+        """Ends its Blender."""
+        supervisor, self._supervisor = self._supervisor, None
+        if supervisor is not None:
+            supervisor.close()

@@ -1,0 +1,339 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Runs the calls of clients on Blender's main thread, one at a time, from a timer."""
+
+import contextlib
+import importlib
+import io
+import os
+import queue
+import secrets
+import sys
+import time
+import traceback
+from collections import deque
+
+import bpy
+from bpy.app.handlers import persistent
+
+from simworlds.sandbox.inside.refusal import Refused
+
+from . import announcement, busy, copies, marks
+from .listener import Listener
+from .undo_steps import UndoSteps, digest
+from .user_state import main_window
+
+LOOK, SHOW, CHANGE, CODE = "look", "show", "change", "run code"
+# Tool → (module of the worker's package, function, what it needs).
+TOOLS = {
+    "user_digests": ("attached.user_state", "digests", LOOK),
+    "user_state": ("attached.window", "user_state", LOOK),
+    "screenshot": ("attached.window", "screenshot", LOOK),
+    "write_copy": ("attached.copies", "write_copy", LOOK),
+    "scene_state": ("attached.window", "scene_state", LOOK),
+    "present": ("api_presence", "present", LOOK),
+    "show": ("attached.show", "show", SHOW),
+    "mark": ("attached.show", "mark", LOOK),
+    "undo": ("", "", CHANGE),
+    "tag": ("tag", "tag", CHANGE),
+    "group": ("group", "group", CHANGE),
+    "apply": ("attached.apply", "apply", CODE),
+}
+_IN_WORDS = {
+    "user_state": "read what is selected",
+    "screenshot": "looked at the window",
+    "write_copy": "copied the scene",
+    "scene_state": "read the scene",
+    "present": "looked names up",
+    "undo": "undid steps",
+    "mark": "marked objects",
+}
+_LONGEST_STEP = 100
+_WORKER = __package__.rpartition(".")[0]
+_PATIENCE_SECONDS = 1.5  # in which what the user does may end before a call is refused
+_QUICK, _SLOW = 0.01, 0.1  # seconds between two looks into the queue
+_LIVELY_SECONDS = 20.0  # after a call, more are expected
+_LOGGED = 12
+_LONGEST = 20_000
+
+
+class LogEntry:
+    """A call in the log: ``text``, its ``seconds``, and whether it went ``well``."""
+
+    def __init__(self, text, seconds, *, well):
+        self.text, self.seconds, self.well = text, seconds, well
+
+
+class Rights:
+    """What clients may do, as the user has set it."""
+
+    change = True
+    code = True
+    unrehearsed = False
+    several = False
+    ignore_addons = False
+
+
+class CallRunner:
+    """Listens and runs calls from ``start`` to ``stop``. ``rights`` is asked at every call."""
+
+    def __init__(self, rights, version, redraw=lambda: None):
+        self.log = deque(maxlen=_LOGGED)
+        self.undo_steps = UndoSteps()
+        self.listener = None
+        self._rights, self._version, self._redraw = rights, version, redraw
+        self._head = None
+        self._lively = 0.0
+        self._wanted = deque()
+
+    # Main thread
+
+    @property
+    def clients(self):
+        """The names of the clients."""
+        return [client.name for client in self.listener.clients] if self.listener else []
+
+    def start(self):
+        """Begins to listen. Raises OSError."""
+        if self.listener is not None:
+            return
+        self._token = secrets.token_hex(32)
+        self.listener = Listener(self._token, {})
+        try:
+            self.announce()
+        except OSError:
+            self.listener.stop("")
+            self.listener = None
+            raise
+        for name, handler in self._handlers().items():
+            getattr(bpy.app.handlers, name).append(handler)
+        bpy.app.timers.register(self.tick, first_interval=_QUICK, persistent=True)
+
+    def stop(self, why="The user has stopped SimWorlds in Blender's panel."):
+        """Ends all connections; clients are told ``why``."""
+        if self.listener is None:
+            return
+        self.leave(why)
+        self._head = None
+        marks.set_marks([])
+        for name, handler in self._handlers().items():
+            with contextlib.suppress(ValueError):
+                getattr(bpy.app.handlers, name).remove(handler)
+        if bpy.app.timers.is_registered(self.tick):
+            bpy.app.timers.unregister(self.tick)
+
+    def leave(self, why):
+        """Ends all connections without touching Blender, which may be ending."""
+        announcement.remove()
+        if self.listener is not None:
+            self.listener.stop(why)
+            self.listener = None
+
+    def announce(self):
+        """Writes where it listens, for which file, and what may be done. Raises OSError."""
+        rights = self._rights()
+        about = {
+            "process": os.getpid(),
+            "blender": bpy.app.version_string,
+            "executable": bpy.app.binary_path,
+            "extension": self._version,
+            "file": bpy.data.filepath,
+            "scene": main_window().scene.name,
+            "may": {"change": rights.change, "code": rights.code, "unrehearsed": rights.unrehearsed},
+        }
+        self.listener.about = about
+        self.listener.several = rights.several
+        announcement.write({"port": self.listener.port, "token": self._token, **about})
+
+    def want(self, work):
+        """Has ``work()`` called by the timer, outside of the operator that runs now."""
+        self._wanted.append(work)
+
+    def tick(self):
+        """Runs one call at most. Blender's timer calls it; returns seconds until the next time."""
+        if self.listener is None:
+            return None
+        if self.listener.changed.is_set():
+            self.listener.changed.clear()
+            self._redraw()
+        try:
+            self._step()
+        except Exception:
+            traceback.print_exc()
+        now = time.monotonic()
+        return _QUICK if now < self._lively or self._head is not None else _SLOW
+
+    def _step(self):
+        copies.keep_unsaved()
+        while self._wanted:
+            self._wanted.popleft()()
+        if self._head is None:
+            try:
+                self._head = self.listener.requests.get_nowait()
+            except queue.Empty:
+                return
+        request, now = self._head, time.monotonic()
+        self._lively = now + _LIVELY_SECONDS
+        if request.withdrawn or now > request.deadline:
+            self._done(request)
+            return
+        doing = busy.reason(but_addons=self._rights().ignore_addons)
+        if doing:
+            if now - request.arrived > _PATIENCE_SECONDS:
+                self._answer(
+                    request,
+                    {"refused": f"The user is busy in Blender: {doing}.", "kind": "busy", "seconds": 0.0},
+                )
+            return
+        self._run(request)
+
+    def _run(self, request):
+        started = time.perf_counter()
+        printed = io.StringIO()
+        try:
+            answer = {"value": self._perform(request, printed)}
+        except copies.TooLarge as error:
+            answer = {"refused": str(error)[:_LONGEST], "kind": "large"}
+        except Refused as error:
+            answer = {"refused": str(error)[:_LONGEST]}
+        except ModuleNotFoundError as error:
+            answer = {"missing": str(error.name)}
+        except Exception as error:
+            answer = {
+                "failed": f"{type(error).__name__}: {error}"[:_LONGEST],
+                "traceback": traceback.format_exc()[-8000:],
+            }
+        answer["seconds"] = time.perf_counter() - started
+        answer["stdout"] = printed.getvalue()[-_LONGEST:]
+        self._answer(request, answer)
+
+    def _perform(self, request, printed):
+        entry = TOOLS.get(request.tool)
+        if entry is None:
+            raise Refused(f"The extension in Blender has no {request.tool!r}: simworlds extension install.")
+        kind = entry[2]
+        self._check_right(kind, request)
+        step = request.step = str(request.arguments.pop("step", ""))[:_LONGEST_STEP]
+        if request.tool == "undo":
+            return self.undo_steps.undo(int(request.arguments["count"]))
+
+        def report(done, total, text=""):
+            request.client.send({"ticket": request.ticket, "progress": [done, total, str(text)[:_LONGEST]]})
+
+        function = getattr(importlib.import_module(f"{_WORKER}.{entry[0]}"), entry[1])
+        if kind == LOOK:
+            return function(request.arguments, report)
+        self._check_undo()
+        restores = bool(request.arguments.pop("restores", False))
+        before, changed = digest(), False
+        try:
+            with (
+                contextlib.redirect_stdout(_Both(sys.stdout, printed))
+                if kind == CODE
+                else contextlib.nullcontext()
+            ):
+                value = function(request.arguments, report)
+        finally:
+            changed = before is None or digest() != before
+            if changed or kind == SHOW:
+                self.undo_steps.keep(step or request.tool, before)
+        if restores and changed and value["error"]:
+            self.undo_steps.undo(1)
+        return value
+
+    def _check_right(self, kind, request):
+        rights = self._rights()
+        if kind in {CHANGE, CODE} and not rights.change:
+            raise Refused(
+                "The user allows SimWorlds only to look, not to change anything (panel SimWorlds in Blender)."
+            )
+        if kind == CODE and not rights.code:
+            raise Refused("The user does not allow SimWorlds to run code (panel SimWorlds in Blender).")
+        if kind == CODE and not request.arguments.pop("rehearsed", False) and not rights.unrehearsed:
+            raise Refused(
+                "The code was not rehearsed, and the user allows no other (panel SimWorlds in Blender)."
+            )
+
+    @staticmethod
+    def _check_undo():
+        if not bpy.context.preferences.edit.use_global_undo:
+            raise Refused(
+                "Global Undo is off, so nothing could be undone: ask the user to turn it on (Preferences > System)."
+            )
+        active = main_window().view_layer.objects.active
+        if active is not None and active.mode != "OBJECT":
+            raise Refused(
+                f"The user is in {active.mode} mode on {active.name!r}, where Blender's undo knows that object alone. "
+                "Ask them to go back to Object mode (Tab), and call again."
+            )
+
+    def _answer(self, request, answer):
+        events, request.client.events = request.client.events[:20], []
+        request.reply(**answer, left=[], events=events)
+        well = "value" in answer
+        text = str(request.step or _IN_WORDS.get(request.tool, request.tool))
+        if not well:
+            text += f": {answer.get('refused') or answer.get('failed') or 'failed'}"
+        self.log.appendleft(LogEntry(text, answer["seconds"], well=well))
+        self._done(request)
+        self._redraw()
+
+    def _done(self, request):
+        self.listener.finished(request)
+        self._head = None
+
+    # What the user does
+
+    def _tell(self, event):
+        for client in self.listener.clients if self.listener else ():
+            if event not in client.events:
+                client.events.append(event)
+
+    def _handlers(self):
+        if not hasattr(self, "_kept_handlers"):
+            self._kept_handlers = self._new_handlers()
+        return self._kept_handlers
+
+    def _new_handlers(self):
+        @persistent
+        def loaded(*_):
+            self.undo_steps.forget()
+            copies.forget_unsaved()
+            name = bpy.data.filepath or "a new file"
+            self._tell(
+                f"The user has opened {name}: what you knew of the scene no longer holds. Read its state."
+            )
+            self._announce_quietly()
+
+        @persistent
+        def saved(*_):
+            copies.forget_unsaved()
+            self._tell(f"The user has saved the file as {bpy.data.filepath}.")
+            self._announce_quietly()
+
+        @persistent
+        def undone(*_):
+            if not self.undo_steps.busy:
+                self._tell("The user has undone or redone steps. Read what you build on before you go on.")
+
+        return {"load_post": loaded, "save_post": saved, "undo_post": undone, "redo_post": undone}
+
+    def _announce_quietly(self):
+        if self.listener is not None:
+            with contextlib.suppress(OSError, LookupError):
+                self.announce()
+
+
+class _Both:
+    """A stream that writes to two: to Blender's console, and to the answer."""
+
+    def __init__(self, *streams):
+        self._streams = [stream for stream in streams if stream is not None]
+
+    def write(self, text):
+        for stream in self._streams:
+            stream.write(text)
+        return len(text)
+
+    def flush(self):
+        for stream in self._streams:
+            stream.flush()

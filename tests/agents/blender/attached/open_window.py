@@ -1,0 +1,174 @@
+"""A real Blender with a window, on a display of its own, with the extension installed as its user would."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import signal
+import subprocess
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+from processes import becomes
+from serving import COMMAND, REPO
+
+from agents.blender import extension
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_SIZE = (1280, 800)
+_START_SECONDS = 120.0  # drawn without a graphics card, on a machine that does other things too
+_STARTER = """\
+import bpy
+bpy.context.preferences.view.show_splash = False
+def _start():
+    bpy.ops.simworlds.start()
+bpy.app.timers.register(_start, first_interval=0.2)
+
+import os
+def _act():
+    if os.path.exists({acts!r}):
+        code = open({acts!r}).read()
+        os.remove({acts!r})
+        exec(code)
+    return 0.1
+bpy.app.timers.register(_act, persistent=True)
+"""
+
+
+def blender_with_a_window() -> Path:
+    """The installed Blender; skips the test, with the reason, where it or a display cannot be had."""
+    found = shutil.which("blender")
+    missing = [program for program in ("Xvfb", "xdotool") if shutil.which(program) is None]
+    if found is None:
+        pytest.skip("no Blender with a window is installed (Debian: apt-get install blender)")
+    if missing:
+        pytest.skip(f"{' and '.join(missing)} cannot be found (Debian: apt-get install xvfb xdotool)")
+    return Path(found)
+
+
+class OpenWindow:
+    """Blender's window on a virtual display; everything of the user's is below ``root``."""
+
+    def __init__(self, root: Path) -> None:
+        blender = blender_with_a_window()
+        self.root, self.home = root, root / "home"
+        for folder in (self.home, root / "config", root / "scripts"):
+            folder.mkdir(parents=True)
+        self._display, self.display = _virtual_display()
+        self.environment = {
+            **{
+                name: value
+                for name, value in os.environ.items()
+                if not name.startswith(("SIMWORLDS_", "BLENDER_"))
+            },
+            "BLENDER_USER_CONFIG": str(root / "config"),
+            "BLENDER_USER_SCRIPTS": str(root / "scripts"),
+            "SIMWORLDS_HOME": str(self.home),
+            "DISPLAY": self.display,
+            "LIBGL_ALWAYS_SOFTWARE": "1",
+            "TMPDIR": str(root),
+        }
+        kept = {name: os.environ.get(name) for name in ("BLENDER_USER_CONFIG", "BLENDER_USER_SCRIPTS")}
+        os.environ.update({name: self.environment[name] for name in kept})
+        try:
+            extension.install(extension.build(root), blender)
+        finally:
+            for name, value in kept.items():
+                os.environ.pop(name) if value is None else os.environ.update({name: value})
+        (root / "start.py").write_text(_STARTER.format(acts=str(root / "acts.py")))
+        self._blender = blender
+        self.process = self.open()
+
+    def open(self) -> subprocess.Popen[bytes]:
+        """Opens Blender, with the panel's Start pressed; waits until it listens."""
+        words = [
+            "-p",
+            "0",
+            "0",
+            *map(str, _SIZE),
+            "--no-window-focus",
+            "--python",
+            str(self.root / "start.py"),
+        ]
+        log = (self.root / "blender.log").open("ab")
+        self.process = subprocess.Popen(
+            [str(self._blender), *words], env=self.environment, stdout=log, stderr=log, start_new_session=True
+        )
+        log.close()
+        file = self.home / "open-blenders" / f"{self.process.pid}.json"
+        listens = becomes(lambda: file.exists() or self.process.poll() is not None, _START_SECONDS)
+        said = (self.root / "blender.log").read_text()[-2000:]
+        assert listens, said
+        assert file.exists(), said
+        return self.process
+
+    @property
+    def command(self) -> list[str]:
+        """The command of a server that attaches to it."""
+        return [*COMMAND, "--attach"]
+
+    @property
+    def server_environment(self) -> dict[str, str]:
+        """The environment of that server."""
+        return {**self.environment, "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error"}
+
+    def act(self, *words: str) -> None:
+        """Moves the mouse and presses keys, as ``xdotool`` does with these words."""
+        subprocess.run(["xdotool", *words], env=self.environment, check=True, timeout=30)
+
+    def choose(self, code: str) -> None:
+        """Does what the user would choose from a menu, as code; returns when it is begun."""
+        acts = self.root / "acts.py"
+        (self.root / "acts.part").write_text(code)
+        (self.root / "acts.part").rename(acts)
+        assert becomes(lambda: not acts.exists())
+
+    def kill(self) -> None:
+        """Ends Blender as a crash would."""
+        os.killpg(self.process.pid, signal.SIGKILL)
+        self.process.wait()
+
+    def close(self) -> None:
+        """Ends Blender and the display."""
+        if self.process.poll() is None:
+            self.kill()
+        self._display.terminate()
+        self._display.wait()
+
+
+def _virtual_display() -> tuple[subprocess.Popen[bytes], str]:
+    reading, writing = os.pipe()
+    try:
+        process = subprocess.Popen(
+            [
+                "Xvfb",
+                "-displayfd",
+                str(writing),
+                "-screen",
+                "0",
+                f"{_SIZE[0]}x{_SIZE[1]}x24",
+                "-nolisten",
+                "tcp",
+            ],
+            pass_fds=(writing,),
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.DEVNULL,
+        )
+    finally:
+        os.close(writing)
+    with os.fdopen(reading) as told:
+        number = told.readline().strip()
+    assert number, "Xvfb did not start"
+    return process, f":{number}"
+
+
+def opened(root: Path) -> Iterator[OpenWindow]:
+    """A window for a fixture."""
+    window = OpenWindow(root)
+    try:
+        yield window
+    finally:
+        window.close()

@@ -1,0 +1,161 @@
+"""Connections to an open Blender, without one: what listens, who is let in, and the files that say where."""
+
+from __future__ import annotations
+
+import json
+import os
+import socket
+import subprocess
+import sys
+import threading
+from typing import TYPE_CHECKING, Any
+
+import pytest
+from processes import becomes
+
+from agents.blender.attached.attached_blender import AttachedBlender
+from agents.blender.attached.open_blenders import choose, open_blenders
+from agents.blender.inside.attached import announcement, link
+from agents.blender.inside.attached.listener import Listener
+from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.replies import unread
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+TOKEN = "a" * 64
+ABOUT: dict[str, Any] = {
+    "process": os.getpid(),
+    "blender": "4.2.1 LTS",
+    "executable": "/opt/blender/blender",
+    "extension": "0.1.0",
+    "file": "/projects/kitchen.blend",
+    "scene": "Scene",
+    "may": {"change": True, "code": True, "unrehearsed": False},
+}
+
+
+@pytest.fixture(autouse=True)
+def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+    monkeypatch.setenv("SIMWORLDS_HOME", str(tmp_path))
+    return tmp_path
+
+
+@pytest.fixture
+def listener() -> Iterator[Listener]:
+    """What listens as the extension does; the tests answer in Blender's place."""
+    listening = Listener(TOKEN, ABOUT)
+    announcement.write({"port": listening.port, "token": TOKEN, **ABOUT})
+    yield listening
+    listening.stop("the end")
+
+
+def attached() -> AttachedBlender:
+    return AttachedBlender("open", "a test", lambda _about: "", lambda _line: None)
+
+
+def test_finds_what_was_announced(home: Path, listener: Listener) -> None:
+    (found,) = open_blenders()
+    assert str(found.about) == f"Blender 4.2.1 with kitchen.blend (process {os.getpid()})"
+    assert choose("kitchen") == choose(str(os.getpid())) == choose("auto") == found
+    with pytest.raises(Refusal, match="No open Blender is 'garden'"):
+        choose("garden")
+
+
+def test_tells_several_apart(listener: Listener) -> None:
+    other = subprocess.Popen([sys.executable, "-c", "input()"], stdin=subprocess.PIPE)
+    try:
+        about = {**ABOUT, "process": other.pid, "file": "/projects/garden.blend"}
+        file = os.open(announcement.path_of(other.pid), os.O_WRONLY | os.O_CREAT, 0o600)
+        with open(file, "w") as written:  # noqa: PTH123 - a descriptor
+            json.dump({"port": listener.port, "token": TOKEN, **about}, written)
+        with pytest.raises(Refusal, match=r"Several Blenders listen: .*kitchen.*garden|garden.*kitchen"):
+            choose("open")
+        assert choose("garden").about.process == other.pid
+    finally:
+        other.kill()
+        other.communicate()
+    assert [blender.about.process for blender in open_blenders()] == [os.getpid()]
+
+
+def test_files_that_others_can_read_do_not_count(listener: Listener, home: Path) -> None:
+    (home / "open-blenders" / f"{os.getpid()}.json").chmod(0o644)
+    assert open_blenders() == []
+    with pytest.raises(Refusal, match="press Start"):
+        choose("open")
+
+
+def test_a_call_is_answered_with_what_the_user_did(listener: Listener) -> None:
+    blender = attached()
+    progress: list[tuple[float, float | None, str]] = []
+
+    def answer() -> None:
+        request = listener.requests.get(timeout=10)
+        request.client.send({"ticket": request.ticket, "progress": [1, 2, "half"]})
+        request.reply(
+            value=request.arguments, seconds=0.1, left=[], events=["The user has saved."], stdout="hi"
+        )
+
+    thread = threading.Thread(target=answer)
+    thread.start()
+    reply = blender.call("tool", {"a": 1}, unread, timeout=10, progress=lambda *told: progress.append(told))
+    thread.join()
+    assert reply.value == {"a": 1}
+    assert reply.stdout == "hi"
+    assert progress == [(1.0, 2.0, "half")]
+    assert "The user has saved." in blender.take_note()
+    blender.close()
+
+
+def test_one_client_at_a_time_unless_the_user_allows_more(listener: Listener) -> None:
+    first = attached()
+    assert first.about.file.endswith("kitchen.blend")
+    with pytest.raises(Refusal, match="a test is connected to this Blender already"):
+        attached().about  # noqa: B018 - connects
+    listener.several = True
+    second = attached()
+    assert second.about == first.about
+    first.close()
+    second.close()
+    assert becomes(lambda: not listener.clients)
+
+
+def test_a_stranger_learns_nothing(listener: Listener) -> None:
+    with socket.create_connection(("127.0.0.1", listener.port)) as sock:
+        end = link.Link(sock, "b" * 64, listens=False)
+        end.send({"hello": {"name": "a stranger", "protocol": link.PROTOCOL}})
+        with pytest.raises((EOFError, OSError)):
+            end.receive()
+    assert listener.requests.empty()
+
+
+def test_a_call_that_is_given_up_is_withdrawn(listener: Listener, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("agents.blender.attached.attached_blender._GRACE_SECONDS", 0.1)
+    blender = attached()
+    with pytest.raises(Refusal, match=r"has not answered slow work in .* s\. It was withdrawn"):
+        blender.call("tool", {}, unread, timeout=0.1, what="slow work")
+    request = listener.requests.get(timeout=10)
+    assert becomes(lambda: request.withdrawn)
+    blender.close()
+
+
+def test_what_a_client_has_asked_is_dropped_when_it_leaves(listener: Listener) -> None:
+    blender = attached()
+    blender._connected().send({"ticket": "t", "tool": "tool", "arguments": {}, "seconds": 60})
+    request = listener.requests.get(timeout=10)
+    assert not request.withdrawn
+    blender.close()
+    assert becomes(lambda: request.withdrawn)
+
+
+def test_a_goodbye_is_told_once_and_the_next_call_connects_again(listener: Listener) -> None:
+    blender = attached()
+    assert blender.about
+    for client in listener.clients:
+        client.end("The user has stopped SimWorlds in Blender's panel.")
+    assert becomes(lambda: not listener.clients)
+    with pytest.raises(Refusal, match="The user has stopped SimWorlds in Blender's panel"):
+        blender.about  # noqa: B018 - connects
+    assert blender.about.process == os.getpid()
+    blender.close()

@@ -1,0 +1,416 @@
+"""``simworlds mcp --attach`` with a real window: a client builds, looks and undoes beside a user who works there."""
+
+from __future__ import annotations
+
+import json
+import stat
+import time
+from base64 import b64decode
+from dataclasses import replace
+from io import BytesIO
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import pytest
+from mcp import Client, StdioServerParameters
+from mcp_types import ImageContent, TextContent
+from open_window import OpenWindow, opened
+from PIL import Image
+from places import REPO
+
+from agents.blender.attached.attached_blender import AttachedBlender
+from agents.blender.attached.open_blenders import About, open_blenders
+from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.replies import unread
+
+if TYPE_CHECKING:
+    from collections.abc import AsyncIterator, Callable, Iterator
+    from pathlib import Path
+
+    from mcp_types import CallToolResult
+
+pytestmark = [pytest.mark.window, pytest.mark.anyio]
+
+STATE = {"detail": "normal", "objects": None, "sections": ["collections", "objects", "view"]}
+BUILD = """\
+# add {name}
+mesh = bpy.data.meshes.new("{name}")
+mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+made = bpy.data.objects.new("{name}", mesh)
+bpy.context.scene.collection.objects.link(made)
+made.location = ({x}, 0, 0)
+"""
+
+
+@pytest.fixture(scope="module")
+def anyio_backend() -> str:
+    return "asyncio"
+
+
+@pytest.fixture(scope="module")
+def window(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenWindow]:
+    """The window that all tests share."""
+    yield from opened(tmp_path_factory.mktemp("window"))
+
+
+def server(window: OpenWindow) -> StdioServerParameters:
+    words = window.command
+    return StdioServerParameters(command=words[0], args=words[1:], env=window.server_environment, cwd=REPO)
+
+
+@pytest.fixture(scope="module")
+async def client(window: OpenWindow) -> AsyncIterator[Client]:
+    """The client that most tests share; they undo what they do."""
+    async with Client(server(window), read_timeout_seconds=200) as connected:
+        yield connected
+
+
+@pytest.fixture
+def direct(window: OpenWindow, monkeypatch: pytest.MonkeyPatch) -> Iterator[Callable[[], AttachedBlender]]:
+    """Makes connections without a server in between."""
+    monkeypatch.setenv("SIMWORLDS_HOME", str(window.home))
+    made: list[AttachedBlender] = []
+
+    def connect() -> AttachedBlender:
+        made.append(AttachedBlender("open", "a test", copy_in(window.root), lambda _line: None))
+        return made[-1]
+
+    yield connect
+    for blender in made:
+        blender.close()
+
+
+def copy_in(folder: Path) -> Callable[[About], str]:
+    return lambda about: str(folder / f"copy-{about.process}.blend")
+
+
+async def use(client: Client, tool: str, **arguments: Any) -> CallToolResult:
+    return await client.call_tool(tool, arguments)
+
+
+def text(result: CallToolResult) -> str:
+    return " ".join(block.text for block in result.content if isinstance(block, TextContent))
+
+
+def picture(result: CallToolResult) -> Image.Image:
+    block = next(block for block in result.content if isinstance(block, ImageContent))
+    return Image.open(BytesIO(b64decode(block.data)))
+
+
+async def build(client: Client, name: str, x: int = 0) -> CallToolResult:
+    result = await use(client, "blender_execute", code=BUILD.format(name=name, x=x))
+    assert not result.is_error, text(result)
+    return result
+
+
+async def state(client: Client) -> dict[str, Any]:
+    result = await use(client, "blender_view", picture="none")
+    assert not result.is_error, text(result)
+    assert result.structured_content is not None
+    return result.structured_content
+
+
+async def digests(client: Client) -> dict[str, str]:
+    """Digests of everything in the file."""
+    result = await use(client, "blender_scene_state", sections=["data_blocks"])
+    assert result.structured_content is not None
+    return result.structured_content["data_blocks"]
+
+
+async def test_only_its_user_can_read_where_it_listens(window: OpenWindow) -> None:
+    file = window.home / "open-blenders" / f"{window.process.pid}.json"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert stat.S_IMODE(file.parent.stat().st_mode) == 0o700
+    assert json.loads(file.read_text())["process"] == window.process.pid
+
+
+def test_looking_changes_nothing_that_the_user_has_set(
+    window: OpenWindow, direct: Callable[[], AttachedBlender]
+) -> None:
+    """Rendered looks write a copy, and draw in another Blender."""
+    blender = direct()
+    blender.call("scene_state", STATE, dict, timeout=60)  # Blender evaluates the scene once
+    before = blender.call("user_digests", {}, dict, timeout=60).value
+    path = str(window.root / "look.png")
+    for tool, arguments in (
+        ("write_copy", {"path": str(window.root / "look.blend"), "seconds": 5}),
+        ("screenshot", {"path": path, "editor": "VIEW_3D"}),
+        ("screenshot", {"path": path, "editor": None}),
+        ("user_state", {}),
+        ("scene_state", STATE),
+        ("present", {"paths": ["bpy.ops.mesh.primitive_cube_add"]}),
+    ):
+        blender.call(tool, arguments, unread, timeout=60)
+    assert blender.call("user_digests", {}, dict, timeout=60).value == before
+
+
+def test_answers_500_calls(direct: Callable[[], AttachedBlender]) -> None:
+    blender = direct()
+    frames = {blender.call("user_state", {}, dict, timeout=60).value["frame"] for _ in range(500)}
+    assert frames == {1}
+
+
+def test_a_client_that_disappears_in_mid_call_leaves_one_step(direct: Callable[[], AttachedBlender]) -> None:
+    blender = direct()
+    code = "import time\nbpy.data.objects['Cube'].location.x = 3\ntime.sleep(1)"
+    arguments = {"code": code, "seconds": 30, "rehearsed": True, "step": "left alone"}
+    blender._connected().send({"ticket": "t", "tool": "apply", "arguments": arguments, "seconds": 30})
+    time.sleep(0.3)  # not before it has begun
+    blender.close()
+    other = direct()
+    undone = other.call("undo", {"count": 1}, dict, timeout=60).value
+    assert undone == {"undone": ["SimWorlds: left alone"], "matches": True, "left": 0}
+
+
+def test_a_wrong_token_gets_no_answer(direct: Callable[[], AttachedBlender]) -> None:
+    blender = open_blenders()[0]
+    with pytest.raises(Refusal, match="does not answer"):
+        direct()._met(replace(blender, token="0" * 64))
+
+
+@pytest.mark.parametrize("change", ["bpy.data.objects['Cube'].location.y = 4", "pass"])
+def test_code_that_fails_is_undone_if_wanted(direct: Callable[[], AttachedBlender], change: str) -> None:
+    blender = direct()
+    first = {
+        "code": "bpy.data.objects['Cube'].location.z = 4",
+        "seconds": 30,
+        "rehearsed": True,
+        "step": "kept",
+    }
+    blender.call("apply", first, unread, timeout=30)
+    second = {"code": f"{change}\n1/0", "seconds": 30, "rehearsed": True, "step": "undone", "restores": True}
+    failed = blender.call("apply", second, dict, timeout=30).value
+    assert failed["error"]["type"] == "ZeroDivisionError"
+    undone = blender.call("undo", {"count": 1}, dict, timeout=60).value
+    assert undone == {"undone": ["SimWorlds: kept"], "matches": True, "left": 0}
+
+
+def test_code_that_runs_on_is_ended_at_its_deadline(direct: Callable[[], AttachedBlender]) -> None:
+    arguments = {"code": "while True: pass", "seconds": 0.5, "rehearsed": True}
+    ended = direct().call("apply", arguments, dict, timeout=30).value
+    assert ended["error"]["type"] == "OutOfTime"
+
+
+async def test_tools_of_an_open_blender_are_listed_with_the_shared_ones(client: Client) -> None:
+    names = {tool.name for tool in (await client.list_tools()).tools}
+    assert {"blender_view", "blender_show", "blender_undo", "blender_docs", "blender_check"} <= names
+    assert {"blender_scene_state", "blender_execute", "blender_tag_object", "blender_verify"} <= names
+    assert not {"blender_load", "blender_render"} & names
+
+
+async def test_builds_step_by_step_and_undoes_all(client: Client, window: OpenWindow) -> None:
+    before = await digests(client)
+    first = await build(client, "One")
+    assert "a copy was kept" in text(first)
+    assert list((window.home / "runs").glob("*/before-changes/*.blend"))
+    await build(client, "Two", 3)
+    tagged = await use(
+        client, "blender_group", groups=[{"object": "pair", "system": "things", "members": ["One", "Two"]}]
+    )
+    assert not tagged.is_error, text(tagged)
+    built = await digests(client)
+    assert {"Object One", "Object Two", "Object pair root"} <= built.keys()
+    undone = await use(client, "blender_undo", steps=3)
+    assert undone.structured_content is not None
+    assert undone.structured_content["undone"] == [
+        "SimWorlds: grouping",
+        "SimWorlds: add Two",
+        "SimWorlds: add One",
+    ]
+    assert undone.structured_content["matches"] is True
+    assert await digests(client) == before
+
+
+async def test_the_screenshot_shows_what_was_added(client: Client) -> None:
+    before = picture(await use(client, "blender_view"))
+    await build(client, "Shown", 2)
+    await use(client, "blender_show", objects=["Shown"], mark=True)
+    after = picture(await use(client, "blender_view", picture="window"))
+    assert before.size[0] >= 800
+    red, green, blue = np.moveaxis(np.asarray(after.convert("RGB")).astype(int), 2, 0)
+    assert (
+        np.count_nonzero((red > 200) & (green > 60) & (green < 120) & (blue < 40)) > 500
+    )  # the ring around it
+    await use(client, "blender_show", mark=False)
+    await use(client, "blender_undo", steps=2)
+
+
+async def test_looking_leaves_frame_view_and_selection(client: Client) -> None:
+    await build(client, "Looked at", 1)
+    await use(client, "blender_show", objects=["Cube"], frame=7)
+    before = await state(client)
+    for tool, arguments in (
+        ("blender_scene_layout_preview", {"frame": 3}),
+        ("blender_single_mesh_preview", {"object": "Cube"}),
+        (
+            "blender_motion_sheet_preview",
+            {"actors": ["Cube"], "phases": [{"name": "a", "start": 1, "end": 12}]},
+        ),
+        ("blender_verify", {"rules": ["V"]}),
+        ("blender_scene_state", {"detail": "full"}),
+    ):
+        looked = await use(client, tool, **arguments)
+        assert not looked.is_error, text(looked)
+    assert await state(client) == before
+    assert before["frame"] == 7
+    await use(client, "blender_undo", steps=2)
+
+
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        ("while True: pass", "ran past its deadline"),
+        ("import ctypes\nctypes.string_at(0)", "calls C"),
+        ("import os\nos.abort()", "crashed"),
+        ("bpy.ops.wm.quit_blender()", "wm.quit_blender"),
+        ("bpy.ops.wm.save_as_mainfile(filepath='//other.blend')", "wm.save_as_mainfile"),
+        ("try:\n    open('/tmp/simworlds-test-file', 'w')\nexcept OSError:\n    pass", "writes a file"),
+        (
+            "import socket\ntry:\n    socket.create_connection(('127.0.0.1', 9))\nexcept OSError:\n    pass",
+            "opens a socket",
+        ),
+        ("bpy.data.objects['There is none']", "KeyError"),
+    ],
+)
+async def test_harmful_code_never_arrives(client: Client, code: str, said: str) -> None:
+    before = await digests(client)
+    result = await use(client, "blender_execute", code=code, timeout=5)
+    assert result.is_error
+    assert said in text(result)
+    assert "Nothing was done in the open Blender" in text(result)
+    assert await digests(client) == before
+
+
+async def test_unrehearsed_code_needs_the_users_leave(client: Client) -> None:
+    result = await use(client, "blender_execute", code="1+1", rehearse="off")
+    assert result.is_error
+    assert "the user allows no other" in text(result)
+
+
+async def test_waits_until_the_user_has_finished_what_they_drag(client: Client, window: OpenWindow) -> None:
+    before = await digests(client)
+    window.act("mousemove", "500", "380", "click", "1", "key", "g")
+    window.act("mousemove", "560", "380")
+    refused = await use(client, "blender_execute", code="1+1")
+    assert refused.is_error
+    assert "The user is busy in Blender: the operator 'Move' is running" in text(refused)
+    window.act("key", "Escape")
+    assert await digests(client) == before
+
+
+async def test_a_scene_that_is_too_large_to_copy_is_told(client: Client, window: OpenWindow) -> None:
+    """Here a slow disk: Blender is told that it writes a byte a second."""
+    name = "simworlds_live.worker.attached.copies"
+    window.choose(f"import sys; sys.modules[{name!r}]._measured['speed'] = 1.0")
+    for tool, arguments in (("blender_execute", {"code": "1+1"}), ("blender_scene_layout_preview", {})):
+        refused = await use(client, tool, **arguments)
+        assert refused.is_error
+        assert "The scene is too large to be copied in 5 s" in text(refused)
+    window.choose(f"import sys; sys.modules[{name!r}]._measured['speed'] = 1e9")
+    assert not (await use(client, "blender_execute", code="1+1")).is_error
+
+
+async def test_never_undoes_the_users_own_work(client: Client, window: OpenWindow) -> None:
+    await build(client, "Theirs", 2)
+    window.act("mousemove", "500", "380", "key", "a")
+    window.act("key", "g", "key", "x", "key", "2", "key", "Return")
+    refused = await use(client, "blender_undo")
+    assert refused.is_error
+    assert "The user has changed the scene after SimWorlds' last step" in text(refused)
+    window.act("key", "ctrl+z")
+    window.act("key", "ctrl+z")
+    undone = await use(client, "blender_undo")
+    assert "The scene is as it was before them" in text(undone)
+    assert "The user has undone" in text(undone)
+
+
+async def test_a_second_client_is_refused_and_told_why(
+    client: Client, direct: Callable[[], AttachedBlender]
+) -> None:
+    await state(client)
+    with pytest.raises(Refusal, match="SimWorlds MCP is connected to this Blender already"):
+        direct().about  # noqa: B018 - connects
+
+
+async def test_many_objects_are_read_in_the_copy(client: Client) -> None:
+    code = """# many
+for number in range(1001):
+    bpy.context.scene.collection.objects.link(bpy.data.objects.new(f"Many {number}", None))
+"""
+    assert not (await use(client, "blender_execute", code=code)).is_error
+    read = await use(client, "blender_scene_state", detail="summary")
+    assert "1004 objects" in text(read)
+    undone = await use(client, "blender_undo")
+    assert "as it was before them" in text(undone)
+    assert "3 objects" in text(await use(client, "blender_scene_state", detail="summary"))
+
+
+async def test_the_user_decides_what_may_be_done(client: Client, window: OpenWindow) -> None:
+    chosen = "bpy.context.preferences.addons['simworlds_live'].preferences.{} = {}"
+    for right, said in (("may_run", "does not allow SimWorlds to run code"), ("may_change", "only to look")):
+        window.choose(chosen.format(right, False))
+        refused = await use(client, "blender_execute", code="bpy.data.objects['Cube'].location.x = 1")
+        window.choose(chosen.format(right, True))
+        assert refused.is_error
+        assert said in text(refused)
+
+
+async def test_the_panel_undoes_and_stops(client: Client, window: OpenWindow) -> None:
+    before = await digests(client)
+    await build(client, "Undone by hand", 2)
+    window.choose("bpy.ops.simworlds.undo()")
+    assert await digests(client) == before
+    window.choose("bpy.ops.simworlds.stop()")
+    assert "The user has stopped SimWorlds in Blender's panel" in text(
+        await use(client, "blender_scene_state")
+    )
+    window.choose("bpy.ops.simworlds.start()")
+    again = await use(client, "blender_scene_state")
+    assert "Attached to the user's open Blender" in text(again)
+
+
+async def test_what_the_user_saves_is_told(client: Client, window: OpenWindow) -> None:
+    file = window.root / "kitchen.blend"
+    await build(client, "Saved", 2)
+    window.choose(f"bpy.ops.wm.save_as_mainfile(filepath={str(file)!r})")
+    seen = await use(client, "blender_view", picture="none")
+    assert f"The user has saved the file as {file}" in text(seen)
+    assert seen.structured_content is not None
+    assert seen.structured_content["file"] == str(file)
+    assert (await state(client))["unsaved"] is False  # Blender notes it a moment after it has saved
+    looked = await use(client, "blender_scene_layout_preview")
+    assert not looked.is_error, text(looked)
+    assert (await state(client))["unsaved"] is False
+    await use(client, "blender_undo")
+
+
+async def test_another_file_is_told_and_its_undo_is_gone(client: Client, window: OpenWindow) -> None:
+    await build(client, "Gone", 2)
+    window.choose("bpy.ops.wm.read_homefile(app_template='')")
+    said = text(await use(client, "blender_view", picture="none"))
+    assert "The user has opened a new file" in said
+    undone = await use(client, "blender_undo")
+    assert undone.is_error
+    assert "no step" in text(undone)
+
+
+async def test_a_crash_is_told_and_the_next_window_is_attached_to(client: Client, window: OpenWindow) -> None:
+    await build(client, "Lost", 2)
+    window.kill()
+    said = text(await use(client, "blender_scene_state"))
+    assert "has ended: it crashed or was killed" in said
+    assert "A copy from before the first change is" in said
+    none = await use(client, "blender_scene_state")
+    assert "No open Blender listens" in text(none)
+    window.open()
+    again = await use(client, "blender_scene_state")
+    assert not again.is_error
+    assert "Attached to the user's open Blender" in text(again)
+
+
+async def test_closing_blender_is_told(client: Client, window: OpenWindow) -> None:
+    window.choose("bpy.ops.wm.quit_blender()")
+    window.process.wait(60)
+    said = text(await use(client, "blender_scene_state"))
+    assert "The user has closed Blender" in said
+    assert not list((window.home / "open-blenders").glob("*.json"))

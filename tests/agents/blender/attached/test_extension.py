@@ -1,0 +1,112 @@
+"""The extension's archive: what is in it, and that this environment's Blender can load all of it."""
+
+from __future__ import annotations
+
+import ast
+import subprocess
+import sys
+import tomllib
+import zipfile
+from typing import TYPE_CHECKING
+
+import pytest
+from click.testing import CliRunner
+
+from agents.blender import extension
+from agents.commands.extension import extension as command
+from simworlds.sandbox.runtime import installed_bpy
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+LOAD = """
+import importlib, pkgutil, sys
+import bpy
+sys.path.insert(0, sys.argv[1])
+import simworlds_live
+names = [m.name for m in pkgutil.walk_packages(simworlds_live.__path__, "simworlds_live.")]
+# Those that draw need a window, those of the sandbox's own programs are not called here.
+skipped = {"simworlds_live.worker.attached.marks", "simworlds_live.worker.attached.show",
+           "simworlds_live.worker.attached.calls", "simworlds_live.worker.attached.panel"}
+for name in names:
+    if name not in skipped:
+        importlib.import_module(name)
+foreign = [name for name in sys.modules if name.partition(".")[0] in {"simworlds", "agents"}]
+from simworlds_live.worker.attached import structures, undo_steps, user_state
+offset = structures.offset_of("Object", "loc")
+import ctypes
+made = bpy.data.objects.new("x", None)
+made.location = 1, 2, 3
+read = (ctypes.c_float * 3).from_address(made.as_pointer() + offset)[:]
+before = undo_steps.digest()
+made.location.x = 7
+print(len(names) > 90, foreign, read, undo_steps.digest() != before)
+"""
+
+
+def test_the_same_code_makes_the_same_archive(tmp_path: Path) -> None:
+    first, second = extension.build(tmp_path / "a"), extension.build(tmp_path / "b")
+    assert first.read_bytes() == second.read_bytes()
+
+
+def test_it_is_an_add_on_and_an_extension(tmp_path: Path) -> None:
+    with zipfile.ZipFile(extension.build(tmp_path)) as archive:
+        names = archive.namelist()
+        manifest = tomllib.loads(archive.read(f"{extension.NAME}/blender_manifest.toml").decode())
+        entry = ast.parse(archive.read(f"{extension.NAME}/__init__.py"))
+    assert all(name.startswith(f"{extension.NAME}/") for name in names)
+    assert manifest["blender_version_min"] == "4.2.0"
+    assert manifest["id"] == extension.NAME
+    assert len(manifest["tagline"]) <= 64
+    for reason in manifest["permissions"].values():
+        assert len(reason) <= 64
+        assert not reason.endswith(".")
+    info = next(node for node in entry.body if isinstance(node, ast.Assign))
+    assert ast.literal_eval(info.value)["blender"] == (3, 4, 0)
+
+
+def test_no_module_of_it_imports_by_the_projects_names(tmp_path: Path) -> None:
+    with zipfile.ZipFile(extension.build(tmp_path)) as archive:
+        for name in archive.namelist():
+            if name.endswith(".py"):
+                tree = ast.parse(archive.read(name))
+                modules = [
+                    node.module or ""
+                    for node in ast.walk(tree)
+                    if isinstance(node, ast.ImportFrom) and not node.level
+                ]
+                modules += [
+                    alias.name
+                    for node in ast.walk(tree)
+                    if isinstance(node, ast.Import)
+                    for alias in node.names
+                ]
+                assert not [module for module in modules if module.startswith(("simworlds", "agents"))], name
+
+
+def test_imports_are_made_relative_from_any_depth() -> None:
+    source = "from simworlds.sandbox.inside.refusal import Refused\n"
+    assert extension.relocated(source, "worker/tag.py") == "from ..sandbox.refusal import Refused\n"
+    assert extension.relocated(source, "worker/state/a.py") == "from ...sandbox.refusal import Refused\n"
+
+
+@pytest.mark.blender
+def test_this_environments_blender_loads_all_of_it(tmp_path: Path) -> None:
+    if installed_bpy() is None:
+        pytest.skip("there is no Blender in this environment")
+    with zipfile.ZipFile(extension.build(tmp_path)) as archive:
+        archive.extractall(tmp_path)
+    done = subprocess.run(
+        [sys.executable, "-c", LOAD, str(tmp_path)], capture_output=True, text=True, check=False
+    )
+    assert done.stdout.strip().splitlines()[-1:] == ["True [] [1.0, 2.0, 3.0] True"], (
+        done.stdout + done.stderr
+    )
+
+
+def test_a_program_that_is_no_blender_is_told(tmp_path: Path) -> None:
+    result = CliRunner().invoke(command, ["install", "--blender-exe", sys.executable])
+    assert result.exit_code == 1
+    assert "is not a Blender: it tells no version" in result.output
+    gone = CliRunner().invoke(command, ["install", "--blender-exe", str(tmp_path / "none")])
+    assert "cannot be started" in gone.output
