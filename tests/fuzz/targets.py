@@ -16,8 +16,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from broken_input import LONGEST, broken
 from hypothesis import strategies as st
-from mutations import LONGEST, broken
 
 from agents.blender.inside.blend.stored_texts import UnknownForm, replace_texts
 from agents.loop import events
