@@ -42,8 +42,8 @@ def _pairs(context: RuleContext) -> Iterator[_ContactPair]:
     seen: set[frozenset[Names]] = set()
     for contact in declared_contacts(context):
         a, b = context.structure.surfaces_of(contact.a), context.structure.surfaces_of(contact.b)
-        if _of_one_fluid(context, contact) or (len(a) > 1 and set(a) == set(b)):
-            continue  # its parts may touch, and need not
+        if _of_one_fluid(context, contact) or _of_own_parts(context, contact, a, b):
+            continue  # they may touch, and need not
         if set(a) & set(b):  # a part touches the rest of its object
             a, b = (a, _without(b, a)) if len(a) < len(b) else (_without(a, b), b)
         key = frozenset((a, b))
@@ -57,6 +57,16 @@ def _pairs(context: RuleContext) -> Iterator[_ContactPair]:
             if not frames:
                 continue  # it is to touch once all has moved
             yield _ContactPair(contact, a, b, frames, contact_gap(context, a, b))
+
+
+def _of_own_parts(context: RuleContext, contact: DeclaredContact, a: Names, b: Names) -> bool:
+    """Whether an object of several meshes, or its root, is declared to touch itself; renders may show but one."""
+    if not a or set(a) != set(b):
+        return False
+    item = context.structure.objects.get(contact.a)
+    is_whole = contact.a in context.structure.by_name or (item is not None and item.is_root)
+    owner = context.structure.logical_object_of(contact.a)
+    return len(a) > 1 or (is_whole and owner is not None and len(owner.meshes) > 1)
 
 
 def _of_one_fluid(context: RuleContext, contact: DeclaredContact) -> bool:

@@ -138,6 +138,8 @@ def test_parts_that_reach_into_each_other_are_one_finding_until_their_object_nam
     assert verified(session, "V1,V2").findings == ()
     session.run("bpy.data.objects['Log_3'].location.x = 9")  # they may, and need not
     assert verified(session, "V1,V2").findings == ()
+    session.run("for k in range(3): bpy.data.objects[f'Log_{k}'].hide_render = True")  # one is left
+    assert verified(session, "V1,V2").findings == ()
 
 
 @pytest.mark.parametrize(
