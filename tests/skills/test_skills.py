@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-SKILLS = sorted((REPO / "skills").glob("*/SKILL.md"))
+SKILLS = sorted((REPO / "plugin" / "skills").glob("*/SKILL.md"))
 SUPPORTED = ("4.2", "4.3", "4.4", "4.5", "5.0", "5.1", "5.2")
 TOOLS = {*BY_NAME, *TOOL_NAMES, PLAN_CHECK}
 FENCED = re.compile(r"```(\w+)\n(.*?)```", re.DOTALL)
@@ -121,7 +121,7 @@ def test_names_in_the_text_are_in_every_supported_version(
 
 
 def test_the_plan_in_the_skill_is_valid() -> None:
-    (plan,) = blocks(REPO / "skills" / "simulated-scene" / "SKILL.md", "json")
+    (plan,) = blocks(REPO / "plugin" / "skills" / "simulated-scene" / "SKILL.md", "json")
     found, faults = plan_from(plan.encode())
     assert faults == []
     assert found is not None
