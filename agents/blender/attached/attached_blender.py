@@ -76,7 +76,7 @@ class AttachedBlender:
         self._wanted, self._client, self._copy_to, self._tell = wanted, client, copy_to, tell
         self._link: Any = None
         self._about: About | None = None
-        self._copied = (0, 0)  # the process, and the how manieth file in it, of which a copy was kept
+        self._copied = (0, 0)  # the process, and the number of the file in it, of which a copy was kept
         self._copy = ""
         self._note = ""
         self._noted: set[str] = set()
