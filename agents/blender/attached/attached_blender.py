@@ -76,7 +76,7 @@ class AttachedBlender:
         self._wanted, self._client, self._copy_to, self._tell = wanted, client, copy_to, tell
         self._link: Any = None
         self._about: About | None = None
-        self._unsaved_since = ""  # the file of which a copy was kept
+        self._copied = (0, 0)  # the process, and the number of the file in it, of which a copy was kept
         self._copy = ""
         self._note = ""
         self._noted: set[str] = set()
@@ -144,8 +144,10 @@ class AttachedBlender:
     def keep_copy(self) -> None:
         """Keeps a copy of the file as the user has it, before the first change of a session to it."""
         about = self.about
-        if self._unsaved_since == self._identity:
+        opened = self.call("opened", {}, int, timeout=60.0).value
+        if self._copied == (about.process, opened):
             return
+        self._copied = about.process, opened
         path = self._copy_to(about)
         try:
             reply = self.call("write_copy", {"path": path, "seconds": _COPY_SECONDS}, dict, timeout=60.0)
@@ -154,12 +156,6 @@ class AttachedBlender:
         else:
             self._copy = path
             self._add_note(f"Before this first change, a copy was kept: {path} ({reply.seconds:.2f} s).")
-        self._unsaved_since = self._identity
-
-    @property
-    def _identity(self) -> str:
-        assert self._about is not None
-        return f"{self._about.process} {self._about.file}"
 
     def end(self) -> None:
         """From any thread: a running call ends soon, and no other begins."""

@@ -31,6 +31,7 @@ TOOLS = {
     "write_copy": ("attached.copies", "write_copy", LOOK),
     "scene_state": ("attached.window", "scene_state", LOOK),
     "present": ("api_presence", "present", LOOK),
+    "opened": ("", "", LOOK),
     "show": ("attached.show", "show", SHOW),
     "mark": ("attached.show", "mark", LOOK),
     "undo": ("", "", CHANGE),
@@ -83,6 +84,7 @@ class CallRunner:
         self._rights, self._version, self._redraw = rights, version, redraw
         self._head = None
         self._lively = 0.0
+        self._opened = 1  # files, one after the other
         self._wanted = deque()
 
     # Main thread
@@ -101,7 +103,7 @@ class CallRunner:
         try:
             self.announce()
         except OSError:
-            self.listener.stop("")
+            self.listener.stop("It could not say where it listens.")
             self.listener = None
             raise
         for name, handler in self._handlers().items():
@@ -213,6 +215,8 @@ class CallRunner:
         kind = entry[2]
         self._check_right(kind, request)
         step = request.step = str(request.arguments.pop("step", ""))[:_LONGEST_STEP]
+        if request.tool == "opened":
+            return self._opened
         if request.tool == "undo":
             return self.undo_steps.undo(int(request.arguments["count"]))
 
@@ -273,7 +277,8 @@ class CallRunner:
         text = str(request.step or _IN_WORDS.get(request.tool, request.tool))
         if not well:
             text += f": {answer.get('refused') or answer.get('failed') or 'failed'}"
-        self.log.appendleft(LogEntry(text, answer["seconds"], well=well))
+        if request.tool != "opened":  # a question of SimWorlds itself
+            self.log.appendleft(LogEntry(text, answer["seconds"], well=well))
         self._done(request)
         self._redraw()
 
@@ -296,6 +301,7 @@ class CallRunner:
     def _new_handlers(self):
         @persistent
         def loaded(*_):
+            self._opened += 1
             self.undo_steps.forget()
             copies.forget_unsaved()
             name = bpy.data.filepath or "a new file"

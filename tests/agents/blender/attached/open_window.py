@@ -31,8 +31,10 @@ import os
 def _act():
     if os.path.exists({acts!r}):
         code = open({acts!r}).read()
-        os.remove({acts!r})
-        exec(code)
+        try:
+            exec(code)
+        finally:
+            os.remove({acts!r})
     return 0.1
 bpy.app.timers.register(_act, persistent=True)
 """
@@ -120,11 +122,12 @@ class OpenWindow:
         subprocess.run(["xdotool", *words], env=self.environment, check=True, timeout=30)
 
     def choose(self, code: str) -> None:
-        """Does what the user would choose from a menu, as code; returns when it is begun."""
+        """Does what the user would choose from a menu, as code; returns when it is done."""
         acts = self.root / "acts.py"
         (self.root / "acts.part").write_text(code)
         (self.root / "acts.part").rename(acts)
-        assert becomes(lambda: not acts.exists())
+        assert becomes(lambda: not acts.exists() or self.process.poll() is not None)
+        acts.unlink(missing_ok=True)
 
     def kill(self) -> None:
         """Ends Blender as a crash would."""
