@@ -479,3 +479,13 @@ assert "bpy" not in sys.modules, "bpy was imported"
         [sys.executable, "-W", "error", "-c", code], cwd=REPO, capture_output=True, text=True, check=False
     )
     assert (done.returncode, done.stdout, done.stderr) == (0, "", "")
+
+
+def test_modules_of_tests_have_names_of_their_own() -> None:
+    """Outside of packages they are imported by their base names, and two of one name would be one."""
+    seen: dict[str, Path] = {}
+    for path in sorted((REPO / "tests").rglob("*.py")):
+        is_packaged = (path.parent / "__init__.py").exists() or "inside" in path.parts
+        if path.name != "conftest.py" and not is_packaged:
+            other = seen.setdefault(path.name, path)
+            assert other == path, f"{path} and {other}"
