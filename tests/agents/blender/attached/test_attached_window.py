@@ -194,7 +194,7 @@ def test_code_that_runs_on_is_ended_at_its_deadline(direct: Callable[[], Attache
 async def test_tools_of_an_open_blender_are_listed_with_the_shared_ones(client: Client) -> None:
     names = {tool.name for tool in (await client.list_tools()).tools}
     assert {"blender_view", "blender_show", "blender_undo", "blender_docs", "blender_check"} <= names
-    assert {"blender_scene_state", "blender_execute", "blender_tag_object", "blender_verify"} <= names
+    assert {"blender_scene_state", "blender_execute", "blender_group", "blender_verify"} <= names
     assert not {"blender_load", "blender_render"} & names
 
 
