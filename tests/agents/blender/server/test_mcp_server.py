@@ -299,14 +299,15 @@ async def test_an_unforeseen_error_shows_no_traceback(
     assert "a secret of ours" in caplog.text
 
 
-def test_without_a_base_blender_works_and_the_documentation_says_what_to_do(tmp_path: Path) -> None:
+def test_without_a_base_blender_works_and_one_is_built_meanwhile(tmp_path: Path) -> None:
     with ByHand(tmp_path) as wire:
         assert wire.run("1 + 1") == "2"
         failed = wire.call("tools/call", name="blender_execute", arguments={"code": "bpy.types.Nonsense"})
         assert failed["result"]["structuredContent"]["error"]["documentation"] == ""
         asked = wire.call("tools/call", name="blender_docs", arguments={"query": "cloth"})["result"]
         assert asked["isError"]
-        assert "simworlds kb build" in asked["content"][0]["text"]
+        assert "There is no knowledge base" in asked["content"][0]["text"]
+        assert "built in the background: try again" in asked["content"][0]["text"]
 
 
 def test_a_documentation_server_that_was_killed_is_started_again(home: Path) -> None:
