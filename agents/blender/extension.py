@@ -151,9 +151,13 @@ def install(archive: Path, blender: Path) -> str:
 
 
 def _version_of(blender: Path) -> tuple[int, int]:
-    match = re.search(r"Blender (\d+)\.(\d+)", _said([str(blender), "--version"]))
+    said = _said([str(blender), "--version"])
+    match = re.search(r"Blender (\d+)\.(\d+)", said)
     if match is None:
-        raise CannotInstall(f"{blender} is not a Blender: it tells no version.")
+        raise CannotInstall(
+            f"{blender} --version tells no version of a Blender, but {said[-500:].strip()!r}. Name another one with "
+            "--blender-exe."
+        )
     version = int(match[1]), int(match[2])
     if version < (3, 4):
         raise CannotInstall(f"{blender} is Blender {match[1]}.{match[2]}; the extension needs 3.4 or later.")

@@ -37,7 +37,9 @@ async def test_without_a_base_the_handshake_works_and_the_answer_says_what_to_do
     async with Client(command(tmp_path)) as client:
         result = await client.call_tool("blender_docs", {"query": QUALITY})
     assert result.is_error
-    assert "simworlds kb build" in result.content[0].text  # pyright: ignore[reportAttributeAccessIssue]
+    text = result.content[0].text  # pyright: ignore[reportAttributeAccessIssue]
+    assert "There is no knowledge base" in text
+    assert "try again in a minute" in text
 
 
 @pytest.fixture

@@ -48,6 +48,9 @@ def blender_with_a_window() -> Path:
         pytest.skip("no Blender with a window is installed (Debian: apt-get install blender)")
     if missing:
         pytest.skip(f"{' and '.join(missing)} cannot be found (Debian: apt-get install xvfb xdotool)")
+    told = subprocess.run([found, "--version"], capture_output=True, text=True, timeout=120, check=False)
+    if "Blender" not in told.stdout:
+        pytest.skip(f"{found} does not run here: exit code {told.returncode}, {told.stderr[-300:]!r}")
     return Path(found)
 
 

@@ -107,6 +107,6 @@ def test_this_environments_blender_loads_all_of_it(tmp_path: Path) -> None:
 def test_a_program_that_is_no_blender_is_told(tmp_path: Path) -> None:
     result = CliRunner().invoke(command, ["install", "--blender-exe", sys.executable])
     assert result.exit_code == 1
-    assert "is not a Blender: it tells no version" in result.output
+    assert "tells no version of a Blender" in result.output
     gone = CliRunner().invoke(command, ["install", "--blender-exe", str(tmp_path / "none")])
     assert "cannot be started" in gone.output

@@ -110,7 +110,7 @@ async def test_without_a_base_code_runs_and_the_first_reply_says_why_it_was_not_
         first = await run(connected, "bpy.context.scene.name")
         second = await run(connected, "bpy.context.scene.name")
     assert "not checked before it runs: " in said(first)
-    assert "simworlds kb build" in said(first)
+    assert "There is no knowledge base" in said(first)
     assert "not checked" not in said(second)
     assert first.structured_content is not None
     assert first.structured_content["value"] == "'Scene'"
