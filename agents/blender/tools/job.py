@@ -22,15 +22,13 @@ DEFAULTS: dict[str, dict[str, Any]] = {bake.TOOL.name: {"timeout": 21_600}}
 class JobArguments(Arguments):
     """The arguments of ``blender_job``."""
 
-    action: Literal["start", "status", "result", "cancel"] = Field(description="What to do.")
+    action: Literal["start", "status", "result", "cancel"] = Field(description="What.")
     tool: Literal["blender_bake", "blender_render", "blender_trial"] | None = Field(
         default=None, description="Of start."
     )
-    arguments: dict[str, Any] | None = Field(default=None, description="Of start: the tool's own.")
-    job: int | None = Field(default=None, ge=1, description="Its number. Default: the last one.")
-    wait: float = Field(
-        default=0.0, ge=0, le=3600, description="Of status and result: seconds to wait for its end."
-    )
+    arguments: dict[str, Any] | None = Field(default=None, description="Of start.")
+    job: int | None = Field(default=None, ge=1, description="Default: the last.")
+    wait: float = Field(default=0.0, ge=0, le=3600, description="Of status and result: seconds.")
 
     @model_validator(mode="after")
     def _fit(self) -> JobArguments:
@@ -47,10 +45,9 @@ class JobArguments(Arguments):
 
 
 DESCRIPTION = """\
-Bake, render or try as a job, where a call may take longer than you can wait. start gives the job's number at once; \
-status tells how far it is, with `wait` once it ends or that time is over; result gives what the tool would have \
-returned, and is kept until you fetch it; cancel ends it: a bake is undone, frames stay. Other calls that need Blender \
-are refused meanwhile."""
+Bake, render or try as a job, where a call may take longer than you wait. start gives its number at once; \
+status how far it is, with `wait` at its end; result what the tool returned; cancel ends it: a bake is undone, \
+frames stay. Other calls are refused meanwhile."""
 
 
 def _run(context: ToolContext, arguments: JobArguments, call: Call) -> Result:
