@@ -120,10 +120,12 @@ def address_printed(stream: IO[str]) -> str:
 
 
 @contextlib.asynccontextmanager
-async def _connected(url: str) -> AsyncGenerator[Client]:
-    """A client of its own connection. Certificates, which take long to load, are not needed on loopback."""
+async def connected(url: str, patience: float = _PATIENCE_SECONDS) -> AsyncGenerator[Client]:
+    """A client of its own connection, which waits ``patience`` seconds for an answer. Certificates, which take long to
+    load, are not needed on loopback.
+    """
     async with (
-        AsyncClient(timeout=_PATIENCE_SECONDS, verify=False) as http,
+        AsyncClient(timeout=patience, verify=False) as http,
         Client(streamable_http_client(url, http_client=http)) as client,
     ):
         yield client
@@ -132,7 +134,7 @@ async def _connected(url: str) -> AsyncGenerator[Client]:
 async def _alone(url: str, queries: Sequence[str], result: LoadResult) -> dict[str, dict[str, Any]]:
     """query → structured answer, asked by one client."""
     right: dict[str, dict[str, Any]] = {}
-    async with _connected(url) as client:
+    async with connected(url) as client:
         for query in queries:
             right[query] = await _ask(client, query, result.alone)
     return right
@@ -165,7 +167,7 @@ async def _client(
     place = number * len(queries) // CLIENTS
     while time.monotonic() < until:
         try:
-            async with _connected(url) as client:
+            async with connected(url) as client:
                 while time.monotonic() < until:
                     query = queries[place % len(queries)]
                     place += 1

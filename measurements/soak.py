@@ -22,19 +22,17 @@ from urllib.parse import urlsplit
 
 import anyio
 from httpx2 import AsyncClient, HTTPError
-from mcp.client import Client
-from mcp.client.streamable_http import streamable_http_client
 
 from bench.markdown_tables import Table
 from bench.sweep.command import simworlds_command
-from measurements.load import address_printed
+from measurements.load import address_printed, connected
 from measurements.memory import resident_mb
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.retrieval import read_queries
 from measurements.setting import BLENDER, REPO, brief, environment, percentile, say
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, Callable, Coroutine, Generator, Iterator, Sequence
+    from collections.abc import Callable, Coroutine, Generator, Iterator, Sequence
 
     from measurements.setting import Setting
 
@@ -247,21 +245,12 @@ async def _watch(pid: int, soaked: _Soaked) -> None:
             soaked.processes.append(1 + len(_descendants(pid)))
 
 
-@contextlib.asynccontextmanager
-async def _connected(url: str) -> AsyncGenerator[Client]:
-    async with (
-        AsyncClient(timeout=_PATIENCE_SECONDS, verify=False) as http,
-        Client(streamable_http_client(url, http_client=http)) as client,
-    ):
-        yield client
-
-
 async def _polite(url: str, calls: Sequence[_Call], number: int, until: float, soaked: _Soaked) -> None:
     """One call after another, each client from another start. Wrong code may fail; that the server does may not."""
     order = itertools.cycle([*calls[number:], *calls[:number]])
     while time.monotonic() < until:
         try:
-            async with _connected(url) as client:
+            async with connected(url, _PATIENCE_SECONDS) as client:
                 while time.monotonic() < until:
                     tool, arguments = next(order)
                     began = time.perf_counter()
@@ -304,7 +293,7 @@ async def _vanish(url: str, call: _Call) -> None:
 
 async def _cancel(url: str, call: _Call) -> None:
     """Calls, and has no patience."""
-    async with _connected(url) as client:
+    async with connected(url, _PATIENCE_SECONDS) as client:
         with anyio.move_on_after(secrets.randbelow(100) / 1e3):
             await client.call_tool(*call)
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from datetime import datetime
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -12,7 +11,7 @@ from agents.blender.attached.tool_catalogue import RUN
 from agents.blender.attached.tools.base import AttachedContext
 from agents.blender.attached.twin import Twin
 from agents.blender.blender_sessions import BlenderSession, SessionSetup
-from agents.blender.tools.base import Call, Knowledge, Result, parse
+from agents.blender.tools.base import Call, Knowledge, Result, parse, with_note
 from simworlds.sandbox.errors import BlenderError, Refusal
 
 if TYPE_CHECKING:
@@ -73,10 +72,7 @@ class AttachedSession(BlenderSession):
         self._unused = False
         known = about(version)
         context = AttachedContext(self._attached, self._copies(), known.docs, known.check)
-        result = RUN[tool.name](context, parsed, call)
-        if not (note := self._attached.take_note()):
-            return result
-        return replace(result, text=f"{note}\n\n{result.text}", data={**result.data, "note": note})
+        return with_note(RUN[tool.name](context, parsed, call), self._attached)
 
     def _copies(self) -> Twin:
         if self._twin is None:

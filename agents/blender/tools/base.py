@@ -159,7 +159,11 @@ def parse(tool: BlenderTool, arguments: dict[str, Any] | None) -> Arguments:
 
 def perform(tool: BlenderTool, context: ToolContext, arguments: Arguments, call: Call) -> Result:
     """Runs a tool. Its text begins with what happened to Blender since the last reply. Raises BlenderError."""
-    result = tool.run(context, arguments, call)
-    if not (note := context.blender.take_note()):
+    return with_note(tool.run(context, arguments, call), context.blender)
+
+
+def with_note(result: Result, blender: CalledBlender) -> Result:
+    """The result, begun with what happened to Blender since the last reply."""
+    if not (note := blender.take_note()):
         return result
     return replace(result, text=f"{note}\n\n{result.text}", data={**result.data, "note": note})
