@@ -50,7 +50,7 @@ kb: $(STAMP) ## Build the knowledge base of BLENDER=5.1 [MANUAL= GUIDES= BLENDER
 	  $(if $(REQUIRE),--require "$(REQUIRE)") $(KB_ARGS)
 
 test: $(STAMP) ## Run the tests, a file at a time on each core [PYTEST_ARGS=]
-	@$(PY) -m pytest --numprocesses=$(TEST_PROCESSES) --dist=loadfile --no-loadscope-reorder $(PYTEST_ARGS)
+	@$(PY) -m pytest --numprocesses=$(TEST_PROCESSES) --dist=loadfile --no-loadscope-reorder --durations=30 $(PYTEST_ARGS)
 
 test-fast: $(STAMP) ## Run the tests that need no Blender, in under a minute [PYTEST_ARGS=]
 	@$(PY) -m pytest --numprocesses=2 --dist=loadfile -m "not blender and not corpora and not slow and not window" $(PYTEST_ARGS)

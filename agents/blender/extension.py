@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 from simworlds.errors import UserError
 from simworlds.files import write_whole
 from simworlds.sandbox.program import INSIDE
+from simworlds.sandbox.runtime import environment_of_others
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -167,7 +168,13 @@ def _version_of(blender: Path) -> tuple[int, int]:
 def _said(command: list[str]) -> str:
     try:
         done = subprocess.run(
-            command, capture_output=True, text=True, errors="replace", timeout=_INSTALL_SECONDS, check=False
+            command,
+            env=environment_of_others(),
+            capture_output=True,
+            text=True,
+            errors="replace",
+            timeout=_INSTALL_SECONDS,
+            check=False,
         )
     except subprocess.TimeoutExpired as error:
         raise CannotInstall(f"{command[0]} did not end within {_INSTALL_SECONDS:g} s.") from error

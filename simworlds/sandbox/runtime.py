@@ -143,14 +143,20 @@ def _executable_at(path: Path) -> Path:
     raise RuntimeMissing(f"there is no Blender executable at {path}; give the path of the program")
 
 
+def environment_of_others() -> dict[str, str]:
+    """This process's environment, fit for another Blender.
+
+    ``import bpy`` sets OCIO to its own colours, which other versions cannot read and then do not start.
+    """
+    return {name: value for name, value in os.environ.items() if name != "OCIO"}
+
+
 def executable_version(executable: Path) -> str:
     """The full version that a Blender executable reports. Raises RuntimeMissing if it is not Blender."""
-    # `import bpy` sets OCIO to its own colours, which other versions cannot read and then do not start.
-    environment = {name: value for name, value in os.environ.items() if name != "OCIO"}
     try:
         done = subprocess.run(
             [str(executable), "--version"],
-            env=environment,
+            env=environment_of_others(),
             stdin=subprocess.DEVNULL,
             capture_output=True,
             timeout=_VERSION_SECONDS,

@@ -385,16 +385,26 @@ def test_errors_of_the_listener_are_not_retried(api, claude, told):
 def test_ctrl_c_leaves_at_once(api, claude, fault):
     api.fail(MESSAGES, fault)
 
+    left = threading.Event()
+
     def interrupt() -> None:
         api.wait_for(MESSAGES)
-        time.sleep(0.5)  # until the client waits: Python drops an interrupt that meets a destructor
-        signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+        while not left.wait(
+            1
+        ):  # once more where it was lost: Python drops an interrupt that meets a destructor
+            signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+
+    def ask_and_leave() -> None:
+        try:
+            claude.answer(ask())
+        finally:
+            left.set()
 
     thread = threading.Thread(target=interrupt)
     thread.start()
     begin = time.monotonic()
     with pytest.raises(KeyboardInterrupt):
-        claude.answer(ask())
+        ask_and_leave()
     assert time.monotonic() - begin < 20  # when the server would have let go
     thread.join()
 

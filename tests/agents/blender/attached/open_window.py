@@ -14,6 +14,8 @@ from processes import becomes
 from serving import COMMAND, REPO
 
 from agents.blender import extension
+from simworlds.sandbox.errors import RuntimeMissing
+from simworlds.sandbox.runtime import environment_of_others, executable_version
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,9 +50,10 @@ def blender_with_a_window() -> Path:
         pytest.skip("no Blender with a window is installed (Debian: apt-get install blender)")
     if missing:
         pytest.skip(f"{' and '.join(missing)} cannot be found (Debian: apt-get install xvfb xdotool)")
-    told = subprocess.run([found, "--version"], capture_output=True, text=True, timeout=120, check=False)
-    if "Blender" not in told.stdout:
-        pytest.skip(f"{found} does not run here: exit code {told.returncode}, {told.stderr[-300:]!r}")
+    try:
+        executable_version(Path(found))
+    except RuntimeMissing as error:
+        pytest.skip(f"it does not run here: {error}")
     return Path(found)
 
 
@@ -66,7 +69,7 @@ class OpenWindow:
         self.environment = {
             **{
                 name: value
-                for name, value in os.environ.items()
+                for name, value in environment_of_others().items()
                 if not name.startswith(("SIMWORLDS_", "BLENDER_"))
             },
             "BLENDER_USER_CONFIG": str(root / "config"),
