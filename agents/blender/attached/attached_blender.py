@@ -37,6 +37,7 @@ _GRACE_SECONDS = 10.0  # after a call's deadline: what Blender itself does canno
 _CHECK_SECONDS = 0.05
 _SEND_SECONDS = 20.0
 _LEAVING_SECONDS = 2.0
+_STOP_SECONDS = 60.0  # for long work to be undone, once it is cancelled
 _COPY_SECONDS = 5.0
 _LONGEST_NOTE = 4000
 
@@ -103,16 +104,17 @@ class AttachedBlender:
         after: str = "",
         progress: Progress | None = None,
         cancelled: threading.Event | None = None,
+        stops: bool = False,
         **_of_workers: Any,
     ) -> WorkerReply[T]:
         """Runs a tool in the open Blender; see ``Supervisor.call``. ``after`` names the undo step.
 
-        Raises BlenderError.
+        ``stops``: the tool works in slices, and ends when it is cancelled. Raises BlenderError.
         """
         if changes:
             self.keep_copy()
             arguments = {**arguments, "step": after.removeprefix("after ") or tool}
-        answer = self._ask(tool, arguments, what or tool, timeout, progress, cancelled)
+        answer = self._ask(tool, arguments, what or tool, timeout, progress, cancelled, stops=stops)
         for event in answer.events:
             self._add_note(event)
         if answer.missing is not None:
@@ -259,6 +261,8 @@ class AttachedBlender:
         timeout: float,
         progress: Progress | None,
         cancelled: threading.Event | None,
+        *,
+        stops: bool,
     ) -> _OpenAnswer:
         """The answer to a call. Raises Refusal."""
         end = self._connected()
@@ -269,6 +273,11 @@ class AttachedBlender:
             end.send({"ticket": ticket, "tool": tool, "arguments": arguments, "seconds": timeout})
             end.timeout(_CHECK_SECONDS)
             while True:
+                if stops and cancelled is not None and cancelled.is_set():
+                    end.timeout(_SEND_SECONDS)
+                    end.send({"withdraw": ticket})  # and wait for what becomes of it
+                    end.timeout(_CHECK_SECONDS)
+                    deadline, cancelled = time.monotonic() + _STOP_SECONDS, None
                 if (
                     time.monotonic() > deadline
                     or self._ending.is_set()

@@ -6,14 +6,16 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from agents.blender.attached.attached_blender import TooLarge
-from agents.blender.attached.tools import execute, show, undo, view
+from agents.blender.attached.tools import bake, execute, show, undo, view
 from agents.blender.attached.tools.base import AttachedTool
 from agents.blender.tools import (
     files,
     group,
+    job,
     material_preview,
     motion_sheet,
     previews,
+    render,
     scene_state,
     tag,
     trial,
@@ -105,6 +107,10 @@ def _own(
     return AttachedTool(tool, module.run)
 
 
+def _only_beside_calls(*_: Any) -> Result:
+    raise Refusal("Jobs run beside the calls of a session.")
+
+
 def _only_attached(*_: Any) -> Result:
     raise Refusal("This tool needs an open Blender: simworlds mcp --attach.")
 
@@ -124,6 +130,9 @@ ATTACHED: tuple[AttachedTool, ...] = (
     _in_twin(verify.TOOL),
     AttachedTool(files.SAVE, _save),
     _in_twin(trial.TOOL),
+    AttachedTool(bake.TOOL, bake.run),
+    _in_twin(render.TOOL),
+    AttachedTool(job.TOOL, _only_beside_calls),
 )
 TOOLS: tuple[BlenderTool, ...] = tuple(attached.tool for attached in ATTACHED)
 RUN = {attached.tool.name: attached.run for attached in ATTACHED}

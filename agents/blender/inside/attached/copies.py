@@ -90,10 +90,8 @@ def write_copy(arguments, report):
     written = os.path.getsize(path)
     if written > _LEAST_MEASURED:
         _measured["speed"] = written / seconds
-    folders = {
-        os.path.dirname(os.path.realpath(place))
-        for place in bpy.utils.blend_paths(absolute=True, packed=False)
-    }
+    places = map(os.path.realpath, bpy.utils.blend_paths(absolute=True, packed=False))
+    folders = {place if os.path.isdir(place) else os.path.dirname(place) for place in places}
     return {
         "bytes": written,
         "seconds": seconds,

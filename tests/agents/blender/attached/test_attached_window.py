@@ -5,18 +5,14 @@ from __future__ import annotations
 import json
 import stat
 import time
-from base64 import b64decode
 from dataclasses import replace
-from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from mcp import Client, StdioServerParameters
-from mcp_types import ImageContent, TextContent
+from attached_client import build, digests, picture, server, state, text, use
+from mcp import Client
 from open_window import OpenWindow, opened
-from PIL import Image
-from places import REPO
 
 from agents.blender.attached.attached_blender import AttachedBlender
 from agents.blender.attached.open_blenders import About, open_blenders
@@ -27,19 +23,9 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Iterator
     from pathlib import Path
 
-    from mcp_types import CallToolResult
-
 pytestmark = [pytest.mark.window, pytest.mark.anyio]
 
 STATE = {"detail": "normal", "objects": None, "sections": ["collections", "objects", "view"]}
-BUILD = """\
-# add {name}
-mesh = bpy.data.meshes.new("{name}")
-mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
-made = bpy.data.objects.new("{name}", mesh)
-bpy.context.scene.collection.objects.link(made)
-made.location = ({x}, 0, 0)
-"""
 
 
 @pytest.fixture(scope="module")
@@ -51,11 +37,6 @@ def anyio_backend() -> str:
 def window(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenWindow]:
     """The window that all tests share."""
     yield from opened(tmp_path_factory.mktemp("window"))
-
-
-def server(window: OpenWindow) -> StdioServerParameters:
-    words = window.command
-    return StdioServerParameters(command=words[0], args=words[1:], env=window.server_environment, cwd=REPO)
 
 
 @pytest.fixture(scope="module")
@@ -82,39 +63,6 @@ def direct(window: OpenWindow, monkeypatch: pytest.MonkeyPatch) -> Iterator[Call
 
 def copy_in(folder: Path) -> Callable[[About], str]:
     return lambda about: str(folder / f"copy-{about.process}.blend")
-
-
-async def use(client: Client, tool: str, **arguments: Any) -> CallToolResult:
-    return await client.call_tool(tool, arguments)
-
-
-def text(result: CallToolResult) -> str:
-    return " ".join(block.text for block in result.content if isinstance(block, TextContent))
-
-
-def picture(result: CallToolResult) -> Image.Image:
-    block = next(block for block in result.content if isinstance(block, ImageContent))
-    return Image.open(BytesIO(b64decode(block.data)))
-
-
-async def build(client: Client, name: str, x: int = 0) -> CallToolResult:
-    result = await use(client, "blender_execute", code=BUILD.format(name=name, x=x))
-    assert not result.is_error, text(result)
-    return result
-
-
-async def state(client: Client) -> dict[str, Any]:
-    result = await use(client, "blender_view", picture="none")
-    assert not result.is_error, text(result)
-    assert result.structured_content is not None
-    return result.structured_content
-
-
-async def digests(client: Client) -> dict[str, str]:
-    """Digests of everything in the file."""
-    result = await use(client, "blender_scene_state", sections=["data_blocks"])
-    assert result.structured_content is not None
-    return result.structured_content["data_blocks"]
 
 
 async def test_only_its_user_can_read_where_it_listens(window: OpenWindow) -> None:
