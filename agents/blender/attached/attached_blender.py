@@ -267,7 +267,7 @@ class AttachedBlender:
         """The answer to a call. Raises Refusal."""
         end = self._connected()
         ticket = secrets.token_hex(8)
-        deadline = time.monotonic() + timeout + _GRACE_SECONDS
+        deadline = time.monotonic() + timeout + (_STOP_SECONDS if stops else _GRACE_SECONDS)
         try:
             end.timeout(_SEND_SECONDS)
             end.send({"ticket": ticket, "tool": tool, "arguments": arguments, "seconds": timeout})

@@ -31,7 +31,7 @@ class LongWork:
 
     def __str__(self):
         told = f": {self._told}" if self._told else ""
-        return f"Blender works on {self.request.tool} for {self.request.client.name}{told}"
+        return f"The {self.request.tool} runs in Blender for {self.request.client.name}{told}"
 
     def report(self, done, total, text=""):
         """Tells the client, and soon the user, how far it is."""
@@ -57,11 +57,11 @@ class LongWork:
 
     def _to_end(self):
         if self.request.withdrawn:
-            return f"{self.request.tool} was cancelled"
+            return f"The {self.request.tool} was cancelled"
         if time.monotonic() > self.request.deadline:
-            return f"{self.request.tool} was not done in {self.request.seconds:g} s (timeout)"
+            return f"The {self.request.tool} was not done in {self.request.seconds:g} s (timeout)"
         if hold.escaped():
-            return f"The user has ended {self.request.tool} with Esc"
+            return f"The user has ended the {self.request.tool} with Esc"
         return ""
 
     def close(self):

@@ -30,7 +30,7 @@ def server(window: OpenWindow) -> StdioServerParameters:
     return StdioServerParameters(command=words[0], args=words[1:], env=window.server_environment, cwd=REPO)
 
 
-async def use(client: Client, tool: str, **arguments: Any) -> CallToolResult:
+async def use(client: Client, tool: str, /, **arguments: Any) -> CallToolResult:
     return await client.call_tool(tool, arguments)
 
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from attached_client import build, digests, picture, server, state, text, use
+from attached_client import BUILD, build, digests, picture, server, state, text, use
 from mcp import Client
 from open_window import OpenWindow, opened
 
@@ -256,6 +256,61 @@ async def test_a_scene_that_is_too_large_to_copy_is_told(client: Client, window:
         assert "The scene is too large to be copied in 5 s" in text(refused)
     window.choose(f"import sys; sys.modules[{name!r}]._measured['speed'] = 1e9")
     assert not (await use(client, "blender_execute", code="1+1")).is_error
+
+
+@pytest.fixture
+async def large_scene(client: Client, window: OpenWindow) -> AsyncIterator[None]:
+    """A scene with a mesh that takes too long to copy, beside others that do not."""
+    code = """# a large one
+import numpy
+mesh = bpy.data.meshes.new("Large")
+mesh.vertices.add(600_000)
+mesh.vertices.foreach_set("co", numpy.zeros(1_800_000))
+bpy.context.scene.collection.objects.link(bpy.data.objects.new("Large", mesh))
+"""
+    made = await use(client, "blender_execute", code=code)
+    assert not made.is_error, text(made)
+    speed = "import sys; sys.modules['simworlds_live.worker.attached.copies']._measured['speed'] = {}"
+    window.choose(speed.format(4e6))
+    yield
+    window.choose(speed.format(1e9))
+    await use(client, "blender_undo")
+
+
+async def test_of_a_large_scene_the_part_is_rehearsed_that_code_names(
+    client: Client, large_scene: None
+) -> None:
+    code = "cube = bpy.data.objects['Cube']\ncube.location.x = 2\nlen(bpy.context.scene.name)"
+    moved = await use(client, "blender_execute", code=code)
+    assert not moved.is_error, text(moved)
+    assert "Rehearsed in a copy of what the code names and needs (Camera, Cube) alone" in text(moved)
+    assert "other things changed" not in text(moved)
+    assert "as it was before" in text(await use(client, "blender_undo"))
+    added = await use(client, "blender_execute", code=BUILD.format(name="Beside", x=1))
+    assert not added.is_error, text(added)
+    assert "other things changed" not in text(added)
+    await use(client, "blender_undo")
+
+
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        (
+            "bpy.data.objects['Cube'].no_such",
+            "This was the rehearsal in a copy of what the code names and needs",
+        ),
+        ("bpy.data.objects['La' + 'rge'].location", "What code reaches by other names"),
+        ("for one in bpy.data.objects: one.location.x = 1", "line 1 goes through bpy.data.objects"),
+        ("bpy.data.objects['Large'].location.x = 1", "too large"),
+        ("bpy.ops.object.select_all(action='SELECT')", "line 1 selects by bpy.ops"),
+    ],
+)
+async def test_of_a_large_scene_nothing_unrehearsed_arrives(
+    client: Client, large_scene: None, code: str, said: str
+) -> None:
+    refused = await use(client, "blender_execute", code=code, preflight="off")
+    assert refused.is_error
+    assert said in text(refused)
 
 
 async def test_never_undoes_the_users_own_work(client: Client, window: OpenWindow) -> None:
