@@ -116,7 +116,7 @@ class AttachedBlender:
             arguments = {**arguments, "step": after.removeprefix("after ") or tool}
         answer = self._ask(tool, arguments, what or tool, timeout, progress, cancelled, stops=stops)
         for event in answer.events:
-            self._add_note(event)
+            self.add_note(event)
         if answer.missing is not None:
             raise MissingModule(answer.missing)
         if answer.refused is not None:
@@ -138,9 +138,10 @@ class AttachedBlender:
         """Puts a note before the next reply, unless it stood before an earlier one."""
         if note not in self._noted:
             self._noted.add(note)
-            self._add_note(note)
+            self.add_note(note)
 
-    def _add_note(self, note: str) -> None:
+    def add_note(self, note: str) -> None:
+        """Puts a note before the next reply."""
         self._note = f"{self._note} {note}".strip()[-_LONGEST_NOTE:]
 
     def keep_copy(self) -> None:
@@ -154,10 +155,10 @@ class AttachedBlender:
         try:
             reply = self.call("write_copy", {"path": path, "seconds": _COPY_SECONDS}, dict, timeout=60.0)
         except Refusal as error:
-            self._add_note(f"No copy was kept before this first change: {error}")
+            self.add_note(f"No copy was kept before this first change: {error}")
         else:
             self._copy = path
-            self._add_note(f"Before this first change, a copy was kept: {path} ({reply.seconds:.2f} s).")
+            self.add_note(f"Before this first change, a copy was kept: {path} ({reply.seconds:.2f} s).")
 
     def end(self) -> None:
         """From any thread: a running call ends soon, and no other begins."""
@@ -184,7 +185,7 @@ class AttachedBlender:
             blender = choose(self._wanted)
             self._link = self._admitted(blender)
             self._tell(f"Attached to {self._about}")
-            self._add_note(f"Attached to the user's open {self._about}.")
+            self.add_note(f"Attached to the user's open {self._about}.")
         return self._link
 
     def _admitted(self, blender: OpenBlender) -> Any:

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from agents.blender.attached.attached_blender import TooLarge
 from agents.blender.attached.tools import bake, execute, show, undo, view
 from agents.blender.attached.tools.base import AttachedTool
+from agents.blender.formatting import format_list
 from agents.blender.tools import (
     files,
     group,
@@ -22,7 +23,7 @@ from agents.blender.tools import (
     uv_preview,
     verify,
 )
-from agents.blender.tools.base import BlenderTool
+from agents.blender.tools.base import BlenderTool, ToolContext
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -32,6 +33,13 @@ if TYPE_CHECKING:
     from agents.blender.attached.tools.base import AttachedContext
     from agents.blender.tools.base import Call, CallContext, Result
 
+_LISTED = 6
+_NARROWED = {
+    "blender_single_mesh_preview": "object",
+    "blender_object_preview": "object",
+    "blender_system_layout_preview": "system",
+    "blender_scene_layout_preview": "subjects",
+}
 _MOST_OBJECTS = 1000  # whose state is read while the user's window waits
 OPENING = (
     "You work in the Blender that the user has open, beside them. Everything you change is one undo step with a name; "
@@ -62,6 +70,32 @@ def _in_twin(tool: BlenderTool) -> AttachedTool:
     return AttachedTool(
         tool, lambda context, arguments, call: tool.run(context.of_twin(call), arguments, call)
     )
+
+
+def _looking(tool: BlenderTool, named: str) -> AttachedTool:
+    """A tool that draws a copy: of a large scene, one of what its argument ``named`` names alone."""
+
+    def run(context: AttachedContext, arguments: Any, call: Call) -> Result:
+        try:
+            copy = context.twin.refreshed(context.open, call.cancelled, soon=True)
+        except TooLarge as error:
+            value = getattr(arguments, named)
+            names = [value] if isinstance(value, str) else [*(value or ())]
+            try:
+                if not names:
+                    raise
+                copy = context.twin.part_named(context.open, names, call.cancelled)
+            except TooLarge as part:
+                less = "fewer" if names else "some"
+                raise TooLarge(
+                    f"{part} Name {less} in {named!r}, or look with {view.NAME} at what the user sees."
+                ) from error
+            context.open.add_note(
+                f"This shows {format_list(names, _LISTED)} with what they need, and nothing else of the scene: {error}"
+            )
+        return tool.run(ToolContext(copy, context.docs, context.check), arguments, call)
+
+    return AttachedTool(tool, run)
 
 
 def _scene_state(context: AttachedContext, arguments: scene_state.SceneStateArguments, call: Call) -> Result:
@@ -118,10 +152,10 @@ def _only_attached(*_: Any) -> Result:
 ATTACHED: tuple[AttachedTool, ...] = (
     _own(view.NAME, "See what the user sees", view, read_only=True),
     AttachedTool(scene_state.TOOL, _scene_state),
-    *(_in_twin(tool) for tool in previews.TOOLS),
-    _in_twin(material_preview.TOOL),
-    _in_twin(uv_preview.TOOL),
-    _in_twin(motion_sheet.TOOL),
+    *(_looking(tool, _NARROWED[tool.name]) for tool in previews.TOOLS),
+    _looking(material_preview.TOOL, "objects"),
+    _looking(uv_preview.TOOL, "objects"),
+    _looking(motion_sheet.TOOL, "actors"),
     AttachedTool(execute.TOOL, execute.run),
     _own(undo.NAME, "Undo your steps", undo, destructive=True),
     _own(show.NAME, "Show the user something", show),

@@ -17,7 +17,7 @@ from simworlds.sandbox.replies import Claim, Count, Name, Place, mapping
 
 if TYPE_CHECKING:
     import threading
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from agents.blender.attached.attached_blender import AttachedBlender
     from agents.blender.run_folder import RunFolder
@@ -25,6 +25,8 @@ if TYPE_CHECKING:
     from simworlds.sandbox.runtime import Runtime
 
 COPY_SECONDS = 5.0
+DRAWN_SOON = {"objects": 1000, "triangles": 4_000_000, "seconds": 1.0}
+"""What is copied, opened and drawn within two seconds, with or without a graphics card."""
 _WRITE_SECONDS = 60.0
 _LOAD_SECONDS = 120.0
 _PROGRAM = Program("simworlds_worker.attached.twin_worker", WORKER.packages)
@@ -74,21 +76,31 @@ class Twin:
         self._read: set[str] = set()
         self._program = ""
 
-    def refreshed(self, attached: AttachedBlender, cancelled: threading.Event | None = None) -> Supervisor:
-        """The supervisor of a Blender that has the open scene as it is now. Raises BlenderError."""
-        supervisor, copy = self._brought(attached, "write_copy", {}, _Copy, cancelled)
+    def refreshed(
+        self, attached: AttachedBlender, cancelled: threading.Event | None = None, *, soon: bool = False
+    ) -> Supervisor:
+        """The supervisor of a Blender that has the open scene as it is now. ``soon``: only if it can be drawn within
+        a moment. Raises BlenderError."""
+        most = DRAWN_SOON if soon else {}
+        supervisor, copy = self._brought(attached, "write_copy", most, _Copy, cancelled)
         if copy.unsaved:
             attached.note_once(
                 f"Painted and not saved, so as before in pictures: {', '.join(copy.unsaved)} (Image > Save or Pack)."
             )
         return supervisor
 
-    def part(
+    def part_of_code(
         self, attached: AttachedBlender, code: str, cancelled: threading.Event | None = None
     ) -> tuple[Supervisor, list[str]]:
         """The same of one that has what the code touches alone, and its objects. Raises BlenderError."""
         supervisor, part = self._brought(attached, "write_part", {"code": code}, _Part, cancelled)
         return supervisor, part.objects
+
+    def part_named(
+        self, attached: AttachedBlender, names: Sequence[str], cancelled: threading.Event | None = None
+    ) -> Supervisor:
+        """The same of one that has what bears these names alone, if it can be drawn soon. Raises BlenderError."""
+        return self._brought(attached, "write_part", {"names": [*names], **DRAWN_SOON}, _Part, cancelled)[0]
 
     def _brought(
         self,
@@ -103,7 +115,7 @@ class Twin:
             path = lent / "open.blend"
             written = attached.call(
                 write,
-                {**arguments, "path": str(path), "seconds": COPY_SECONDS},
+                {"seconds": COPY_SECONDS, **arguments, "path": str(path)},
                 kind.model_validate,
                 timeout=_WRITE_SECONDS,
                 what="copying the scene",

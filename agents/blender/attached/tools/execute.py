@@ -141,7 +141,7 @@ def _copy(context: AttachedContext, code: str, call: Call) -> tuple[Supervisor, 
         return context.twin.refreshed(context.open, call.cancelled), ""
     except TooLarge as whole:
         try:
-            twin, objects = context.twin.part(context.open, code, call.cancelled)
+            twin, objects = context.twin.part_of_code(context.open, code, call.cancelled)
         except TooLarge as error:
             raise TooLarge(f"{whole} {error}") from error
     named = format_list(objects, _LISTED)

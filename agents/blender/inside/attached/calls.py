@@ -188,6 +188,12 @@ class CallRunner:
         request, now = self._head, time.monotonic()
         self._lively = now + _LIVELY_SECONDS
         if request.withdrawn or now > request.deadline:
+            why = (
+                "It was withdrawn"
+                if request.withdrawn
+                else f"Blender had no time for it in {request.seconds:g} s"
+            )
+            request.reply(refused=f"{why}: nothing was done.", seconds=0.0, left=[], events=[])
             self._done(request)
             return
         if doing := self._busy():

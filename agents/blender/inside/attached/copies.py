@@ -57,11 +57,13 @@ def forget_unsaved():
 def write_copy(arguments, report):
     """Writes a copy to ``path`` if that takes at most ``seconds``, by an estimate. Raises Refused.
 
+    ``objects`` and ``triangles``: how many the copy may have, for who wants to draw it soon.
     Returns ``bytes``, ``seconds``, ``file`` (the open one's path), ``folders`` of other files that it uses, and
     ``unsaved``: images that were painted and are in no file, which the copy has as they were before.
     """
     del report
     path, most = arguments["path"], arguments["seconds"]
+    check_drawn(bpy.context.scene.objects, arguments)
     check_size(
         (*bpy.data.meshes, *bpy.data.images, *bpy.data.sounds, *bpy.data.volumes, *bpy.data.fonts), most
     )
@@ -102,6 +104,16 @@ def paths_used():
     places = map(os.path.realpath, bpy.utils.blend_paths(absolute=True, packed=False))
     folders = {place if os.path.isdir(place) else os.path.dirname(place) for place in places}
     return sorted(folder for folder in folders if os.path.isdir(folder))[:40]
+
+
+def check_drawn(objects, most):
+    """Raises TooLarge if these are more ``objects`` or ``triangles`` than ``most`` says; it may say nothing of them."""
+    meshes = [obj.data for obj in objects if obj.type == "MESH"]
+    triangles = sum(len(mesh.loops) - 2 * len(mesh.polygons) for mesh in meshes)
+    if len(objects) > most.get("objects", len(objects)) or triangles > most.get("triangles", triangles):
+        raise TooLarge(
+            f"{len(objects):,} objects with {triangles:,} triangles are too many to be drawn in a moment."
+        )
 
 
 def check_size(blocks, seconds):

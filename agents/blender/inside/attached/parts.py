@@ -8,7 +8,7 @@ import bpy
 
 from ..blend.file_io import make_own
 from .code_reach import Reach
-from .copies import TooLarge, check_size, paths_used
+from .copies import TooLarge, check_drawn, check_size, paths_used
 from .user_state import main_window
 
 _NAMED = (
@@ -23,10 +23,12 @@ _NOT_BROUGHT = frozenset({"scenes", "screens", "workspaces", "window_managers", 
 def write_part(arguments, report):
     """Writes what ``code`` names, and all that it needs, to ``path``, if that takes at most ``seconds``; or TooLarge.
 
-    Returns ``objects`` (names), ``folders`` of other files, and the ``scene`` as ``load_part`` takes it.
+    Instead of ``code`` there may be ``names``. ``objects`` and ``triangles`` are as for ``write_copy``. Returns
+    ``objects`` (names), ``folders`` of other files, and the ``scene`` as ``load_part`` takes it.
     """
     del report
-    reach = Reach(arguments["code"])
+    reach = Reach(arguments.get("code", ""))
+    reach.names.update(arguments.get("names", ()))
     if reach.everything:
         raise TooLarge(f"No part of it can be told from the code, in which {reach.everything}.")
     window = main_window()
@@ -40,11 +42,19 @@ def write_part(arguments, report):
     needed = _with_needs(chosen)
     if any(isinstance(block, bpy.types.Scene) for block in needed):
         raise TooLarge("What the code names depends on the whole scene.")
+    check_drawn([block for block in needed if isinstance(block, bpy.types.Object)], arguments)
     check_size(needed, arguments["seconds"])
     started = time.perf_counter()
     bpy.data.libraries.write(arguments["path"], chosen, path_remap="ABSOLUTE", compress=False)
     objects = sorted(block.name for block in needed if isinstance(block, bpy.types.Object))
-    places = {obj: [own.name for own in bpy.data.objects[obj].users_collection] for obj in objects}
+    tree = {scene.collection.name, *(own.name for own in scene.collection.children_recursive)}
+    places = {
+        obj: [own.name for own in bpy.data.objects[obj].users_collection if own.name in tree]
+        for obj in objects
+    }
+    brought = sorted(
+        block.name for block in needed if isinstance(block, bpy.types.Collection) and block.name in tree
+    )
     return {
         "bytes": os.path.getsize(arguments["path"]),
         "seconds": time.perf_counter() - started,
@@ -58,6 +68,7 @@ def write_part(arguments, report):
             "world": scene.world.name if scene.world else None,
             "active": active.name if active else None,
             "selected": [obj.name for obj in selected],
+            "collections": brought,
             "places": places,
             "settings": {name: _plain(getattr(scene, name)) for name in _SETTINGS},
             "render": {name: getattr(scene.render, name) for name in _OF_RENDER},
@@ -79,9 +90,13 @@ def load_part(arguments, report):
     for owner, values in ((scene, told["settings"]), (scene.render, told["render"])):
         for name, value in values.items():
             setattr(owner, name, value)
+    for name in told["collections"]:
+        _collection(scene, name, told["top"])
     for name, collections in told["places"].items():
-        for place in collections or [told["top"]]:
-            _collection(scene, place, told["top"]).objects.link(bpy.data.objects[name])
+        for place in collections:
+            collection = _collection(scene, place, told["top"])
+            if name not in collection.objects:
+                collection.objects.link(bpy.data.objects[name])
     scene.camera = bpy.data.objects.get(told["camera"] or "")
     scene.world = bpy.data.worlds.get(told["world"] or "")
     layer = bpy.context.view_layer

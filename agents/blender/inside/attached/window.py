@@ -15,8 +15,10 @@ from .user_state import main_window, state
 def scene_state(arguments, report):
     """As ``readout.scene_state``. Raises TooLarge for more objects than ``at_most``: the window waits meanwhile."""
     most = arguments.pop("at_most", None)
-    if most is not None and len(bpy.data.objects) > most:
-        raise TooLarge(f"{len(bpy.data.objects):,} objects are too many to be read while the window waits.")
+    objects = list(bpy.context.scene.objects)
+    chosen = objects if arguments["objects"] is None else readout.find_objects(arguments["objects"], objects)
+    if most is not None and len(chosen) > most:
+        raise TooLarge(f"{len(chosen):,} objects are too many to be read while the window waits.")
     return readout.scene_state(arguments, report)
 
 

@@ -151,9 +151,9 @@ async def test_the_user_ends_a_bake_with_esc_and_cannot_disturb_it(
 
 async def test_a_bake_that_takes_too_long_is_undone(client: Client) -> None:
     await make(client, CLOTH.format(**ENDLESS))
-    late = await use(client, "blender_bake", timeout=2)
+    late = await use(client, "blender_bake", timeout=8)
     assert late.is_error
-    assert "was not done in 2 s" in text(late)
+    assert "was not done in 8 s" in text(late)
     assert await value(client, BAKED) == "False"
     await use(client, "blender_undo")
 
@@ -172,7 +172,7 @@ async def test_a_fluid_is_baked_in_the_copy_and_shown_in_the_window(
     assert folder.is_relative_to(window.home / "runs")
     assert list(folder.rglob("*.vdb"))
     freed = await use(client, "blender_bake", free=True)
-    assert "Freed: liquid of 'Tank'" in text(freed)
+    assert "liquid of 'Tank'" in text(freed)
     undone = await use(client, "blender_undo", steps=2)
     assert "as it was before" in text(undone), text(undone)
     assert await digests(client) == before

@@ -299,7 +299,7 @@ async def test_of_a_large_scene_the_part_is_rehearsed_that_code_names(
             "bpy.data.objects['Cube'].no_such",
             "This was the rehearsal in a copy of what the code names and needs",
         ),
-        ("bpy.data.objects['La' + 'rge'].location", "What code reaches by other names"),
+        ("bpy.data.objects['La' + 'rge'].location", "line 1 goes through bpy.data.objects"),
         ("for one in bpy.data.objects: one.location.x = 1", "line 1 goes through bpy.data.objects"),
         ("bpy.data.objects['Large'].location.x = 1", "too large"),
         ("bpy.ops.object.select_all(action='SELECT')", "line 1 selects by bpy.ops"),
