@@ -40,7 +40,8 @@ _NARROWED = {
     "blender_system_layout_preview": "system",
     "blender_scene_layout_preview": "subjects",
 }
-_MOST_OBJECTS = 1000  # whose state is read while the user's window waits
+_MOST_OBJECTS, _MOST_SUMMARIZED = 1000, 10_000  # whose state is read while the user's window waits
+_MOST_READ = 2000  # whose state is read in a moment, in the copy
 OPENING = (
     "You work in the Blender that the user has open, beside them. Everything you change is one undo step with a name; "
     "the user may change, save or close things at any time, which the next reply tells. Code is rehearsed in a copy "
@@ -76,6 +77,7 @@ def _looking(tool: BlenderTool, named: str) -> AttachedTool:
     """A tool that draws a copy: of a large scene, one of what its argument ``named`` names alone."""
 
     def run(context: AttachedContext, arguments: Any, call: Call) -> Result:
+        note = ""
         try:
             copy = context.twin.refreshed(context.open, call.cancelled, soon=True)
         except TooLarge as error:
@@ -90,18 +92,20 @@ def _looking(tool: BlenderTool, named: str) -> AttachedTool:
                 raise TooLarge(
                     f"{part} Name {less} in {named!r}, or look with {view.NAME} at what the user sees."
                 ) from error
-            context.open.add_note(
-                f"This shows {format_list(names, _LISTED)} with what they need, and nothing else of the scene: {error}"
-            )
-        return tool.run(ToolContext(copy, context.docs, context.check), arguments, call)
+            shown = format_list(names, _LISTED)
+            note = f"This shows {shown} with what that needs, and nothing else of the scene: {error}"
+        result = tool.run(ToolContext(copy, context.docs, context.check), arguments, call)
+        return replace(result, text=f"{note}\n\n{result.text}") if note else result
 
     return AttachedTool(tool, run)
 
 
 def _scene_state(context: AttachedContext, arguments: scene_state.SceneStateArguments, call: Call) -> Result:
-    """Reads a scene of many objects in the copy, unless that cannot be had."""
+    """Reads more objects than the window can wait for in the copy, unless that cannot be had."""
+    most = _MOST_SUMMARIZED if arguments.detail == "summary" else _MOST_OBJECTS
+    in_copy = None if arguments.detail == "summary" else _MOST_READ
     try:
-        return scene_state.run(context.of_open, arguments, call, {"at_most": _MOST_OBJECTS})
+        return scene_state.run(context.of_open, arguments, call, {"at_most": most, "in_copy": in_copy})
     except TooLarge:
         pass
     try:
