@@ -57,7 +57,10 @@ HABITS = (
     ("blender_motion_sheet_preview", "to see and measure motion over time"),
     (undo.NAME, "to take back your own steps"),
     (show.NAME, "to point the user to something"),
+    ("blender_bake", "for physics, before you judge motion; the user's window waits, unless it is a fluid"),
     ("blender_save", "to save a copy; the user saves their own file"),
+    ("blender_render", "last, from a copy; start with a still"),
+    ("blender_job", "for a bake or an animation that may take longer than a minute"),
 )
 
 

@@ -10,6 +10,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..blend.cache_folders import cache_folders
 from ..blend.temporary import temporary_settings, without_handlers
 from . import structures
 from .user_state import in_window
@@ -100,8 +101,9 @@ def write_copy(arguments, report):
 
 
 def paths_used():
-    """The folders of other files that the open file uses."""
-    places = map(os.path.realpath, bpy.utils.blend_paths(absolute=True, packed=False))
+    """The folders of other files that the open file uses, those of caches included."""
+    used = [*bpy.utils.blend_paths(absolute=True, packed=False), *(folder.real for folder in cache_folders())]
+    places = [os.path.realpath(path) for path in used]
     folders = {place if os.path.isdir(place) else os.path.dirname(place) for place in places}
     return sorted(folder for folder in folders if os.path.isdir(folder))[:40]
 

@@ -171,6 +171,9 @@ async def test_a_fluid_is_baked_in_the_copy_and_shown_in_the_window(
     assert str(folder) in text(baked)
     assert folder.is_relative_to(window.home / "runs")
     assert list(folder.rglob("*.vdb"))
+    saved = await use(client, "blender_save", name="wet")
+    assert not saved.is_error, text(saved)
+    assert list((window.home / "runs").glob("*/blendcache_wet/**/*.vdb"))  # the copy has the frames, too
     freed = await use(client, "blender_bake", free=True)
     assert "liquid of 'Tank'" in text(freed)
     undone = await use(client, "blender_undo", steps=2)
