@@ -232,15 +232,18 @@ class CallRunner:
     def _end_work(self, answer):
         """Answers the call; what it did is one step, which is taken back unless it is done."""
         work, self._work = self._work, None
-        work.close()
-        try:
-            self.undo_steps.keep(work.request.step or work.request.tool, work.before)
-            if not work.has_ended:
-                self.undo_steps.undo(1)
-        except Refused as error:
-            answer = {"refused": f"{answer.get('refused', '')} It was not undone: {error}".strip()}
+        kept = self._outcome(lambda: self._keep_work(work))
+        if "value" not in kept:
+            said, why = (one.get("refused") or one.get("failed", "") for one in (answer, kept))
+            answer = {"refused": f"{said} What is left of it could not be put in order: {why}".strip()}
         answer.update(seconds=time.perf_counter() - work.started, stdout="")
         self._answer(work.request, answer)
+
+    def _keep_work(self, work):
+        work.close()
+        self.undo_steps.keep(work.request.step or work.request.tool, work.before)
+        if not work.has_ended:
+            self.undo_steps.undo(1)
 
     @staticmethod
     def _outcome(work):
