@@ -195,6 +195,9 @@ class BlenderSession:
         if call.cancelled.is_set():
             raise Refusal(f"{tool.name} was cancelled before it began.")
         self._unused = False
+        call.begin()
+        if call.job:
+            blender.keep(f"before {call.job}")
         known = about(blender.launch.runtime.version)
         return perform(tool, ToolContext(blender, known.docs, known.check, self._assets), parsed, call)
 

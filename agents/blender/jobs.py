@@ -15,7 +15,6 @@ from simworlds.sandbox.errors import Refusal
 if TYPE_CHECKING:
     from concurrent.futures import Future
 
-    from agents.blender.tools.base import Arguments, ToolContext
     from agents.blender.tools.job import JobArguments
 
 _MOST_UNFETCHED = 16
@@ -40,12 +39,13 @@ class Job:
         self.fetched = False
         self.outcome: Result | None = None
         self._tool = tool
-        self._call = Call(progress=self._report)
+        # What is undone when it is cancelled is this job, and nothing from before it.
+        self._call = Call(progress=self._report, job=f"job {number} ({tool.name})", begins=self._begin)
         self._progress: tuple[float, float | None, str] | None = None
         self._since = time.monotonic()
         self._begun = False
         self._seconds = 0.0
-        submit(replace(tool, run=self._run), arguments, self._call).add_done_callback(self._end)
+        submit(tool, arguments, self._call).add_done_callback(self._end)
 
     @property
     def state(self) -> str:
@@ -105,11 +105,8 @@ class Job:
 
     # In the session's thread
 
-    def _run(self, context: ToolContext, arguments: Arguments, call: Call) -> Result:
+    def _begin(self) -> None:
         self._begun, self._since = True, time.monotonic()
-        # What is undone when it is cancelled is this job, and nothing from before it.
-        context.blender.keep(f"before job {self.number} ({self._tool.name})")
-        return self._tool.run(context, arguments, call)
 
     def _end(self, future: Future[Result]) -> None:
         try:

@@ -87,7 +87,7 @@ def blender_tools_page() -> str:
     ]
     for entry in (*TOOLS, *FOR_CLIENTS, WITH_ASSETS, ONLINE):
         parts += _blender_tool(entry)
-    own = {entry.name for entry in TOOLS}
+    own = {entry.name for entry in (*TOOLS, *FOR_CLIENTS)}
     shared = [entry.name for entry in ATTACHED_TOOLS if entry.name in own and entry.name != "blender_execute"]
     attached = [part for tool in ATTACHED_TOOLS if tool.name not in shared for part in _blender_tool(tool)]
     return page(

@@ -37,6 +37,7 @@ _GRACE_SECONDS = 10.0  # after a call's deadline: what Blender itself does canno
 _CHECK_SECONDS = 0.05
 _SEND_SECONDS = 20.0
 _LEAVING_SECONDS = 2.0
+_STOP_SECONDS = 60.0  # for long work to be undone, once it is cancelled
 _COPY_SECONDS = 5.0
 _LONGEST_NOTE = 4000
 
@@ -103,18 +104,19 @@ class AttachedBlender:
         after: str = "",
         progress: Progress | None = None,
         cancelled: threading.Event | None = None,
+        stops: bool = False,
         **_of_workers: Any,
     ) -> WorkerReply[T]:
         """Runs a tool in the open Blender; see ``Supervisor.call``. ``after`` names the undo step.
 
-        Raises BlenderError.
+        ``stops``: the tool works in slices, and ends when it is cancelled. Raises BlenderError.
         """
         if changes:
             self.keep_copy()
             arguments = {**arguments, "step": after.removeprefix("after ") or tool}
-        answer = self._ask(tool, arguments, what or tool, timeout, progress, cancelled)
+        answer = self._ask(tool, arguments, what or tool, timeout, progress, cancelled, stops=stops)
         for event in answer.events:
-            self._add_note(event)
+            self.add_note(event)
         if answer.missing is not None:
             raise MissingModule(answer.missing)
         if answer.refused is not None:
@@ -136,9 +138,10 @@ class AttachedBlender:
         """Puts a note before the next reply, unless it stood before an earlier one."""
         if note not in self._noted:
             self._noted.add(note)
-            self._add_note(note)
+            self.add_note(note)
 
-    def _add_note(self, note: str) -> None:
+    def add_note(self, note: str) -> None:
+        """Puts a note before the next reply."""
         self._note = f"{self._note} {note}".strip()[-_LONGEST_NOTE:]
 
     def keep_copy(self) -> None:
@@ -152,10 +155,10 @@ class AttachedBlender:
         try:
             reply = self.call("write_copy", {"path": path, "seconds": _COPY_SECONDS}, dict, timeout=60.0)
         except Refusal as error:
-            self._add_note(f"No copy was kept before this first change: {error}")
+            self.add_note(f"No copy was kept before this first change: {error}")
         else:
             self._copy = path
-            self._add_note(f"Before this first change, a copy was kept: {path} ({reply.seconds:.2f} s).")
+            self.add_note(f"Before this first change, a copy was kept: {path} ({reply.seconds:.2f} s).")
 
     def end(self) -> None:
         """From any thread: a running call ends soon, and no other begins."""
@@ -182,7 +185,7 @@ class AttachedBlender:
             blender = choose(self._wanted)
             self._link = self._admitted(blender)
             self._tell(f"Attached to {self._about}")
-            self._add_note(f"Attached to the user's open {self._about}.")
+            self.add_note(f"Attached to the user's open {self._about}.")
         return self._link
 
     def _admitted(self, blender: OpenBlender) -> Any:
@@ -259,16 +262,23 @@ class AttachedBlender:
         timeout: float,
         progress: Progress | None,
         cancelled: threading.Event | None,
+        *,
+        stops: bool,
     ) -> _OpenAnswer:
         """The answer to a call. Raises Refusal."""
         end = self._connected()
         ticket = secrets.token_hex(8)
-        deadline = time.monotonic() + timeout + _GRACE_SECONDS
+        deadline = time.monotonic() + timeout + (_STOP_SECONDS if stops else _GRACE_SECONDS)
         try:
             end.timeout(_SEND_SECONDS)
             end.send({"ticket": ticket, "tool": tool, "arguments": arguments, "seconds": timeout})
             end.timeout(_CHECK_SECONDS)
             while True:
+                if stops and cancelled is not None and cancelled.is_set():
+                    end.timeout(_SEND_SECONDS)
+                    end.send({"withdraw": ticket})  # and wait for what becomes of it
+                    end.timeout(_CHECK_SECONDS)
+                    deadline, cancelled = time.monotonic() + _STOP_SECONDS, None
                 if (
                     time.monotonic() > deadline
                     or self._ending.is_set()

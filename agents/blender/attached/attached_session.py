@@ -70,6 +70,7 @@ class AttachedSession(BlenderSession):
         if call.cancelled.is_set():
             raise Refusal(f"{tool.name} was cancelled before it began.")
         self._unused = False
+        call.begin()
         known = about(version)
         context = AttachedContext(self._attached, self._copies(), known.docs, known.check)
         return with_note(RUN[tool.name](context, parsed, call), self._attached)

@@ -6,21 +6,24 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from agents.blender.attached.attached_blender import TooLarge
-from agents.blender.attached.tools import execute, show, undo, view
+from agents.blender.attached.tools import bake, execute, show, undo, view
 from agents.blender.attached.tools.base import AttachedTool
+from agents.blender.formatting import format_list
 from agents.blender.tools import (
     files,
     group,
+    job,
     material_preview,
     motion_sheet,
     previews,
+    render,
     scene_state,
     tag,
     trial,
     uv_preview,
     verify,
 )
-from agents.blender.tools.base import BlenderTool
+from agents.blender.tools.base import BlenderTool, ToolContext
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -30,7 +33,15 @@ if TYPE_CHECKING:
     from agents.blender.attached.tools.base import AttachedContext
     from agents.blender.tools.base import Call, CallContext, Result
 
-_MOST_OBJECTS = 1000  # whose state is read while the user's window waits
+_LISTED = 6
+_NARROWED = {
+    "blender_single_mesh_preview": "object",
+    "blender_object_preview": "object",
+    "blender_system_layout_preview": "system",
+    "blender_scene_layout_preview": "subjects",
+}
+_MOST_OBJECTS, _MOST_SUMMARIZED = 1000, 10_000  # whose state is read while the user's window waits
+_MOST_READ = 2000  # whose state is read in a moment, in the copy
 OPENING = (
     "You work in the Blender that the user has open, beside them. Everything you change is one undo step with a name; "
     "the user may change, save or close things at any time, which the next reply tells. Code is rehearsed in a copy "
@@ -46,7 +57,10 @@ HABITS = (
     ("blender_motion_sheet_preview", "to see and measure motion over time"),
     (undo.NAME, "to take back your own steps"),
     (show.NAME, "to point the user to something"),
+    ("blender_bake", "for physics, before you judge motion; the user's window waits, unless it is a fluid"),
     ("blender_save", "to save a copy; the user saves their own file"),
+    ("blender_render", "last, from a copy; start with a still"),
+    ("blender_job", "for a bake or an animation that may take longer than a minute"),
 )
 
 
@@ -62,10 +76,39 @@ def _in_twin(tool: BlenderTool) -> AttachedTool:
     )
 
 
+def _looking(tool: BlenderTool, named: str) -> AttachedTool:
+    """A tool that draws a copy: of a large scene, one of what its argument ``named`` names alone."""
+
+    def run(context: AttachedContext, arguments: Any, call: Call) -> Result:
+        note = ""
+        try:
+            copy = context.twin.refreshed(context.open, call.cancelled, soon=True)
+        except TooLarge as error:
+            value = getattr(arguments, named)
+            names = [value] if isinstance(value, str) else [*(value or ())]
+            try:
+                if not names:
+                    raise
+                copy = context.twin.part_named(context.open, names, call.cancelled)
+            except TooLarge as part:
+                less = "fewer" if names else "some"
+                raise TooLarge(
+                    f"{part} Name {less} in {named!r}, or look with {view.NAME} at what the user sees."
+                ) from error
+            shown = format_list(names, _LISTED)
+            note = f"This shows {shown} with what that needs, and nothing else of the scene: {error}"
+        result = tool.run(ToolContext(copy, context.docs, context.check), arguments, call)
+        return replace(result, text=f"{note}\n\n{result.text}") if note else result
+
+    return AttachedTool(tool, run)
+
+
 def _scene_state(context: AttachedContext, arguments: scene_state.SceneStateArguments, call: Call) -> Result:
-    """Reads a scene of many objects in the copy, unless that cannot be had."""
+    """Reads more objects than the window can wait for in the copy, unless that cannot be had."""
+    most = _MOST_SUMMARIZED if arguments.detail == "summary" else _MOST_OBJECTS
+    in_copy = None if arguments.detail == "summary" else _MOST_READ
     try:
-        return scene_state.run(context.of_open, arguments, call, {"at_most": _MOST_OBJECTS})
+        return scene_state.run(context.of_open, arguments, call, {"at_most": most, "in_copy": in_copy})
     except TooLarge:
         pass
     try:
@@ -105,6 +148,10 @@ def _own(
     return AttachedTool(tool, module.run)
 
 
+def _only_beside_calls(*_: Any) -> Result:
+    raise Refusal("Jobs run beside the calls of a session.")
+
+
 def _only_attached(*_: Any) -> Result:
     raise Refusal("This tool needs an open Blender: simworlds mcp --attach.")
 
@@ -112,10 +159,10 @@ def _only_attached(*_: Any) -> Result:
 ATTACHED: tuple[AttachedTool, ...] = (
     _own(view.NAME, "See what the user sees", view, read_only=True),
     AttachedTool(scene_state.TOOL, _scene_state),
-    *(_in_twin(tool) for tool in previews.TOOLS),
-    _in_twin(material_preview.TOOL),
-    _in_twin(uv_preview.TOOL),
-    _in_twin(motion_sheet.TOOL),
+    *(_looking(tool, _NARROWED[tool.name]) for tool in previews.TOOLS),
+    _looking(material_preview.TOOL, "objects"),
+    _looking(uv_preview.TOOL, "objects"),
+    _looking(motion_sheet.TOOL, "actors"),
     AttachedTool(execute.TOOL, execute.run),
     _own(undo.NAME, "Undo your steps", undo, destructive=True),
     _own(show.NAME, "Show the user something", show),
@@ -124,6 +171,9 @@ ATTACHED: tuple[AttachedTool, ...] = (
     _in_twin(verify.TOOL),
     AttachedTool(files.SAVE, _save),
     _in_twin(trial.TOOL),
+    AttachedTool(bake.TOOL, bake.run),
+    _in_twin(render.TOOL),
+    AttachedTool(job.TOOL, _only_beside_calls),
 )
 TOOLS: tuple[BlenderTool, ...] = tuple(attached.tool for attached in ATTACHED)
 RUN = {attached.tool.name: attached.run for attached in ATTACHED}

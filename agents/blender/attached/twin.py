@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
 
 from pydantic import Field
 
@@ -17,7 +17,7 @@ from simworlds.sandbox.replies import Claim, Count, Name, Place, mapping
 
 if TYPE_CHECKING:
     import threading
-    from collections.abc import Callable
+    from collections.abc import Callable, Sequence
 
     from agents.blender.attached.attached_blender import AttachedBlender
     from agents.blender.run_folder import RunFolder
@@ -25,17 +25,46 @@ if TYPE_CHECKING:
     from simworlds.sandbox.runtime import Runtime
 
 COPY_SECONDS = 5.0
+DRAWN_SOON = {"objects": 1000, "triangles": 4_000_000, "seconds": 1.0}
+"""What is copied, opened and drawn within two seconds, with or without a graphics card."""
 _WRITE_SECONDS = 60.0
 _LOAD_SECONDS = 120.0
 _PROGRAM = Program("simworlds_worker.attached.twin_worker", WORKER.packages)
 
 
-class _Copy(Claim):
+class _Written(Claim):
+    """What the open Blender wrote of its scene, and the tool by which the twin opens it."""
+
+    loads: ClassVar[str] = "load"
     bytes: Count
     seconds: float = Field(ge=0)
-    file: Place
     folders: list[Place] = Field(max_length=40)
+
+    def load_arguments(self) -> dict[str, Any]:
+        """What that tool needs to know of it."""
+        return {}
+
+
+class _Copy(_Written):
+    """All of it."""
+
+    file: Place
     unsaved: list[Name] = Field(max_length=40)
+
+
+class _Part(_Written):
+    """A part: these ``objects``."""
+
+    loads: ClassVar[str] = "load_part"
+    objects: list[Name] = Field(max_length=100_000)
+    scene: dict[str, Any]
+
+    def load_arguments(self) -> dict[str, Any]:
+        """The settings of the scene, which itself is not in the part."""
+        return {"scene": self.scene}
+
+
+W = TypeVar("W", bound=_Written)
 
 
 class Twin:
@@ -47,38 +76,72 @@ class Twin:
         self._read: set[str] = set()
         self._program = ""
 
-    def refreshed(self, attached: AttachedBlender, cancelled: threading.Event | None = None) -> Supervisor:
-        """The supervisor of a Blender that has the open scene as it is now. Raises BlenderError."""
-        supervisor = self.started(attached)
-        with self._folder.lending() as lent:
-            path = lent / "open.blend"
-            copy = attached.call(
-                "write_copy",
-                {"path": str(path), "seconds": COPY_SECONDS},
-                _Copy.model_validate,
-                timeout=_WRITE_SECONDS,
-                what="copying the scene",
-                cancelled=cancelled,
-            ).value
-            new = {*copy.folders} - self._read
-            if not new:
-                self._load(supervisor, path, cancelled)
-        if new:  # the sandbox must let it read other folders, which it learns when it starts
-            self._read |= new
-            self.close()
-            return self.refreshed(attached, cancelled)
+    def refreshed(
+        self, attached: AttachedBlender, cancelled: threading.Event | None = None, *, soon: bool = False
+    ) -> Supervisor:
+        """The supervisor of a Blender that has the open scene as it is now. ``soon``: only if it can be drawn within
+        a moment. Raises BlenderError."""
+        most = DRAWN_SOON if soon else {}
+        supervisor, copy = self._brought(attached, "write_copy", most, _Copy, cancelled)
         if copy.unsaved:
             attached.note_once(
                 f"Painted and not saved, so as before in pictures: {', '.join(copy.unsaved)} (Image > Save or Pack)."
             )
         return supervisor
 
+    def part_of_code(
+        self, attached: AttachedBlender, code: str, cancelled: threading.Event | None = None
+    ) -> tuple[Supervisor, list[str]]:
+        """The same of one that has what the code touches alone, and its objects. Raises BlenderError."""
+        supervisor, part = self._brought(attached, "write_part", {"code": code}, _Part, cancelled)
+        return supervisor, part.objects
+
+    def part_named(
+        self, attached: AttachedBlender, names: Sequence[str], cancelled: threading.Event | None = None
+    ) -> Supervisor:
+        """The same of one that has what bears these names alone, if it can be drawn soon. Raises BlenderError."""
+        return self._brought(attached, "write_part", {"names": [*names], **DRAWN_SOON}, _Part, cancelled)[0]
+
+    def _brought(
+        self,
+        attached: AttachedBlender,
+        write: str,
+        arguments: dict[str, Any],
+        kind: type[W],
+        cancelled: threading.Event | None,
+    ) -> tuple[Supervisor, W]:
+        supervisor = self.started(attached)
+        with self._folder.lending() as lent:
+            path = lent / "open.blend"
+            written = attached.call(
+                write,
+                {"seconds": COPY_SECONDS, **arguments, "path": str(path)},
+                kind.model_validate,
+                timeout=_WRITE_SECONDS,
+                what="copying the scene",
+                cancelled=cancelled,
+            ).value
+            new = {*written.folders} - self._read
+            if not new:
+                self._load(supervisor, written, path, cancelled)
+                return supervisor, written
+        # The sandbox must let it read other folders, which it learns when it starts.
+        self._read |= new
+        self.close()
+        return self._brought(attached, write, arguments, kind, cancelled)
+
     @staticmethod
-    def _load(supervisor: Supervisor, path: Path, cancelled: threading.Event | None) -> None:
+    def _load(
+        supervisor: Supervisor, written: _Written, path: Path, cancelled: threading.Event | None
+    ) -> None:
         path.chmod(0o644)
         supervisor.call(
-            "load",
-            {"path": str(path), "workspace": supervisor.folder.workspace.for_blender()},
+            written.loads,
+            {
+                **written.load_arguments(),
+                "path": str(path),
+                "workspace": supervisor.folder.workspace.for_blender(),
+            },
             mapping,
             timeout=_LOAD_SECONDS,
             what="opening the copy",

@@ -45,7 +45,7 @@ def run(context: ToolContext, arguments: BakeArguments, call: Call) -> Result:
         return blender.call(
             "free_bake",
             {"objects": arguments.objects},
-            _read_freed,
+            read_freed,
             timeout=arguments.timeout,
             changes=True,
             after="after freeing bakes",
@@ -57,7 +57,7 @@ def run(context: ToolContext, arguments: BakeArguments, call: Call) -> Result:
             **arguments.model_dump(exclude={"timeout", "free"}),
             "folder": blender.folder.workspace.for_blender(),
         },
-        _read,
+        read_baked,
         timeout=arguments.timeout,
         changes=True,
         always_keep=True,
@@ -68,7 +68,7 @@ def run(context: ToolContext, arguments: BakeArguments, call: Call) -> Result:
     return reply.value
 
 
-def _read(data: dict[str, Any]) -> Result:
+def read_baked(data: dict[str, Any]) -> Result:
     """Blender's reply as text. Raises LookupError, TypeError or ValueError for a malformed one."""
     caches = data["caches"]
     baked = sum(not cache["fault"] for cache in caches)
@@ -85,7 +85,8 @@ class _Freed(Claim):
     unbaked: list[Name] = Field(max_length=10_000)
 
 
-def _read_freed(data: Any) -> Result:
+def read_freed(data: Any) -> Result:
+    """Blender's reply as text. Raises ValidationError for a malformed one."""
     reply = _Freed.model_validate(data)
     lines = [f"Freed: {format_list(reply.freed, _LISTED)}." if reply.freed else "Nothing was freed."]
     lines += [f"Not baked before: {format_list(reply.unbaked, _LISTED)}."] if reply.unbaked else []

@@ -122,10 +122,20 @@ class ToolContext(CallContext):
 
 @dataclass(frozen=True, slots=True)
 class Call:
-    """A call's link to its caller: ``progress`` gets (done, total, text); ``cancelled`` is set to end the call."""
+    """A call's link to its caller: ``progress`` gets (done, total, text); ``cancelled`` is set to end the call.
+
+    ``job``: what it is called as a job, before which a scene with checkpoints is kept. ``begins`` is called first.
+    """
 
     progress: Progress | None = None
     cancelled: threading.Event = field(default_factory=threading.Event)
+    job: str = ""
+    begins: Callable[[], None] | None = None
+
+    def begin(self) -> None:
+        """It begins now, after those before it."""
+        if self.begins is not None:
+            self.begins()
 
 
 @dataclass(frozen=True, slots=True)

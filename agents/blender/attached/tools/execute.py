@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from pydantic import Field
 
 from agents.blender.attached.attached_blender import TooLarge
+from agents.blender.formatting import format_list
 from agents.blender.preflight import PreFlight, check_before_running
 from agents.blender.tools import execute
 from agents.blender.tools.base import BlenderTool, Call, Result
@@ -17,8 +18,10 @@ from simworlds.sandbox.replies import Text  # noqa: TC001 - annotates fields of 
 
 if TYPE_CHECKING:
     from agents.blender.attached.tools.base import AttachedContext
+    from agents.blender.supervisor import Supervisor
     from simworlds.sandbox.blender_process import WorkerReply
 
+_LISTED = 8
 _UNCHANGED = "**Nothing was done in the open Blender.**"
 _KEPT_OUT = "Do without that: the user's Blender is not to write files, open sockets or start anything."
 
@@ -55,10 +58,14 @@ class _Rehearsed(_Applied):
 
 @dataclass(frozen=True, slots=True)
 class _Rehearsal:
-    """What came of it: ``stopped`` if the code must not be applied, with why; else what it changed, and ``notes``."""
+    """What came of it: ``stopped`` if the code must not be applied, with why; else what it changed, and ``notes``.
+
+    ``of_part``: the copy had a part of the scene, in which more is told of changes, and names may be free.
+    """
 
     stopped: Result | None = None
     changed: dict[str, Any] | None = None
+    of_part: bool = False
     seconds: float = 0.0
     notes: tuple[str, ...] = ()
 
@@ -82,9 +89,10 @@ def run(context: AttachedContext, arguments: RehearsedArguments, call: Call) -> 
 def _rehearse(
     context: AttachedContext, arguments: RehearsedArguments, checked: PreFlight, call: Call
 ) -> _Rehearsal:
-    """Runs the code in a copy, unless the scene is too large for one: then the user's panel decides."""
+    """Runs the code in a copy; if the scene is too large for one, in a copy of the part that it touches. Where that
+    cannot be told either, the user's panel decides."""
     try:
-        twin = context.twin.refreshed(context.open, call.cancelled)
+        twin, of_part = _copy(context, arguments.code, call)
     except TooLarge as error:
         return _Rehearsal(notes=(f"Not rehearsed: {error}",))
     folders = [place.for_blender() for place in twin.launch.folders]
@@ -113,12 +121,31 @@ def _rehearse(
         return _Rehearsal(Result(text, {"executed": False, "tried": tried}, failed=True))
     if rehearsed.error is not None:
         data = {"executed": False, **_reply_data(context, rehearsed, reply)}
-        data["scene"] = f"{_UNCHANGED} This was the rehearsal in a copy of the scene."
+        data["scene"] = f"{_UNCHANGED} This was the rehearsal in a copy of {of_part or 'the scene'}."
+        if of_part:
+            data["scene"] += " What code reaches by other names than texts in it is not there."
         return _Rehearsal(Result(describe(data, reply, checked), data, failed=True))
-    notes = [f"Undo will not take back what the code leaves in Blender: {', '.join(rehearsed.stays)}."]
+    notes = [f"Rehearsed in a copy of {of_part} alone: the whole is too large."] if of_part else []
+    if rehearsed.stays:
+        notes.append(
+            f"Undo will not take back what the code leaves in Blender: {', '.join(rehearsed.stays)}."
+        )
     return _Rehearsal(
-        changed=rehearsed.changed, seconds=reply.seconds, notes=tuple(notes if rehearsed.stays else ())
+        changed=rehearsed.changed, of_part=bool(of_part), seconds=reply.seconds, notes=tuple(notes)
     )
+
+
+def _copy(context: AttachedContext, code: str, call: Call) -> tuple[Supervisor, str]:
+    """The Blender that has a copy, and what of the scene it has in words; "" for all. Raises BlenderError."""
+    try:
+        return context.twin.refreshed(context.open, call.cancelled), ""
+    except TooLarge as whole:
+        try:
+            twin, objects = context.twin.part_of_code(context.open, code, call.cancelled)
+        except TooLarge as error:
+            raise TooLarge(f"{whole} {error}") from error
+    named = format_list(objects, _LISTED)
+    return twin, f"what the code names and needs ({named})" if named else "the scene without its objects"
 
 
 def _apply(
@@ -138,8 +165,9 @@ def _apply(
         data["preflight"] = checked.data
     notes = [*rehearsal.notes, *(f"Blender was kept from this: {words}." for words in applied.noted)]
     if rehearsal.changed is not None:
-        data["rehearsal"] = {"seconds": rehearsal.seconds, "same": rehearsal.changed == applied.changed}
-        if rehearsal.changed != applied.changed:
+        same = _comparable(rehearsal, rehearsal.changed) == _comparable(rehearsal, applied.changed)
+        data["rehearsal"] = {"seconds": rehearsal.seconds, "same": same}
+        if not same:
             notes.append(
                 f"In the rehearsal, other things changed: {_listed(rehearsal.changed) or 'nothing'}."
             )
@@ -149,6 +177,15 @@ def _apply(
             data["scene"] = "What the code had done was undone."
     text = "\n\n".join([describe(data, reply, checked), *notes])
     return Result(text, data, failed=applied.error is not None)
+
+
+def _comparable(rehearsal: _Rehearsal, changed: dict[str, Any]) -> object:
+    if not rehearsal.of_part:
+        return changed
+    counts = {
+        kind: [len(entry.get(word, ())) for word in ("added", "removed")] for kind, entry in changed.items()
+    }
+    return {kind: both for kind, both in counts.items() if any(both)}
 
 
 def _called(

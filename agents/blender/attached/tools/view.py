@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from pydantic import Field
 
+from agents.blender.attached.attached_blender import TooLarge
 from agents.blender.formatting import format_list
 from agents.blender.sheets.worker_pictures import taken_picture
 from agents.blender.tools.base import Arguments, Call, Result
@@ -86,13 +87,16 @@ def run(context: AttachedContext, arguments: ViewArguments, call: Call) -> Resul
     twin = context.twin.started(context.open)
     name = f"{secrets.token_hex(8)}.png"
     editor = None if arguments.picture == "window" else arguments.picture
-    context.open.call(
-        "screenshot",
-        {"path": twin.folder.workspace.for_blender(name), "editor": editor},
-        mapping,
-        timeout=_SECONDS,
-        cancelled=call.cancelled,
-    )
+    try:
+        context.open.call(
+            "screenshot",
+            {"path": twin.folder.workspace.for_blender(name), "editor": editor},
+            mapping,
+            timeout=_SECONDS,
+            cancelled=call.cancelled,
+        )
+    except TooLarge as error:
+        return Result(f"**No picture**: {error}\n{text}", data)
     picture = taken_picture(twin, name)
     picture.thumbnail((_WIDEST, _WIDEST))
     stream = io.BytesIO()

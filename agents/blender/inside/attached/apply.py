@@ -10,7 +10,7 @@ import bpy
 
 from ..changes import listen
 from ..execute import run_watched
-from .code_guard import CodeGuard
+from .code_guard import CodeGuard, is_of_fluid
 from .undo_steps import MOST_BLOCKS
 
 
@@ -35,7 +35,9 @@ def rehearse(arguments, report):
     before, kept = _files(arguments["folders"]), _stays()
     result = apply(arguments, report)
     after = _files(arguments["folders"])
-    wrote = sorted(path for path, state in after.items() if before.get(path) != state)
+    wrote = sorted(
+        path for path, state in after.items() if before.get(path) != state and not is_of_fluid(path)
+    )
     stays = [f"{now - kept[name]} more {name}" for name, now in _stays().items() if now > kept[name]]
     return {**result, "wrote": wrote[:20], "stays": stays}
 

@@ -7,7 +7,7 @@ import struct
 
 import bpy
 
-from . import structures
+from . import hold, structures
 
 _JOBS = {
     "RENDER": "renders",
@@ -38,7 +38,7 @@ def reason(*, but_addons=False):
         for name in _modal(window):
             if not name:
                 return "a menu or a field is open, or a slider is dragged. Call again when the user is done"
-            if but_addons and _of_addon(name):
+            if name == hold.NAME or (but_addons and _of_addon(name)):
                 continue
             return f"{_title(name)} is running. Call again when the user has confirmed it or pressed Esc"
     return ""

@@ -19,16 +19,18 @@ from simworlds.sandbox.inside.refusal import Refused
 
 from . import announcement, busy, copies, marks
 from .listener import Listener
+from .long_work import LongWork
 from .undo_steps import UndoSteps, digest
 from .user_state import main_window
 
-LOOK, SHOW, CHANGE, CODE = "look", "show", "change", "run code"
+LOOK, SHOW, CHANGE, CODE, LONG = "look", "show", "change", "run code", "work long"
 # Tool → (module of the worker's package, function, what it needs).
 TOOLS = {
     "user_digests": ("attached.user_state", "digests", LOOK),
     "user_state": ("attached.window", "user_state", LOOK),
     "screenshot": ("attached.window", "screenshot", LOOK),
     "write_copy": ("attached.copies", "write_copy", LOOK),
+    "write_part": ("attached.parts", "write_part", LOOK),
     "scene_state": ("attached.window", "scene_state", LOOK),
     "present": ("api_presence", "present", LOOK),
     "opened": ("", "", LOOK),
@@ -37,14 +39,19 @@ TOOLS = {
     "undo": ("", "", CHANGE),
     "tag": ("tag", "tag", CHANGE),
     "group": ("group", "group", CHANGE),
+    "fluids": ("physics.bake", "fluids", LOOK),
+    "bake": ("attached.bakes", "bake_in_steps", LONG),
+    "free_bake": ("attached.bakes", "free", CHANGE),
     "apply": ("attached.apply", "apply", CODE),
 }
 _IN_WORDS = {
     "user_state": "read what is selected",
     "screenshot": "looked at the window",
     "write_copy": "copied the scene",
+    "write_part": "copied a part of the scene",
     "scene_state": "read the scene",
     "present": "looked names up",
+    "fluids": "looked for fluids",
     "undo": "undid steps",
     "mark": "marked objects",
 }
@@ -83,6 +90,7 @@ class CallRunner:
         self.listener = None
         self._rights, self._version, self._redraw = rights, version, redraw
         self._head = None
+        self._work = None
         self._lively = 0.0
         self._opened = 1  # files, one after the other
         self._wanted = deque()
@@ -114,6 +122,8 @@ class CallRunner:
         """Ends all connections; clients are told ``why``."""
         if self.listener is None:
             return
+        if self._work is not None:
+            self._end_work({"refused": why})
         self.leave(why)
         self._head = None
         marks.set_marks([])
@@ -162,12 +172,14 @@ class CallRunner:
         except Exception:
             traceback.print_exc()
         now = time.monotonic()
-        return _QUICK if now < self._lively or self._head is not None else _SLOW
+        return _QUICK if now < self._lively or self._head is not None or self._work is not None else _SLOW
 
     def _step(self):
         copies.keep_unsaved()
         while self._wanted:
             self._wanted.popleft()()
+        if self._work is not None:
+            self._go_on()
         if self._head is None:
             try:
                 self._head = self.listener.requests.get_nowait()
@@ -176,37 +188,79 @@ class CallRunner:
         request, now = self._head, time.monotonic()
         self._lively = now + _LIVELY_SECONDS
         if request.withdrawn or now > request.deadline:
+            why = (
+                "It was withdrawn"
+                if request.withdrawn
+                else f"Blender had no time for it in {request.seconds:g} s"
+            )
+            request.reply(refused=f"{why}: nothing was done.", seconds=0.0, left=[], events=[])
             self._done(request)
             return
-        doing = busy.reason(but_addons=self._rights().ignore_addons)
-        if doing:
+        if doing := self._busy():
             if now - request.arrived > _PATIENCE_SECONDS:
-                self._answer(
-                    request,
-                    {"refused": f"The user is busy in Blender: {doing}.", "kind": "busy", "seconds": 0.0},
-                )
+                self._answer(request, {"refused": doing, "kind": "busy", "seconds": 0.0})
             return
         self._run(request)
+
+    def _busy(self):
+        """Why no call can run now, with what to wait for; "" if one can."""
+        if self._work is not None:
+            return f"{self._work}. Call again when that is done."
+        doing = busy.reason(but_addons=self._rights().ignore_addons)
+        return f"The user is busy in Blender: {doing}." if doing else ""
 
     def _run(self, request):
         started = time.perf_counter()
         printed = io.StringIO()
-        try:
-            answer = {"value": self._perform(request, printed)}
-        except copies.TooLarge as error:
-            answer = {"refused": str(error)[:_LONGEST], "kind": "large"}
-        except Refused as error:
-            answer = {"refused": str(error)[:_LONGEST]}
-        except ModuleNotFoundError as error:
-            answer = {"missing": str(error.name)}
-        except Exception as error:
-            answer = {
-                "failed": f"{type(error).__name__}: {error}"[:_LONGEST],
-                "traceback": traceback.format_exc()[-8000:],
-            }
+        answer = self._outcome(lambda: self._perform(request, printed))
+        if self._work is not None:
+            self._head = None
+            return  # it has only begun
         answer["seconds"] = time.perf_counter() - started
         answer["stdout"] = printed.getvalue()[-_LONGEST:]
         self._answer(request, answer)
+
+    def _go_on(self):
+        """Works on the call that takes long, and answers it at its end."""
+        answer = self._outcome(self._work.go_on)
+        if self._work.has_ended:
+            answer = {"value": self._work.value}
+        elif "value" in answer:
+            return
+        self._end_work(answer)
+
+    def _end_work(self, answer):
+        """Answers the call; what it did is one step, which is taken back unless it is done."""
+        work, self._work = self._work, None
+        kept = self._outcome(lambda: self._keep_work(work))
+        if "value" not in kept:
+            said, why = (one.get("refused") or one.get("failed", "") for one in (answer, kept))
+            answer = {"refused": f"{said} What is left of it could not be put in order: {why}".strip()}
+        answer.update(seconds=time.perf_counter() - work.started, stdout="")
+        self._answer(work.request, answer)
+
+    def _keep_work(self, work):
+        work.close()
+        self.undo_steps.keep(work.request.step or work.request.tool, work.before)
+        if not work.has_ended:
+            self.undo_steps.undo(1)
+
+    @staticmethod
+    def _outcome(work):
+        """What ``work`` returns or raises, as an answer."""
+        try:
+            return {"value": work()}
+        except copies.TooLarge as error:
+            return {"refused": str(error)[:_LONGEST], "kind": "large"}
+        except Refused as error:
+            return {"refused": str(error)[:_LONGEST]}
+        except ModuleNotFoundError as error:
+            return {"missing": str(error.name)}
+        except Exception as error:
+            return {
+                "failed": f"{type(error).__name__}: {error}"[:_LONGEST],
+                "traceback": traceback.format_exc()[-8000:],
+            }
 
     def _perform(self, request, printed):
         entry = TOOLS.get(request.tool)
@@ -220,10 +274,14 @@ class CallRunner:
         if request.tool == "undo":
             return self.undo_steps.undo(int(request.arguments["count"]))
 
+        if kind == LONG:
+            self._begin_work(request, entry)
+            return None
+
         def report(done, total, text=""):
             request.client.send({"ticket": request.ticket, "progress": [done, total, str(text)[:_LONGEST]]})
 
-        function = getattr(importlib.import_module(f"{_WORKER}.{entry[0]}"), entry[1])
+        function = _function(entry)
         if kind == LOOK:
             return function(request.arguments, report)
         self._check_undo()
@@ -244,9 +302,19 @@ class CallRunner:
             self.undo_steps.undo(1)
         return value
 
+    def _begin_work(self, request, entry):
+        """Begins a call that takes long; ``_go_on`` does the rest."""
+        self._check_undo()
+
+        def report(done, total, text=""):
+            if self._work is not None:
+                self._work.report(done, total, text)
+
+        self._work = LongWork(request, _function(entry)(request.arguments, report))
+
     def _check_right(self, kind, request):
         rights = self._rights()
-        if kind in {CHANGE, CODE} and not rights.change:
+        if kind in {CHANGE, CODE, LONG} and not rights.change:
             raise Refused(
                 "The user allows SimWorlds only to look, not to change anything (panel SimWorlds in Blender)."
             )
@@ -284,7 +352,8 @@ class CallRunner:
 
     def _done(self, request):
         self.listener.finished(request)
-        self._head = None
+        if self._head is request:
+            self._head = None
 
     # What the user does
 
@@ -303,6 +372,10 @@ class CallRunner:
         def loaded(*_):
             self._opened += 1
             self.undo_steps.forget()
+            if self._work is not None:  # by code of an add-on: the user's hands are held
+                work, self._work = self._work, None
+                work.close()
+                self._answer(work.request, {"refused": "Another file was opened meanwhile.", "seconds": 0.0})
             copies.forget_unsaved()
             name = bpy.data.filepath or "a new file"
             self._tell(
@@ -327,6 +400,11 @@ class CallRunner:
         if self.listener is not None:
             with contextlib.suppress(OSError, LookupError):
                 self.announce()
+
+
+def _function(entry):
+    """What a tool's entry names."""
+    return getattr(importlib.import_module(f"{_WORKER}.{entry[0]}"), entry[1])
 
 
 class _Both:

@@ -8,6 +8,7 @@ the sandbox first, and what this guard noted there never reaches the user's Blen
 import ast
 import fnmatch
 import os
+import re
 import sys
 import threading
 
@@ -82,6 +83,8 @@ _OPERATORS = (
     ),
 )
 _CALL = "_op_call"  # by this bpy.ops calls every operator
+_ON_DISK = frozenset({"writes a file", "changes files"})
+_OF_FLUID = re.compile(r"[/\\]cache_fluid_[0-9a-f]+(?:[/\\]|$)")  # as Blender itself names its folder
 _MOST = 10
 _running = {"guard": None}
 
@@ -146,7 +149,7 @@ class CodeGuard:
             doing = "writes a file" if _writes(*arguments[:3]) else None
         elif doing is None and "." in event:
             doing = _BEGINNINGS.get(event[: event.index(".") + 1])
-        if doing is None:
+        if doing is None or (doing in _ON_DISK and arguments and is_of_fluid(arguments[0])):
             return
         subject = str(arguments[0])[:200] if arguments and isinstance(arguments[0], (str, bytes)) else event
         self.note(f"it {doing} ({subject})")
@@ -164,6 +167,11 @@ class CodeGuard:
             self.note(f"it {doing}")
 
         return handler
+
+
+def is_of_fluid(path):
+    """Whether a path is in a folder of Blender's own, in which a fluid keeps frames from when it is made."""
+    return isinstance(path, (str, bytes)) and _OF_FLUID.search(os.fsdecode(path)) is not None
 
 
 def _writes(path, mode, flags):

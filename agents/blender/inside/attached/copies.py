@@ -10,6 +10,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..blend.cache_folders import cache_folders
 from ..blend.temporary import temporary_settings, without_handlers
 from . import structures
 from .user_state import in_window
@@ -17,6 +18,7 @@ from .user_state import in_window
 _ON_SAVING = ("save_pre", "save_post", "save_post_fail")
 _BYTES_A_SECOND = 150e6  # until a copy of this Blender was measured
 _OF_VERTEX, _OF_EDGE, _OF_LOOP, _OF_FACE = 40, 12, 24, 12
+_ANYTHING = 2e6  # bytes of what is in every file
 _LEAST_MEASURED = 20e6
 _measured = {"speed": _BYTES_A_SECOND}  # of the last large copy
 
@@ -56,17 +58,16 @@ def forget_unsaved():
 def write_copy(arguments, report):
     """Writes a copy to ``path`` if that takes at most ``seconds``, by an estimate. Raises Refused.
 
+    ``objects`` and ``triangles``: how many the copy may have, for who wants to draw it soon.
     Returns ``bytes``, ``seconds``, ``file`` (the open one's path), ``folders`` of other files that it uses, and
     ``unsaved``: images that were painted and are in no file, which the copy has as they were before.
     """
     del report
     path, most = arguments["path"], arguments["seconds"]
-    size = _estimate()
-    expected = size / _measured["speed"]
-    if expected > most:
-        raise TooLarge(
-            f"The scene is too large to be copied in {most:g} s: about {size / 1e6:.0f} MB, {expected:.0f} s."
-        )
+    check_drawn(bpy.context.scene.objects, arguments)
+    check_size(
+        (*bpy.data.meshes, *bpy.data.images, *bpy.data.sounds, *bpy.data.volumes, *bpy.data.fonts), most
+    )
     _unsaved["changes"] = _unsaved["changes"] or bpy.data.is_dirty
     started = time.perf_counter()
     preferences = bpy.context.preferences
@@ -90,25 +91,44 @@ def write_copy(arguments, report):
     written = os.path.getsize(path)
     if written > _LEAST_MEASURED:
         _measured["speed"] = written / seconds
-    folders = {
-        os.path.dirname(os.path.realpath(place))
-        for place in bpy.utils.blend_paths(absolute=True, packed=False)
-    }
     return {
         "bytes": written,
         "seconds": seconds,
         "file": bpy.data.filepath,
-        "folders": sorted(folder for folder in folders if os.path.isdir(folder))[:40],
+        "folders": paths_used(),
         "unsaved": sorted(image.name for image in bpy.data.images if image.is_dirty)[:40],
     }
 
 
-def _estimate():
-    """About how many bytes the file will have."""
-    size = 2e6
-    for mesh in bpy.data.meshes:
-        size += len(mesh.vertices) * _OF_VERTEX + len(mesh.edges) * _OF_EDGE
-        size += len(mesh.loops) * _OF_LOOP + len(mesh.polygons) * _OF_FACE
-    for owners in (bpy.data.images, bpy.data.sounds, bpy.data.volumes, bpy.data.fonts):
-        size += sum(owner.packed_file.size for owner in owners if getattr(owner, "packed_file", None))
-    return size
+def paths_used():
+    """The folders of other files that the open file uses, those of caches included."""
+    used = [*bpy.utils.blend_paths(absolute=True, packed=False), *(folder.real for folder in cache_folders())]
+    places = [os.path.realpath(path) for path in used]
+    folders = {place if os.path.isdir(place) else os.path.dirname(place) for place in places}
+    return sorted(folder for folder in folders if os.path.isdir(folder))[:40]
+
+
+def check_drawn(objects, most):
+    """Raises TooLarge if these are more ``objects`` or ``triangles`` than ``most`` says; it may say nothing of them."""
+    meshes = [obj.data for obj in objects if obj.type == "MESH"]
+    triangles = sum(len(mesh.loops) - 2 * len(mesh.polygons) for mesh in meshes)
+    if len(objects) > most.get("objects", len(objects)) or triangles > most.get("triangles", triangles):
+        raise TooLarge(
+            f"{len(objects):,} objects with {triangles:,} triangles are too many to be drawn in a moment."
+        )
+
+
+def check_size(blocks, seconds):
+    """Raises TooLarge if these data-blocks take longer than so many seconds to write, by an estimate."""
+    size = _ANYTHING
+    for block in blocks:
+        if isinstance(block, bpy.types.Mesh):
+            size += len(block.vertices) * _OF_VERTEX + len(block.edges) * _OF_EDGE
+            size += len(block.loops) * _OF_LOOP + len(block.polygons) * _OF_FACE
+        elif getattr(block, "packed_file", None):
+            size += block.packed_file.size
+    expected = size / _measured["speed"]
+    if expected > seconds:
+        raise TooLarge(
+            f"The scene is too large to be copied in {seconds:g} s: about {size / 1e6:.0f} MB, {expected:.0f} s."
+        )

@@ -9,7 +9,7 @@ from typing import Any
 
 import bpy
 
-from . import calls
+from . import calls, hold
 
 ROOT = __package__.partition(".worker.")[0]
 VERSION = "0.1.0"
@@ -193,6 +193,7 @@ def _at_exit():
 
 
 _CLASSES = (
+    hold.HoldOperator,
     SimWorldsPreferences,
     StartOperator,
     StopOperator,

@@ -1,10 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The worker of the sandboxed copy: it has one tool more, which rehearses code."""
+"""The worker of the sandboxed copy: it also rehearses code, and opens a part of a scene."""
 
 from .. import worker
 from . import code_guard
 
-TOOLS = {"rehearse": ("attached.apply", "rehearse")}
+TOOLS = {"rehearse": ("attached.apply", "rehearse"), "load_part": ("attached.parts", "load_part")}
 
 
 def main(arguments):

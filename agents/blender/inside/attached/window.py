@@ -2,6 +2,7 @@
 """What the user sees: a picture of a window or an editor, and what is selected and set."""
 
 import os
+import time
 
 import bpy
 
@@ -11,12 +12,23 @@ from ..state import readout
 from .copies import TooLarge
 from .user_state import main_window, state
 
+_LONGEST_DRAWING = 2.0  # seconds
+_drawn = {"shown": None, "seconds": 0.0}  # the last picture: of what, and how long it took
+
 
 def scene_state(arguments, report):
-    """As ``readout.scene_state``. Raises TooLarge for more objects than ``at_most``: the window waits meanwhile."""
-    most = arguments.pop("at_most", None)
-    if most is not None and len(bpy.data.objects) > most:
-        raise TooLarge(f"{len(bpy.data.objects):,} objects are too many to be read while the window waits.")
+    """As ``readout.scene_state``. Raises TooLarge for more objects than ``at_most``: the window waits meanwhile; and
+    Refused for more than ``in_copy``, which take too long anywhere."""
+    most, in_copy = arguments.pop("at_most", None), arguments.pop("in_copy", None)
+    objects = list(bpy.context.scene.objects)
+    chosen = objects if arguments["objects"] is None else readout.find_objects(arguments["objects"], objects)
+    if in_copy is not None and len(chosen) > in_copy:
+        raise Refused(
+            f"{len(chosen):,} objects are too many to be read in a moment. Name some in 'objects' (patterns and "
+            "collections count), or read detail='summary'."
+        )
+    if most is not None and len(chosen) > most:
+        raise TooLarge(f"{len(chosen):,} objects are too many to be read while the window waits.")
     return readout.scene_state(arguments, report)
 
 
@@ -58,9 +70,19 @@ _UNUSED = frozenset(
 
 
 def screenshot(arguments, report):
-    """Writes a PNG of the window, or of its largest ``editor`` of that type, to ``path``."""
+    """Writes a PNG of the window, or of its largest ``editor`` of that type, to ``path``.
+
+    Raises TooLarge if the same was slow the last time: Blender draws all that is shown anew.
+    """
     del report
     window, path, editor = main_window(), arguments["path"], arguments["editor"]
+    shown = (editor, sum(obj.visible_get() for obj in window.view_layer.objects), window.scene.frame_current)
+    if _drawn["shown"] == shown and _drawn["seconds"] > _LONGEST_DRAWING:
+        raise TooLarge(
+            f"This takes Blender {_drawn['seconds']:.1f} s to draw. Ask the user to hide objects or to use local view "
+            "(numpad /), or picture another editor."
+        )
+    started = time.perf_counter()
     if editor is None:
         with bpy.context.temp_override(window=window, screen=window.screen):
             bpy.ops.screen.screenshot(filepath=path, check_existing=False)
@@ -76,4 +98,5 @@ def screenshot(arguments, report):
             bpy.ops.screen.screenshot_area(filepath=path, check_existing=False)
     if not os.path.isfile(path):
         raise Refused("Blender made no picture of its window.")
+    _drawn.update(shown=shown, seconds=time.perf_counter() - started)
     return {"editor": editor or "window"}

@@ -3,10 +3,14 @@
 
 import errno
 import os
-import resource
 import shutil
 import sys
 import time
+
+try:
+    import resource
+except ImportError:  # Windows, where an open Blender uses this module, too
+    resource = None
 
 import bpy
 
@@ -90,8 +94,11 @@ def writing_failed(path, error):
     told, folder = reason(error), os.path.dirname(path)
     if os.strerror(errno.ENOENT) not in told or not os.path.isdir(folder):
         return told
-    limit, _ = resource.getrlimit(resource.RLIMIT_FSIZE)
-    most = "" if limit == resource.RLIM_INFINITY else f"A file may have {limit / 1e6:.0f} MB at most. "
+    most = ""
+    if resource is not None:
+        limit, _ = resource.getrlimit(resource.RLIMIT_FSIZE)
+        if limit != resource.RLIM_INFINITY:
+            most = f"A file may have {limit / 1e6:.0f} MB at most. "
     free = shutil.disk_usage(folder).free / 1e6
     return f"Blender stopped writing before the end. {most}{free:.0f} MB are free on the disk."
 

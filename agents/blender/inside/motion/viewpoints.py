@@ -104,7 +104,10 @@ def _best_angle(places):
     for angle in _ANGLES:
         towards = _axes(angle)[2]
         spread = math.sqrt(
-            sum((place - mean).length_squared - (place - mean).dot(towards) ** 2 for place in places)
+            # Of what stands still far away, rounding alone is left, which may be below 0.
+            sum(
+                max(0.0, (place - mean).length_squared - (place - mean).dot(towards) ** 2) for place in places
+            )
         )
         if spread > best_spread * _WORTH + 1e-6:
             best, best_spread = angle, spread

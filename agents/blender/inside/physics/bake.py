@@ -25,37 +25,53 @@ _FLUID_PARTS = ("data", "noise", "mesh", "particles", "guide")
 
 
 def bake(arguments, report):
-    """Bakes the caches of ``objects`` (None: all) over ``frame_start`` to ``frame_end`` (None: the scene's).
+    """Bakes as ``bake_in_steps`` does, in one go."""
+    steps = bake_in_steps(arguments, report)
+    while True:
+        try:
+            next(steps)
+        except StopIteration as end:
+            return end.value
+
+
+def bake_in_steps(arguments, report):
+    """A generator that bakes the caches of ``objects`` (None: all) over ``frame_start`` to ``frame_end`` (None: as the
+    scene's).
 
     Frames that were simulated before, and still are valid, are kept. A simulation that is not finite ends the bake at
-    that frame; the caches of its pass are freed.
+    that frame; the caches of its pass are freed. It yields between frames; closed early, it goes back to the frame.
 
-    ``folder`` is the workspace. Returns {"range", "seconds", "caches": one entry for each, "notes"}; an entry has
-    what PhysicsCache.describe() and simulated_movement.compare() return, ``label``, ``seconds`` (of the pass over the
-    frames, which several caches may share), ``kept`` (it was simulated before), ``fault`` (what is wrong with the
-    bake) and ``warning`` (nothing moved, and why).
+    ``folder`` is the workspace; None for a user's own file, which keeps its place. ``brought``: fluids that were baked
+    in another Blender, {object: folder of its frames}. Returns {"range", "seconds", "caches": one entry for each,
+    "notes"}; an entry has what PhysicsCache.describe() and simulated_movement.compare() return, ``label``, ``seconds``
+    (of the pass over the frames, which several caches may share), ``kept`` (it was simulated before), ``fault`` (what
+    is wrong with the bake) and ``warning`` (nothing moved, and why).
     """
     started = time.perf_counter()
     scene = bpy.context.scene
     every = caches.find_caches(scene)
     chosen = _chosen(scene, every, arguments["objects"])
     frames = _frames(scene, arguments["frame_start"], arguments["frame_end"])
-    notes = _prepare_file(arguments["folder"], chosen)
+    brought = arguments.get("brought") or {}
+    notes = _prepare_file(arguments["folder"], chosen, brought)
     frame_before = scene.frame_current
     jobs = [_Job(cache) for cache in chosen]
     progress = _Progress(report)
     try:
         _keep_what_was_stepped(scene, jobs, frames)
-        waiting = [job for job in jobs if not job.kept]
+        for job in jobs:
+            if job.cache.domain is not None and job.cache.object in brought:
+                job.bring(brought[job.cache.object], frames)
+        waiting = [job for job in jobs if not job.kept and not job.is_brought]
         for job in waiting:
             job.prepare(frames)
         with _BakeRange(scene, frames):
             try:
-                _run(scene, waiting, every, progress)
+                yield from _run(scene, waiting, every, progress)
             except Diverged as error:
                 _give_up([job for job in waiting if not job.cache.baked], error)
         with _domains_off(_unchosen_fluids(every, jobs)):
-            _check_result(scene, jobs, progress)
+            yield from _check_result(scene, jobs, progress)
     finally:
         scene.frame_set(frame_before)
     for job in jobs:
@@ -68,13 +84,27 @@ def bake(arguments, report):
     }
 
 
+def fluids(arguments, report):
+    """The names of the fluid domains among ``objects`` (None: all)."""
+    del report
+    scene = bpy.context.scene
+    chosen = _chosen(scene, caches.find_caches(scene), arguments["objects"])
+    return [cache.object for cache in chosen if cache.domain is not None]
+
+
 def free(arguments, report):
-    """Frees the bakes of ``objects`` (None: of all): they simulate again. Returns the ``freed`` caches' labels."""
+    """Frees the bakes of ``objects`` (None: of all): they simulate again. Returns the ``freed`` caches' labels.
+
+    ``in_place``: fluids keep their folder and the type of their cache, as in a user's own file.
+    """
     del report
     scene = bpy.context.scene
     chosen = _chosen(scene, caches.find_caches(scene), arguments["objects"])
     freed = [cache for cache in chosen if cache.baked]
     for cache in freed:
+        if cache.domain is not None and arguments.get("in_place"):
+            _forget_bake(cache.domain)
+            continue
         _free(cache)
         if cache.domain is not None:
             cache.domain.cache_type = "REPLAY"
@@ -145,8 +175,19 @@ def _frames(scene, first, last):
     return first, last
 
 
-def _prepare_file(folder, chosen):
+def _prepare_file(folder, chosen, brought):
     """Makes sure that cache files go into the workspace; returns notes on what had to be changed."""
+    for cache in chosen:
+        if cache.points is not None and cache.points.use_external:
+            raise Refused(
+                f"The cache of {cache.label} is read from external files. Set its use_external to False to bake it."
+            )
+    if folder is None:
+        if missing := [
+            cache.label for cache in chosen if cache.domain is not None and cache.object not in brought
+        ]:
+            raise Refused(f"Baked elsewhere first: {', '.join(missing)}.")
+        return []
     notes = []
     active = bpy.context.view_layer.objects.active
     if active is not None and active.mode != "OBJECT":
@@ -155,11 +196,6 @@ def _prepare_file(folder, chosen):
     path = os.path.join(folder, SCENE_FILE)
     if os.path.realpath(bpy.data.filepath or "/") != os.path.realpath(path):
         make_own(folder)  # a cache on disk lies beside the .blend that it belongs to
-    for cache in chosen:
-        if cache.points is not None and cache.points.use_external:
-            raise Refused(
-                f"The cache of {cache.label} is read from external files. Set its use_external to False to bake it."
-            )
     return notes
 
 
@@ -194,6 +230,7 @@ class _Job:
         self.expected = None
         self.samples = []
         self.kept = False
+        self.is_brought = False
         self.is_cause_known = False
 
     def prepare(self, frames):
@@ -212,11 +249,23 @@ class _Job:
                 cache.range = frames
             self.expected = cache.expected
             return
-        domain, stepped = cache.domain, os.path.realpath(cache.folder)  # a link may stand in its place
+        stepped = os.path.realpath(cache.folder)  # a link may stand in its place
         folder = f"//{_new_folder(cache)}"
         target = bpy.path.abspath(folder)
         os.makedirs(os.path.dirname(target), exist_ok=True)
         shutil.move(stepped, target)  # a change of the type removes the files of the domain's folder
+        self._show(folder, frames)
+
+    def bring(self, folder, frames):
+        """Has it show what was baked to a folder in another Blender."""
+        self.is_brought = True
+        self.cache.domain.cache_directory = (
+            f"{folder}-none"  # what is in its own is not removed with its type
+        )
+        self._show(folder, frames)
+
+    def _show(self, folder, frames):
+        cache, domain = self.cache, self.cache.domain
         domain.cache_type = "ALL"
         cache.range = frames
         self.expected = cache.expected
@@ -228,7 +277,7 @@ class _Job:
 
     def remove_old_bakes(self, every):
         """Removes old bakes."""
-        if self.cache.domain is None or self.fault:
+        if self.cache.domain is None or self.fault or self.is_brought:
             return
         used = {os.path.realpath(cache.folder) for cache in every if cache.domain is not None}
         for number in _bake_numbers(self.cache)[:-_KEPT]:
@@ -307,7 +356,7 @@ def _unchosen_fluids(every, jobs):
 
 
 def _run(scene, jobs, every, progress):
-    """Bakes, what others depend on first, with as few passes over the frames as possible. Raises Diverged."""
+    """Bakes in steps, what others depend on first, with as few passes over the frames as possible. Raises Diverged."""
     carriers = {
         obj.field.source_object
         for obj in scene.objects
@@ -323,7 +372,7 @@ def _run(scene, jobs, every, progress):
         with _domains_off(
             [cache for cache in every if cache.domain is not None and cache.owner not in carriers]
         ):
-            _bake_points(scene, points, progress)
+            yield from _bake_points(scene, points, progress)
     for job in late:
         _bake_fluid(job, progress)
 
@@ -338,6 +387,7 @@ def _bake_points(scene, jobs, progress):
         for frame in range(first, last + 1):
             scene.frame_set(frame)
             watch.check(frame, bpy.context.evaluated_depsgraph_get())
+            yield
     for job in jobs:
         job.keep(job.cache.range)
         job.seconds = time.perf_counter() - began
@@ -431,3 +481,4 @@ def _check_result(scene, jobs, progress):
                 _give_up([job], error)
                 continue
             job.samples.append(simulated_movement.sample(job.cache, scene, graph))
+        yield

@@ -63,7 +63,7 @@ class _Reading:
         self.scene_objects = SceneObjects(self.scene)
         self.everything = self.scene_objects.objects
         self.whole = arguments["objects"] is None
-        self.chosen = self.everything if self.whole else _find(arguments["objects"], self.everything)
+        self.chosen = self.everything if self.whole else find_objects(arguments["objects"], self.everything)
         self.graph = evaluated_graph()
         self.remarks = []
         self._report = report
@@ -164,7 +164,7 @@ def _scene_facts(reading):
     return facts
 
 
-def _find(names, everything):
+def find_objects(names, everything):
     """The objects of these names, patterns and collections, in the scene's order. Raises Refused."""
     wanted = set()
     by_name = {}

@@ -5,18 +5,14 @@ from __future__ import annotations
 import json
 import stat
 import time
-from base64 import b64decode
 from dataclasses import replace
-from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from mcp import Client, StdioServerParameters
-from mcp_types import ImageContent, TextContent
+from attached_client import BUILD, build, digests, picture, server, state, text, use
+from mcp import Client
 from open_window import OpenWindow, opened
-from PIL import Image
-from places import REPO
 
 from agents.blender.attached.attached_blender import AttachedBlender
 from agents.blender.attached.open_blenders import About, open_blenders
@@ -27,19 +23,9 @@ if TYPE_CHECKING:
     from collections.abc import AsyncIterator, Callable, Iterator
     from pathlib import Path
 
-    from mcp_types import CallToolResult
-
 pytestmark = [pytest.mark.window, pytest.mark.anyio]
 
 STATE = {"detail": "normal", "objects": None, "sections": ["collections", "objects", "view"]}
-BUILD = """\
-# add {name}
-mesh = bpy.data.meshes.new("{name}")
-mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
-made = bpy.data.objects.new("{name}", mesh)
-bpy.context.scene.collection.objects.link(made)
-made.location = ({x}, 0, 0)
-"""
 
 
 @pytest.fixture(scope="module")
@@ -51,11 +37,6 @@ def anyio_backend() -> str:
 def window(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenWindow]:
     """The window that all tests share."""
     yield from opened(tmp_path_factory.mktemp("window"))
-
-
-def server(window: OpenWindow) -> StdioServerParameters:
-    words = window.command
-    return StdioServerParameters(command=words[0], args=words[1:], env=window.server_environment, cwd=REPO)
 
 
 @pytest.fixture(scope="module")
@@ -82,39 +63,6 @@ def direct(window: OpenWindow, monkeypatch: pytest.MonkeyPatch) -> Iterator[Call
 
 def copy_in(folder: Path) -> Callable[[About], str]:
     return lambda about: str(folder / f"copy-{about.process}.blend")
-
-
-async def use(client: Client, tool: str, **arguments: Any) -> CallToolResult:
-    return await client.call_tool(tool, arguments)
-
-
-def text(result: CallToolResult) -> str:
-    return " ".join(block.text for block in result.content if isinstance(block, TextContent))
-
-
-def picture(result: CallToolResult) -> Image.Image:
-    block = next(block for block in result.content if isinstance(block, ImageContent))
-    return Image.open(BytesIO(b64decode(block.data)))
-
-
-async def build(client: Client, name: str, x: int = 0) -> CallToolResult:
-    result = await use(client, "blender_execute", code=BUILD.format(name=name, x=x))
-    assert not result.is_error, text(result)
-    return result
-
-
-async def state(client: Client) -> dict[str, Any]:
-    result = await use(client, "blender_view", picture="none")
-    assert not result.is_error, text(result)
-    assert result.structured_content is not None
-    return result.structured_content
-
-
-async def digests(client: Client) -> dict[str, str]:
-    """Digests of everything in the file."""
-    result = await use(client, "blender_scene_state", sections=["data_blocks"])
-    assert result.structured_content is not None
-    return result.structured_content["data_blocks"]
 
 
 async def test_only_its_user_can_read_where_it_listens(window: OpenWindow) -> None:
@@ -310,6 +258,61 @@ async def test_a_scene_that_is_too_large_to_copy_is_told(client: Client, window:
     assert not (await use(client, "blender_execute", code="1+1")).is_error
 
 
+@pytest.fixture
+async def large_scene(client: Client, window: OpenWindow) -> AsyncIterator[None]:
+    """A scene with a mesh that takes too long to copy, beside others that do not."""
+    code = """# a large one
+import numpy
+mesh = bpy.data.meshes.new("Large")
+mesh.vertices.add(600_000)
+mesh.vertices.foreach_set("co", numpy.zeros(1_800_000))
+bpy.context.scene.collection.objects.link(bpy.data.objects.new("Large", mesh))
+"""
+    made = await use(client, "blender_execute", code=code)
+    assert not made.is_error, text(made)
+    speed = "import sys; sys.modules['simworlds_live.worker.attached.copies']._measured['speed'] = {}"
+    window.choose(speed.format(4e6))
+    yield
+    window.choose(speed.format(1e9))
+    await use(client, "blender_undo")
+
+
+async def test_of_a_large_scene_the_part_is_rehearsed_that_code_names(
+    client: Client, large_scene: None
+) -> None:
+    code = "cube = bpy.data.objects['Cube']\ncube.location.x = 2\nlen(bpy.context.scene.name)"
+    moved = await use(client, "blender_execute", code=code)
+    assert not moved.is_error, text(moved)
+    assert "Rehearsed in a copy of what the code names and needs (Camera, Cube) alone" in text(moved)
+    assert "other things changed" not in text(moved)
+    assert "as it was before" in text(await use(client, "blender_undo"))
+    added = await use(client, "blender_execute", code=BUILD.format(name="Beside", x=1))
+    assert not added.is_error, text(added)
+    assert "other things changed" not in text(added)
+    await use(client, "blender_undo")
+
+
+@pytest.mark.parametrize(
+    ("code", "said"),
+    [
+        (
+            "bpy.data.objects['Cube'].no_such",
+            "This was the rehearsal in a copy of what the code names and needs",
+        ),
+        ("bpy.data.objects['La' + 'rge'].location", "line 1 goes through bpy.data.objects"),
+        ("for one in bpy.data.objects: one.location.x = 1", "line 1 goes through bpy.data.objects"),
+        ("bpy.data.objects['Large'].location.x = 1", "too large"),
+        ("bpy.ops.object.select_all(action='SELECT')", "line 1 selects by bpy.ops"),
+    ],
+)
+async def test_of_a_large_scene_nothing_unrehearsed_arrives(
+    client: Client, large_scene: None, code: str, said: str
+) -> None:
+    refused = await use(client, "blender_execute", code=code, preflight="off")
+    assert refused.is_error
+    assert said in text(refused)
+
+
 async def test_never_undoes_the_users_own_work(client: Client, window: OpenWindow) -> None:
     await build(client, "Theirs", 2)
     window.act("mousemove", "500", "380", "key", "a")
@@ -338,7 +341,7 @@ for number in range(1001):
     bpy.context.scene.collection.objects.link(bpy.data.objects.new(f"Many {number}", None))
 """
     assert not (await use(client, "blender_execute", code=code)).is_error
-    read = await use(client, "blender_scene_state", detail="summary")
+    read = await use(client, "blender_scene_state")
     assert "1004 objects" in text(read)
     undone = await use(client, "blender_undo")
     assert "as it was before them" in text(undone)

@@ -78,6 +78,43 @@ for number in range({OBJECTS}):
     made.location = (number % 25, number // 25, 0)
 """
 
+# 5,000 objects with 20 million triangles, as the user has them.
+PRODUCTION = """\
+import bpy, numpy
+side = 46
+x, y = (part.ravel() for part in numpy.meshgrid(numpy.linspace(-1, 1, side), numpy.linspace(-1, 1, side)))
+first = (numpy.arange(side - 1)[:, None] * side + numpy.arange(side - 1)).ravel()
+faces = numpy.stack([first, first + 1, first + side + 1, first + side], 1).tolist()
+meshes = [bpy.data.meshes.new(f"Part {number}") for number in range(100)]
+for number, mesh in enumerate(meshes):
+    mesh.from_pydata(numpy.stack([x, y, 0.1 * numpy.sin(6 * x)], 1).tolist(), [], faces)
+    mesh.uv_layers.new()
+    mesh.materials.append(bpy.data.materials.new(f"Paint {number}"))
+for number in range(5000):
+    if number % 100 == 0:
+        row = bpy.data.collections.new(f"Row {number // 100}")
+        bpy.context.scene.collection.children.link(row)
+    made = bpy.data.objects.new(f"Object {number}", meshes[number % 100])
+    made.location = (number % 100 * 2.2, number // 100 * 2.2, 0)
+    row.objects.link(made)
+"""
+LOOKS: tuple[tuple[str, dict[str, Any]], ...] = (
+    ("blender_view", {}),
+    ("blender_scene_state", {"detail": "summary"}),
+    ("blender_scene_state", {}),
+    ("blender_scene_state", {"objects": ["Row 7"]}),
+    ("blender_single_mesh_preview", {"object": "Object 7"}),
+    ("blender_scene_layout_preview", {}),
+    ("blender_scene_layout_preview", {"subjects": ["Object 7", "Object 8"]}),
+    ("blender_material_preview", {"show": "objects", "objects": ["Object 7"]}),
+    ("blender_uv_preview", {"objects": ["Object 7"]}),
+    (
+        "blender_motion_sheet_preview",
+        {"actors": ["Object 7"], "phases": [{"name": "still", "start": 1, "end": 12}]},
+    ),
+    ("blender_execute", {"code": "bpy.data.objects['Object 7'].location.z = 1"}),
+)
+
 
 async def measure(window: OpenWindow, picture: Path | None) -> None:
     words = window.command
@@ -112,6 +149,29 @@ async def measure(window: OpenWindow, picture: Path | None) -> None:
         await use("blender_execute", code=MANY)
         await told(f"state of {OBJECTS} objects", lambda: use("blender_scene_state"))
     with_ends(window)
+    async with Client(server, read_timeout_seconds=300) as client:
+        await looked_at_production(client, window)
+
+
+async def looked_at_production(client: Client, window: OpenWindow) -> None:
+    """How long each look takes in a large scene, and whether it shows all, a part, or says what to narrow."""
+    await client.call_tool("blender_execute", {"code": "1+1"})  # the copy's Blender is there
+    window.choose(PRODUCTION)
+    say(
+        "\n| look at 5,000 objects, 20 million triangles | s | slowest | answer |\n| --- | ---: | ---: | --- |"
+    )
+    for tool, arguments in LOOKS:
+        seconds: list[float] = []
+        answer = ""
+        for _ in range(3):
+            started = time.perf_counter()
+            result = await client.call_tool(tool, arguments)
+            seconds.append(time.perf_counter() - started)
+            said = " ".join(getattr(block, "text", "") for block in result.content)
+            answer = "narrow it" if result.is_error or "**No picture**" in said else "all"
+            answer = "the part that it names" if "nothing else of the scene" in said else answer
+        words = ", ".join(f"{name}={value!r}" for name, value in arguments.items() if name != "phases")
+        say(f"| `{tool}({words})` | {statistics.median(seconds):.1f} | {max(seconds):.1f} | {answer} |")
 
 
 async def told(what: str, call: Callable[[], Awaitable[Any]], count: int = CALLS) -> None:
