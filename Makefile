@@ -31,7 +31,8 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check site rule-pictures window-figures dist \
+.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check site rule-pictures audit-pictures \
+  window-figures dist \
   dist-validate licences fuzz lock clean
 
 help: ## List the targets
@@ -82,6 +83,9 @@ site: $(STAMP) ## Build the documentation site in build/site, links checked, wit
 
 rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 	@$(PY) tests/agents/protocol/rule_pictures.py $(RULES)
+
+audit-pictures: $(STAMP) ## Draw the pictures of the audit's relations and predicates
+	@$(PY) tests/bench/audit/audit_pictures.py
 
 window-figures: $(STAMP) ## Measure SimWorlds in an open Blender, and draw its picture
 	@$(PY) tests/agents/blender/attached/window_figures.py docs/open-blender.png

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.base_file import described, read_meta
 from kb_build.errors import StoreError
+from simworlds.own_command import own_command
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -82,7 +83,7 @@ def _summaries(facts: Mapping[str, Any]) -> str:
 def bases_lines(bases: Sequence[Mapping[str, Any]], home: Path) -> Iterator[str]:
     """Lists the bases, one on a line."""
     if not bases:
-        yield f"No knowledge base in {home} yet. Build one: simworlds kb build"
+        yield f"No knowledge base in {home} yet. Build one: {own_command()} kb build"
     for facts in bases:
         if "fault" in facts:
             yield f"unreadable: {facts['fault']}"

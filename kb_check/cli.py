@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import gc
-import os
 import sys
 import time
 from contextlib import closing, contextmanager
@@ -14,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from simworlds.errors import UserError
+from simworlds.operating_system import SYSTEM
 from simworlds.settings import cache_folder, home_folder
 
 if TYPE_CHECKING:
@@ -107,7 +107,7 @@ class _Inputs:
 
     @property
     def jobs(self) -> int:
-        return self.choices["jobs"] or len(os.sched_getaffinity(0))
+        return self.choices["jobs"] or SYSTEM.cores()
 
 
 def _one_version(inputs: _Inputs, base: Path, cache: ResultCache | None, form: str | None) -> list[Report]:

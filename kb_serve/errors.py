@@ -19,7 +19,7 @@ class BaseMissing(KBServeError):  # noqa: N818 - reads as the state it names
     """There is no knowledge base for this version: ``what`` says so, ``advice`` how to get one."""
 
     def __init__(self, what: str, advice: str = "") -> None:
-        self.what = what
+        self.what, self.advice = what, advice
         super().__init__(f"{what} {advice}".rstrip())
 
 

@@ -6,7 +6,8 @@ from typing import TYPE_CHECKING
 
 from kb_serve.errors import BaseMissing
 from simworlds.errors import UserError
-from simworlds.releases import minor_of
+from simworlds.own_command import own_command
+from simworlds.releases import USUAL, minor_of
 from simworlds.settings import base_path, built_bases, home_folder
 
 if TYPE_CHECKING:
@@ -21,7 +22,7 @@ def find_base(version: str | None, home: Path | None = None) -> Path:
     built = built_bases(folder)
     if version is None:
         if not built:
-            raise BaseMissing(f"There is no knowledge base in {folder}.", _how_to_get("5.1"))
+            raise BaseMissing(f"There is no knowledge base in {folder}.", _how_to_get(USUAL))
         return list(built.values())[-1]
     try:
         wanted = minor_of(version.strip().removeprefix("v"))
@@ -39,9 +40,10 @@ def find_base(version: str | None, home: Path | None = None) -> Path:
 
 
 def _how_to_get(version: str) -> str:
+    command = own_command()
     return (
-        f"Build it: simworlds kb build {version} (a minute; without Blender in this environment, its bpy package is "
-        f"fetched first, 350 MB). Or fetch a ready one: simworlds kb fetch {version} --from URL|FILE."
+        f"Build it: {command} kb build {version} (a minute; without Blender in this environment, its bpy package is "
+        f"fetched first, 350 MB). Or fetch a ready one: {command} kb fetch {version} --from URL|FILE."
     )
 
 

@@ -9,10 +9,12 @@ from __future__ import annotations
 import argparse
 import contextlib
 import json
+import re
 import signal
 import sqlite3
 import subprocess
 import sys
+import threading
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NoReturn
@@ -20,7 +22,8 @@ from typing import TYPE_CHECKING, Literal, NoReturn
 from kb_serve.in_use import minor
 from simworlds.errors import UserError
 from simworlds.operating_system import SYSTEM
-from simworlds.releases import minor_of, releases, version_key
+from simworlds.own_command import own_command
+from simworlds.releases import USUAL, minor_of, version_key
 from simworlds.settings import ready_base_source
 from simworlds.terminal.lines import write_line
 
@@ -31,6 +34,7 @@ if TYPE_CHECKING:
 
 _BUILDING_ELSEWHERE = 3
 _LONGEST_REASON = 300
+_ACCEPTED = re.compile(r"(?:simworlds )?kb build (\d{1,2}\.\d{1,2})")
 
 State = Literal["idle", "running", "failed"]
 Doing = Literal["built", "fetched"]
@@ -56,6 +60,7 @@ class Upkeep:
     reason: str = field(default="", init=False)
     progress: str = field(default="", init=False)
     _job: _Job | None = field(default=None, init=False)
+    _accepted: bool = field(default=False, init=False)
     _process: subprocess.Popen[bytes] | None = field(default=None, init=False)
 
     def plan(self) -> None:
@@ -70,6 +75,8 @@ class Upkeep:
 
         Blocks until that has ended: call it in a thread. ``state`` and ``reason`` tell how it ended.
         """
+        if self._accepted:
+            return
         if self._job is None:
             self.plan()
         if self._job is not None:
@@ -93,8 +100,24 @@ class Upkeep:
         elif self.enabled:
             then = "Its base is being built in the background; until then, answers come from this one."
         else:
-            then = f"Build its base: simworlds kb build {minor(in_use)}"
+            then = f"Build its base: {own_command()} kb build {minor(in_use)}"
         return f"This is Blender {have}'s knowledge base, but Blender {in_use} is in use. {then}"
+
+    def offer(self, version: str | None) -> str:
+        """The query that has the base of a version built here, where this may do so; empty elsewhere."""
+        may = self.enabled and SYSTEM.limits_processes and self.state != "running"
+        return f"kb build {minor(version or self.bases.wanted_but_missing() or USUAL)}" if may else ""
+
+    def accept(self, query: str) -> str:
+        """Builds a base in the background if the query takes up the offer. Returns its version, or nothing."""
+        match = _ACCEPTED.fullmatch(query.strip())
+        if match is None or not self.offer(match[1]) or minor_of(match[1]) in self.bases.built():
+            return ""
+        self._accepted = True
+        self._job = job = self._building(minor_of(match[1]), {})
+        self.state = "running"
+        threading.Thread(target=self._perform, args=(job,), name="build", daemon=True).start()
+        return job.version
 
     def missing_note(self, version: str | None) -> str:
         """What is done about a missing base of this version (None: of whichever is wanted); empty if nothing is."""
@@ -110,9 +133,9 @@ class Upkeep:
         in_use, source = self.bases.in_use, ready_base_source()
         wanted = self.bases.wanted_but_missing()
         if wanted is not None:
-            version = wanted or in_use or releases()[-1].minor
+            version = wanted or in_use or USUAL
             if source:
-                return self._fetching(version, source)
+                return self._fetching(version, source, is_named=bool(wanted or in_use))
             meta: Mapping[str, str] | None = {} if in_use and minor(version) == minor(in_use) else None
         else:
             meta = self._nearest(in_use) if in_use is not None else None
@@ -129,8 +152,10 @@ class Upkeep:
         older = [version for version in built if version_key(version) < version_key(in_use)]
         return self.bases.pick(older[-1]).meta if older else None
 
-    def _fetching(self, version: str, source: str) -> _Job:
+    def _fetching(self, version: str, source: str, *, is_named: bool) -> _Job:
         words = ["kb_build.ready", minor_of(version), "--from", source, "--home", str(self.bases.home)]
+        if not is_named:
+            words.append("--any")
         return _Job(version, "fetched", [sys.executable, "-m", *words])
 
     def _building(self, in_use: str, meta: Mapping[str, str]) -> _Job:

@@ -47,6 +47,9 @@ class Service:
                 f"The query has {len(query):,} characters, more than the limit of {LONGEST_QUERY:,}. Shorten it."
             )
         query = readable(query)
+        if accepted := self.upkeep.accept(query):
+            what = f"There is no knowledge base for Blender {accepted} yet."
+            raise BaseMissing(what, self.upkeep.missing_note(accepted))
         base, note = self.base(blender)
         version = base.meta.get("blender", "")
         if not note:
@@ -88,5 +91,8 @@ class Service:
             if note := self.upkeep.missing_note(blender):
                 what = error.what if self.upkeep.state == "running" else str(error)
                 raise BaseMissing(what, note) from error
+            if error.advice and (offer := self.upkeep.offer(blender)):
+                how = f"Or ask blender_docs {offer!r}: then it is fetched and built here, in the background."
+                raise BaseMissing(str(error), how) from error
             raise
         return base, self.upkeep.note(base.meta, blender)

@@ -26,6 +26,11 @@ _PACKAGES = (
 _BUSY = "busy"
 _REACHED = {True: "reached", False: "NOT reached", None: ""}
 
+_LEAD = (
+    "What `make bench` measured last: how good and how fast the answers are, what the servers, the live Blender, the "
+    "verifier\nand the audit take, each beside its target and beside plain baselines."
+)
+
 
 @dataclass(frozen=True, slots=True)
 class TargetFigure:
@@ -68,7 +73,7 @@ def _run_step(name: str, step: Callable[[], ReportPart]) -> ReportPart:
 
 def markdown(parts: Sequence[ReportPart], facts: Mapping[str, str]) -> str:
     """The whole report."""
-    blocks = ["# SimWorlds, measured", _facts(facts)]
+    blocks = ["# SimWorlds, measured", _LEAD, _facts(facts)]
     figures = [figure for part in parts for figure in part.figures]
     if figures:
         blocks.append(format_table(targets_table(figures)))

@@ -54,6 +54,13 @@ class _Lazy(click.Group):
         guard_streams()
         return super().main(*args, **options)
 
+    def invoke(self, ctx: click.Context) -> Any:
+        """See click."""
+        try:
+            return super().invoke(ctx)
+        except (ImportError, AttributeError) as error:  # of what a system lacks
+            raise _unless_it_should_work(error) from error
+
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names, sorted."""
         del ctx
@@ -74,6 +81,20 @@ class _Lazy(click.Group):
         del ctx
         with formatter.section("Commands"):
             formatter.write_dl([(name, entry.help) for name, entry in sorted(_COMMANDS.items())])
+
+
+def _unless_it_should_work(error: Exception) -> Exception:
+    """The error itself on systems with a live Blender; on others, that this command needs one."""
+    from simworlds.operating_system import SYSTEM  # noqa: PLC0415 - seldom
+
+    if SYSTEM.limits_processes:
+        return error
+    lacking = click.ClickException(
+        "This command needs a live Blender, which does not run on this system. Run it in WSL. What needs no "
+        "Blender works here: docs, serve, check, migrate, stubs, kb fetch."
+    )
+    lacking.exit_code = 2
+    return lacking
 
 
 @click.group(cls=_Lazy, context_settings={"help_option_names": ["-h", "--help"]})

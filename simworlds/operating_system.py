@@ -54,6 +54,10 @@ class System(Protocol):
         """Lowers this process's priority, as far as the system lets it."""
         ...
 
+    def cores(self) -> int:
+        """How many cores this process may use, as far as the system tells."""
+        ...
+
     def python_in(self, environment: Path) -> Path:
         """The interpreter of a virtual environment."""
         ...
@@ -92,6 +96,11 @@ class Posix:
     def yield_to_others(self) -> None:
         """See System."""
         os.nice(10)
+
+    def cores(self) -> int:
+        """See System. macOS knows no affinity."""
+        affinity = getattr(os, "sched_getaffinity", None)
+        return len(affinity(0)) if affinity is not None else os.cpu_count() or 1
 
     def python_in(self, environment: Path) -> Path:
         """See System."""
@@ -162,6 +171,10 @@ class Windows:
         """See System."""
         kernel = self._kernel()
         kernel.SetPriorityClass(kernel.GetCurrentProcess(), _BELOW_NORMAL)
+
+    def cores(self) -> int:
+        """See System."""
+        return os.cpu_count() or 1
 
     def python_in(self, environment: Path) -> Path:
         """See System."""

@@ -12,6 +12,7 @@ from simworlds.errors import UserError
 
 Role = Literal["manual", "guides"]
 ROLES: tuple[Role, ...] = ("manual", "guides")
+USUAL = "5.1"  # where no Blender is in use and none is named: the version that the shipped summaries are of
 
 _TABLE = Path(__file__).resolve().parent.parent / "corpora" / "sources.toml"
 _VERSION = re.compile(r"(\d{1,2})\.(\d{1,2})(?:\.(\d{1,3}))?")

@@ -20,6 +20,8 @@ from agents.blender.fluid_support import check_fluids
 from agents.blender.launch import launch_in, runs_folder
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
+from simworlds.own_command import own_command
+from simworlds.releases import USUAL
 from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault
 from simworlds.sandbox.errors import BlenderError, CannotStart
 from simworlds.sandbox.launch import find_blender
@@ -344,7 +346,7 @@ def _knowledge(version: str | None) -> DoctorResult:
         text = f"for Blender {base['blender']}, {base.get('bytes', 0) / 1e6:,.0f} MB"
         return DoctorResult("Knowledge", "good", text, place=str(base.get("path", "")), data=data)
     have = f", only for {', '.join(sorted(minors))}" if minors else ""
-    advice = f"simworlds kb build {minor}".rstrip()
+    advice = f"{own_command()} kb build {minor or USUAL}"
     return DoctorResult(
         "Knowledge",
         "poor",

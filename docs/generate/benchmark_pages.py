@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import inspect
 import json
+from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.audit import assembly
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
 
     from bench.audit.predicates.predicate import Predicate
 
+_PICTURES = Path(__file__).resolve().parents[1] / "audit"
 _BOUNDS = {"minimum": "at least", "exclusiveMinimum": "above", "maximum": "at most"}
 _ABOUT_PREDICATES = """\
 What `simworlds bench audit` can check of an actor, or of a scene. A predicate reads Blender's own data of a .blend,
@@ -42,9 +44,15 @@ def relations_page() -> str:
     """All relation types, and how assemblies are inferred, as Markdown."""
     parts = [f"# The {len(RELATIONS)} relations", GENERATED, _ABOUT_RELATIONS]
     for name, kind in RELATIONS.items():
-        parts += [f"## `{name}`", kind.definition.replace("``", "`")]
+        parts += [f"## `{name}`", kind.definition.replace("``", "`"), *_picture(name)]
     assemblies = inspect.cleandoc(assembly.__doc__ or "").partition("\n")[2].strip()
     return page(*parts, "## Assemblies", assemblies)
+
+
+def _picture(name: str) -> Iterator[str]:
+    """The picture of a relation or predicate, if ``make audit-pictures`` draws one."""
+    if (_PICTURES / f"{name}.png").is_file():
+        yield f"![Left: {name} holds. Right: it does not.]({_PICTURES.name}/{name}.png)"
 
 
 def predicates_page() -> str:
@@ -61,6 +69,7 @@ def predicates_page() -> str:
 def _entry(row: Predicate) -> Iterator[str]:
     yield f"### `{row.name}`"
     yield row.definition.replace("``", "`")
+    yield from _picture(row.name)
     if row.scope == "scene":
         yield "Judged once, for the whole scene."
     schema = row.params.model_json_schema()

@@ -1,19 +1,26 @@
 """What the documentation site changes, as hooks of MkDocs.
 
 The navigation gets the pages of the rules and of the checks; links out of ``docs``, into the repository, become words.
+Lists may follow a paragraph without an empty line, as everywhere else in Markdown. Code wraps, drawings do not. Of
+several tables, a long one is folded.
 """
 
 from __future__ import annotations
 
+import itertools
 import posixpath
 import re
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+
     from mkdocs.config.defaults import MkDocsConfig
     from mkdocs.structure.pages import Page
 
+_TABLE = re.compile(r"<table>.*?</table>", re.DOTALL)
+_SEVERAL, _LONGEST_TABLE = 2, 30
 _UP = re.compile(r"\[([^\]]+)\]\((\.\./[^)#]*)[^)]*\)")
 # Indices, each with the folder of the pages that it lists.
 _INDICES = {"rules.md": "rules", "check-rules.md": "check"}
@@ -48,6 +55,7 @@ def _listed(docs: Path, index: str) -> list[str]:
 
 def on_page_markdown(markdown: str, page: Page, **_event: object) -> str:
     """The text of a page as the site shows it."""
+    markdown = "\n".join(_lines(markdown.split("\n")))
     folder = posixpath.dirname(page.file.src_uri)
 
     def plain(link: re.Match[str]) -> str:
@@ -55,3 +63,36 @@ def on_page_markdown(markdown: str, page: Page, **_event: object) -> str:
         return link[1] if leaves else link[0]
 
     return _UP.sub(plain, markdown)
+
+
+def _lines(lines: list[str]) -> Iterator[str]:
+    """The lines of a page, with an empty one before each list, and drawings marked as such."""
+    inside, before = False, ""
+    for number, line in enumerate(lines):
+        if line.startswith("```"):
+            inside = not inside
+            if inside and line == "```" and _is_drawing(lines[number + 1 :]):
+                line = "``` { .text .drawing }"  # noqa: PLW2901 - as the site is to read it
+        elif not inside and line.startswith("- ") and before and not before.startswith(("- ", "  ")):
+            yield ""
+        yield line
+        before = line
+
+
+def _is_drawing(lines: list[str]) -> bool:
+    block = itertools.takewhile(lambda line: not line.startswith("```"), lines)
+    return any(sign in line for line in block for sign in "─═▲")
+
+
+def on_page_content(html: str, **_event: object) -> str:
+    """The HTML of a page, its long tables folded unless the page has one table only."""
+    if html.count("<table") < _SEVERAL:
+        return html
+    return _TABLE.sub(_folded, html)
+
+
+def _folded(table: re.Match[str]) -> str:
+    rows = table[0].count("<tr>") - 1
+    if rows <= _LONGEST_TABLE:
+        return table[0]
+    return f'<details class="note"><summary>{rows} rows</summary>{table[0]}</details>'

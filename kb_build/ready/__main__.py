@@ -11,7 +11,7 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
-from kb_build.ready.fetch import fetch_base
+from kb_build.ready.fetch import fetch_base, is_one_file
 from simworlds.errors import UserError
 from simworlds.terminal.progress import shown_progress
 
@@ -26,12 +26,16 @@ def main() -> int:
     parser = argparse.ArgumentParser(prog="python -m kb_build.ready", description=__doc__)
     parser.add_argument("version")
     parser.add_argument("--from", dest="source", required=True)
+    parser.add_argument(
+        "--any", action="store_true", help="Take a single file for whichever version it is of."
+    )
     parser.add_argument("--home", type=Path, required=True)
     given = parser.parse_args()
     signal.signal(signal.SIGTERM, _terminated)
+    version = "" if given.any and is_one_file(given.source) else given.version
     try:
         with shown_progress() as progress:
-            fetch_base(given.version, given.source, home=given.home, progress=progress)
+            fetch_base(version, given.source, home=given.home, progress=progress)
     except UserError as error:
         sys.stderr.write(f"{error}\n")
         return 1

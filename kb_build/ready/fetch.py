@@ -58,9 +58,10 @@ def fetch_base(version: str, source: str, *, home: Path, progress: Progress = si
     """Puts the ready base of ``version`` from ``source`` into ``home``, in place of the one that is there.
 
     ``source`` is a file or its address, or a folder or address with files named as ``ready_name`` says; it may end
-    in ``#sha256=…``, which the file must then have. Raises KBBuildError; the base that was there before stays then.
+    in ``#sha256=…``, which the file must then have. With an empty ``version``, a file is taken for whichever version
+    it is of. Raises KBBuildError; the base that was there before stays then.
     """
-    minor = minor_of(version)
+    minor = minor_of(version) if version else ""
     place, wanted = _split(source)
     try:
         if "://" in place:
@@ -94,8 +95,14 @@ def _split(source: str) -> tuple[str, str]:
     return place, match[1].lower()
 
 
+def is_one_file(source: str) -> bool:
+    """Whether a source names one ready base, rather than the place where bases of several versions lie."""
+    place = urldefrag(source)[0]
+    return (urlsplit(place).path if "://" in place else place).endswith(SUFFIX)
+
+
 def _address(place: str, minor: str) -> str:
-    return place if urlsplit(place).path.endswith(SUFFIX) else f"{place.rstrip('/')}/{ready_name(minor)}"
+    return place if is_one_file(place) else f"{place.rstrip('/')}/{ready_name(minor)}"
 
 
 def _local_file(place: str, minor: str) -> Path:
@@ -141,19 +148,19 @@ def _install(archive: Path, wanted: str, minor: str, home: Path, progress: Progr
         raise ReadyBaseError(
             f"{origin} is not a ready base (.tar.xz); give one that simworlds kb export has written"
         )
-    target = base_path(home, minor)
-    with scratch_folder(target.parent) as scratch:
+    with scratch_folder(home / "kb") as scratch:
         folder = scratch / "unpacked"
         unpack(archive, folder, wanted=_is_member, limits=_LIMITS, progress=progress)
         if missing := sorted(name for name in MEMBERS if not (folder / name).is_file()):
             raise ReadyBaseError(f"{origin} is not a ready base: it has no {', '.join(missing)}")
         manifest = read_manifest(folder / MANIFEST, origin)
-        if manifest.minor != minor:
+        if minor and manifest.minor != minor:
             raise ReadyBaseError(
                 f"{origin} is of Blender {manifest.blender}, not {minor}; fetch {manifest.minor}"
             )
         progress("checking the base", 0, None)
         _check(folder / BASE, manifest, origin)
+        target = base_path(home, manifest.minor)
         (folder / BASE).chmod(0o644)
         (folder / BASE).replace(target)
     return Fetched(target, manifest, origin)

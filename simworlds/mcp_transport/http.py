@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import hmac
 import ipaddress
+import math
 import signal
 import socket
 import sys
@@ -85,6 +86,8 @@ def run_http(
         access_log=False,
         server_header=False,
         timeout_graceful_shutdown=_GRACE_SECONDS,
+        # uvicorn's own 5 s are what clients' pools keep an idle connection for: a request sent at that moment is lost.
+        timeout_keep_alive=math.ceil(patience),
     )
     server = _Server(config, book)
     sys.stderr.write(f"Serving {what} at {url(address.host, listener)}\n")

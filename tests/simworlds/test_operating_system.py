@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import os
 import subprocess
 import sys
@@ -133,16 +134,50 @@ def test_a_lock_keeps_another_process_out_until_the_file_is_closed(tmp_path: Pat
 
 
 ABSENT_THERE = """
-import importlib, os, signal, sys
+import importlib, os, signal, socket, sys
+# These ask for the system by its name.
+import asyncio, multiprocessing, subprocess, tempfile, platformdirs.unix, uvicorn
 for name in ("fcntl", "resource", "pwd", "grp", "termios"):
     sys.modules[name] = None
 for name in ("SIGKILL", "SIGHUP", "SIGSTOP", "SIGCONT", "SIGALRM"):
     delattr(signal, name)
-for name in ("killpg", "fork", "getuid", "geteuid", "nice", "setsid", "chown", "O_NOFOLLOW", "O_DIRECTORY"):
+for name in ("killpg", "fork", "getuid", "geteuid", "nice", "setsid", "chown", "O_NOFOLLOW", "O_DIRECTORY", "statvfs"):
     delattr(os, name)
+del os.sched_getaffinity, os.sysconf, socket.AF_UNIX
+"""
+IMPORT = """
 for name in sys.argv[1:]:
     importlib.import_module(name)
 """
+COMMAND = """
+from simworlds import operating_system
+operating_system.SYSTEM = operating_system.Windows(kernel=lambda: None)
+from simworlds.cli import main
+main(sys.argv[1:], prog_name="simworlds")
+"""
+# What only some systems have, outside of the module that knows them.
+OF_SOME = {
+    "fork",
+    "getuid",
+    "geteuid",
+    "killpg",
+    "nice",
+    "setsid",
+    "sched_getaffinity",
+    "sysconf",
+    "statvfs",
+    "mkfifo",
+}
+OF_SOME |= {"SIGKILL", "SIGHUP", "SIGSTOP", "SIGCONT", "SIGALRM", "AF_UNIX", "pidfd_open", "getloadavg"}
+FORKS = "forked.py"  # asked for by what knows that it can fork
+EVERYWHERE = (
+    "kb_serve",
+    "kb_check",
+    "kb_build/ready",
+    "simworlds/mcp_transport",
+    "simworlds/terminal",
+    "simworlds",
+)
 
 
 def test_what_windows_lacks_is_not_needed_to_answer_to_check_and_to_fetch() -> None:
@@ -151,13 +186,45 @@ def test_what_windows_lacks_is_not_needed_to_answer_to_check_and_to_fetch() -> N
         kb_check.run kb_check.tool kb_check.migrate_cli kb_check.stubs_cli kb_build.cli kb_build.ready.fetch
         kb_build.ready.export kb_build.verify simworlds.mcp_transport.connections simworlds.sandbox.runtime"""
     done = subprocess.run(
-        [sys.executable, "-c", ABSENT_THERE, *names.split()],
+        [sys.executable, "-c", ABSENT_THERE + IMPORT, *names.split()],
         env={**os.environ, "PYTHONPATH": str(REPO)},
         capture_output=True,
         text=True,
         check=False,
     )
     assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("command", ["mcp", "make cubes", "verify x.blend", "doctor", "runs"])
+def test_a_command_that_needs_a_live_blender_says_so_where_none_runs(command: str, tmp_path: Path) -> None:
+    done = subprocess.run(
+        [sys.executable, "-c", ABSENT_THERE + COMMAND, *command.split()],
+        env={**os.environ, "PYTHONPATH": str(REPO), "SIMWORLDS_HOME": str(tmp_path)},
+        capture_output=True,
+        text=True,
+        check=False,
+    )
+    assert done.returncode == 2
+    assert "WSL" in done.stderr
+    assert "Traceback" not in done.stderr
+
+
+def test_what_serves_and_checks_asks_for_nothing_that_only_some_systems_have() -> None:
+    asked = [
+        f"{path.relative_to(REPO)}:{node.lineno}: {node.attr}"
+        for folder in EVERYWHERE
+        for path in ((REPO / folder).glob("*.py") if folder == "simworlds" else (REPO / folder).rglob("*.py"))
+        if path.name not in {"operating_system.py", FORKS} and "inside" not in path.parts
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Attribute) and node.attr in OF_SOME
+    ]
+    assert asked == []
+
+
+def test_cores_are_counted_where_no_affinity_is_known(monkeypatch: pytest.MonkeyPatch) -> None:
+    assert 1 <= Posix().cores() <= (os.cpu_count() or 1)
+    monkeypatch.delattr(os, "sched_getaffinity", raising=False)
+    assert Posix().cores() == Windows().cores() == (os.cpu_count() or 1)
 
 
 def test_a_build_is_refused_where_readers_cannot_be_limited(monkeypatch: pytest.MonkeyPatch) -> None:

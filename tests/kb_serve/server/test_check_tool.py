@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -187,3 +188,33 @@ async def test_a_client_gets_findings_from_the_process_it_starts(home: Path) -> 
         assert set(by_line(found(await client.call_tool("blender_check", {"code": WRONG})))) == {3, 4, 5}
         result = await client.call_tool("blender_check", {"code": "#" * 10_000_000})
     assert result.is_error
+
+
+# Code that would take long, or the parser's stack, if its checks grew faster than it does.
+NASTY = {
+    "parentheses": "x=" + "(" * 5000 + "1" + ")" * 5000,
+    "operators": "x=" + "-" * 40_000 + "1",
+    "attributes": "import bpy\nx=bpy" + ".data" * 18_000,
+    "calls": "import bpy\nx=bpy.data.objects" + ".get('a')" * 10_000,
+    "functions that call two others": "import bpy\n"
+    + "\n".join(f"def f{n}(a):\n  return f{n + 1}(a) or f{n + 2}(a)" for n in range(1500))
+    + "\nf0(bpy.context)",
+    "loops in loops": "import bpy\nx=1\n"
+    + "\n".join(" " * n + "while x:" for n in range(18))
+    + "\n"
+    + " " * 18
+    + "x=bpy.data",
+    "a pair of itself": "x=1\n" + "x=(x,x)\n" * 3000,
+    "a list of itself": "x=[]\n" + "x=[x,x]\n" * 3000,
+    "a text that doubles": "x='ab'\n" + "x=x+x\n" * 3000,
+    "names that it lacks": "import bpy\no=bpy.context.object\n"
+    + "\n".join(f"o.zz{n}=1" for n in range(2000)),
+}
+SECONDS_OF_CPU = 20.0
+
+
+@pytest.mark.parametrize("code", NASTY.values(), ids=NASTY)
+async def test_no_code_takes_long_or_fails(service: Service, code: str) -> None:
+    began = time.process_time()
+    found(await check(service, code))
+    assert time.process_time() - began < SECONDS_OF_CPU

@@ -114,6 +114,47 @@ def test_nothing_is_fetched_without_leave(
     assert site.requests == []
 
 
+@pytest.mark.usefixtures("without_blender")
+def test_a_single_file_is_taken_for_the_version_that_it_is_of(
+    serve_from: ServeFrom,
+    site: Site,
+    packed: tuple[str, bytes],
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("kb_serve.rebuild.USUAL", "4.2")
+    monkeypatch.setenv("SIMWORLDS_BASE_URL", f"{site.url}/{ready_name(packed[0])}")
+    service = serve_from(tmp_path, rebuild=True)
+    service.warm()
+    service.upkeep.run()
+    assert list(service.bases.built()) == [packed[0]], service.upkeep.reason
+
+
+@pytest.mark.usefixtures("without_blender")
+def test_it_builds_when_the_client_takes_up_its_offer(serve_from: ServeFrom, tmp_path: Path) -> None:
+    service = serve_from(tmp_path, rebuild=True)
+    service.warm()
+    assert "ask blender_docs 'kb build 5.1'" in missing(service)
+    with pytest.raises(BaseMissing, match="being built in the background"):
+        service.ask("kb build 2.79", blender=None, limit=1, max_tokens=500, part=1)
+    service.upkeep.run()  # what the server runs beside: it starts no second build
+    for thread in threading.enumerate():
+        if thread.name == "build":
+            thread.join(SECONDS)
+    assert service.upkeep.state == "failed"
+    assert "could not be built: " in missing(service)
+
+
+@pytest.mark.usefixtures("without_blender")
+def test_it_offers_nothing_that_it_may_not_do(serve_from: ServeFrom, tmp_path: Path) -> None:
+    service = serve_from(tmp_path)
+    service.warm()
+    assert "ask blender_docs" not in missing(service)
+    with pytest.raises(BaseMissing):
+        service.ask("kb build 2.79", blender=None, limit=1, max_tokens=500, part=1)
+    assert service.upkeep.state == "idle"
+
+
 @pytest.mark.skipif(os.name == "nt", reason="executables are shell scripts here")
 def test_the_blender_in_use_has_its_base_built(serve_from: ServeFrom, tmp_path: Path) -> None:
     blender = tmp_path / "blender"

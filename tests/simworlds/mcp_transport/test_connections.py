@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 
 MANY = 300  # more than twice the server's descriptors
 QUICK = 1.0
+LONGEST_IN_A_POOL = 6.0  # seconds; httpx keeps an idle connection for 5
 HALF_A_REQUEST = {
     "nothing": b"",
     "half a line": b"GET / HT",
@@ -70,6 +71,18 @@ def test_a_request_that_arrives_byte_by_byte_ends_the_connection(tmp_path: Path)
                 continue
             except ConnectionError:
                 is_open = False
+
+
+def test_an_idle_connection_is_kept_for_longer_than_clients_keep_it(tmp_path: Path) -> None:
+    with SmallServer(tmp_path / "log", patience=30) as server, server.connect() as kept:
+        kept.sendall(request())
+        assert is_ok(kept)
+        kept.settimeout(LONGEST_IN_A_POOL)
+        with pytest.raises(TimeoutError):  # it would be told here that the server has closed
+            kept.recv(1)
+        kept.settimeout(30)
+        kept.sendall(request())
+        assert is_ok(kept)
 
 
 def test_an_answer_that_is_not_read_ends_the_connection(tmp_path: Path) -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
 import socket
@@ -128,6 +129,26 @@ def test_a_stranger_learns_nothing(listener: Listener) -> None:
         with pytest.raises((EOFError, OSError)):
             end.receive()
     assert listener.requests.empty()
+
+
+def test_a_page_in_a_browser_gets_no_answer(listener: Listener) -> None:
+    body = b'{"tool": "execute", "arguments": {"code": "1"}}'
+    head = b"POST / HTTP/1.1\r\nHost: 127.0.0.1\r\nOrigin: https://example.org\r\nContent-Length: %d\r\n\r\n"
+    for request in (
+        head % len(body) + body,
+        b"GET / HTTP/1.1\r\nUpgrade: websocket\r\nHost: 127.0.0.1\r\n\r\n",
+    ):
+        with socket.create_connection(("127.0.0.1", listener.port), timeout=10) as sock:
+            sock.sendall(request)
+            sock.shutdown(socket.SHUT_WR)
+            received = b""
+            with contextlib.suppress(ConnectionError):
+                while data := sock.recv(4096):
+                    received += data
+            # random bytes, which each end sends before it knows the other
+            assert len(received) <= link.NONCE_BYTES, "it was answered"
+    assert listener.requests.empty()
+    assert not listener.clients
 
 
 def test_a_call_that_is_given_up_is_withdrawn(listener: Listener, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -1,0 +1,42 @@
+"""How the command of this installation is typed, for messages that tell what to run."""
+
+from __future__ import annotations
+
+import json
+import os
+import shlex
+import shutil
+import sys
+from importlib import metadata
+from pathlib import Path
+from urllib.parse import urlsplit
+from urllib.request import url2pathname
+
+_NAME = "simworlds"
+_CACHED = frozenset({"archive-v0", "environments-v2"})  # folders of uv's cache that uvx runs from
+
+
+def own_command() -> str:
+    """``simworlds`` where that is on PATH; else what starts this installation again, from any folder.
+
+    An environment that uvx made is on PATH for its own processes alone, so there it is ``uvx …``.
+    """
+    prefix = Path(sys.prefix)
+    if os.environ.get("UV") and _CACHED.intersection(prefix.parts):
+        return _of_uvx()
+    script = prefix / ("Scripts" if os.name == "nt" else "bin") / _NAME
+    found = shutil.which(_NAME)
+    return shlex.quote(str(script)) if found is None and script.is_file() else _NAME
+
+
+def _of_uvx() -> str:
+    try:
+        source = metadata.distribution(_NAME).read_text("direct_url.json")
+        url: str = json.loads(source)["url"] if source else ""
+    except (metadata.PackageNotFoundError, ValueError, KeyError, TypeError):
+        url = ""
+    if not url:
+        return f"uvx {_NAME}"
+    parts = urlsplit(url)
+    place = url2pathname(parts.path) if parts.scheme == "file" else url
+    return f"uvx --from {shlex.quote(place)} {_NAME}"
