@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from agents.loop.draft import asked_of, draft, minutes_of, note_film
+from agents.loop.draft import asked_of, draft, film_frames, minutes_of, note_film
 from agents.loop.edit.comparison import compared
 from agents.loop.errors import NotRendered
 from agents.loop.events import FilmDecided, FinalReviewed, SceneRendered
@@ -30,7 +30,6 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Block
 
 T = TypeVar("T")
-_FRAMES_SHOWN = 5  # at 0, 25, 50, 75, 100 %
 
 
 @dataclass(frozen=True, slots=True)
@@ -130,7 +129,7 @@ class LastStage:
         result = run.root / ("video.mp4" if moving else "still.png")
         if made.is_file():
             link(made, result)
-        shown = pictures_of(_spread(frames))
+        shown = pictures_of(_telling(run, frames))
         run.journal.note(
             SceneRendered(
                 round=number,
@@ -157,8 +156,8 @@ class LastStage:
             )
         if compared_with := _in_film(rendering, task):
             content += compared(self._run, task, compared_with)
-        for place, (path, picture) in enumerate(rendering.shown):
-            content += [Text(f"Frame {path.stem} ({25 * place} %):"), picture]
+        for path, picture in rendering.shown:
+            content += [Text(f"Frame {path.stem}:"), picture]
         try:
             review = final_review(
                 self._run.context,
@@ -206,8 +205,11 @@ def _in_film(rendering: RenderResult, task: RunTask) -> Picture | None:
     return known[path] if path in known else pictures_of([path])[0][1]
 
 
-def _spread(frames: Sequence[Path]) -> list[Path]:
-    """Five of them, from the first to the last."""
-    last = len(frames) - 1
-    places = {round(last * share / (_FRAMES_SHOWN - 1)) for share in range(_FRAMES_SHOWN)}
-    return [frames[place] for place in sorted(places)]
+def _telling(run: Run, frames: Sequence[Path]) -> list[Path]:
+    """Those by which the film is judged. Where time was short, not every frame was rendered."""
+    if len(frames) == 1:
+        return list(frames)
+    numbers = {int(path.stem): path for path in frames}
+    wanted = film_frames(run, min(numbers), max(numbers))
+    nearest = {min(numbers, key=lambda number: abs(number - frame)) for frame in wanted}
+    return [numbers[number] for number in sorted(nearest)]

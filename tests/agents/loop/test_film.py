@@ -116,9 +116,9 @@ def drafted(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Played:
 def test_before_a_film_frames_are_timed_and_shown_as_the_film_will_be(drafted: Played) -> None:
     assert drafted.ended.how == "done"
     asked = renders(drafted)
-    timing, stills, preview, film = asked[:2], asked[2:7], asked[7], asked[-1]
+    timing, stills, preview, film = asked[:2], asked[2:6], asked[6], asked[-1]
     assert [one["samples"] for one in timing] == [4, 6]
-    assert [one["frame"] for one in stills] == [1, 2, 3, 3, 4]
+    assert [one["frame"] for one in stills] == [1, 2, 3, 4]
     kind = ("engine", "denoise", "width", "height", "samples")
     assert {tuple(one[name] for name in kind) for one in (*stills, film)} == {("cycles", True, 64, 36, 6)}
     assert (preview["kind"], film["kind"], film["time_budget"]) == ("animation", "animation", 300)
@@ -131,7 +131,7 @@ def test_the_planner_sees_the_stills_once_and_may_have_something_mended(drafted:
     assert asked_for.count(("planner", "render")) == 1, asked_for
     asked = drafted.requests[asked_for.index(("planner", "render"))]
     last = json.dumps(asked["messages"][-1])
-    assert last.count('"type": "image"') == 5
+    assert last.count('"type": "image"') == 4
     assert "4 frames, 64×36, 6 samples" in json.dumps(asked["messages"][-1], ensure_ascii=False)
     assert drafted.the("film.decided")["decision"]["transition"] == "mend"
     assert drafted.the("verified", stage="render", attempt=2)["ok"]
