@@ -55,7 +55,7 @@ class MeasuredMotion:
 def telling_frames(
     first: int, last: int, count: int, motion: MeasuredMotion, phases: Sequence[MotionPhase] = ()
 ) -> list[int]:
-    """At most ``count`` frames, in order, ``first`` and ``last`` among them. ``phases`` count where none was measured."""
+    """At most ``count`` frames in order, with ``first`` and ``last``. ``phases`` count where none was measured."""
     chosen = {first, last}
     apart = max(1.0, (last - first) / (_APART * count))
     fastest = motion.peaks[0][0] if motion.peaks else 0.0
