@@ -32,7 +32,9 @@ _PREVIEW_SECONDS = 60.0
 _ENGINES = {"CYCLES": "cycles", "BLENDER_WORKBENCH": "workbench"}
 _FITTED = """\
 Frames {frames} of the film: its ends, and where most happens, with its own size, samples and denoising.
-The film: {film}. It takes about {minutes:.0f} min; {most:g} min are allowed."""
+The film: {film}. A frame takes about {each:.1f} s, as asked for it would take {full:.1f} s; all of it takes about \
+{minutes:.0f} min; {most:g} min are allowed.{options}"""
+_OPTIONS = " The run's options ask for {} samples, the plan for {}: the options hold."
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,7 +73,8 @@ def draft(run: Run, plan: RenderSettings, number: int) -> Draft:
         first, last = data["frame_range"]
         timed.append((data["samples"] or 1, data["seconds_per_frame"] or 0.0))
     planned = FilmSettings(width, height, samples, last - first + 1, 0.0)
-    film = fitted(planned, FrameTime.of(timed[0], timed[1]), minutes_of(run) * 60)
+    frame_time = FrameTime.of(timed[0], timed[1])
+    film = fitted(planned, frame_time, minutes_of(run) * 60)
     stills: list[Path] = []
     as_film = asked | {"width": film.width, "height": film.height, "samples": film.samples}
     frames = film_frames(run, first, last)
@@ -81,7 +84,13 @@ def draft(run: Run, plan: RenderSettings, number: int) -> Draft:
     known = run.journal.find(Drafted(round=number))
     if known is None:
         text = _FITTED.format(
-            frames=", ".join(map(str, frames)), film=film, minutes=film.seconds / 60, most=minutes_of(run)
+            frames=", ".join(map(str, frames)),
+            film=film,
+            each=film.seconds / film.frames,
+            full=frame_time.seconds(samples),
+            minutes=film.seconds / 60,
+            most=minutes_of(run),
+            options=_OPTIONS.format(samples, plan.samples) if samples != plan.samples else "",
         )
         kept = tuple(run.keep(picture) for _, picture in pictures_of(stills))
         known = Drafted(round=number, path=video, pictures=kept, text=text)

@@ -48,7 +48,7 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     if stage == "uv":
         shown.take(_UV, {})
     if stage == "texture" or not run.options.stages:
-        shown.take(_MATERIALS, {"width": WIDTH})
+        shown.take(_MATERIALS, {"width": WIDTH} | ({"first": subjects} if subjects else {}))
     if task.actors and (stage == "motion" or (moves(stage) and (task.edit or not run.options.stages))):
         phases = task.plan.motion.phases if task.plan is not None and stage == "motion" else ()
         sheets = motion_sheets(task.actors, phases)

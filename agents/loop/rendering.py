@@ -30,19 +30,24 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Block
 
 T = TypeVar("T")
+_MENDED = (
+    "This is the result after what you asked for was mended. There is no further round: accept, and say in the summary "
+    "what is mended, what is not, and what is worse than before."
+)
 
 
 @dataclass(frozen=True, slots=True)
 class RenderResult:
     """What was rendered: a ``video`` and its frames, or a still; ``path`` is the file in the run's folder.
 
-    ``shown``: some of the frames, each with its picture as models see it.
+    ``shown``: some of the frames, each with its picture as models see it. ``samples``: of the last frames.
     """
 
     path: Path
     frames: tuple[Path, ...]
     text: str
     shown: tuple[tuple[Path, Picture], ...]
+    samples: int | None = None
 
 
 class LastStage:
@@ -67,6 +72,7 @@ class LastStage:
         verdict = self._review(rendering, 1)
         if verdict.verdict == "needs_fix" and self._fix(verdict.instructions):
             rendering = self._render(2)
+            self._review(rendering, 2)  # it sees what came of its instructions
         return rendering
 
     def _mended_if_need_be(self, work: Callable[[], T]) -> T:
@@ -141,14 +147,16 @@ class LastStage:
                 pictures=tuple(run.keep(picture) for _, picture in shown),
             )
         )
-        return RenderResult(result, frames, outcome.text, shown)
+        return RenderResult(result, frames, outcome.text, shown, data.get("samples"))
 
     def _review(self, rendering: RenderResult, number: int) -> FinalReview:
         """The final reviewer's verdict. One that declines counts as accepting, and the summary says so."""
         task = self._task
         content: list[Block | str] = [Text(rendering.text)]
-        if self._film is not None and self._film.lowered:
-            content.append(Text(f"To keep its time, the film has {self._film.lowered}."))
+        if number > 1:
+            content.append(Text(_MENDED))
+        if self._film is not None and self._plan is not None:
+            content.append(Text(quality_of(self._film, self._plan, self._run.samples, rendering.samples)))
         if self._run.withdrawn:
             told = "; ".join(map(str, self._run.withdrawn))
             content.append(
@@ -193,6 +201,21 @@ class LastStage:
             return True
         run.roll_back("render", self._attempt, self._last)
         return False
+
+
+def quality_of(film: FilmSettings, plan: RenderSettings, asked: int | None, made: int | None) -> str:
+    """How the film's samples and size came about: planned, asked for by the run's options, fitted, and made."""
+    steps = [f"{plan.samples} planned"]
+    if asked is not None and asked != plan.samples:
+        steps.append(f"{asked} asked for by the run's options")
+    if film.samples != (asked or plan.samples):
+        steps.append(f"{film.samples} fitted to the time")
+    if made is not None and made != film.samples:
+        steps.append(f"{made} in the last frames, since frames took longer than expected")
+    width, height = plan.resolution
+    size = f"{film.width}×{film.height}"
+    planned = "" if (film.width, film.height) == (width, height) else f" instead of {width}×{height}"
+    return f"The film's samples: {', '.join(steps)}. Its size: {size}{planned}."
 
 
 def _in_film(rendering: RenderResult, task: RunTask) -> Picture | None:

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 LONGEST_CODE = 400_000
 _LONGEST_PRINT = 8_000
 _LONGEST_TITLE = 40
+_BEFORE_IT_FAILS = "with on_error='restore' a call is undone when it fails"
 _OF_CACHES = {
     "reset": "A reset simulation simulates again from its first frame, however far it had come.",
     "older than their settings": (
@@ -123,7 +124,7 @@ def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     if before is None:
         return ""
     calls = f" and the {format_count(unkept, 'call')} before it" if unkept else ""
-    return f" To undo it{calls}: blender_load(checkpoint={before.number})."
+    return f" To undo it{calls}: blender_load(checkpoint={before.number}), if you have that tool; {_BEFORE_IT_FAILS}."
 
 
 def describe(data: dict[str, Any], reply: WorkerReply[Any], checked: PreFlight) -> str:
