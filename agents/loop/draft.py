@@ -1,4 +1,4 @@
-"""Before a film: how long a frame takes, five stills as the film will have them, and a small, quick preview."""
+"""Before a film: how long a frame takes, stills as the film will have them, and a small, quick preview."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ from agents.loop.film_settings import FilmSettings, FrameTime, fitted
 from agents.loop.pictures import link, pictures_of
 from agents.loop.run import RENDER, RUNNER
 from agents.loop.run_state import DEFAULT_RENDER_MINUTES
+from agents.loop.telling_frames import telling_frames
 from simworlds.llm.messages import Picture, Text
 
 if TYPE_CHECKING:
@@ -24,14 +25,16 @@ if TYPE_CHECKING:
 
 DRAFT = "draft.mp4"
 _TIMED = (4, 12)  # samples of the two frames that are timed
-_SHARES = (0, 25, 50, 75, 100)  # % of the film's length
+STILLS = 5
 _PREVIEW_WIDTH = 320
 _PREVIEW_FRAMES = 40
 _PREVIEW_SECONDS = 60.0
 _ENGINES = {"CYCLES": "cycles", "BLENDER_WORKBENCH": "workbench"}
 _FITTED = """\
-Frames of the film at {shares} % of its length, with its own size, samples and denoising.
-The film: {film}. It takes about {minutes:.0f} min; {most:g} min are allowed."""
+Frames {frames} of the film: its ends, and where most happens, with its own size, samples and denoising.
+The film: {film}. A frame takes about {each:.1f} s, as asked for it would take {full:.1f} s; all of it takes about \
+{minutes:.0f} min; {most:g} min are allowed.{options}"""
+_OPTIONS = " The run's options ask for {} samples, the plan for {}: the options hold."
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,25 +73,38 @@ def draft(run: Run, plan: RenderSettings, number: int) -> Draft:
         first, last = data["frame_range"]
         timed.append((data["samples"] or 1, data["seconds_per_frame"] or 0.0))
     planned = FilmSettings(width, height, samples, last - first + 1, 0.0)
-    film = fitted(planned, FrameTime.of(timed[0], timed[1]), minutes_of(run) * 60)
+    frame_time = FrameTime.of(timed[0], timed[1])
+    film = fitted(planned, frame_time, minutes_of(run) * 60)
     stills: list[Path] = []
     as_film = asked | {"width": film.width, "height": film.height, "samples": film.samples}
-    for share in _SHARES:
-        frame = first + round((last - first) * share / 100)
-        stills.append(Path(_rendered(run, as_film | {"frame": frame, "name": f"draft {share}"})["path"]))
+    frames = film_frames(run, first, last)
+    for frame in frames:
+        stills.append(Path(_rendered(run, as_film | {"frame": frame, "name": f"draft {frame}"})["path"]))
     video = _preview(run, asked, film)
     known = run.journal.find(Drafted(round=number))
     if known is None:
         text = _FITTED.format(
-            shares=", ".join(map(str, _SHARES)), film=film, minutes=film.seconds / 60, most=minutes_of(run)
+            frames=", ".join(map(str, frames)),
+            film=film,
+            each=film.seconds / film.frames,
+            full=frame_time.seconds(samples),
+            minutes=film.seconds / 60,
+            most=minutes_of(run),
+            options=_OPTIONS.format(samples, plan.samples) if samples != plan.samples else "",
         )
         kept = tuple(run.keep(picture) for _, picture in pictures_of(stills))
         known = Drafted(round=number, path=video, pictures=kept, text=text)
         run.journal.note(known)
     shown: list[Block] = [Text(known.text)]
-    for share, path in zip(_SHARES, known.pictures, strict=False):
-        shown += [Text(f"{share} %:"), Picture(run.picture(path))]
+    for frame, path in zip(frames, known.pictures, strict=False):
+        shown += [Text(f"Frame {frame}:"), Picture(run.picture(path))]
     return Draft(film, tuple(shown))
+
+
+def film_frames(run: Run, first: int, last: int) -> list[int]:
+    """The frames by which a film is judged, before it is rendered and after."""
+    plan = run.task.plan if run.task is not None else None
+    return telling_frames(first, last, STILLS, run.motion, plan.motion.phases if plan is not None else ())
 
 
 def note_film(run: Run, film: FilmSettings, number: int) -> None:

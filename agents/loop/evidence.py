@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.loop.edit.comparison import compared
 from agents.loop.run import RENDER, RUNNER
+from agents.loop.telling_frames import MeasuredMotion, telling_frames
 from agents.plan.part import STAGES
 from simworlds.llm.messages import Picture, Text
 
@@ -23,7 +24,7 @@ WIDTH, SAMPLES = 960, 16  # of stills
 _SECONDS = 60  # for each
 _MOST_ACTORS, _MOST_PHASES, _MOST_SHEETS = 8, 24, 6  # of a motion sheet; sheets of a stage
 _MOST_SUBJECTS = 40
-_EDGE = 10  # this part of the frames at either end
+_LOOKS = 3  # frames of a film that the camera's and the light's reviewers see
 _LAYOUT, _MATERIALS, _UV = "blender_scene_layout_preview", "blender_material_preview", "blender_uv_preview"
 _MOTION, _STATE = "blender_motion_sheet_preview", "blender_scene_state"
 
@@ -47,18 +48,17 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     if stage == "uv":
         shown.take(_UV, {})
     if stage == "texture" or not run.options.stages:
-        shown.take(_MATERIALS, {"width": WIDTH})
+        shown.take(_MATERIALS, {"width": WIDTH} | ({"first": subjects} if subjects else {}))
     if task.actors and (stage == "motion" or (moves(stage) and (task.edit or not run.options.stages))):
         phases = task.plan.motion.phases if task.plan is not None and stage == "motion" else ()
         sheets = motion_sheets(task.actors, phases)
-        peaks = [_peak(shown.take(_MOTION, sheet)) for sheet in sheets]
-        run.peak = max(peaks, default=(0.0, None), key=lambda found: found[0])[1]
+        run.motion = MeasuredMotion.of([shown.take(_MOTION, sheet) for sheet in sheets], phases)
     if task.edit:
         shown.blocks += edit_comparison(run, stage, task)
     elif stage == "camera":
-        shown.take(_MATERIALS, {"show": "scene", "width": WIDTH, "frames": _telling_frames(task, run.peak)})
+        shown.take(_MATERIALS, {"show": "scene", "width": WIDTH, "frames": _telling_frames(task, run.motion)})
     elif stage == "light":
-        for frame in _telling_frames(task, run.peak):
+        for frame in _telling_frames(task, run.motion):
             shown.take(RENDER, still(f"look-{frame}", frame))
     shown.blocks += _coders_stills(run)
     shown.take(_STATE, {"first": subjects} if subjects else {})
@@ -133,27 +133,12 @@ def _is_in_a_row(phases: set[tuple[int, int, str]]) -> bool:
     return len(ordered) <= _MOST_PHASES and all(one[1] <= two[0] for one, two in itertools.pairwise(ordered))
 
 
-def _peak(motion: Mapping[str, Any]) -> tuple[float, int | None]:
-    """The highest speed on a motion sheet, and its frame."""
-    rows = [phase for actor in motion.get("actors", ()) for phase in actor.get("phases", ())]
-    found = [(row["peak_speed"], row["peak_frame"]) for row in rows if row.get("peak_frame") is not None]
-    return max(found, default=(0.0, None))
-
-
-def _telling_frames(task: RunTask, peak: int | None) -> list[int]:
+def _telling_frames(task: RunTask, motion: MeasuredMotion) -> list[int]:
     """The first frame, that of the fastest motion, and the last; of a still, the first."""
-    if task.plan is None or task.plan.render.kind == "still":
-        return [task.plan.frame_start] if task.plan is not None else []
-    first, last = task.plan.frame_start, task.plan.frame_end
-    if peak is None:
-        return sorted({first, (first + last) // 2, last})
-    # What is fastest as it begins, such as a gas or a burst, is hardly there yet.
-    margin, quarter = (last - first) / _EDGE, (last - first) // 4
-    if peak < first + margin:
-        peak = first + quarter
-    elif peak > last - margin:
-        peak = last - quarter
-    return sorted({first, peak, last})
+    plan = task.plan
+    if plan is None or plan.render.kind == "still":
+        return [plan.frame_start] if plan is not None else []
+    return telling_frames(plan.frame_start, plan.frame_end, _LOOKS, motion, plan.motion.phases)
 
 
 def _coders_stills(run: Run) -> list[Block | str]:

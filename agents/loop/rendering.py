@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from agents.loop.draft import asked_of, draft, minutes_of, note_film
+from agents.loop.draft import asked_of, draft, film_frames, minutes_of, note_film
 from agents.loop.edit.comparison import compared
 from agents.loop.errors import NotRendered
 from agents.loop.events import FilmDecided, FinalReviewed, SceneRendered
@@ -30,20 +30,24 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Block
 
 T = TypeVar("T")
-_FRAMES_SHOWN = 5  # at 0, 25, 50, 75, 100 %
+_MENDED = (
+    "This is the result after what you asked for was mended. There is no further round: accept, and say in the summary "
+    "what is mended, what is not, and what is worse than before."
+)
 
 
 @dataclass(frozen=True, slots=True)
 class RenderResult:
     """What was rendered: a ``video`` and its frames, or a still; ``path`` is the file in the run's folder.
 
-    ``shown``: some of the frames, each with its picture as models see it.
+    ``shown``: some of the frames, each with its picture as models see it. ``samples``: of the last frames.
     """
 
     path: Path
     frames: tuple[Path, ...]
     text: str
     shown: tuple[tuple[Path, Picture], ...]
+    samples: int | None = None
 
 
 class LastStage:
@@ -68,6 +72,7 @@ class LastStage:
         verdict = self._review(rendering, 1)
         if verdict.verdict == "needs_fix" and self._fix(verdict.instructions):
             rendering = self._render(2)
+            self._review(rendering, 2)  # it sees what came of its instructions
         return rendering
 
     def _mended_if_need_be(self, work: Callable[[], T]) -> T:
@@ -130,7 +135,7 @@ class LastStage:
         result = run.root / ("video.mp4" if moving else "still.png")
         if made.is_file():
             link(made, result)
-        shown = pictures_of(_spread(frames))
+        shown = pictures_of(_telling(run, frames))
         run.journal.note(
             SceneRendered(
                 round=number,
@@ -142,14 +147,16 @@ class LastStage:
                 pictures=tuple(run.keep(picture) for _, picture in shown),
             )
         )
-        return RenderResult(result, frames, outcome.text, shown)
+        return RenderResult(result, frames, outcome.text, shown, data.get("samples"))
 
     def _review(self, rendering: RenderResult, number: int) -> FinalReview:
         """The final reviewer's verdict. One that declines counts as accepting, and the summary says so."""
         task = self._task
         content: list[Block | str] = [Text(rendering.text)]
-        if self._film is not None and self._film.lowered:
-            content.append(Text(f"To keep its time, the film has {self._film.lowered}."))
+        if number > 1:
+            content.append(Text(_MENDED))
+        if self._film is not None and self._plan is not None:
+            content.append(Text(quality_of(self._film, self._plan, self._run.samples, rendering.samples)))
         if self._run.withdrawn:
             told = "; ".join(map(str, self._run.withdrawn))
             content.append(
@@ -157,8 +164,8 @@ class LastStage:
             )
         if compared_with := _in_film(rendering, task):
             content += compared(self._run, task, compared_with)
-        for place, (path, picture) in enumerate(rendering.shown):
-            content += [Text(f"Frame {path.stem} ({25 * place} %):"), picture]
+        for path, picture in rendering.shown:
+            content += [Text(f"Frame {path.stem}:"), picture]
         try:
             review = final_review(
                 self._run.context,
@@ -196,6 +203,21 @@ class LastStage:
         return False
 
 
+def quality_of(film: FilmSettings, plan: RenderSettings, asked: int | None, made: int | None) -> str:
+    """How the film's samples and size came about: planned, asked for by the run's options, fitted, and made."""
+    steps = [f"{plan.samples} planned"]
+    if asked is not None and asked != plan.samples:
+        steps.append(f"{asked} asked for by the run's options")
+    if film.samples != (asked or plan.samples):
+        steps.append(f"{film.samples} fitted to the time")
+    if made is not None and made != film.samples:
+        steps.append(f"{made} in the last frames, since frames took longer than expected")
+    width, height = plan.resolution
+    size = f"{film.width}×{film.height}"
+    planned = "" if (film.width, film.height) == (width, height) else f" instead of {width}×{height}"
+    return f"The film's samples: {', '.join(steps)}. Its size: {size}{planned}."
+
+
 def _in_film(rendering: RenderResult, task: RunTask) -> Picture | None:
     """The picture of the frame that an edit is compared at; the first, if that was not rendered."""
     if task.before is None and task.goal is None:
@@ -206,8 +228,11 @@ def _in_film(rendering: RenderResult, task: RunTask) -> Picture | None:
     return known[path] if path in known else pictures_of([path])[0][1]
 
 
-def _spread(frames: Sequence[Path]) -> list[Path]:
-    """Five of them, from the first to the last."""
-    last = len(frames) - 1
-    places = {round(last * share / (_FRAMES_SHOWN - 1)) for share in range(_FRAMES_SHOWN)}
-    return [frames[place] for place in sorted(places)]
+def _telling(run: Run, frames: Sequence[Path]) -> list[Path]:
+    """Those by which the film is judged. Where time was short, not every frame was rendered."""
+    if len(frames) == 1:
+        return list(frames)
+    numbers = {int(path.stem): path for path in frames}
+    wanted = film_frames(run, min(numbers), max(numbers))
+    nearest = {min(numbers, key=lambda number: abs(number - frame)) for frame in wanted}
+    return [numbers[number] for number in sorted(nearest)]

@@ -32,6 +32,7 @@ from agents.loop.events import (
     ToolCalled,
 )
 from agents.loop.interruptible import Interruptible
+from agents.loop.telling_frames import MeasuredMotion
 from agents.loop.tool_client import ToolOutcome
 from agents.roles import coder, reviewer
 from agents.roles.base import RoleContext
@@ -80,8 +81,8 @@ class Run:
     """What the loop works with. Two threads may call at the same time.
 
     ``stills``: the last pictures that the coder rendered in this attempt.
-    ``acceptance``: what the plans of the closed stages wanted, and whether it holds. ``peak``: the frame of the fastest
-    motion that the motion stage's reviewer was shown. ``withdrawn``: what of the plan no longer counts. ``stage`` is
+    ``acceptance``: what the plans of the closed stages wanted, and whether it holds. ``motion``: what the motion
+    stage's reviewer was shown of it. ``withdrawn``: what of the plan no longer counts. ``stage`` is
     being built, ``closed`` was closed last; ``is_changed``: whether the scene is another since. ``is_leaving``: the run
     has stopped; calls are neither journalled nor refused.
     """
@@ -98,7 +99,7 @@ class Run:
     task: RunTask | None = None
     stills: list[Still] = field(default_factory=list["Still"])
     acceptance: AcceptanceRecord = field(default_factory=AcceptanceRecord)
-    peak: int | None = None
+    motion: MeasuredMotion = field(default_factory=MeasuredMotion)
     withdrawn: list[Withdrawal] = field(default_factory=list["Withdrawal"])
     stage: Stage | None = None
     closed: str = START

@@ -178,7 +178,8 @@ class JointFacts(_Frozen):
 class CacheFacts(_Frozen):
     """A physics cache. ``kind`` is cloth, soft_body, particles, rigid_body, fluid, …; ``owner`` is the modifier's name.
 
-    ``missing`` counts the frames that a bake lacks; ``on``: its solver is switched on.
+    ``missing`` counts the frames that a bake lacks; ``on``: its solver is switched on. ``changed``: what has changed
+    since it was baked, as far as that is known.
     """
 
     object: str
@@ -188,6 +189,7 @@ class CacheFacts(_Frozen):
     frame_end: int
     baked: bool = False
     outdated: bool = False
+    changed: tuple[str, ...] = ()
     missing: int = 0
     on: bool = True
 

@@ -63,6 +63,7 @@ class Tolerances:
         45.0, "°", "largest angle between where an object lies and the planned direction"
     )
     upright: float = _tolerance(3.0, "°", "largest tilt of an upright object")
+    toppled: float = _tolerance(30.0, "°", "… of one that deforms, at the end")
     parallel: float = _tolerance(5.0, "°", "largest angle between parallel axes")
     facing: float = _tolerance(15.0, "°", "largest angle between an object's front and what it faces")
     radius_share: float = _tolerance(

@@ -29,6 +29,7 @@ KINDS = (
     *("images", "textures", "particles", "armatures", "lattices", "shape_keys", "scenes", "worlds"),
 )
 LISTED = 40  # names of one kind in a report; the rest are counted
+STALE, LOST = "older than their settings", "no longer baked"
 MOST_BLOCKS = 3000  # whose settings are compared; of more, those that Blender evaluated anew count as changed
 _ELSEWHERE = frozenset({"collection", "view layers"})  # parts of scenes that other data-blocks tell of
 _WHOLE = frozenset({"settings", "geometry", "keyframes", "picture", "nodes", "shapes", "bones"})
@@ -76,6 +77,10 @@ def _frames_held(scene):
     }
 
 
+def _baked_labels():
+    return {cache.label for cache in caches.find_caches(bpy.context.scene) if cache.baked}
+
+
 def listen():
     """Has Blender tell of what it updates, from now on."""
     for handlers, listener in (
@@ -102,6 +107,7 @@ class ChangeWatch:
         with _silenced():
             self._digests = _digests(self._most)
         self._caches = _frames_held(bpy.context.scene)
+        self._baked = _baked_labels()
         _cache_watch.update(counts=self._caches, reset={})
 
     @staticmethod
@@ -114,7 +120,8 @@ class ChangeWatch:
         """{kind: {"added" | "removed" | "changed": names}}; {} if nothing is.
 
         Modifiers are by ``Object[Modifier]``; ``caches`` has those that were ``reset``: they simulate again from their
-        first frame. What changed of a data-block is in brackets: ``Cube (transform)``.
+        first frame; those that are ``no longer baked``; and the baked ones that are ``older than their settings``: they
+        are played as they were baked. What changed of a data-block is in brackets: ``Cube (transform)``.
         """
         self._settle()
         report = {}
@@ -135,8 +142,15 @@ class ChangeWatch:
         old, new = ({key: f"{owner}[{name}]" for key, (owner, name) in names.items()} for names in (old, new))
         if entry := _entry(old, new, {key: new[key] for key in renamed}):
             report["modifiers"] = entry
-        if reset := self._reset_caches():
-            report["caches"] = {"reset": _shortened(reset)}
+        stale = caches.stale(bpy.context.scene)
+        played, lost = {cache.label for cache in stale}, sorted(self._baked - _baked_labels())
+        entry = {
+            LOST: _shortened(lost),
+            "reset": _shortened([label for label in self._reset_caches() if label not in played]),
+            STALE: _shortened([caches.describe_stale(cache) for cache in stale]),
+        }
+        if entry := {word: names for word, names in entry.items() if names}:
+            report["caches"] = entry
         return report
 
     def _changes(self, key, digests):

@@ -18,6 +18,14 @@ if TYPE_CHECKING:
 LONGEST_CODE = 400_000
 _LONGEST_PRINT = 8_000
 _LONGEST_TITLE = 40
+_BEFORE_IT_FAILS = "with on_error='restore' a call is undone when it fails"
+_OF_CACHES = {
+    "reset": "A reset simulation simulates again from its first frame, however far it had come.",
+    "older than their settings": (
+        "The old bake is played, whatever the settings say. Bake again (blender_bake), or free it first (free=true) to "
+        "step or try the new settings."
+    ),
+}
 
 
 class ExecuteArguments(Arguments):
@@ -116,7 +124,7 @@ def _how_to_undo(before: Checkpoint | None, unkept: int) -> str:
     if before is None:
         return ""
     calls = f" and the {format_count(unkept, 'call')} before it" if unkept else ""
-    return f" To undo it{calls}: blender_load(checkpoint={before.number})."
+    return f" To undo it{calls}: blender_load(checkpoint={before.number}), if you have that tool; {_BEFORE_IT_FAILS}."
 
 
 def describe(data: dict[str, Any], reply: WorkerReply[Any], checked: PreFlight) -> str:
@@ -144,10 +152,7 @@ def describe(data: dict[str, Any], reply: WorkerReply[Any], checked: PreFlight) 
             for kind, entry in data["changed"].items()
             for word, names in entry.items()
         ]
-        if data["changed"].get("caches"):
-            lines.append(
-                "  A reset simulation simulates again from its first frame, however far it had come."
-            )
+        lines += [f"  {_OF_CACHES[word]}" for word in data["changed"].get("caches", {}) if word in _OF_CACHES]
         parts.append("Changed:\n" + "\n".join(lines))
     if data["mode"] != "OBJECT":
         parts.append(f"Blender is in {data['mode']} mode.")

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 _PANEL, _COLUMNS = 272, 4  # pixels a side of an object's still
 _BACKGROUND: contact_sheet.Colour = (206, 209, 214)
-_MOST_OBJECTS, _MOST_FRAMES = 12, 4
+_MOST_OBJECTS, _MOST_FIRST, _MOST_FRAMES = 12, 40, 4
 _NAMED = 6
 _Name = Annotated[str, Field(min_length=1, max_length=200)]
 
@@ -34,6 +34,11 @@ class MaterialArguments(Arguments):
         default_factory=list[_Name],
         max_length=_MOST_OBJECTS,
         description="Default: all.",
+    )
+    first: list[str] = Field(
+        default_factory=list[str],
+        max_length=_MOST_FIRST,
+        description="Of all objects, these first.",
     )
     frames: list[Frame] = Field(
         default_factory=list[Frame],
@@ -61,6 +66,7 @@ def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Resul
     request = {
         "show": arguments.show,
         "objects": arguments.objects,
+        "first": arguments.first,
         "frames": list(dict.fromkeys(arguments.frames)),
         "folder": folder.workspace.for_blender(),
         "size": [arguments.width, _PANEL],

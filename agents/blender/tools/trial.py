@@ -62,6 +62,7 @@ class _ActorTrial(Claim):
     lowest: float | None
     peak_speed: float | None
     samples: list[_Sample] = Field(max_length=_MOST)
+    heights: list[tuple[Frame, float, float]] = Field(default=[], max_length=_MOST)
 
 
 class _TrialReply(Claim):
@@ -133,6 +134,9 @@ def _lines(trial: _TrialReply) -> Iterator[str]:
         parts += [f"peak speed {actor.peak_speed:.2f} m/s"] if actor.peak_speed is not None else []
         yield f"- {actor.name}: {', '.join(parts) or 'not there at any of these frames'}"
         yield from (f"  - frame {sample.frame}: {_sample(sample)}" for sample in actor.samples)
+        if len(actor.heights) > len(actor.samples):
+            course = "; ".join(f"{frame}: {low:.3f} {high:.3f}" for frame, low, high in actor.heights)
+            yield f"  - frame: lowest and highest point, m: {course}"
     yield from trial.notes
 
 

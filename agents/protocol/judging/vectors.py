@@ -48,3 +48,13 @@ def rotation_between(a: Array, b: Array) -> float:
     """The angle of the rotation that turns the axes ``a`` into ``b``, in degrees."""
     cosine = (np.trace(a @ b.T) - 1) / 2
     return float(np.degrees(np.arccos(np.clip(cosine, -1.0, 1.0))))
+
+
+def rotated(vector: Array, turn: Array) -> Array:
+    """A vector turned about an axis that is as long as the angle, in radians."""
+    angle = float(np.linalg.norm(turn))
+    if angle == 0:
+        return vector
+    axis = turn / angle
+    along = axis * float(axis @ vector)
+    return along + (vector - along) * np.cos(angle) + np.cross(axis, vector) * np.sin(angle)

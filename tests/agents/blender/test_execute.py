@@ -138,6 +138,7 @@ def test_failed_code_is_kept_by_default_and_says_how_to_undo_it(session: LiveSes
     )
     assert session.run("[o.name for o in bpy.data.objects]") == ["Half"]
     assert "blender_load(checkpoint=" in found.text
+    assert "on_error='restore'" in found.text, "not everybody has blender_load"
 
 
 def test_exit_is_an_error_like_any_other(session: LiveSession) -> None:

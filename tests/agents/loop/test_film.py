@@ -15,6 +15,7 @@ from agents.loop import draft
 from agents.loop.film_settings import FilmSettings, FrameTime, fitted
 from agents.loop.options import RunLimits
 from agents.loop.reducer import read_run_state
+from agents.loop.rendering import quality_of
 from agents.plan.scene import RenderSettings
 from agents.views.report.page import write_report
 
@@ -83,6 +84,26 @@ def test_a_film_planned_in_eevee_is_drawn_by_what_drew_its_stills() -> None:
     }
 
 
+@pytest.mark.parametrize(
+    ("film", "asked", "made", "told"),
+    [
+        (FilmSettings(960, 540, 32, 84, 0.0), None, 32, "32 planned. Its size: 960×540."),
+        (
+            FilmSettings(480, 270, 13, 84, 0.0),
+            16,
+            4,
+            "32 planned, 16 asked for by the run's options, 13 fitted to the time, 4 in the last frames, since frames "
+            "took longer than expected. Its size: 480×270 instead of 960×540.",
+        ),
+    ],
+)
+def test_one_sentence_tells_how_a_films_samples_came_about(
+    film: FilmSettings, asked: int | None, made: int, told: str
+) -> None:
+    plan = RenderSettings(kind="animation", engine="CYCLES", samples=32, resolution=(960, 540))
+    assert quality_of(film, plan, asked, made) == f"The film's samples: {told}"
+
+
 # In a run
 
 
@@ -116,9 +137,9 @@ def drafted(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Played:
 def test_before_a_film_frames_are_timed_and_shown_as_the_film_will_be(drafted: Played) -> None:
     assert drafted.ended.how == "done"
     asked = renders(drafted)
-    timing, stills, preview, film = asked[:2], asked[2:7], asked[7], asked[-1]
+    timing, stills, preview, film = asked[:2], asked[2:6], asked[6], asked[-1]
     assert [one["samples"] for one in timing] == [4, 6]
-    assert [one["frame"] for one in stills] == [1, 2, 3, 3, 4]
+    assert [one["frame"] for one in stills] == [1, 2, 3, 4]
     kind = ("engine", "denoise", "width", "height", "samples")
     assert {tuple(one[name] for name in kind) for one in (*stills, film)} == {("cycles", True, 64, 36, 6)}
     assert (preview["kind"], film["kind"], film["time_budget"]) == ("animation", "animation", 300)
@@ -131,7 +152,8 @@ def test_the_planner_sees_the_stills_once_and_may_have_something_mended(drafted:
     assert asked_for.count(("planner", "render")) == 1, asked_for
     asked = drafted.requests[asked_for.index(("planner", "render"))]
     last = json.dumps(asked["messages"][-1])
-    assert last.count('"type": "image"') == 5
+    assert last.count('"type": "image"') == 4
+    assert "A frame takes about" in last
     assert "4 frames, 64×36, 6 samples" in json.dumps(asked["messages"][-1], ensure_ascii=False)
     assert drafted.the("film.decided")["decision"]["transition"] == "mend"
     assert drafted.the("verified", stage="render", attempt=2)["ok"]

@@ -130,7 +130,11 @@ def test_the_result_is_mended_once_from_the_last_checkpoint_and_rendered_again(m
     assert not load["failed"]
     assert "Put the sun higher." in words_of(of_role(mended, "coder", "render")[0])
     assert [row["round"] for row in mended.of("rendered")] == [1, 2]
-    assert [row["review"]["verdict"] for row in mended.of("final.reviewed")] == ["needs_fix"]
+    assert [row["round"] for row in mended.of("final.reviewed")] == [1, 2]
+    first, second = of_role(mended, "final_reviewer", "render")
+    told = "This is the result after what you asked for was mended."
+    assert told not in words_of(first)
+    assert told in words_of(second), "it sees what came of its instructions, and no round follows"
 
 
 def test_a_fix_that_breaks_a_hard_rule_is_undone(play: Callable[..., Played], tmp_path: Path) -> None:

@@ -310,6 +310,7 @@ def _cache(cache):
         "frame_end": end,
         "baked": bool(cache.baked),
         "outdated": bool(cache.outdated),
+        "changed": cache.changed if cache.baked else [],
         "missing": cache.missing if cache.baked else 0,
         "on": bool(cache.simulated),
     }

@@ -9,6 +9,7 @@ import bpy
 
 from simworlds.sandbox.inside.refusal import Refused
 
+from ..blend.protocol_tags import object_collections
 from ..geometry.penetration import penetration
 from ..geometry.solids import Solids, Unmeasurable
 from ..physics import caches, stepped_frames
@@ -23,6 +24,7 @@ _MOST_ACTORS = 12
 _SAMPLES = 6  # frames that are drawn, and at which volumes and depths are measured
 _TOLD = 3  # actors in a line of progress
 _MOST_POINTS = 20_000  # of an actor that are followed
+_HEIGHTS = 30  # frames of which heights are told
 _LATE = 4  # the last quarter of the frames tells what later ones will take
 _RAYS = 8
 _MOST_PARTNERS = 20  # of an actor, whose depth in it is measured
@@ -48,14 +50,18 @@ def trial(arguments, report):
     own = caches.of_objects(scene, parts)
     if not own:
         raise Refused("There is nothing to try: none of these objects is simulated.")
-    notes += [
-        f"Baked, so played as it is: {cache.label}." for cache in own if cache.baked and not cache.outdated
-    ]
+    notes += [_of_bake(cache) for cache in own if cache.baked]
     with _stepping_fluids(own, arguments["folder"]):
         run = _Trial(scene, actors, arguments, report)
         run.step()
         run.draw(notes)
     return {**run.result(own), "notes": notes}
+
+
+def _of_bake(cache):
+    if not cache.outdated:
+        return f"Baked, so played as it is: {cache.label}."
+    return f"Free the old bake first, which is played here: {caches.describe_stale(cache)}."
 
 
 def _simulated_names(scene, found):
@@ -197,6 +203,13 @@ class _Trial:
             "name": track.actor.name,
             "lowest": round_to(min(lows)) if lows else None,
             "peak_speed": round_to(max(speeds)) if speeds else None,
+            "heights": [
+                [frame, round_to(track.lows[at].z), round_to(track.highs[at].z)]
+                for frame, at in (
+                    (frame, track.frames.index(frame)) for frame in _evenly(track.frames, _HEIGHTS)
+                )
+                if track.lows[at] is not None
+            ],
             "samples": [
                 {"frame": frame, **_place(track, frame), **facts[number]}
                 for frame, facts in sorted(self._solid_facts.items())
@@ -255,7 +268,8 @@ def _solid_facts(actor, solids, scene):
         facts["volume"] = round_to(_volume(solid), 1e-6)
     if actor.measured == "fluid":
         return facts
-    for other in _partners(solid, names, solids, scene):
+    own = {*names, *(obj.name for one in object_collections(scene) for obj in _own(one, names))}
+    for other in _partners(solid, own, solids, scene):
         try:
             shared = penetration(solid, other)
         except Unmeasurable:
@@ -263,6 +277,12 @@ def _solid_facts(actor, solids, scene):
         if shared is not None and shared[0] is not None and shared[0] > (facts["depth"] or 0.0):
             facts["depth"], facts["inside"] = round_to(float(shared[0]), 1e-5), other.name
     return facts
+
+
+def _own(collection, names):
+    """All of an object of the protocol that has one of these: its cage is in its body, and in nothing else."""
+    members = list(collection.all_objects)
+    return members if any(obj.name in names for obj in members) else []
 
 
 def _volume(solid):

@@ -14,7 +14,7 @@ from simworlds.sandbox.inside.refusal import Refused
 from ..blend.file_io import SCENE_FILE, make_own, reason
 from ..blend.names import nearest
 from ..blend.temporary import temporary_settings
-from . import caches, simulated_movement, stepped_frames, stillness_causes
+from . import bake_inputs, caches, simulated_movement, stepped_frames, stillness_causes
 from .finite_check import Diverged, DivergenceWatch
 
 CACHE_FOLDER = "cache"  # below the workspace, for fluids
@@ -57,6 +57,7 @@ def bake_in_steps(arguments, report):
     frame_before = scene.frame_current
     jobs = [_Job(cache) for cache in chosen]
     progress = _Progress(report)
+    bake_inputs.forget(scene, chosen)
     try:
         _keep_what_was_stepped(scene, jobs, frames)
         for job in jobs:
@@ -76,6 +77,11 @@ def bake_in_steps(arguments, report):
         scene.frame_set(frame_before)
     for job in jobs:
         job.remove_old_bakes(every)
+    bake_inputs.remember(scene, [job.cache for job in jobs if not job.fault])
+    left = [cache for cache in every if cache not in chosen and cache.baked and cache.outdated]
+    notes += [
+        f"Still played as it was baked before: {caches.describe_stale(cache)}. Bake it too." for cache in left
+    ]
     return {
         "range": list(frames),
         "seconds": time.perf_counter() - started,
@@ -108,6 +114,7 @@ def free(arguments, report):
         _free(cache)
         if cache.domain is not None:
             cache.domain.cache_type = "REPLAY"
+    bake_inputs.forget(scene, freed)
     stepped_frames.forget()
     return {"freed": [cache.label for cache in freed], "unbaked": [c.label for c in chosen if c not in freed]}
 

@@ -6,12 +6,13 @@ import re
 
 import bpy
 
-from . import rigid_body_inputs
+from . import bake_inputs, rigid_body_inputs
 
 CLOTH, SOFT_BODY, PARTICLES, HAIR = "cloth", "soft_body", "particles", "hair"
 RIGID_BODY, DYNAMIC_PAINT, FLUID = "rigid_body", "dynamic_paint", "fluid"
 
 _OF_MODIFIER = {"CLOTH": CLOTH, "SOFT_BODY": SOFT_BODY}
+_NAMED = 5  # of what has changed since a bake
 _UNITS = {"B": 1, "KiB": 1024, "MiB": 1024**2, "GiB": 1024**3, "TiB": 1024**4}
 
 
@@ -100,7 +101,14 @@ class PhysicsCache:
         """Whether something was changed since it was filled."""
         if self.kind == RIGID_BODY and self.points.is_baked:
             return rigid_body_inputs.is_outdated(self.owner)
-        return self.domain is None and self.points.is_outdated
+        if self.domain is None and self.points.is_outdated:
+            return True
+        return self.baked and bool(self.changed)
+
+    @property
+    def changed(self):
+        """What has changed since it was baked, as far as that is known: ``its settings``, ``'Table'``, …"""
+        return bake_inputs.changed_since_bake(self)
 
     @property
     def folder(self):
@@ -218,6 +226,20 @@ def unbaked(scene):
         for cache in find_caches(scene)
         if cache.simulated and not (cache.baked and not cache.outdated)
     ]
+
+
+def stale(scene):
+    """The baked caches that are older than what they depend on: Blender plays them as they are."""
+    return [cache for cache in find_caches(scene) if cache.baked and cache.outdated]
+
+
+def describe_stale(cache):
+    """``cloth of 'Flag' (changed since: its settings)``."""
+    changed = cache.changed
+    if not changed:
+        return cache.label
+    more = f" and {len(changed) - _NAMED} more" if len(changed) > _NAMED else ""
+    return f"{cache.label} (changed since: {', '.join(changed[:_NAMED])}{more})"
 
 
 def restart_unbaked(scene):

@@ -11,7 +11,7 @@ from array import array
 import bpy
 from bpy.app.handlers import persistent
 
-from ..blend.fcurves import curves_of
+from . import transform_inputs
 
 _remembered = {}  # scene → digest of the inputs when they last matched the bake
 
@@ -54,10 +54,7 @@ def _inputs_digest(scene):
                 _settings(obj.rigid_body_constraint),
                 _mesh_digest(obj.data),
             ]
-            carrier = obj
-            while carrier is not None:
-                inputs += [carrier.name, _transform_inputs(carrier)]
-                carrier = carrier.parent
+            inputs += transform_inputs.of_chain(obj)
     return hashlib.sha256(repr(inputs).encode(errors="surrogateescape")).hexdigest()
 
 
@@ -72,17 +69,6 @@ def _settings(part):
             plain = getattr(value, "name", None) if prop.type in {"POINTER", "COLLECTION"} else value
             settings[prop.identifier] = tuple(plain) if getattr(prop, "is_array", False) else plain
     return settings
-
-
-def _transform_inputs(obj):
-    """Its transform; if it is animated, its keys, since the transform changes with the frame."""
-    animation = obj.animation_data
-    if animation is not None and animation.action is not None:
-        return [
-            (curve.data_path, curve.array_index, [tuple(point.co) for point in curve.keyframe_points])
-            for curve in curves_of(obj)
-        ]
-    return [tuple(row) for matrix in (obj.matrix_basis, obj.matrix_parent_inverse) for row in matrix]
 
 
 def _mesh_digest(data):

@@ -27,7 +27,8 @@ _LISTED = 20
 def material_sheet(arguments, report):
     """Renders stills into ``folder``: the scene at each of ``frames`` (none: the current one), and objects alone.
 
-    ``objects``: names of the protocol's objects (lacking those, of Blender's); none: all, alike ones once. ``show``:
+    ``objects``: names of the protocol's objects (lacking those, of Blender's); none: all, alike ones once, those that
+    ``first`` names before others. ``show``:
     "all", "scene" or "objects". ``size``: (of the scene's picture, of an object's), in pixels. After ``seconds`` no
     further still is begun. Returns ``scene`` and ``objects``, with the names of the files, and ``notes``.
     """
@@ -67,6 +68,11 @@ class _Sheet:
                 studio, subject, self._arguments["folder"], width // 2 if camera else width, first=self._files
             )
             renderer.set_up(True, False, [])
+            if subject.gases:
+                self.notes.append(
+                    f"Drawn as blocks, without its shader: the gas of {quoted(sorted(subject.gases), _NAMED)}. "
+                    "blender_render shows it."
+                )
             with renderer.cleaned_up():
                 # From outside, materials are seen best on the objects: these come first while there is time.
                 present = _present(groups, subject, self.notes)
@@ -90,7 +96,7 @@ class _Sheet:
         self.scene += [{**view, "frame": scene.frame_current} for view in views]
 
     def _take_objects(self, renderer, groups, side):
-        alike = _alike(groups, as_given=bool(self._arguments["objects"]))
+        alike = _alike(groups, self._arguments["first"], as_given=bool(self._arguments["objects"]))
         many, late = [], []
         for name, others in alike.items():
             owners = groups[name]
@@ -164,16 +170,21 @@ def _has_surface(owners):
     return any(bpy.data.objects[owner].type in DRAWABLE for owner in owners)
 
 
-def _alike(groups, *, as_given):
+def _alike(groups, wanted, *, as_given):
     """{name: those that have the same materials and as many parts, and are not shown}.
 
-    As they were given; or first those that show materials that none before has: of these what acts, then what has the
-    most.
+    As they were given; or first those that are ``wanted``, then those that show materials that none before has: of
+    these what acts, then what has the most.
     """
     if as_given:
         return {name: [] for name in groups}
     first, alike, seen = {}, {}, set()
-    for name in sorted(groups, key=lambda name: (not _acts(name), -len(_materials_of(groups[name])))):
+    rank = {name: at for at, name in enumerate(wanted)}
+    last = len(rank)
+    order = {
+        name: (rank.get(name, last), not _acts(name), -len(_materials_of(groups[name]))) for name in groups
+    }
+    for name in sorted(groups, key=order.__getitem__):
         materials = _materials_of(groups[name])
         look = (tuple(materials), len(groups[name])) if materials else name
         if look in first:
@@ -186,7 +197,9 @@ def _alike(groups, *, as_given):
         materials = {*_materials_of(groups[name])}
         new[name] = bool(materials - seen)
         seen |= materials
-    return {name: alike[name] for name in sorted(alike, key=lambda name: not new[name])}
+    return {
+        name: alike[name] for name in sorted(alike, key=lambda name: (rank.get(name, last), not new[name]))
+    }
 
 
 def _acts(name):

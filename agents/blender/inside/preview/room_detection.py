@@ -2,8 +2,8 @@
 """Finds out whether the objects of a studio scene are in a room, where it has space, and what encloses it.
 
 A point is *inside* if level rays from it hit large objects nearly all around. What rays from inside hit last, on their
-way out, is the room's *shell*. A roof over most of the objects counts as a room without walls. Lengths are those of the
-studio scene, in which what is framed is ``REACH`` across.
+way out, is the room's *shell*, but for what moves, such as doors. A roof over most of the objects counts as a room
+without walls. Lengths are those of the studio scene, in which what is framed is ``REACH`` across.
 """
 
 import math
@@ -73,7 +73,8 @@ def find_room(studio, placed, boxes):
     if not tops and len(inside) < _SOME * len(grid):
         return None
     inside = inside or within
-    shell = rays.outermost(inside)
+    movers = {obj for piece, obj in placed if piece.is_mover}
+    shell = [obj for obj in rays.outermost(inside) if obj not in movers]
     return Room(inside, shell) if shell else None
 
 

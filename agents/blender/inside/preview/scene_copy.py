@@ -34,6 +34,7 @@ class Piece:
     is_solid = True  # False for smoke, strands, dots
     is_liquid = False
     is_helper = False  # a fluid's domain, or what is only outlined in the viewport
+    is_mover = False  # it moves by itself: a door, not a wall
 
     def __init__(self, owner, data, matrix, corners, *, exactly=True):
         self.owner, self.data, self.matrix = owner, data, matrix
@@ -58,13 +59,15 @@ class Piece:
 
 class SceneCopy:
     """``pieces``, and the names of what is missing: ``broken`` (with why), ``hidden`` in the viewport, ``unrendered``,
-    ``empty``; ``left_out`` counts instances, of the objects ``templates``. ``studio`` owns all data-blocks."""
+    ``empty``; ``left_out`` counts instances, of the objects ``templates``; ``gases``: the domains whose gas is drawn.
+    ``studio`` owns all data-blocks."""
 
     def __init__(self, studio, graph, objects, *, unrendered=False):
         """Copies ``objects`` of the scene (None: all), with ``unrendered`` also those that renders do not show."""
         self._studio, self._graph = studio, graph
         self._copies, self._surfaces, self._averages = {}, {}, {}
         self.pieces, self.broken, self.left_out, self.templates = [], {}, 0, set()
+        self.gases = set()
         names = None if objects is None else {obj.name for obj in objects}
         layer = graph.view_layer
         rendered = None if unrendered else {obj.name for obj in rendered_objects(layer.layer_collection)}
@@ -153,6 +156,7 @@ class SceneCopy:
     def _add(self, piece, obj):
         piece.is_liquid = _shows_liquid(obj)
         piece.is_helper = domain_of(obj) is not None or obj.display_type in {"WIRE", "BOUNDS"}
+        piece.is_mover = _moves(obj)
         self.pieces.append(piece)
 
     def _copy_data(self, obj):
@@ -263,9 +267,12 @@ class SceneCopy:
         domain = _gas_of(obj)
         if domain is not None:
             grids = domain.density_grid, domain.flame_grid, tuple(domain.domain_resolution)
+            cells = gas_cells(*grids, obj.bound_box)
+            if cells is not None:
+                self.gases.add(obj.original.name)
             self._add_proxy(
                 obj,
-                gas_cells(*grids, obj.bound_box),
+                cells,
                 [PreviewMaterial((0.3,) * 3, 0.5), PreviewMaterial((1, 0.3, 0.03), 0.8)],
                 matrix,
             )
@@ -375,6 +382,18 @@ def _stroke_segments(data):
     for layer, stroke in _strokes(data):
         points = [layer.matrix_local @ point.position for point in stroke.points]
         yield from itertools.pairwise(points)
+
+
+def _moves(obj):
+    """Whether keyframes or a solver move an object, or what it is parented to."""
+    while obj is not None:
+        body, animation = obj.rigid_body, obj.animation_data
+        if body is not None and body.type == "ACTIVE":
+            return True
+        if animation is not None and (animation.action is not None or len(animation.drivers)):
+            return True
+        obj = obj.parent
+    return False
 
 
 def _gas_of(obj):

@@ -8,6 +8,7 @@ from array import array
 
 import bpy
 
+from ..blend.bake_tag import BAKE_INPUTS
 from ..blend.fcurves import played_curves
 from .block_parts import CACHES, CUSTOM, extra_parts_of, names_of, part_of, reading_plan_of, rest_of
 from .file_contents import contents_of_image, contents_of_path
@@ -85,6 +86,15 @@ class BlockReader:
                 self._feed(*self._values(struct, (entry,), late=True))
             digests[CACHES] = self._finish_part()
         return digests
+
+    def struct_digest(self, structs):
+        """The digest of some structs of the data-block, or of the block as one, apart from their caches."""
+        self._note_animation(self._block)
+        self._begin()
+        self._numbers.clear()
+        for struct in structs:
+            self._number(struct)
+        return self._finish_part()[0]
 
     def _begin(self):
         self._hash = hashlib.blake2b(digest_size=12)
@@ -227,6 +237,8 @@ class BlockReader:
         except (TypeError, AttributeError):
             return
         for key, value in items:
+            if key == BAKE_INPUTS:  # the tools' own, of what other properties hold
+                continue
             yield key
             if is_id(value):
                 content = self._reference(value)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 
 _PARTICLES = "particles"  # a kind of cache
+_NAMED = 5  # of what changed since a bake
 _BAKE = "Bake it over the whole range (blender_bake)."
 
 
@@ -74,7 +75,8 @@ def _bake_problem(cache: CacheFacts, start: int, end: int) -> str:
     if not cache.baked:
         return "is not baked"
     if cache.outdated:
-        return "is baked, but outdated"
+        since = f": since then {', '.join(cache.changed[:_NAMED])} changed" if cache.changed else ""
+        return f"is baked, but older than its settings{since}; the old bake is played"
     # Blender sets the range of particles itself: from the first that is born to the last that dies.
     has_own_range = cache.kind == _PARTICLES
     if not has_own_range and (cache.frame_start > start or cache.frame_end < end):

@@ -8,11 +8,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from agents.plan.relations import SIDES, Direction, Facing, NextTo, OnTopOf, ParallelTo, Upright
+from agents.protocol.judging.measured_motion import mesh_names
 from agents.protocol.judging.planned_relations import Violation, relation_rule, surface_pair, surfaces
 from agents.protocol.judging.poses import anchor, pose, pose_request
 from agents.protocol.judging.sizes import contact_gap
-from agents.protocol.judging.vectors import angle_between, as_vector
+from agents.protocol.judging.vectors import angle_between, as_vector, rotated
 from agents.protocol.measures.geometry import ExtentsRequest, GapRequest
+from agents.protocol.measures.motion import MotionPathRequest
 from agents.protocol.measures.position import DirectionRequest, FootprintRequest
 from agents.protocol.measures.requests import Unmeasured
 from agents.protocol.tolerances import CONTACT
@@ -25,6 +27,10 @@ if TYPE_CHECKING:
     from agents.protocol.measures.requests import Measures, Request
     from agents.protocol.rule import RuleContext
 
+_STAY_UP = (
+    "It has toppled, or was turned: give it a wider base, more of its mass below (a soft body: by a vertex group), or "
+    "a slower start; then bake again."
+)
 _UP = np.array([0.0, 0.0, 1.0])
 _SAME_PLACE = 1e-3  # metres in plan view below which there is no direction from one place to another
 
@@ -164,6 +170,37 @@ def _orientation_requests(
             yield request
     if isinstance(relation, Facing):
         yield _faced_extents(context, relation, frame)
+    if isinstance(relation, Upright) and (way := _way_there(context, relation, frame)):
+        yield way
+        if request := pose_request(context, relation.a, way.start):
+            yield request
+
+
+def _way_there(context: RuleContext, relation: Upright, frame: int | None) -> MotionPathRequest | None:
+    """How the meshes of what moves come to where they are at last: a solver turns them, and not their root."""
+    first, names = context.facts.frame_start, mesh_names(context, relation.a)
+    if relation.when == "start_or_end" or frame is None or frame <= first or not names:
+        return None
+    return MotionPathRequest(names, first, frame)
+
+
+def _leaning(
+    context: RuleContext, measures: Measures, relation: Upright, frame: int | None
+) -> tuple[float, float, Array]:
+    """(its lean in degrees, the most that it may, its place)."""
+    tolerances = context.tolerances
+    request = _way_there(context, relation, frame)
+    path = measures[request] if request is not None else None
+    turns = path.rotations[1:] if path is not None else ()
+    if path is None or None in turns:
+        place, axes = pose(context, measures, relation.a, frame)
+        return angle_between(axes[2], _UP), tolerances.upright, place
+    assert request is not None
+    up = pose(context, measures, relation.a, request.start)[1][2]
+    for turn in turns:
+        up = rotated(up, np.array(turn))
+    place = np.array(path.centres[-1] or (0.0, 0.0, 0.0))
+    return angle_between(up, _UP), tolerances.toppled if path.deforms else tolerances.upright, place
 
 
 def _faced_extents(context: RuleContext, relation: Facing, frame: int | None) -> ExtentsRequest:
@@ -174,12 +211,17 @@ def _misoriented(
     context: RuleContext, measures: Measures, relation: Upright | Facing | ParallelTo, frame: int | None
 ) -> Iterator[Violation]:
     tolerances = context.tolerances
-    place, axes = pose(context, measures, relation.a, frame)
     fix = ""
     if isinstance(relation, Upright):
-        off, most = angle_between(axes[2], _UP), tolerances.upright
+        off, most, place = _leaning(context, measures, relation, frame)
         sentence = f"{relation.a!r} leans by {off:.1f}°."
-    elif isinstance(relation, Facing):
+        if _way_there(context, relation, frame):
+            fix = _STAY_UP
+        if off > most:
+            yield Violation(sentence, off, most, "°", as_vector(place), fix)
+        return
+    place, axes = pose(context, measures, relation.a, frame)
+    if isinstance(relation, Facing):
         towards = _faced_point(context, measures, relation, frame, place) - place
         if float(np.linalg.norm(towards[:2])) < _SAME_PLACE:
             raise Unmeasured(f"{relation.a!r} is right above, below or inside {relation.b!r}")
@@ -254,7 +296,8 @@ R13 = relation_rule(
     "R13",
     "orientation",
     "Upright, ParallelTo and Facing hold for the objects' own axes: Z is up, −Y is the front. A long object may be "
-    "faced anywhere along its middle line.",
+    "faced anywhere along its middle line. Of what moves, Upright that is to hold at the end is judged by how its "
+    "meshes have turned.",
     "A chair with its back to the table, or a shelf that leans, is not the planned scene.",
     "Turn the object's root Empty.",
     Upright,
@@ -262,6 +305,6 @@ R13 = relation_rule(
     ParallelTo,
     requests=_orientation_requests,
     violations=_misoriented,
-    tolerances=("upright", "parallel", "facing"),
+    tolerances=("upright", "toppled", "parallel", "facing"),
 )
 RULES = (R10, R11, R12, R13)

@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from agents.protocol.findings import Finding
 
 _AXES = "XYZ"
+# What makes a mesh's faces out of what may come later: particles, instances.
+_COPIES = frozenset({"PARTICLE_INSTANCE", "NODES", "EXPLODE", "BUILD"})
 _SIMULATED = frozenset({"CLOTH", "SOFT_BODY", "FLUID_EFFECTOR", "FLUID_FLOW"})
 
 
@@ -153,6 +155,30 @@ def _surface_requests(context: RuleContext) -> Iterator[SurfaceRequest]:
     for mesh in _judged_meshes(context):
         if mesh.surface:
             yield from _surfaces(context, mesh, must_close=mesh.name in closed)
+        else:
+            yield from _later_surfaces(context, mesh)
+
+
+def _later_surfaces(context: RuleContext, mesh: ObjectFacts) -> Iterator[SurfaceRequest]:
+    """The surfaces, halfway and at the end, of a mesh that may have none yet."""
+    facts = context.facts
+    if mesh.has_modifier(_COPIES) and context.judges_end:
+        for frame in ((facts.frame_start + facts.frame_end) // 2, facts.frame_end):
+            if frame != facts.frame:
+                yield SurfaceRequest(mesh.name, frame)
+
+
+def _has_none(context: RuleContext, measures: Measures, mesh: ObjectFacts) -> bool:
+    """Whether a mesh without faces will have none; where motion is not judged yet, what copies may still have some."""
+    if mesh.has_modifier(_COPIES) and not context.judges_end:
+        return False
+    for request in _later_surfaces(context, mesh):
+        try:
+            if measures[request].polygons:
+                return False
+        except Unmeasured:  # it has none then either
+            continue
+    return True
 
 
 def _surfaces(context: RuleContext, mesh: ObjectFacts, *, must_close: bool) -> Iterator[SurfaceRequest]:
@@ -186,6 +212,8 @@ def _invalid_geometry(context: RuleContext, measures: Measures) -> Iterator[Find
             yield R4.undecided((mesh.name,), reason)
         elif mesh.fault:
             yield R4.finding((mesh.name,), f"{mesh.name!r}: {mesh.fault}.")
+        elif not mesh.surface and not _has_none(context, measures, mesh):
+            continue
         elif not mesh.surface:
             yield R4.finding((mesh.name,), f"The mesh {mesh.name!r} has no faces.", measured=0.0)
         else:
@@ -281,8 +309,8 @@ R4 = Rule(
     "R4",
     "valid geometry",
     "hard",
-    "Meshes are finite, have faces and a positive scale; those that hold a volume are closed; simulated bodies have "
-    "scale 1.",
+    "Meshes are finite, have faces (copies of particles: halfway or at the end) and a positive scale; those that hold "
+    "a volume are closed; simulated bodies have scale 1.",
     "Solvers and Boolean operations fail on broken geometry: they explode, leak, or do nothing.",
     "Rebuild or close the mesh, remove empty meshes, apply the scale.",
     _invalid_geometry,

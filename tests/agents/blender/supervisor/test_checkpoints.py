@@ -122,14 +122,17 @@ def test_undo_hint_counts_the_calls_that_it_undoes(
     last = kept.blender.checkpoints.last
     assert last is not None
     found = kept.use(TOOL, code="1 / 0")
-    assert f"To undo it: blender_load(checkpoint={last.number})." in found.text
+    assert f"To undo it: blender_load(checkpoint={last.number}), if you have" in found.text
     last = kept.blender.keep("now")
     monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 0.0)
     monkeypatch.setattr(checkpoints, "PATIENCE", 1e6)
     kept.run(adding("One"))
     kept.run(adding("Two"))
     found = kept.use(TOOL, code="1 / 0")
-    assert f"To undo it and the 2 calls before it: blender_load(checkpoint={last.number})." in found.text
+    assert (
+        f"To undo it and the 2 calls before it: blender_load(checkpoint={last.number}), if you have"
+        in found.text
+    )
 
 
 def test_checkpoints_run_no_save_handlers(kept: LiveSession) -> None:

@@ -361,6 +361,58 @@ def test_what_is_upright_only_in_between_is_not(session: LiveSession) -> None:
     assert found.frame == 1
 
 
+# What a solver does: the mesh turns, and its root stands as it did.
+TOPPLED = """
+scene.frame_end = 20
+mesh = bpy.data.objects["Pole body"]
+key(mesh, 1, rotation_euler=(0, 0, 0))
+key(mesh, 20, rotation_euler=({lean}, 0, 0))
+scene.frame_set(1)
+"""
+SAGGED = """
+scene.frame_end = 20
+mesh = bpy.data.objects["Pole body"]
+mesh.shape_key_add(name="Basis")
+bent = mesh.shape_key_add(name="Bent")
+for point in bent.data:
+    y, z = point.co.y, point.co.z
+    point.co.x *= 1.2
+    point.co.y, point.co.z = y * {cosine} - 0.8 * z * {sine}, y * {sine} + 0.8 * z * {cosine}
+for frame in range(1, 21):
+    bent.value = (frame - 1) / 19
+    bent.keyframe_insert("value", frame=frame)
+scene.frame_set(1)
+"""
+
+
+@pytest.mark.parametrize(("when", "holds"), [("start_or_end", True), ("end", False), ("always", False)])
+def test_what_topples_without_its_root_is_not_upright_at_the_end(
+    session: LiveSession, when: str, holds: bool
+) -> None:
+    script = cube("Pole", (0, 0, 0)) + TOPPLED.format(lean=1.5)
+    report = judged(session, "R13", script, kind="Upright", a="Pole", when=when)
+    assert report.passed == (("R13",) if holds else ())
+    if not holds:
+        found = the_finding(report)
+        assert (found.frame, found.tolerance) == (20, 3.0)
+        assert found.measured == pytest.approx(math.degrees(1.5), abs=0.5)
+        assert "toppled" in found.fix
+
+
+def test_what_hardly_leans_at_the_end_stays_upright(session: LiveSession) -> None:
+    script = cube("Pole", (0, 0, 0)) + TOPPLED.format(lean=0.04)
+    assert judged(session, "R13", script, kind="Upright", a="Pole", when="always").passed == ("R13",)
+
+
+@pytest.mark.parametrize(("lean", "holds"), [(0.35, True), (0.9, False)])
+def test_what_deforms_may_lean_but_not_lie(session: LiveSession, lean: float, holds: bool) -> None:
+    script = cube("Pole", (0, 0, 0)) + SAGGED.format(sine=math.sin(lean), cosine=math.cos(lean))
+    report = judged(session, "R13", script, kind="Upright", a="Pole", when="end")
+    assert report.passed == (("R13",) if holds else ())
+    if not holds:
+        assert the_finding(report).measured == pytest.approx(math.degrees(lean), abs=6)
+
+
 def test_a_rule_without_such_relations_is_idle(session: LiveSession) -> None:
     build(session, cube("A", (0, 0, 0)))
     not_applicable = verified(

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from scenes import a_plan, build, the_finding, verified
 
+from agents.blender.tools.bake import TOOL as BAKE
+
 if TYPE_CHECKING:
     from live_session import LiveSession
 
@@ -242,6 +244,36 @@ def test_geometry_that_is_not_sound_is_found(
     assert found.objects == objects
     assert found.measured == (None if measured is None else pytest.approx(measured, abs=1e-6))
     assert why in found.message
+
+
+# One copy of the crate for each particle, once it is born.
+COPIES = (
+    CRATE
+    + """
+scene.frame_end = 20
+bpy.ops.mesh.primitive_plane_add(size=0.1, location=(0, 0, 3))
+tap = bpy.context.object
+tap.hide_render = True
+tap.modifiers.new("Drops", "PARTICLE_SYSTEM")
+drops = tap.particle_systems[0].settings
+drops.count, drops.frame_end, drops.frame_start = 5, {birth} + 2, {birth}
+copies = crate.modifiers.new("Copies", "PARTICLE_INSTANCE")
+copies.object, copies.show_unborn = tap, False
+"""
+)
+
+
+@pytest.mark.parametrize(("birth", "passed"), [(8, ("R4",)), (30, ())])
+def test_copies_may_come_later_if_they_come(
+    session: LiveSession, birth: int, passed: tuple[str, ...]
+) -> None:
+    build(session, COPIES.format(birth=birth))
+    assert verified(session, "R4").passed == ("R4",), "nothing is stepped for it before motion is judged"
+    session.use(BAKE)
+    report = verified(session, "R4")
+    assert report.passed == passed
+    if not passed:
+        assert "no faces" in the_finding(report).message
 
 
 @pytest.mark.parametrize(
