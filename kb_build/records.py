@@ -27,6 +27,10 @@ LinkKind = Literal["manual", "base", "pointer", "collection", "socket-of"]
 
 # Where an enum item is taken that RNA lists and every instance refused.
 NOT_TAKEN = "by none that was tried"
+# How flags begin that say what fills a pointer that is None on a new thing, and on which new things it is not None.
+FILLED_BY = "filled-by:"
+FILLED_ON = "filled-on:"
+THEN = " then "  # between calls that fill it one after the other
 
 
 @dataclass(frozen=True, slots=True)
@@ -99,6 +103,9 @@ class Symbol:
     ``default`` is RNA's, which a new instance need not have: ``new_values`` are what new ones had where some differed.
     The flag ``compared`` says that new ones were read. ``subscripts`` give a socket in every mode in which its node
     has it, best first; with the flag ``name-when-shown`` its name does only while the node shows it.
+
+    A pointer that is None on new things has None as its new value; a flag ``filled-by:CALL`` then names what was seen
+    to fill it, flags ``filled-on:THING`` the new things on which it leads to something.
     """
 
     path: str

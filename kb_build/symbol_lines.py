@@ -6,7 +6,7 @@ import textwrap
 from itertools import dropwhile, takewhile
 from typing import TYPE_CHECKING
 
-from kb_build.records import NOT_TAKEN
+from kb_build.records import FILLED_BY, FILLED_ON, NOT_TAKEN, THEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -56,8 +56,38 @@ def is_uncompared(symbol: Symbol) -> bool:
     return is_own and not {"compared", "readonly"} & set(symbol.flags)
 
 
+def _flagged(symbol: Symbol, prefix: str) -> list[str]:
+    """What the flags that begin with ``prefix`` say."""
+    return [flag.removeprefix(prefix) for flag in symbol.flags if flag.startswith(prefix)]
+
+
+def fillers(symbol: Symbol) -> list[str]:
+    """The calls that were seen to fill a pointer which is None on new things, in their order."""
+    return [call for text in _flagged(symbol, FILLED_BY) for call in text.split(THEN)]
+
+
+def _made_by(symbol: Symbol) -> str:
+    """``made by …`` of a pointer that something was seen to fill; empty for others."""
+    return "made by " + ", then ".join(f"`{call}`" for call in fillers(symbol)) if fillers(symbol) else ""
+
+
+def _empty_text(symbol: Symbol, empty: NewValue) -> str:
+    """Of a pointer that is None on new things: on which ones, and what fills it."""
+    text = f"`None` on a new {_labels(empty.made or (symbol.owner.rpartition('.')[2],))}"
+    if others := _flagged(symbol, FILLED_ON):
+        text += f" (but not on a new {_labels(others)})"
+    return "; ".join(filter(None, (text, _made_by(symbol))))
+
+
+def empty_when_new(symbol: Symbol) -> NewValue | None:
+    """The new value of a pointer that is None on new things, or on those that it names; None for other symbols."""
+    return next((new for new in symbol.new_values if symbol.type == "pointer" and new.value is None), None)
+
+
 def default_text(symbol: Symbol) -> str:
     """What new ones have, in which kinds and modes they differ, and RNA's default where it is another."""
+    if empty := empty_when_new(symbol):
+        return _empty_text(symbol, empty)
     usual = [new for new in symbol.new_values if not new.when]
     modal = [new for new in symbol.new_values if new.when]
     value = usual_default(symbol)
@@ -136,6 +166,8 @@ def member_line(symbol: Symbol) -> str:
         notes += [f"({literal(new.value)} with {new.when})" for new in symbol.new_values if new.when][
             :_SHOWN_LABELS
         ]
+    if (empty := empty_when_new(symbol)) and not empty.made:
+        notes += ["= None", *([f"({made})"] if (made := _made_by(symbol)) else [])]
     if values := [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]:
         notes.append("|".join(values[:_SHOWN_VALUES]) + ("|…" if len(values) > _SHOWN_VALUES else ""))
     if "readonly" in symbol.flags:

@@ -12,7 +12,7 @@ from kb_build.base_file import read_meta
 from kb_build.live.values import compare_values, runtime_at_hand
 from kb_build.records import NOT_TAKEN, symbol_from_json
 from kb_build.schema import open_read_only, unpack
-from kb_build.symbol_lines import identifier_of
+from kb_build.symbol_lines import empty_when_new, fillers, identifier_of
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import say
 
@@ -52,7 +52,8 @@ def _table(title: str, counts: dict[str, int], note: str) -> Table:
 
 
 def _defaults(symbols: Sequence[Symbol]) -> Table:
-    compared = [symbol for symbol in symbols if "compared" in symbol.flags]
+    pointers = [symbol for symbol in symbols if symbol.type == "pointer" and "compared" in symbol.flags]
+    compared = [symbol for symbol in symbols if symbol.type != "pointer" and "compared" in symbol.flags]
     differing = [symbol for symbol in compared if any(not new.when for new in symbol.new_values)]
     counts = {
         "properties of which new ones were read": len(compared),
@@ -61,6 +62,9 @@ def _defaults(symbols: Sequence[Symbol]) -> Table:
             sum(not new.when for new in symbol.new_values) > 1 for symbol in differing
         ),
         "… by a mode that it is in": sum(any(new.when for new in symbol.new_values) for symbol in compared),
+        "pointers of which new ones were read": len(pointers),
+        "… None on a new one": sum(empty_when_new(symbol) is not None for symbol in pointers),
+        "… and filled by a call that was tried": sum(bool(fillers(symbol)) for symbol in pointers),
     }
     return _table(
         "Defaults of new things", counts, "RNA's own defaults are what the official reference prints."

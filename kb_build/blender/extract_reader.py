@@ -14,7 +14,17 @@ from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.enum_contexts import items_in_contexts
 from kb_build.errors import ExtractError
 from kb_build.known_prefixes import KnownPrefixes
-from kb_build.records import Default, Link, Page, Parameter, Section, Symbol, symbol_from_json
+from kb_build.records import (
+    FILLED_BY,
+    FILLED_ON,
+    Default,
+    Link,
+    Page,
+    Parameter,
+    Section,
+    Symbol,
+    symbol_from_json,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -84,6 +94,19 @@ def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
         row["new_values"] = [*seen.get("values", ()), *seen.get("modes", ())]
 
 
+def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds whether a pointer of new instances is None, and what fills it."""
+    if row is None:
+        return
+    flags = ["compared"]
+    if seen.get("is_empty"):
+        row["new_values"] = [{"value": None, "made": seen.get("empty", [])}]
+        flags += [f"{FILLED_ON}{label}" for label in seen.get("filled", ())]
+        if seen.get("filler"):
+            flags.append(FILLED_BY + seen["filler"])
+    row["flags"] = [*row.get("flags", ()), *flags]
+
+
 def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
     """Adds one line of the extract."""
     match record:
@@ -99,6 +122,8 @@ def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
             _add_items(raw.symbols.get(row["path"]), row)
         case "new_values":
             _add_values(raw.symbols.get(row["path"]), row)
+        case "new_pointer":
+            _add_pointer(raw.symbols.get(row["path"]), row)
         case "still_works":
             raw.still_works.append((row["path"], row["taken_as"]))
         case "making":

@@ -8,18 +8,20 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 from tempfile import TemporaryDirectory
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from kb_build.records import symbol_from_json
+from kb_build.records import FILLED_ON, symbol_from_json
 from kb_build.schema import open_read_only, unpack
-from kb_build.symbol_lines import literal
+from kb_build.symbol_lines import empty_when_new, fillers, literal
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.runtime import Runtime, installed_bpy, run_program
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kb_build.records import Default, Symbol
+
+    _Symbols = Mapping[str, Symbol | str]
 
 _PROGRAM = Program(
     "kb_build.live.inside.new_instances", {"kb_build.live.inside": Path(__file__).parent / "inside"}
@@ -27,6 +29,7 @@ _PROGRAM = Program(
 _SECONDS = 120.0
 _TYPES = "bpy.types."
 _PRECISION = 1e-5
+_NONE = {True: "None", False: "not None"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -49,29 +52,78 @@ def compare_values(
     with TemporaryDirectory(prefix="simworlds-") as folder:
         target = Path(folder) / "rows.json"
         run_program(runtime, _PROGRAM, [str(target)], timeout=_SECONDS, log=Path(folder) / "log")
-        rows: list[dict[str, Any]] = json.loads(target.read_text(encoding="utf-8"))
+        made: dict[str, Any] = json.loads(target.read_text(encoding="utf-8"))
     symbols = _properties(base)
     pairs = sorted(
-        {
-            (row["label"], row["class"], name): (symbol, value)
-            for row in rows
-            for name, value in row["values"].items()
-            if value is not None
-            and not row["label"].startswith(f"{name}=")
-            and (symbol := _declared(symbols, row["class"], name)) is not None
-            and told_value(symbol, row["label"]) is not None
-            and not (symbol.type == "enum" and value == "")  # a number that stands for no item
-        }.items()
+        (
+            *_values(symbols, made["rows"]),
+            *_pointers(symbols, made["rows"]),
+            *_fillers(symbols, made["filled"]),
+        )
     )
     if sample is not None:
         pairs = random.Random(seed).sample(pairs, min(sample, len(pairs)))  # noqa: S311 - a sample
-    differing, wrong = 0, list[str]()
-    for (label, cls, name), (symbol, value) in pairs:
-        differing += not same_value(symbol.default, value)
-        told = told_value(symbol, label)
-        if not same_value(told, value):
-            wrong.append(f"{cls}.{name} of a new {label}: {literal(value)}, told {literal(told)}")
-    return ComparedValues(len(pairs), differing, tuple(wrong))
+    wrong = tuple(pair.wrong for pair in pairs if pair.wrong)
+    return ComparedValues(len(pairs), sum(pair.differs for pair in pairs), wrong)
+
+
+class _Pair(NamedTuple):
+    """One thing that was compared: what it is, whether RNA says something else, and what is wrong, if anything."""
+
+    label: str
+    cls: str
+    name: str
+    differs: bool
+    wrong: str
+
+
+def _values(symbols: _Symbols, rows: Iterable[Mapping[str, Any]]) -> set[_Pair]:
+    """The values of new things beside those that are told."""
+    pairs: set[_Pair] = set()
+    for row in rows:
+        label, cls = row["label"], row["class"]
+        for name, value in row["values"].items():
+            symbol = _declared(symbols, cls, name)
+            if value is None or label.startswith(f"{name}=") or symbol is None:
+                continue
+            told = told_value(symbol, label)
+            if told is None or (symbol.type == "enum" and value == ""):  # a number that stands for no item
+                continue
+            wrong = f"{cls}.{name} of a new {label}: {literal(value)}, told {literal(told)}"
+            differs = not same_value(symbol.default, value)
+            pairs.add(_Pair(label, cls, name, differs, "" if same_value(told, value) else wrong))
+    return pairs
+
+
+def _pointers(symbols: _Symbols, rows: Iterable[Mapping[str, Any]]) -> set[_Pair]:
+    """Whether pointers of new things are None, beside what is told."""
+    pairs: set[_Pair] = set()
+    for row in rows:
+        label, cls = row["label"], row["class"]
+        for name, leads in row["pointers"].items():
+            symbol = _declared(symbols, cls, name)
+            if symbol is not None:
+                told = told_empty(symbol, label)
+                wrong = f"{cls}.{name} of a new {label}: {_NONE[not leads]}, told {_NONE[told]}"
+                pairs.add(_Pair(label, cls, name, False, wrong if told is leads else ""))
+    return pairs
+
+
+def _fillers(symbols: _Symbols, filled: Mapping[str, Sequence[str]]) -> set[_Pair]:
+    """The calls that are told to fill pointers, beside what they filled."""
+    pairs: set[_Pair] = set()
+    for symbol in symbols.values():
+        calls = [] if isinstance(symbol, str) else fillers(symbol)
+        if isinstance(symbol, str) or len(calls) != 1 or calls[0] not in filled:
+            continue
+        name = symbol.path.removeprefix(_TYPES)
+        wrong = (
+            ""
+            if name in filled[calls[0]]
+            else f"{name} is still None after {calls[0]}, which is told to make it"
+        )
+        pairs.add(_Pair(calls[0], name.partition(".")[0], symbol.name, False, wrong))
+    return pairs
 
 
 def runtime_at_hand(meta: Mapping[str, str]) -> Runtime | None:
@@ -91,6 +143,14 @@ def told_value(symbol: Symbol, label: str) -> Default:
         if label == new.when or (label in new.made and not new.when):
             return new.value
     return next((new.value for new in symbol.new_values if not new.when), symbol.default)
+
+
+def told_empty(symbol: Symbol, label: str) -> bool:
+    """Whether a base tells that a pointer of a new thing is None."""
+    empty = empty_when_new(symbol)
+    return empty is not None and (
+        label in empty.made or not (empty.made or FILLED_ON + label in symbol.flags)
+    )
 
 
 def same_value(told: Default, value: Default) -> bool:
@@ -120,7 +180,7 @@ def _properties(base: Path) -> dict[str, Symbol | str]:
     return known
 
 
-def _declared(symbols: Mapping[str, Symbol | str], cls: str, name: str) -> Symbol | None:
+def _declared(symbols: _Symbols, cls: str, name: str) -> Symbol | None:
     """The property of a class, or of the nearest class above it, if its default was compared."""
     owner: Any = _TYPES + cls
     while isinstance(owner, str) and owner in symbols:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.records import NOT_TAKEN
 from kb_build.symbol_lines import (
     default_text,
+    empty_when_new,
     first_sentence,
     literal,
     new_subscript,
@@ -271,12 +272,23 @@ class MarkdownRenderer:
             yield f"provided by: {', '.join(origin)}"
         if symbol.kind == "class" and (creation := self.reader.creations([symbol.path]).get(symbol.path)):
             yield f"made by `{creation.call}`"
+        if target := self._assigned(symbol):
+            yield f"assign `{target}`"
         if symbol.trees:
             yield "node of: " + ", ".join(symbol.trees)
         if version := self.reader.since(symbol.path):
             yield f"since Blender {version}"
         if page := self.manual_page(symbol.path):
             yield f"manual: {page}"
+
+    def _assigned(self, symbol: Symbol) -> str:
+        """The call that makes the one kind of node tree that a pointer takes which is None on a new thing."""
+        is_tree = symbol.target.endswith("NodeTree") and "readonly" not in symbol.flags
+        if not is_tree or empty_when_new(symbol) is None:
+            return ""
+        target = TYPES + symbol.target
+        creation = self.reader.creations([target]).get(target)
+        return creation.call if creation else ""
 
     def manual_page(self, path: str) -> str:
         """The URL of a symbol's manual page, by Blender's own table; empty for none."""

@@ -91,6 +91,13 @@ def test_a_line_shows_what_a_new_one_has_and_what_a_mode_changes() -> None:
     )
 
 
+def test_a_line_says_which_pointers_are_none_and_what_makes_them() -> None:
+    pointer = {"type": "pointer", "target": "T", "new_values": (NewValue(None),)}
+    assert line(**pointer) == "`x` pointer → T = None"
+    assert line(**pointer, flags=("filled-by:a.b()",)) == "`x` pointer → T = None (made by `a.b()`)"
+    assert line(**{**pointer, "new_values": (NewValue(None, ("empty object",)),)}) == "`x` pointer → T"
+
+
 def test_items_that_no_instance_takes_are_not_listed() -> None:
     items = (EnumItem("A"), EnumItem("B", where=NOT_TAKEN), EnumItem("C", where="only with m='X'"))
     assert line(type="enum", enum_items=items) == "`x` enum A|C"
@@ -113,6 +120,11 @@ def test_items_that_no_instance_takes_are_not_listed() -> None:
         ({"default": "NONE", "enum_items": (EnumItem("None"),), "new_values": (NewValue("None"),)},
          "`'None'` (new A)"),
         ({"default": None}, ""),
+        ({"type": "pointer", "flags": ("compared",)}, ""),
+        ({"type": "pointer", "new_values": (NewValue(None),)}, "`None` on a new A"),
+        ({"type": "pointer", "new_values": (NewValue(None, ("empty object",)),)}, "`None` on a new empty object"),
+        ({"type": "pointer", "new_values": (NewValue(None),), "flags": ("filled-on:a b", "filled-by:a.b() then c()")},
+         "`None` on a new A (but not on a new a b); made by `a.b()`, then `c()`"),
     ],
 )  # fmt: skip
 def test_a_default_tells_whose_it_is(fields: dict[str, object], expected: str) -> None:

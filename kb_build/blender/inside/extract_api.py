@@ -12,7 +12,7 @@ import traceback
 
 import bpy
 
-from . import context, modules, new_things, nodes, operators, rna
+from . import context, modules, new_things, nodes, operators, pointer_fillers, rna
 from .instances import Observer
 from .wire import Writer
 
@@ -69,6 +69,8 @@ STEPS = (
     # Last, because they change the scene.
     ("context", lambda write, _found: context.write_all(write)),
     ("new things", lambda write, found: new_things.write_all(write, found["observer"], found["skipped"])),
+    ("pointers", lambda write, found: pointer_fillers.find_all(write, found["observer"], found["skipped"])),
+    ("instances", lambda write, found: found["observer"].write(write)),
 )
 
 

@@ -23,8 +23,10 @@ MOST_VALUES = 24
 UNREADABLE = frozenset({"UvSculpt"})
 # Its modes crash Blender 3.4.
 UNVARIED = frozenset({"BrushGpencilSettings"})
-# Pointers to what is around an instance. Blender 4.5 crashes when an unpaired node is asked for its pair.
-AROUND = frozenset({"rna_type", "parent", "paired_output"})
+# Pointers to what is around an instance.
+AROUND = frozenset({"parent"})
+# Blender 4.5 crashes when an unpaired node is asked for its pair.
+NOT_ASKED = frozenset({"rna_type", "paired_output"})
 # Names and places that whoever makes the thing chooses, and what depends on the machine.
 CHOSEN = frozenset({
     "type", "socket_type", "co", "co_ui", "handle_left", "handle_right", "location", "dimensions", "matrix",
@@ -78,6 +80,21 @@ def same(left, right):
     return left == right
 
 
+def ancestry(rna):
+    """The identifiers of a class and of those that it inherits from."""
+    names = []
+    while rna is not None:
+        names.append(rna.identifier)
+        rna = rna.base
+    return names
+
+
+def variable(cls):
+    """A name that scripts give to an instance of a class: ``scene``, ``node_tree``."""
+    name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls).lower()
+    return "obj" if name == "object" else name
+
+
 class Field:
     """A property of a class whose value can be compared."""
 
@@ -104,18 +121,21 @@ class Field:
 
 
 class Layout:
-    """What there is to read in the instances of a class."""
+    """What there is to read in the instances of a class; ``pointers``: name → path where it is declared."""
 
     def __init__(self, rna):
         named = rna.name_property.identifier if rna.name_property else "name"
         left_out = {named, "name"}
         self.fields = []
-        self.pointers = []
+        self.pointers = {}
+        self.readonly_pointers = {}
         for prop in rna.properties:
             name = prop.identifier
             if prop.type == "POINTER":
-                if name not in AROUND:
-                    self.pointers.append(name)
+                if name not in NOT_ASKED:
+                    self.pointers[name] = f"bpy.types.{declaring_class(rna, name)}.{name}"
+                    if prop.is_readonly:
+                        self.readonly_pointers[name] = self.pointers[name]
             elif (
                 prop.type != "COLLECTION"
                 and not prop.is_readonly
@@ -152,6 +172,50 @@ class Contexts:
         return {"items": list(items), "made": [list(pair) for pair in self.made], "states": states}
 
 
+class Pointers:
+    """Which pointers of new instances are None, and what was seen to fill them."""
+
+    def __init__(self):
+        # path → {label of what was made: whether it leads to something}
+        self.filled = {}
+        # path → calls, in the order in which they were tried
+        self.fillers = {}
+
+    def add(self, path, label, is_filled):
+        """Adds what one instance has; a label stands for what leads to something if one of its instances does."""
+        known = self.filled.setdefault(path, {})
+        known[label] = known.get(label, False) or is_filled
+
+    def add_filler(self, path, call):
+        """Adds a call that was seen to fill a pointer."""
+        self.fillers.setdefault(path, []).append(call)
+
+    def filler(self, path):
+        """Of the calls that fill a pointer the one that has most words of its name in it; the first of several."""
+        words = path.rpartition(".")[2].split("_")
+        calls = self.fillers.get(path, ())
+        return max(calls, key=lambda call: sum(word in call.lower() for word in words), default="")
+
+    def write(self, write):
+        """One ``new_pointer`` record for each pointer of which a new instance was seen.
+
+        ``empty`` are the labels of those that have None, [] if most do; ``filled`` then those that do not.
+        """
+        for path in sorted(self.filled):
+            labels = {True: [], False: []}
+            for label, is_filled in self.filled[path].items():
+                labels[is_filled].append(label)
+            are_usual = len(labels[False]) > len(labels[True])
+            write(
+                "new_pointer",
+                path=path,
+                is_empty=bool(labels[False]),
+                empty=[] if are_usual else labels[False],
+                filled=labels[True] if are_usual else [],
+                filler=self.filler(path) if labels[False] else "",
+            )
+
+
 class Observer:
     """Collects what instances have, by property."""
 
@@ -165,6 +229,7 @@ class Observer:
         self.items = {}
         # path → {identifier: (name, description)}
         self.texts = {}
+        self.pointers = Pointers()
         self._layouts = {}
         self._varied = {}
 
@@ -179,7 +244,7 @@ class Observer:
 
     def belonging(self, struct):
         """The structs behind an instance's pointers, without other data-blocks."""
-        values = [getattr(struct, name, None) for name in self.layout(struct).pointers]
+        values = [getattr(struct, name, None) for name in self.layout(struct).pointers if name not in AROUND]
         return [
             value
             for value in values
@@ -199,13 +264,24 @@ class Observer:
                 yield struct
                 queue += [(part, left - 1) for part in self.belonging(struct)] if left else []
 
-    def look(self, label, root, vary=True, place=""):
-        """Reads a new instance and what belongs to it; ``label`` says what it is.
+    def empty_pointers(self, struct):
+        """The paths of an instance's read-only pointers, and whether each is None."""
+        return {
+            path: getattr(struct, name, None) is None
+            for name, path in self.layout(struct).readonly_pointers.items()
+        }
 
-        ``vary``: in all modes, too. ``place``: where it is, if that decides which items enumerations take.
+    def look(self, label, root, vary=True, place="", is_new=True):
+        """Reads an instance and what belongs to it; ``label`` says what it is.
+
+        ``vary``: in all modes, too. ``place``: where it is, if that decides which items enumerations take. What a
+        pointer of it leads to counts only if it is new: no script has worked on it.
         """
         for struct in list(self.parts(root)):
             before = self.read(struct)
+            if is_new:
+                for name, path in self.layout(struct).pointers.items():
+                    self.pointers.add(path, label, getattr(struct, name, None) is not None)
             for field, value in before.items():
                 if not field.is_chosen:
                     self.add(self.values.setdefault(field.path, []), plain(value), label)
@@ -267,6 +343,7 @@ class Observer:
     def vary(self, struct, label, place, before):
         """Puts the instance into each mode and notes what else changed; then puts everything back."""
         known = {part.as_pointer() for part in self.belonging(struct)}
+        empty = {path for path, is_empty in self.empty_pointers(struct).items() if is_empty}
         enums = self.layout(struct).enums
         if self._varied[struct.bl_rna.identifier] > 1:
             # The first one of its class has shown which of them depend on the mode.
@@ -284,11 +361,28 @@ class Observer:
                     continue
                 mode = f"{field.name}={item!r}"
                 self.compare(struct, label, mode, field, before)
+                if empty:
+                    now = self.empty_pointers(struct)
+                    filled = {path for path in empty if not now[path]}
+                    self.note_filled(struct, filled, f".{field.name} = {item!r}")
+                    empty -= filled
                 self.ask(struct, label + place, mode, enums)
                 for part in self.belonging(struct):
                     if part.as_pointer() not in known:
                         self.look(f"{label} with {mode}", part)
             before = self.restored(struct, before)
+
+    def note_filled(self, struct, paths, call):
+        """Notes that a call filled pointers which were None.
+
+        ``call`` is what follows the name of ``struct``; all of it if ``struct`` is None.
+        """
+        for path in paths:
+            if struct is not None and path.split(".")[2] in ancestry(struct.bl_rna):
+                name = variable(path.split(".")[2])
+            else:
+                name = variable(struct.bl_rna.identifier) if struct is not None else ""
+            self.pointers.add_filler(path, name + call)
 
     def compare(self, struct, label, mode, changed, before):
         """Notes the properties that the mode has changed."""
@@ -320,11 +414,12 @@ class Observer:
         return self.read(struct) if changed else present
 
     def write(self, write):
-        """One ``new_values`` record for each property that was read, one ``enum_items`` for each that was asked."""
+        """A ``new_values`` record for each property that was read, ``enum_items`` for each asked, and the pointers."""
         for path in sorted(self.values):
             write("new_values", path=path, values=self.usual(path), modes=self.modal(path))
         for path in sorted(self.items):
             self.write_items(write, path)
+        self.pointers.write(write)
 
     def usual(self, path):
         """The values of new instances, the most frequent first, which needs no labels; none if all have RNA's."""

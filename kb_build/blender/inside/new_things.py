@@ -73,8 +73,8 @@ def remove(obj):
     bpy.data.objects.remove(obj)
 
 
-def data_blocks():
-    """Every data-block that ``bpy.data`` makes from a name, each of its types; objects with each as their data."""
+def block_makers():
+    """(name, collection, arguments) of each type of data-block that a collection of ``bpy.data`` makes from a name."""
     for prop in bpy.data.bl_rna.properties:
         collection = getattr(bpy.data, prop.identifier, None) if prop.type == "COLLECTION" else None
         function = prop.srna.functions.get("new") if collection is not None and prop.srna else None
@@ -84,18 +84,24 @@ def data_blocks():
         choice = "mode" if prop.identifier == "brushes" else "type"
         for kind in argument_choices(collection, choice) or [None]:
             given = {"width": 8, "height": 8} if "width" in arguments else {}
-            try:
-                block = collection.new("new", **({choice: kind} if kind else given))
-            except (TypeError, RuntimeError):
-                continue
-            yield called(block), block
-            if prop.identifier == "cameras":
-                yield "background image", block.background_images.new()
-            if hasattr(collection, "create_gpencil_data"):
-                collection.create_gpencil_data(block)
-                gpencil = getattr(block, "gpencil_settings", None) or getattr(block, "grease_pencil", None)
-                if gpencil is not None:
-                    yield called(gpencil), gpencil
+            yield prop.identifier, collection, {choice: kind} if kind else given
+
+
+def data_blocks():
+    """Every data-block that ``bpy.data`` makes from a name, each of its types; objects with each as their data."""
+    for name, collection, given in block_makers():
+        try:
+            block = collection.new("new", **given)
+        except (TypeError, RuntimeError):
+            continue
+        yield called(block), block
+        if name == "cameras":
+            yield "background image", block.background_images.new()
+        if hasattr(collection, "create_gpencil_data"):
+            collection.create_gpencil_data(block)
+            gpencil = getattr(block, "gpencil_settings", None) or getattr(block, "grease_pencil", None)
+            if gpencil is not None:
+                yield called(gpencil), gpencil
     yield "empty object", add_object(None)
     yield "mesh object", mesh_object()
     yield "scene", bpy.data.scenes.new("new")
@@ -485,17 +491,17 @@ def look_at_start(observer):
     scene = bpy.context.scene
     if scene is None:
         return
-    observer.look("start-up scene", scene)
-    observer.look("start-up view layer", bpy.context.view_layer)
+    observer.look("start-up scene", scene, is_new=False)
+    observer.look("start-up view layer", bpy.context.view_layer, is_new=False)
     for block in (scene.world, *bpy.data.materials[:1], *bpy.data.lights[:1], *bpy.data.cameras[:1]):
         if block is not None:
-            observer.look(f"start-up {called(block)}", block)
-    observer.look("factory preferences", bpy.context.preferences, vary=False)
+            observer.look(f"start-up {called(block)}", block, is_new=False)
+    observer.look("factory preferences", bpy.context.preferences, vary=False, is_new=False)
     view = next(
         (area for screen in bpy.data.screens for area in screen.areas if area.type == "VIEW_3D"), None
     )
     if view is not None:
-        observer.look("start-up 3d view", view.spaces.active, vary=False)
+        observer.look("start-up 3d view", view.spaces.active, vary=False, is_new=False)
 
 
 def scratch_scene():
@@ -507,22 +513,27 @@ def scratch_scene():
         bpy.context.window.scene = scene
 
 
-def write_all(write, observer, skipped):
-    """Makes everything but what the makers ``skipped`` make, and writes what ``observer`` has seen.
+def attempts(write, functions, skipped):
+    """Each function whose name is not ``skipped``; it is on record before it is run, should Blender crash."""
+    for function in functions:
+        if function.__name__ in skipped:
+            write("fault", step="new things", traceback=f"Blender crashed in {function.__name__}")
+            continue
+        write("making", maker=function.__name__)
+        write.flush()
+        yield function
 
-    A maker that fails is a ``fault``; which one is at work is on record, should Blender crash.
+
+def write_all(write, observer, skipped):
+    """Makes everything but what the makers ``skipped`` make, for ``observer`` to read.
+
+    A maker that fails is a ``fault``.
     """
     scratch_scene()
-    for make in MAKERS:
-        if make.__name__ in skipped:
-            write("fault", step="new things", traceback=f"Blender crashed in {make.__name__}")
-            continue
-        write("making", maker=make.__name__)
-        write.flush()
+    for make in attempts(write, MAKERS, skipped):
         try:
             for label, thing in make():
                 if thing is not None:
                     observer.look(label, thing)
         except Exception:
             write("fault", step="new things", traceback=traceback.format_exc())
-    observer.write(write)

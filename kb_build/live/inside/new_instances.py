@@ -13,6 +13,15 @@ INNER = (
     "settings", "collision_settings", "point_cache", "domain_settings", "flow_settings", "effector_settings",
     "effector_weights", "canvas_settings", "brush_settings", "texture_mapping", "image_user", "rigidbody_world",
 )  # fmt: skip
+# Blender 4.5 crashes when an unpaired node is asked for its pair.
+NOT_ASKED = ("rna_type", "paired_output")
+# What fills pointers that are None at first. Each is run on a new object in a new scene.
+CALLS = (
+    "bpy.ops.rigidbody.object_add()", "bpy.ops.rigidbody.world_add()", "bpy.ops.object.forcefield_toggle()",
+    "obj.modifiers.new('name', 'COLLISION')", "obj.modifiers.new('name', 'SOFT_BODY')", "obj.shape_key_add()",
+    "obj.animation_data_create()", "scene.animation_data_create()", "mesh.animation_data_create()",
+    "scene.sequence_editor_create()", "bpy.ops.object.shape_key_add()", "bpy.ops.rigidbody.objects_add()",
+)  # fmt: skip
 
 
 def triangle():
@@ -41,14 +50,16 @@ def held(value):
 
 def read(label, thing, rows):
     """Adds what a thing and its inner settings hold."""
-    values = {}
+    values, pointers = {}, {}
     for prop in thing.bl_rna.properties:
+        if prop.type == "POINTER" and prop.identifier not in NOT_ASKED:
+            pointers[prop.identifier] = getattr(thing, prop.identifier, None) is not None
         if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
             try:
                 values[prop.identifier] = held(getattr(thing, prop.identifier))
             except (AttributeError, RuntimeError):
                 continue
-    rows.append({"label": label, "class": thing.bl_rna.identifier, "values": values})
+    rows.append({"label": label, "class": thing.bl_rna.identifier, "values": values, "pointers": pointers})
     for name in INNER:
         inner = getattr(thing, name, None)
         if isinstance(inner, bpy.types.bpy_struct) and not isinstance(inner, bpy.types.ID):
@@ -158,12 +169,43 @@ def nodes(rows):
                 read(name, node, rows)
 
 
+def filled_by_calls():
+    """call → class.name of the pointers that it filled."""
+    found = {}
+    for call in CALLS:
+        scene = bpy.data.scenes.new("x")
+        bpy.context.window.scene = scene
+        obj = triangle()
+        obj.select_set(True)
+        things = {"bpy": bpy, "scene": scene, "obj": obj, "mesh": obj.data}
+        before = dict(leading(scene, obj, obj.data))
+        exec(call, things)  # noqa: S102 - the constants above
+        after = leading(scene, obj, obj.data)
+        found[call.replace("'name'", '"name"')] = [
+            name for name, leads in after if leads and not before[name]
+        ]
+    return found
+
+
+def leading(*things):
+    """(class.name, whether it leads to something) of the pointers of some things."""
+    for thing in things:
+        for prop in thing.bl_rna.properties:
+            if prop.type == "POINTER":
+                yield (
+                    f"{thing.bl_rna.identifier}.{prop.identifier}",
+                    getattr(thing, prop.identifier) is not None,
+                )
+
+
 def main(arguments):
-    """Writes the rows to the file that is the argument."""
+    """Writes what new things hold, and what filled pointers, to the file that is the argument."""
     rows = []
     nodes(rows)
     for label, thing in (*plain_things(), *things_by_operators()):
         read(label, thing, rows)
     stacked(rows)
+    read("mesh object", triangle(), rows)
+    found = {"rows": rows, "filled": filled_by_calls() if bpy.context.window is not None else {}}
     with open(arguments[0], "w", encoding="utf-8") as file:
-        json.dump(rows, file)
+        json.dump(found, file)

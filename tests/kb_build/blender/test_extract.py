@@ -100,6 +100,23 @@ def test_values_of_new_things_stand_beside_rnas_default(tmp_path: Path) -> None:
     assert (same.new_values, same.flags, unread.flags) == ((), ("compared",), ())
 
 
+def test_pointers_of_new_things_say_whether_they_are_none(tmp_path: Path) -> None:
+    empty = {"is_empty": True, "filled": ["lamp"], "filler": "a.b()"}
+    extract = read(
+        tmp_path,
+        *(symbol(f"bpy.types.A.{name}", "property", type="pointer") for name in ("field", "data", "render")),
+        {"record": "new_pointer", "path": "bpy.types.A.field", **empty},
+        {"record": "new_pointer", "path": "bpy.types.A.data", "is_empty": True, "empty": ["sun"]},
+        {"record": "new_pointer", "path": "bpy.types.A.render"},
+        {"record": "new_pointer", "path": "bpy.types.Gone.field", **empty},
+    )
+    assert [(pointer.new_values, pointer.flags) for pointer in extract.symbols] == [
+        ((NewValue(None),), ("compared", "filled-on:lamp", "filled-by:a.b()")),
+        ((NewValue(None, ("sun",)),), ("compared",)),
+        ((), ("compared",)),
+    ]
+
+
 def test_former_names_that_still_work_are_kept(tmp_path: Path) -> None:
     row = {"record": "still_works", "path": "bpy.types.Old", "taken_as": "bpy.types.New"}
     assert read(tmp_path, STRUCT, row).still_works == (("bpy.types.Old", "bpy.types.New"),)

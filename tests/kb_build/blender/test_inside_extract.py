@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.blender.extractor import extract_api
-from kb_build.symbol_lines import usual_default
+from kb_build.records import NewValue
+from kb_build.symbol_lines import fillers, usual_default
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:
@@ -434,6 +435,45 @@ def test_ways_and_modes_of_making_are_told_apart(symbols: dict[str, Symbol]) -> 
     assert energy[1].made == ("sun light by object.light_add(type='SUN')",)
     border = symbols["bpy.types.FluidDomainSettings.use_collision_border_back"]
     assert [(new.value, new.when) for new in border.new_values] == [(True, "domain_type='LIQUID'")]
+
+
+@pytest.mark.parametrize(
+    ("path", "calls"),
+    [
+        ("Object.field", ["bpy.ops.object.forcefield_toggle()"]),
+        ("Object.collision", ["obj.modifiers.new(\"name\", 'COLLISION')"]),
+        ("Object.soft_body", ["obj.modifiers.new(\"name\", 'SOFT_BODY')"]),
+        ("Object.rigid_body", ["bpy.ops.rigidbody.object_add()"]),
+        (
+            "Object.rigid_body_constraint",
+            ["bpy.ops.rigidbody.world_add()", "bpy.ops.rigidbody.constraint_add()"],
+        ),
+        ("Scene.rigidbody_world", ["bpy.ops.rigidbody.world_add()"]),
+        ("Scene.sequence_editor", ["scene.sequence_editor_create()"]),
+        ("Mesh.shape_keys", ["obj.shape_key_add()"]),
+        ("Material.animation_data", ["material.animation_data_create()"]),
+        ("FluidModifier.domain_settings", ["fluid_modifier.fluid_type = 'DOMAIN'"]),
+        ("DynamicPaintModifier.brush_settings", ["bpy.ops.dpaint.type_toggle(type='BRUSH')"]),
+        ("ParticleSettings.boids", ["particle_settings.physics_type = 'BOIDS'"]),
+        ("Texture.color_ramp", ["texture.use_color_ramp = True"]),
+        ("Scene.compositing_node_group", []),
+        ("Object.parent", []),
+    ],
+)
+def test_pointers_that_are_none_on_new_things_say_what_fills_them(
+    symbols: dict[str, Symbol], path: str, calls: list[str]
+) -> None:
+    symbol = symbols[f"bpy.types.{path}"]
+    assert symbol.new_values == (NewValue(None),)
+    assert fillers(symbol) == calls
+
+
+def test_pointers_that_lead_to_something_are_not_called_none(symbols: dict[str, Symbol]) -> None:
+    for path in ("Material.node_tree", "Scene.render", "ParticleSystem.settings"):
+        assert "compared" in symbols[f"bpy.types.{path}"].flags
+        assert symbols[f"bpy.types.{path}"].new_values == ()
+    data = symbols["bpy.types.Object.data"].new_values[0]
+    assert (data.value, "empty object" in data.made, "mesh object" in data.made) == (None, True, False)
 
 
 @pytest.mark.parametrize(

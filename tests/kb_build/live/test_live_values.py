@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import json
 import sqlite3
 from contextlib import closing
 from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.live.values import compare_values, same_value, told_value
+from kb_build.live.values import compare_values, same_value, told_empty, told_value
 from kb_build.records import NewValue, Symbol
 from kb_build.schema import pack, unpack
 from simworlds.sandbox.runtime import find_runtime
@@ -38,6 +37,14 @@ def test_without_new_values_rnas_default_is_told() -> None:
     assert told_value(Symbol("a", "property", default=3), "x") == 3
 
 
+def test_a_pointer_is_told_none_usually_or_by_name() -> None:
+    usual = Symbol("a", "property", type="pointer", flags=("filled-on:b",), new_values=(NewValue(None),))
+    named = Symbol("a", "property", type="pointer", new_values=(NewValue(None, ("b",)),))
+    assert [told_empty(usual, label) for label in ("a", "b")] == [True, False]
+    assert [told_empty(named, label) for label in ("a", "b")] == [False, True]
+    assert not told_empty(Symbol("a", "property", type="pointer", flags=("compared",)), "a")
+
+
 @pytest.mark.parametrize(
     ("told", "value", "equal"),
     [
@@ -63,13 +70,30 @@ def test_every_default_holds_in_the_live_blender(built: Built) -> None:
 
 
 @pytest.mark.blender
-def test_a_wrong_default_is_found(built: Built, tmp_path: Path) -> None:
+def test_what_is_wrong_is_found(built: Built, tmp_path: Path) -> None:
     base = built.copy(tmp_path / "copy").path
-    path = "bpy.types.ClothCollisionSettings.damping"
+    damping = "bpy.types.ClothCollisionSettings.damping"
+    body, field, keys = (
+        f"bpy.types.{name}" for name in ("Object.rigid_body", "Object.field", "Mesh.shape_keys")
+    )
     with closing(sqlite3.connect(base)) as connection, connection:
-        row = unpack(connection.execute("SELECT record FROM symbols WHERE path = ?", (path,)).fetchone()[0])
-        assert json.dumps(row["new_values"]) == '[{"value": 0, "made": ["cloth modifier"], "when": ""}]'
-        del row["new_values"]
-        connection.execute("UPDATE symbols SET record = ? WHERE path = ?", (pack(row), path))
+
+        def change(path: str, name: str, old: object, new: object) -> None:
+            found = connection.execute("SELECT record FROM symbols WHERE path = ?", (path,)).fetchone()
+            row = unpack(found[0])
+            assert row[name] == old
+            row[name] = new
+            connection.execute("UPDATE symbols SET record = ? WHERE path = ?", (pack(row), path))
+
+        change(damping, "new_values", [{"value": 0, "made": ["cloth modifier"], "when": ""}], [])
+        change(body, "new_values", [{"value": None, "made": [], "when": ""}], [])
+        flags = ["readonly", "compared", "filled-by:"]
+        made = flags[2] + "bpy.ops.object.forcefield_toggle()"
+        change(field, "flags", [*flags[:2], made], [*flags[:2], flags[2] + "bpy.ops.rigidbody.object_add()"])
+        change(keys, "flags", [*flags[:2], flags[2] + "obj.shape_key_add()"], flags[:2])
     found = compare_values(base, find_runtime(None, home=tmp_path))
-    assert found.wrong == ("ClothCollisionSettings.damping of a new cloth modifier: 0.0, told 1",)
+    assert found.wrong == (
+        "Object.field is still None after bpy.ops.rigidbody.object_add(), which is told to make it",
+        "ClothCollisionSettings.damping of a new cloth modifier: 0.0, told 1",
+        "Object.rigid_body of a new mesh object: None, told not None",
+    )
