@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from mkdocs.structure.pages import Page
 
 _TABLE = re.compile(r"<table>.*?</table>", re.DOTALL)
-_SEVERAL, _LONGEST_TABLE = 2, 30
+_SEVERAL, _LONGEST_TABLE = 2, 40
 _UP = re.compile(r"\[([^\]]+)\]\((\.\./[^)#]*)[^)]*\)")
 # Indices, each with the folder of the pages that it lists.
 _INDICES = {"rules.md": "rules", "check-rules.md": "check"}
