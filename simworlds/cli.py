@@ -89,12 +89,14 @@ def _unless_it_should_work(error: Exception) -> Exception:
 
     if SYSTEM.limits_processes:
         return error
-    lacking = click.ClickException(
+    return _NeedsBlender(
         "This command needs a live Blender, which does not run on this system. Run it in WSL. What needs no "
         "Blender works here: docs, serve, check, migrate, stubs, kb fetch."
     )
-    lacking.exit_code = 2
-    return lacking
+
+
+class _NeedsBlender(click.ClickException):
+    exit_code = 2
 
 
 @click.group(cls=_Lazy, context_settings={"help_option_names": ["-h", "--help"]})
