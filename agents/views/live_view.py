@@ -96,7 +96,7 @@ class RunLog(RunView):
                 return
             self._written[tool] = now
             share = f" {min(100.0, 100 * done / total):.0f} %" if total else ""
-            self._write(f"  {tool}{share} {text}", self._since)
+            self._write(f"  {tool}{share} {text}", now - self._taken)
 
     def _write(self, line: str, since: float = 0.0) -> None:
         bare = line.lstrip(" ")
