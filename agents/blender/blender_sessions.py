@@ -34,6 +34,7 @@ if TYPE_CHECKING:
 
 CLOSE_SECONDS = 5.0
 _LEAVE_SECONDS = 60.0  # to close one session while the server runs: a large scene takes long to write
+_MOST_LEFT = 100  # sessions that were closed, whose clients may come back
 _CHECK_SECONDS = 30.0  # at most, between two checks for idle sessions
 
 _LOG = logging.getLogger(__name__)
@@ -334,6 +335,8 @@ class BlenderSessions:
                 await anyio.to_thread.run_sync(session.close, _LEAVE_SECONDS)
             if session.folder is not None:
                 self._left[client] = session.folder, session.jobs
+            while len(self._left) > _MOST_LEFT:
+                del self._left[next(iter(self._left))]  # the one that was left first
 
     def close(self, seconds: float = CLOSE_SECONDS) -> None:
         """Closes all sessions for good, within ``seconds``."""

@@ -122,8 +122,10 @@ def _plan_for(scene: Path, given: Path | None) -> ScenePlan | None:
     """The plan that was given, or that of the run whose result ``scene`` is. Raises _CannotCheckError."""
     if given is not None:
         return _plan(given)
-    beside = scene.parent / "plan.json"
-    if not beside.is_file() or not (scene.parent / "journal.jsonl").is_file():
+    from agents.loop.journal import NAME, PLAN_NAME  # noqa: PLC0415 - not for --help
+
+    beside = scene.parent / PLAN_NAME
+    if not beside.is_file() or not (scene.parent / NAME).is_file():
         return None
     with suppress(_CannotCheckError):  # the plan of an edit, say
         plan = _plan(beside)

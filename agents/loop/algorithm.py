@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 from agents.loop.asset_library import prompt_with_assets
 from agents.loop.errors import NotSaved
 from agents.loop.events import PlanMade, StageMoved
+from agents.loop.journal import PLAN_NAME
 from agents.loop.rendering import LastStage
 from agents.loop.run import START, plan_file
 from agents.loop.stage import StageLoop
@@ -35,7 +36,7 @@ def make(run: Run) -> RenderResult:
     run.save("modeling", START)
     planner = Planner(run.context)
     plan = planner.strategic(prompt_with_assets(run))
-    run.write("plan.json", plan_file(plan))
+    run.write(PLAN_NAME, plan_file(plan))
     run.journal.note(PlanMade(plan=plan))
     staged = run.options.stages
     told = format_plan(plan, run.options.prompt)

@@ -29,6 +29,7 @@ AnyEvent = TypeVar("AnyEvent", bound=Event)
 
 KEYS = ("role", "stage", "attempt", "round", "n")
 NAME = "journal.jsonl"
+PLAN_NAME = "plan.json"
 
 
 class Journal:

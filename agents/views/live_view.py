@@ -39,14 +39,22 @@ _LETTERS = 200  # of a line
 class RunView:
     """Shows nothing, and keeps the run's state. Everything may be called from any thread, see ``Watcher``."""
 
-    def __init__(self, before: RunState | None = None) -> None:
+    def __init__(self, before: RunState | None = None, clock: Callable[[], float] = time.monotonic) -> None:
         self.run_state = before or RunState()
         self._lock = threading.RLock()
+        self._clock = clock
+        self._taken = clock()
 
     def take(self, event: Event) -> None:
         """See Watcher."""
         with self._lock:
             self.run_state = after(self.run_state, event)
+            self._taken = self._clock()
+
+    @property
+    def _since(self) -> float:
+        """Seconds since the last event."""
+        return self._clock() - self._taken
 
     def saying(self, role: str, text: str) -> None:
         """See Watcher."""
@@ -69,17 +77,14 @@ class RunLog(RunView):
     def __init__(
         self, stream: TextIO, before: RunState | None = None, clock: Callable[[], float] = time.monotonic
     ) -> None:
-        super().__init__(before)
+        super().__init__(before, clock)
         self._stream = stream
-        self._clock = clock
-        self._taken = clock()
         self._written: dict[str, float] = {}
 
     def take(self, event: Event) -> None:
         """See Watcher."""
         with self._lock:
             super().take(event)
-            self._taken = self._clock()
             for line in format_event(event, self.run_state):
                 self._write(line)
 
@@ -108,7 +113,6 @@ class RunScreen(LiveView, RunView):
         self._folder = folder
         self._words: dict[str, str] = {}
         self._progress: dict[str, ToolProgress] = {}
-        self._taken = time.monotonic()
         self._is_open = False
         LiveView.__init__(self, console, _PER_SECOND)  # draws for the first time
 
@@ -116,7 +120,6 @@ class RunScreen(LiveView, RunView):
         """See Watcher."""
         with self._lock:
             super().take(event)
-            self._taken = time.monotonic()
             if isinstance(event, ModelAsked):
                 self._words.pop(event.role, None)
             if isinstance(event, ToolCalled | ToolAnswered):
@@ -135,7 +138,7 @@ class RunScreen(LiveView, RunView):
     def draw(self) -> RenderableType:
         """See LiveView."""
         with self._lock:
-            since = time.monotonic() - self._taken if self._is_open and not self.run_state.ending else 0.0
+            since = self._since if self._is_open and not self.run_state.ending else 0.0
             now = Now(self.run_state.seconds + since, dict(self._words), dict(self._progress), self._folder)
             return run_in_progress(self.run_state, now, self._console.height)
 

@@ -14,8 +14,9 @@ from agents.blender.assets.replies import PlacedAsset
 from agents.blender.formatting import format_count, format_list
 from agents.blender.sheets import contact_sheet
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, SavedImage, ToolContext
+from agents.blender.tools.kept_scene import kept_scene
 from agents.blender.tools.preview_files import new_preview
-from simworlds.sandbox.errors import Refusal, ToolBroke
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from agents.blender.run_folder import RunFolder
@@ -165,24 +166,19 @@ def _bring(
 ) -> Result:
     blender = context.blender
     tool, request = _request(library, asset, arguments)
-    with blender.alone():
-        before = blender.keep("before using an asset")
-        try:
-            placed = blender.call(
-                tool,
-                request,
-                PlacedAsset.model_validate,
-                timeout=arguments.timeout,
-                what=f"using {asset.name[:80]}",
-                changes=True,
-                always_keep=True,
-                after=f"after using {asset.name[:40]}",
-                progress=call.progress,
-                cancelled=call.cancelled,
-            ).value
-        except (Refusal, ToolBroke) as error:
-            blender.restore(before.number)
-            raise Refusal(f"{str(error).rstrip('.')}. The scene is unchanged, at {before}.") from error
+    with blender.alone(), kept_scene(blender, "before using an asset") as before:
+        placed = blender.call(
+            tool,
+            request,
+            PlacedAsset.model_validate,
+            timeout=arguments.timeout,
+            what=f"using {asset.name[:80]}",
+            changes=True,
+            always_keep=True,
+            after=f"after using {asset.name[:40]}",
+            progress=call.progress,
+            cancelled=call.cancelled,
+        ).value
         checkpoint = blender.checkpoints.last
     lines = [f"Brought in {asset.id}:"]
     lines += [

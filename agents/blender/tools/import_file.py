@@ -14,7 +14,7 @@ from agents.blender.exchange.replies import AvailableFormats, ExchangeFacts, Imp
 from agents.blender.formatting import format_count, format_list
 from agents.blender.readable_files import find_readable
 from agents.blender.tools.base import Arguments, BlenderTool, Call, Result, ToolContext
-from simworlds.sandbox.errors import Refusal, ToolBroke
+from agents.blender.tools.kept_scene import kept_scene
 
 if TYPE_CHECKING:
     from agents.blender.supervisor import Supervisor
@@ -63,35 +63,30 @@ def run(context: ToolContext, arguments: ImportArguments, call: Call) -> Result:
     file = find_readable(arguments.path, blender.folder, blender.launch.read)
     check_there(file, arguments.path)
     name = file.path.name
-    with blender.alone():
-        before = blender.keep("before importing")
-        try:
-            with lent_for_import(file, blender.folder) as lent:
-                request: dict[str, Any] = {
-                    "kind": known.kind,
-                    **lent,
-                    "workspace": blender.folder.workspace.for_blender(),
-                    "collection": arguments.collection or PurePosixPath(name).stem[:60],
-                    "scale": arguments.scale,
-                    "up": arguments.up,
-                    "frames": [],
-                    "timing": None,
-                }
-                reply = blender.call(
-                    "import_file",
-                    request,
-                    ImportedFile.model_validate,
-                    timeout=arguments.timeout,
-                    what=f"importing {name[:80]}",
-                    changes=True,
-                    always_keep=True,
-                    after=f"after importing {name[:40]}",
-                    progress=call.progress,
-                    cancelled=call.cancelled,
-                )
-        except (Refusal, ToolBroke) as error:
-            blender.restore(before.number)
-            raise Refusal(f"{str(error).rstrip('.')}. The scene is unchanged, at {before}.") from error
+    with blender.alone(), kept_scene(blender, "before importing") as before:
+        with lent_for_import(file, blender.folder) as lent:
+            request: dict[str, Any] = {
+                "kind": known.kind,
+                **lent,
+                "workspace": blender.folder.workspace.for_blender(),
+                "collection": arguments.collection or PurePosixPath(name).stem[:60],
+                "scale": arguments.scale,
+                "up": arguments.up,
+                "frames": [],
+                "timing": None,
+            }
+            reply = blender.call(
+                "import_file",
+                request,
+                ImportedFile.model_validate,
+                timeout=arguments.timeout,
+                what=f"importing {name[:80]}",
+                changes=True,
+                always_keep=True,
+                after=f"after importing {name[:40]}",
+                progress=call.progress,
+                cancelled=call.cancelled,
+            )
         checkpoint = blender.checkpoints.last
     came = reply.value
     lines = [f"Imported {file.path} into the collection {came.collection!r} ({known.label}, {known.units}):"]

@@ -13,6 +13,7 @@ from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
 from agents.loop.events import PlanMade, ReferenceKept
 from agents.loop.evidence import still
+from agents.loop.journal import PLAN_NAME
 from agents.loop.judging import verify
 from agents.loop.run import RENDER, RUNNER, START, plan_file
 from agents.loop.task import RunTask
@@ -38,7 +39,7 @@ def edit(run: Run) -> RenderResult:
     seen = run.use(RUNNER, _FIRST, "blender_scene_layout_preview", {})
     planner = Planner(run.context, edit=True)
     plan = planner.edit(prompt_with_assets(run), state, before.names, seen.pictures, reference)
-    run.write("plan.json", plan_file(plan))
+    run.write(PLAN_NAME, plan_file(plan))
     run.journal.note(PlanMade(edit=plan))
     task = replace(_task(run, plan, before), goal=reference, **_still_before(run))
     wanted = plan.stages if options.stages else ALL_AT_ONCE

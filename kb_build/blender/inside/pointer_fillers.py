@@ -147,7 +147,7 @@ def operate(observer, given, modifier=""):
     obj.select_set(True)
     structs = [obj, obj.data, scene]
     if modifier:
-        structs.append(obj.modifiers.new("new", modifier))
+        structs.append(obj.modifiers.new("new", modifier))  # pyright: ignore[reportCallIssue]
     try:
         for operator in given[:-1]:
             operator()

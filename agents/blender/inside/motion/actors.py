@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Actors: objects and collections whose motion is followed, and where their geometry is at a frame."""
 
+from contextlib import contextmanager
+
 import bpy
 import numpy
 from mathutils import Vector
@@ -174,34 +176,33 @@ def thin_out(elements, most):
     return elements if most is None else elements[:: -(-len(elements) // most) or 1]
 
 
+@contextmanager
+def _mesh_of(evaluated):
+    """An object's evaluated mesh while it is in use; None for one without a surface."""
+    if evaluated.type == "MESH":
+        yield evaluated.data
+        return
+    try:
+        mesh = evaluated.to_mesh() if evaluated.type in _EVALUATES_TO_MESH else None
+    except RuntimeError:  # it has no surface
+        mesh = None
+    yield mesh
+    if mesh is not None:
+        evaluated.to_mesh_clear()
+
+
 def _surface(evaluated, most=None):
     """The vertices of an object's evaluated geometry."""
-    if evaluated.type == "MESH":
-        return transformed(thin_out(coordinates(evaluated.data.vertices), most), evaluated.matrix_world)
-    if evaluated.type not in _EVALUATES_TO_MESH:
-        return numpy.empty((0, 3))
-    try:
-        mesh = evaluated.to_mesh()
-    except RuntimeError:  # it has no surface
-        return numpy.empty((0, 3))
-    places = transformed(thin_out(coordinates(mesh.vertices), most), evaluated.matrix_world)
-    evaluated.to_mesh_clear()
-    return places
+    with _mesh_of(evaluated) as mesh:
+        if mesh is None:
+            return numpy.empty((0, 3))
+        return transformed(thin_out(coordinates(mesh.vertices), most), evaluated.matrix_world)
 
 
 def _areas(evaluated, most=None):
     """The area around each vertex that ``_surface`` gives, before the object is scaled; all 1 without faces."""
-    if evaluated.type == "MESH":
-        return thin_out(_vertex_areas(evaluated.data), most)
-    try:
-        mesh = evaluated.to_mesh() if evaluated.type in _EVALUATES_TO_MESH else None
-    except RuntimeError:
-        mesh = None
-    if mesh is None:
-        return numpy.empty(0)
-    areas = thin_out(_vertex_areas(mesh), most)
-    evaluated.to_mesh_clear()
-    return areas
+    with _mesh_of(evaluated) as mesh:
+        return numpy.empty(0) if mesh is None else thin_out(_vertex_areas(mesh), most)
 
 
 def _vertex_areas(mesh):
