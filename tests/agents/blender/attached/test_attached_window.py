@@ -143,7 +143,7 @@ async def test_tools_of_an_open_blender_are_listed_with_the_shared_ones(client: 
     names = {tool.name for tool in (await client.list_tools()).tools}
     assert {"blender_view", "blender_show", "blender_undo", "blender_docs", "blender_check"} <= names
     assert {"blender_scene_state", "blender_execute", "blender_group", "blender_verify"} <= names
-    assert not {"blender_load", "blender_render"} & names
+    assert not {"blender_load", "blender_import"} & names
 
 
 async def test_builds_step_by_step_and_undoes_all(client: Client, window: OpenWindow) -> None:
