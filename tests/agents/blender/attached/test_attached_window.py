@@ -100,10 +100,10 @@ def test_answers_500_calls(direct: Callable[[], AttachedBlender]) -> None:
 
 def test_a_client_that_disappears_in_mid_call_leaves_one_step(direct: Callable[[], AttachedBlender]) -> None:
     blender = direct()
-    code = "import time\nbpy.data.objects['Cube'].location.x = 3\ntime.sleep(1)"
+    code = "import time\nbpy.data.objects['Cube'].location.x = 3\ntime.sleep(3)"
     arguments = {"code": code, "seconds": 30, "rehearsed": True, "step": "left alone"}
     blender._connected().send({"ticket": "t", "tool": "apply", "arguments": arguments, "seconds": 30})
-    time.sleep(0.3)  # not before it has begun
+    time.sleep(1.5)  # not before it has begun
     blender.close()
     other = direct()
     undone = other.call("undo", {"count": 1}, dict, timeout=60).value
@@ -253,7 +253,7 @@ async def test_a_scene_that_is_too_large_to_copy_is_told(client: Client, window:
     for tool, arguments in (("blender_execute", {"code": "1+1"}), ("blender_scene_layout_preview", {})):
         refused = await use(client, tool, **arguments)
         assert refused.is_error
-        assert "The scene is too large to be copied in 5 s" in text(refused)
+        assert "The scene is too large to be copied in " in text(refused)
     window.choose(f"import sys; sys.modules[{name!r}]._measured['speed'] = 1e9")
     assert not (await use(client, "blender_execute", code="1+1")).is_error
 
