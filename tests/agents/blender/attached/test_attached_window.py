@@ -102,6 +102,7 @@ def test_a_client_that_disappears_in_mid_call_leaves_one_step(direct: Callable[[
     blender = direct()
     code = "import time\nbpy.data.objects['Cube'].location.x = 3\ntime.sleep(3)"
     arguments = {"code": code, "seconds": 30, "rehearsed": True, "step": "left alone"}
+    blender.call("user_state", {}, unread, timeout=60)  # Blender is there, and has drawn its window
     blender._connected().send({"ticket": "t", "tool": "apply", "arguments": arguments, "seconds": 30})
     time.sleep(1.5)  # not before it has begun
     blender.close()
