@@ -37,7 +37,7 @@ def begin():
     _held.update(on=True, escaped=False)
     for window in bpy.context.window_manager.windows:
         with bpy.context.temp_override(window=window, screen=window.screen):
-            bpy.ops.simworlds.hold("INVOKE_DEFAULT")
+            bpy.ops.simworlds.hold("INVOKE_DEFAULT")  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def escaped():

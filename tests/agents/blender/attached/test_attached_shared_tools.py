@@ -20,6 +20,8 @@ SCENE = """\
 # a ball on a floor
 for obj in list(bpy.data.objects):
     bpy.data.objects.remove(obj)
+for collection in list(bpy.data.collections):
+    bpy.data.collections.remove(collection)
 def put(name, make, **options):
     make(**options)
     bpy.context.object.name = name

@@ -100,10 +100,11 @@ def test_answers_500_calls(direct: Callable[[], AttachedBlender]) -> None:
 
 def test_a_client_that_disappears_in_mid_call_leaves_one_step(direct: Callable[[], AttachedBlender]) -> None:
     blender = direct()
-    code = "import time\nbpy.data.objects['Cube'].location.x = 3\ntime.sleep(1)"
+    code = "import time\nbpy.data.objects['Cube'].location.x = 3\ntime.sleep(3)"
     arguments = {"code": code, "seconds": 30, "rehearsed": True, "step": "left alone"}
+    blender.call("user_state", {}, unread, timeout=60)  # Blender is there, and has drawn its window
     blender._connected().send({"ticket": "t", "tool": "apply", "arguments": arguments, "seconds": 30})
-    time.sleep(0.3)  # not before it has begun
+    time.sleep(1.5)  # not before it has begun
     blender.close()
     other = direct()
     undone = other.call("undo", {"count": 1}, dict, timeout=60).value
@@ -143,7 +144,7 @@ async def test_tools_of_an_open_blender_are_listed_with_the_shared_ones(client: 
     names = {tool.name for tool in (await client.list_tools()).tools}
     assert {"blender_view", "blender_show", "blender_undo", "blender_docs", "blender_check"} <= names
     assert {"blender_scene_state", "blender_execute", "blender_group", "blender_verify"} <= names
-    assert not {"blender_load", "blender_render"} & names
+    assert not {"blender_load", "blender_import"} & names
 
 
 async def test_builds_step_by_step_and_undoes_all(client: Client, window: OpenWindow) -> None:
@@ -253,7 +254,7 @@ async def test_a_scene_that_is_too_large_to_copy_is_told(client: Client, window:
     for tool, arguments in (("blender_execute", {"code": "1+1"}), ("blender_scene_layout_preview", {})):
         refused = await use(client, tool, **arguments)
         assert refused.is_error
-        assert "The scene is too large to be copied in 5 s" in text(refused)
+        assert "The scene is too large to be copied in " in text(refused)
     window.choose(f"import sys; sys.modules[{name!r}]._measured['speed'] = 1e9")
     assert not (await use(client, "blender_execute", code="1+1")).is_error
 
