@@ -5,7 +5,7 @@ from simworlds.sandbox.inside import mantaflow, service
 
 from . import interpreter_state
 from .exchange import usd_thread
-from .physics import bake_inputs, rigid_body_inputs
+from .physics import freed_bakes, rigid_body_inputs
 
 # Tool → (module of this package, function). A tool takes its arguments and ``report(done, total, text)``, and returns
 # JSON data.
@@ -78,7 +78,7 @@ def main(arguments, more=()):
     """Serves the tools, and ``more`` (as TOOLS), on the socket whose descriptor is the first argument."""
     mantaflow.mend()
     rigid_body_inputs.watch()
-    bake_inputs.watch()
+    freed_bakes.watch()
     usd_thread.start()
     tools = service.Tools(__package__, {**TOOLS, **dict(more)})
     service.serve(

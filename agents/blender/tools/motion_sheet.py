@@ -74,7 +74,7 @@ class MotionSheetArguments(Arguments):
         for phase, following in itertools.pairwise(ordered):
             if following.start < phase.end:
                 pair = " and ".join(f"{each.name!r} ({each.start}–{each.end})" for each in (phase, following))
-                raise ValueError(f"phases: {pair} overlap")
+                raise ValueError(f"phases: {pair} overlap; ask for a sheet of each")
         return self
 
 

@@ -206,7 +206,8 @@ class _Trial:
             "heights": [
                 [frame, round_to(track.lows[at].z), round_to(track.highs[at].z)]
                 for frame, at in (
-                    (frame, track.frames.index(frame)) for frame in _evenly(track.frames, _HEIGHTS)
+                    (frame, track.frames.index(frame))
+                    for frame in _evenly(track.frames, min(_HEIGHTS, len(track.frames)))
                 )
                 if track.lows[at] is not None
             ],

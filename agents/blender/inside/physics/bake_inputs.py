@@ -10,7 +10,6 @@ import json
 from array import array
 
 import bpy
-from bpy.app.handlers import persistent
 
 from ..blend.bake_tag import BAKE_INPUTS
 from ..state.block_parts import extra_parts_of
@@ -38,12 +37,6 @@ _PARTNERS = {
     "FLUID": ("FLUID", ("flow_settings", "effector_settings")),
     "DYNAMIC_PAINT": ("DYNAMIC_PAINT", ("brush_settings",)),
 }
-
-
-def watch():
-    """Forgets what a bake was made from as soon as it is freed, by whatever code, at the next change of frame."""
-    if _forget_freed not in bpy.app.handlers.frame_change_post:
-        bpy.app.handlers.frame_change_post.append(_forget_freed)
 
 
 def remember(scene, caches):
@@ -74,16 +67,6 @@ def changed_since_bake(cache):
         return []
     now = _inputs(scene, cache)
     return [name for name in {**before, **now} if before.get(name) != now.get(name)]
-
-
-@persistent
-def _forget_freed(scene, _graph=None):
-    if BAKE_INPUTS not in scene:
-        return
-    from .caches import find_caches  # which asks here what is outdated
-
-    if freed := [cache for cache in find_caches(scene) if not cache.baked]:
-        forget(scene, freed)
 
 
 def _known(scene):

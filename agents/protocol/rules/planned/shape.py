@@ -309,8 +309,8 @@ R4 = Rule(
     "R4",
     "valid geometry",
     "hard",
-    "Meshes are finite, have faces (copies of particles: halfway or at the end) and a positive scale; those that hold "
-    "a volume are closed; simulated bodies have scale 1.",
+    "Meshes are finite, have faces (copies may later) and a positive scale; those that hold a volume are "
+    "closed; simulated bodies have scale 1.",
     "Solvers and Boolean operations fail on broken geometry: they explode, leak, or do nothing.",
     "Rebuild or close the mesh, remove empty meshes, apply the scale.",
     _invalid_geometry,

@@ -38,6 +38,8 @@ def test_a_trial_tells_heights_speeds_pace_and_shows_a_strip(session: LiveSessio
     assert set(actors) == {"Flag", "Brick"}
     brick = actors["Brick"]["samples"]
     assert [sample["frame"] for sample in brick] == [1, 3, 5, 6, 8, 10]
+    assert [frame for frame, _, _ in actors["Brick"]["heights"]] == [*range(1, 11)]
+    assert "frame: lowest and highest point, m: 1: 1.500 2.500; 2: " in found.text
     assert brick[-1]["volume"] == pytest.approx(1, rel=1e-3)
     assert brick[-1]["lowest"] == pytest.approx(1.5 - 9.81 / 2 * (9 / 24) ** 2, abs=0.05)  # free fall
     assert brick[-1]["speed"] == pytest.approx(9.81 * 8.5 / 24, rel=0.1)
@@ -72,6 +74,17 @@ def test_a_trial_says_how_deep_something_is_in_another(session: LiveSession) -> 
     sample = found.data["actors"][0]["samples"][0]
     assert (sample["inside"], sample["depth"]) == ("Cube", pytest.approx(0.1, abs=1e-3))
     assert "100.0 mm deep in 'Cube'" in found.text
+
+
+def test_a_cage_in_its_own_body_is_not_deep_in_anything(session: LiveSession) -> None:
+    session.run(
+        f"{PARTS}\nbody()\nbpy.ops.mesh.primitive_cube_add(size=2, location=(12, 0, 2))\nskin = bpy.context.object\n"
+        "whole = bpy.data.collections.new('Whole')\nscene.collection.children.link(whole)\n"
+        "whole['protocol_role'] = 'object'\n"
+        "for part in (skin, bpy.data.objects['Brick']):\n    whole.objects.link(part)"
+    )
+    found = session.use(TOOL, objects=["Brick"], frames=2, pictures=False)
+    assert found.data["actors"][0]["samples"][0]["inside"] is None
 
 
 def test_a_trial_ends_when_its_time_is_over(session: LiveSession) -> None:

@@ -10,6 +10,7 @@ from PIL import Image
 from preview_views import build
 
 from agents.blender.tools import material_preview
+from agents.blender.tools.bake import TOOL as BAKE
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
@@ -115,6 +116,36 @@ def test_objects_come_as_they_were_named_else_those_that_act_first(session: Live
     session.run("bpy.data.collections['The Chest 1'].__setitem__('deformation_kind', 'sim_soft')")
     first, *_ = session.use(material_preview.TOOL, show="objects").data["objects"]
     assert (first["name"], first["alike"]) == ("The Chest 1", ["The Chest 0"])
+
+
+def test_what_the_plan_is_about_comes_before_what_merely_differs(session: LiveSession) -> None:
+    build(session, CLOSED_ROOM)
+    wanted = ["The Shell", "The Chest 1"]
+    shown = session.use(material_preview.TOOL, show="objects", first=wanted).data["objects"]
+    assert [one["name"] for one in shown] == [*wanted, "The Chest 2"]
+    assert shown[1]["alike"] == ["The Chest 0"]
+
+
+SMOKE = """
+bpy.context.scene.frame_end = 4
+box('Air', (0, 0, 1), (2, 2, 2))
+air = bpy.data.objects['Air'].modifiers.new('Fluid', 'FLUID')
+air.fluid_type = 'DOMAIN'
+air.domain_settings.domain_type, air.domain_settings.resolution_max = 'GAS', 16
+box('Fire', (0, 0, .5), (.6, .6, .6), (.8, 0, 0))
+flow = bpy.data.objects['Fire'].modifiers.new('Fluid', 'FLUID')
+flow.fluid_type = 'FLOW'
+flow.flow_settings.flow_type, flow.flow_settings.flow_behavior = 'SMOKE', 'INFLOW'
+"""
+
+
+def test_gas_is_said_to_be_drawn_without_its_shader(session: LiveSession) -> None:
+    build(session, SMOKE)
+    session.use(BAKE)
+    told = "Drawn as blocks, without its shader: the gas of 'Air'"
+    assert told in session.use(material_preview.TOOL, show="scene", width=64, frames=[4]).text
+    session.run("bpy.data.objects['Air'].modifiers.clear()")
+    assert told not in session.use(material_preview.TOOL, show="scene", width=64).text
 
 
 def test_an_unknown_name_is_refused_with_the_nearest(session: LiveSession) -> None:

@@ -387,7 +387,7 @@ def test_progress_is_told_as_frames_go_by(session: LiveSession) -> None:
                 "actors": ["Crate"],
                 "phases": [{"name": "a", "start": 1, "end": 20}, {"name": "b", "start": 19, "end": 30}],
             },
-            "'a' (1–20) and 'b' (19–30) overlap",
+            "'a' (1–20) and 'b' (19–30) overlap; ask for a sheet of each",
         ),
     ],
 )

@@ -52,6 +52,18 @@ def test_a_closed_room_is_opened_from_every_side(session: LiveSession, walls: st
     assert not any("Chest" in name for view in views.by_name.values() for name in view["cut_away"])
 
 
+@pytest.mark.parametrize(
+    "moved",
+    ["door.keyframe_insert('rotation_euler', frame=1)", "bpy.context.view_layer.objects.active = door\n"
+     "bpy.ops.rigidbody.object_add(type='ACTIVE')"],
+)  # fmt: skip
+def test_a_closed_door_is_no_wall(session: LiveSession, moved: str) -> None:
+    build(session, room(THICK) + f"\ndoor = bpy.data.objects['South']\n{moved}")
+    cut = {name for view in Views(session, "scene").data["views"] for name in view["cut_away"]}
+    assert "Ceiling" in cut
+    assert "South" not in cut
+
+
 def test_a_roof_without_walls_is_lifted(session: LiveSession) -> None:
     build(session, room(HOUSE) + "\nbox('Roof', (0, 0, 2.6), (5, 5, .2), (.6, .6, .6))")
     views = Views(session, "scene")
