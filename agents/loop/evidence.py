@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from agents.plan.part import Stage
     from simworlds.llm.messages import Block
 
-WIDTH, SAMPLES = 960, 16  # of stills
+WIDTH, SAMPLES = 960, 16  # of stills, at most
 _SECONDS = 60  # for each
 _MOST_ACTORS, _MOST_PHASES, _MOST_SHEETS = 8, 24, 6  # of a motion sheet; sheets of a stage
 _MOST_SUBJECTS = 40
@@ -56,10 +56,11 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     if task.edit:
         shown.blocks += edit_comparison(run, stage, task)
     elif stage == "camera":
-        shown.take(_MATERIALS, {"show": "scene", "width": WIDTH, "frames": _telling_frames(task, run.motion)})
+        frames = _telling_frames(task, run.motion)
+        shown.take(_MATERIALS, {"show": "scene", "width": _width(task), "frames": frames})
     elif stage == "light":
         for frame in _telling_frames(task, run.motion):
-            shown.take(RENDER, still(f"look-{frame}", frame))
+            shown.take(RENDER, still(f"look-{frame}", frame, _width(task)))
     shown.blocks += _coders_stills(run)
     shown.take(_STATE, {"first": subjects} if subjects else {})
     return shown.blocks
@@ -80,9 +81,14 @@ class _Shown:
         return outcome.data
 
 
-def still(name: str, frame: int | None) -> dict[str, Any]:
+def _width(task: RunTask) -> int:
+    """Of stills: no more than the plan's picture has, as larger ones take longer than they tell."""
+    return min(WIDTH, task.plan.render.resolution[0]) if task.plan is not None else WIDTH
+
+
+def still(name: str, frame: int | None, width: int | None = None) -> dict[str, Any]:
     """The arguments of a still that is to be judged."""
-    asked = {"kind": "still", "name": name, "width": WIDTH, "samples": SAMPLES, "denoise": True}
+    asked = {"kind": "still", "name": name, "width": width or WIDTH, "samples": SAMPLES, "denoise": True}
     return {**asked, "time_budget": _SECONDS} | ({} if frame is None else {"frame": frame})
 
 

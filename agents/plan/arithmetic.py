@@ -135,7 +135,7 @@ def _unsupported(relation: SupportedBy, boxes: dict[str, PlannedBox]) -> Iterato
     parents = [box_of(boxes, node) for node in relation.parents]
     reasons: list[str] = []
     for parent in parents:
-        if child is None or parent is None or parent is child:
+        if child is None or parent is None or parent is child or child.is_ground:
             return  # unknown
         bottom, slack, beside = child.low[2], child.slack, max(gaps(child, parent)[:2])
         if bottom > parent.high[2] + slack:
@@ -173,7 +173,7 @@ def _outside(relation: Inside, content: PlannedBox, container: PlannedBox) -> It
 
 
 def _not_on_top(a: PlannedBox, b: PlannedBox) -> Iterator[str]:
-    if a.low[2] < b.low[2] - a.slack:
+    if a.low[2] < b.low[2] - a.slack and not a.is_ground:
         yield f"{a.name!r} begins at z = {a.low[2]:.3g} m, below {b.name!r} ({b.low[2]:.3g} m)."
     share = 1.0
     for axis in (0, 1):

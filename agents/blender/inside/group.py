@@ -56,15 +56,20 @@ def _check_together(scene, groups):
                 raise Refused(f"{obj.name!r} cannot be in both {taken[obj]!r} and {group.name!r}.")
             taken[obj] = group.name
     systems = {group.system for group in groups}
+    roots = {_root_name(name) for name in seen}
     for group in groups:
         if group.name in systems:
             raise Refused(
                 f"{group.name!r} cannot be both a system and an object: choose another name for one."
             )
         for name in group.contacts or ():
-            if name not in seen and name not in scene.objects and _role(name) != OBJECT:
+            if name not in seen | roots and name not in scene.objects and _role(name) != OBJECT:
                 hint = _name_hint(name, [*seen, *scene.objects.keys()])
                 raise Refused(f"{group.name!r} cannot touch {name!r}: there is no such object.{hint}")
+
+
+def _root_name(name):
+    return f"{name} root"
 
 
 def _tags(groups):
@@ -182,7 +187,7 @@ class _Group:
 
     def _place_root(self):
         if self.root is None:
-            self.root = bpy.data.objects.new(f"{self.name} root", None)
+            self.root = bpy.data.objects.new(_root_name(self.name), None)
             self.root.empty_display_size = max(self._across * _EMPTY_SHARE, 1e-3)
             self._collection.objects.link(self.root)
             self.root.matrix_world = Matrix.Translation(self._location or self._bottom)

@@ -152,7 +152,7 @@ class FrameRenderer:
                 drawn = self.pictures.decode(file, mask.file, longest=_MASK, under=(0, 0, 0)).image
         finally:
             workspace.remove(mask.file)
-        return subjects_of(picture, drawn, {colour: name for name, colour in mask.subjects})
+        return subjects_of(picture, drawn, {colour: name for name, colour in mask.subjects}, mask.clear)
 
     @property
     def _next(self) -> int | None:

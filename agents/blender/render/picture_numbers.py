@@ -11,7 +11,7 @@ from PIL import Image, ImageChops
 from agents.blender.formatting import format_list
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping, Sequence
+    from collections.abc import Collection, Mapping, Sequence
 
 _BLACK, _BURNT = 8, 250  # of 255: no channel is above, and none is below
 _SHOWN = 12
@@ -42,11 +42,15 @@ class PictureNumbers:
 
 @dataclass(frozen=True, slots=True)
 class SubjectNumbers:
-    """How much of the picture an object covers, and its mean brightness as displayed (0 to 1)."""
+    """How much of the picture an object covers, and its mean brightness as displayed (0 to 1).
+
+    What is seen through an object that is ``clear`` counts as of that object.
+    """
 
     name: str
     share: float
     brightness: float
+    clear: bool = False
 
     @property
     def data(self) -> dict[str, Any]:
@@ -71,9 +75,15 @@ def numbers_of(picture: Image.Image) -> PictureNumbers:
 
 
 def subjects_of(
-    picture: Image.Image, mask: Image.Image, colours: Mapping[tuple[int, int, int], str]
+    picture: Image.Image,
+    mask: Image.Image,
+    colours: Mapping[tuple[int, int, int], str],
+    clear: Collection[str] = (),
 ) -> list[SubjectNumbers]:
-    """The numbers of each object of a ``mask``, which shows the same view in flat ``colours``; the largest first."""
+    """The numbers of each object of a ``mask``, which shows the same view in flat ``colours``; the largest first.
+
+    ``clear``: the objects through which one sees.
+    """
     small = picture.convert("L").resize(mask.size, Image.Resampling.BOX).tobytes()
     counts = dict.fromkeys(colours.values(), 0)
     sums = dict.fromkeys(colours.values(), 0)
@@ -85,7 +95,7 @@ def subjects_of(
             counts[name] += 1
             sums[name] += value
     found = [
-        SubjectNumbers(name, count / len(small), sums[name] / count / 255 if count else 0.0)
+        SubjectNumbers(name, count / len(small), sums[name] / count / 255 if count else 0.0, name in clear)
         for name, count in counts.items()
     ]
     return sorted(found, key=lambda one: (-one.share, one.name))
@@ -101,7 +111,9 @@ def format_subjects(subjects: Sequence[SubjectNumbers], frame: int) -> list[str]
         more = f" … and {len(seen) - _SHOWN} more" if len(seen) > _SHOWN else ""
         lines.append(f"Frame {frame}, share of the picture (mean brightness): {', '.join(told)}{more}.")
     if hidden:
-        lines.append(f"Frame {frame} shows nothing of {format_list(hidden, _SHOWN)}.")
+        clear = format_list([one.name for one in seen if one.clear], _SHOWN)
+        through = f", but for what is seen through {clear}, which was not measured" if clear else ""
+        lines.append(f"Frame {frame} shows nothing of {format_list(hidden, _SHOWN)}{through}.")
     return lines
 
 

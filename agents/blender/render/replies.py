@@ -66,7 +66,11 @@ class VideoFacts(Claim):
 
 
 class SubjectMask(Claim):
-    """A picture in which each subject (name, colour) is flat; no ``file`` where the camera has no such view."""
+    """A picture in which each subject (name, colour) is flat; no ``file`` where the camera has no such view.
+
+    ``clear``: the subjects through which one sees, at least in part.
+    """
 
     file: Annotated[str, Field(pattern=r"^\.preview-\d{1,3}\.png$")] | None
     subjects: list[tuple[Name, tuple[Level, Level, Level]]] = Field(max_length=256)
+    clear: list[Name] = Field(max_length=256)

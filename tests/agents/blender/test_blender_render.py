@@ -601,6 +601,23 @@ def test_what_is_burnt_out_is_told(session: LiveSession) -> None:
     assert found.data["subjects"][0]["brightness"] == pytest.approx(1, abs=0.02)
 
 
+def test_what_is_seen_through_glass_is_not_said_to_be_hidden(session: LiveSession) -> None:
+    session.run(
+        SCENE
+        + """
+bpy.ops.mesh.primitive_cube_add(size=.2)
+bpy.context.object.name = "Inside"
+glass = bpy.data.materials.new("Glass")
+glass.use_nodes = True
+glass.node_tree.nodes["Principled BSDF"].inputs["Transmission Weight"].default_value = 1.0
+cube.data.materials.clear()
+cube.data.materials.append(glass)
+"""
+    )
+    found = session.use(TOOL, None, **SMALL)
+    assert "shows nothing of Inside, but for what is seen through Cube" in found.text
+
+
 def test_subjects_are_the_objects_of_the_protocol(session: LiveSession) -> None:
     session.run(
         SCENE + "bpy.ops.mesh.primitive_cube_add(size=1, location=(2, 0, 0))\n"

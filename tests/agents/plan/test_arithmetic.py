@@ -131,6 +131,7 @@ def test_a_number_that_contradicts_the_plan_is_told(changes: dict[str, Any], pat
     "changes",
     [
         {"Apple__position": (-0.3, 0, 1.5), "relation_2__when": "end"},
+        {"Wall__systems": ["ground", "set"], "relation_1__child": "Wall", "relation_1__parents": ["Floor"]},
         {"Cup__position": (0.3, 0, 0.85), "Cup__description": "Its root is in its centre."},
         {"Apple__position": (-0.3, 0, 0.82), "relation_2__partial": True},
         {"Floor__position": (0, 0, -0.1)},

@@ -78,6 +78,12 @@ def test_loose_meshes_become_objects_of_the_protocol_in_one_call(session: LiveSe
     assert "'Chair' in 'furniture': root 'Chair root' at (1, 0.5, 0), 3 members" in found.text
 
 
+def test_a_root_that_the_call_makes_may_be_touched(session: LiveSession) -> None:
+    build(session, LOOSE)
+    group(session, {**CHAIR, "contact_with": ["Chair root"]})
+    assert session.run("list(bpy.data.objects['Chair root']['contact_with'])") == ["Chair root"]
+
+
 def test_a_given_place_is_the_root_s(session: LiveSession) -> None:
     build(session, LOOSE)
     before = matrices(session)

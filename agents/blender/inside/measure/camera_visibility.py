@@ -6,6 +6,7 @@ import numpy
 from mathutils import Vector
 
 from ..blend.fluids import domain_of, is_empty_domain
+from ..blend.see_through import is_see_through
 from ..blend.visibility import rendered_objects
 from ..geometry.solids import Unmeasurable
 from ..motion.mesh_tracker import surface_points
@@ -14,8 +15,6 @@ from .movement import actor_of
 _SAMPLES = 1000
 _MOST_OUTLINE = 20_000  # places that an outline is drawn around
 _MOST_PASSED = 64  # transparent surfaces that a ray passes at most
-_CLEAR = 0.5  # a surface is see-through from this transmission up, or below this alpha
-_SEEN_THROUGH = {"BSDF_GLASS", "BSDF_TRANSPARENT", "BSDF_REFRACTION"}
 
 
 def camera_view(request, solids):
@@ -186,12 +185,11 @@ class _Rays:
 
     def _is_clear(self, obj):
         if obj.name not in self._clear:
-            slots = [slot.material for slot in obj.material_slots]
             self._clear[obj.name] = (
                 (obj.name in bpy.context.view_layer.objects and obj.name not in self._rendered)
                 or not getattr(obj, "visible_camera", True)
                 or self._is_box_of_fluid(obj)
-                or (bool(slots) and all(map(_is_see_through, slots)))
+                or is_see_through(obj)
             )
         return self._clear[obj.name]
 
@@ -208,50 +206,3 @@ def _solid(solids, name):
         return solids[name]
     except Unmeasurable:
         return None
-
-
-def _is_see_through(material):
-    """Whether a material is see-through: glass, low alpha, or only a volume."""
-    tree = material.node_tree if material is not None and getattr(material, "use_nodes", True) else None
-    if tree is None:
-        return False
-    output = tree.get_output_node("ALL")
-    if output is None:
-        return False
-    shaders = _shaders(output.inputs["Surface"], set())
-    if not shaders:
-        return output.inputs["Volume"].is_linked
-    return any(_lets_through(node) for node in shaders)
-
-
-def _shaders(socket, seen):
-    """The shader nodes that lead to a socket."""
-    nodes = []
-    for link in socket.links:
-        node = link.from_node
-        if node.name in seen:
-            continue
-        seen.add(node.name)
-        if node.type.startswith(("BSDF", "EMISSION")):
-            nodes.append(node)
-        else:
-            for below in node.inputs:
-                if below.type == "SHADER":
-                    nodes += _shaders(below, seen)
-    return nodes
-
-
-def _lets_through(node):
-    if node.type in _SEEN_THROUGH:
-        return True
-    if node.type != "BSDF_PRINCIPLED":
-        return False
-    values = {
-        socket.name: socket.default_value
-        for socket in node.inputs
-        if socket.name in {"Transmission Weight", "Transmission", "Alpha"}
-    }
-    linked = {socket.name for socket in node.inputs if socket.is_linked}
-    alpha = 1.0 if "Alpha" in linked else values.pop("Alpha", 1.0)
-    values.pop("Alpha", None)
-    return alpha < _CLEAR or any(value >= _CLEAR for value in values.values())

@@ -6,6 +6,7 @@ import contextlib
 import bpy
 
 from ..blend.protocol_tags import object_collections
+from ..blend.see_through import has_see_through
 from ..render.engines import WORKBENCH
 from .fixed_views import studio_camera
 from .scene_copy import SceneCopy
@@ -29,7 +30,7 @@ def subject_mask(arguments, report):
     """Renders the mask of the current frame through ``camera`` (a name) in ``size`` pixels into ``folder``.
 
     Returns the ``file``'s name and the ``subjects``: [name, its colour (0 to 255)] of the protocol's objects (lacking
-    those, of Blender's), also of those that the camera does not see.
+    those, of Blender's), also of those that the camera does not see. ``clear``: those that one sees through, in part.
     """
     del report
     scene = bpy.context.scene
@@ -45,9 +46,16 @@ def subject_mask(arguments, report):
         camera = studio_camera(studio, scene.objects[arguments["camera"]])
         file = _FILE.format(0)
         if camera is None:
-            return {"file": None, "subjects": []}
+            return {"file": None, "subjects": [], "clear": []}
         studio.render(camera, arguments["size"], f"{arguments['folder']}/{file}", slant=0.0)
-    return {"file": file, "subjects": [[name, list(colour)] for name, colour in colours.items()]}
+    clear = [
+        name for name in colours if any(has_see_through(bpy.data.objects[owner]) for owner in groups[name])
+    ]
+    return {
+        "file": file,
+        "subjects": [[name, list(colour)] for name, colour in colours.items()],
+        "clear": clear,
+    }
 
 
 def _groups(scene, drawn):
