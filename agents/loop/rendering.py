@@ -215,7 +215,8 @@ def quality_of(film: FilmSettings, plan: RenderSettings, asked: int | None, made
     width, height = plan.resolution
     size = f"{film.width}×{film.height}"
     planned = "" if (film.width, film.height) == (width, height) else f" instead of {width}×{height}"
-    return f"The film's samples: {', '.join(steps)}. Its size: {size}{planned}."
+    judged = " What time has lowered is not held against the scene." if planned or len(steps) > 1 else ""
+    return f"The film's samples: {', '.join(steps)}. Its size: {size}{planned}.{judged}"
 
 
 def _in_film(rendering: RenderResult, task: RunTask) -> Picture | None:
