@@ -17,6 +17,7 @@ from places import REPO
 from sandboxes import skip_unless_it_works
 
 from agents.commands import doctor_checks
+from simworlds.own_command import own_command
 from simworlds.sandbox import confine_self
 from simworlds.sandbox.confined_command import Sandbox, best_sandbox, bubblewrap_fault
 from simworlds.sandbox.runtime import Runtime, installed_bpy
@@ -82,7 +83,7 @@ def test_this_machine_is_found_to_work(here: subprocess.CompletedProcess[str]) -
     assert found["Films"]["data"]["supported"] is True
     assert (found["Fluids"]["state"], found["Fluids"]["data"]["fault"]) == ("good", None)
     assert (found["Knowledge"]["state"], found["Knowledge"]["data"]["built"]) == ("poor", [])
-    assert found["Knowledge"]["advice"].startswith("simworlds kb build")
+    assert found["Knowledge"]["advice"].startswith(f"{own_command()} kb build")
     assert found["Room"]["data"]["free"] > 0
     drawn = found["Workbench"]["data"]
     assert drawn["fault"] or drawn["seconds"] > 0
@@ -107,7 +108,7 @@ def test_a_page_for_people_fits_a_terminal_and_ends_with_a_verdict(tmp_path: Pat
     assert lines[0].startswith("✓  Blender    ")
     assert "!  Sandbox    none: code in Blender can read and write your files" in done.stdout
     assert "- does not prevent: reading and writing any file that you can" in done.stdout
-    assert "→ simworlds kb build" in done.stdout
+    assert f"→ {own_command()} kb build" in " ".join(done.stdout.split())
     assert re.search(
         r"^✓  Blender can work here, but check: Sandbox.*Knowledge\.$", done.stdout, re.MULTILINE
     )
@@ -218,7 +219,7 @@ def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest
     assert found.place == str(base)
     other = doctor_checks._knowledge("3.4.1")
     assert other.state == "poor"
-    assert other.advice == "simworlds kb build 3.4"
+    assert other.advice == f"{own_command()} kb build 3.4"
     assert other.text == f"no base for Blender 3.4, only for {found.data['wanted']}"
 
 
