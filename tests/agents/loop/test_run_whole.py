@@ -70,6 +70,7 @@ def test_every_row_is_numbered_and_stands_in_its_place(mended: Played) -> None:
         ("final.reviewed", None),
         *((kind, "render") for kind in ("rolled.back", "attempt.began", "attempt.ended", "verified")),
         ("rendered", None),
+        ("final.reviewed", None),
         ("run.ended", None),
     ]
 

@@ -76,7 +76,7 @@ def _bake_problem(cache: CacheFacts, start: int, end: int) -> str:
         return "is not baked"
     if cache.outdated:
         since = f": since then {', '.join(cache.changed[:_NAMED])} changed" if cache.changed else ""
-        return f"is baked, but older than its settings{since}; the old bake is played"
+        return f"is baked, but outdated{since}; the old bake is played"
     # Blender sets the range of particles itself: from the first that is born to the last that dies.
     has_own_range = cache.kind == _PARTICLES
     if not has_own_range and (cache.frame_start > start or cache.frame_end < end):
@@ -94,6 +94,7 @@ def _wrong_timeline(context: RuleContext, _measures: Measures) -> Iterator[Findi
     plan, facts = context.planned, context.facts
     if not plan.motion.phases and plan.render.kind == "still":
         raise NotApplicable("the plan has no motion")
+    wrong: set[str] = set()
     for name, value, wanted in (
         ("frame rate", facts.fps, float(plan.fps)),
         ("first frame", facts.frame_start, plan.frame_start),
@@ -101,8 +102,11 @@ def _wrong_timeline(context: RuleContext, _measures: Measures) -> Iterator[Findi
     ):
         if abs(value - wanted) > 1e-3:
             message = f"The scene's {name} is {value:g}; the plan says {wanted:g}."
+            wrong.add(name)
             yield T1.finding((), message, measured=float(value), tolerance=0.0)
     for cache in (cache for cache in facts.caches if cache.on):
+        if "frame rate" in wrong and cache.changed == ("the scene",):
+            continue  # told above: with the planned rate, the bake fits again
         if problem := _bake_problem(cache, plan.frame_start, plan.frame_end):
             owner = f" of {cache.object!r}" if cache.object else ""
             yield T1.finding(

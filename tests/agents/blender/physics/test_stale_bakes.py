@@ -84,7 +84,7 @@ def test_all_tools_tell_of_it_and_a_saved_file_remembers_it(session: LiveSession
     session.use(LOAD, path="stale")
     assert stale(session) == ["soft body of 'Jelly' (changed since: 'Ball')"]
     told = session.use(VERIFY).text
-    assert "is baked, but older than its settings: since then 'Ball' changed; the old bake is played" in told
+    assert "is baked, but outdated: since then 'Ball' changed; the old bake is played" in told
     assert "Free the old bake first" in session.use(TRIAL, frames=3).text
     session.use(BAKE)
     assert stale(session) == []
