@@ -87,7 +87,26 @@ class HostileGround:
         """A path below it (or its own) as the process itself opens it."""
         return str(self.mount / relative)
 
+    def from_blender(self, path: str) -> str | None:
+        """A path as the process itself opens it, from here; None for one that is not below it."""
+        pure = PurePosixPath(path)
+        if not pure.is_relative_to(self.mount) or ".." in pure.parts:
+            return None
+        return str(pure.relative_to(self.mount))
+
     # What the process has made
+
+    def files_below(self, relative: str) -> list[str]:
+        """The regular files below a folder, as paths from that folder; no link is followed. Raises Refusal."""
+        with _opened_folder(self.mount) as ground:
+            try:
+                folder = _open_beneath(ground, PurePosixPath(relative).parts)
+            except OSError as error:
+                raise _cannot_open(relative, error) from error
+            try:
+                return list(_regular_files(folder))
+            finally:
+                os.close(folder)
 
     def open(self, relative: str, *, at_most: int = LARGEST_FILE) -> BinaryIO:
         """Opens a regular file of at most so many bytes, for reading. Raises Refusal."""
@@ -442,6 +461,20 @@ def _flatten(top: int, name: str) -> None:
     finally:
         os.close(inner)
     os.rmdir(name, dir_fd=top)
+
+
+def _regular_files(folder: int, depth: int = 1) -> Iterator[str]:
+    with os.scandir(folder) as items:
+        for item in items:
+            if item.is_file(follow_symlinks=False):
+                yield item.name
+            elif item.is_dir(follow_symlinks=False) and depth < DEEPEST:
+                with suppress(OSError):
+                    below = os.open(item.name, _FOLDER, dir_fd=folder)
+                    try:
+                        yield from (f"{item.name}/{name}" for name in _regular_files(below, depth + 1))
+                    finally:
+                        os.close(below)
 
 
 def copy_folder(source: Path, target: Path) -> None:

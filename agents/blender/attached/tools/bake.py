@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-import os
 from dataclasses import replace
-from pathlib import Path, PurePosixPath
+from pathlib import PurePosixPath
 from typing import TYPE_CHECKING, Any
 
 from pydantic import RootModel
@@ -15,7 +14,7 @@ from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.replies import Name
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from pathlib import Path
 
     from agents.blender.attached.tools.base import AttachedContext
     from agents.blender.supervisor import Supervisor
@@ -76,25 +75,17 @@ def run(context: AttachedContext, arguments: BakeArguments, call: Call) -> Resul
 
 def _taken(blender: Supervisor, cache: dict[str, Any]) -> Path:
     """The folder to which the frames of a fluid were brought, which the copy's Blender cannot reach. Raises Refusal."""
-    workspace = PurePosixPath(blender.folder.workspace.for_blender())
-    folder = PurePosixPath(str(cache["folder"]))
-    if not folder.is_relative_to(workspace) or ".." in folder.parts:
+    workspace = blender.folder.workspace
+    inside = workspace.from_blender(str(cache["folder"]))
+    if inside is None:
         raise Refusal(f"The frames of {cache['label']} are not in the copy's workspace.")
-    inside = folder.relative_to(workspace)
-    target = blender.folder.root / BAKES / inside.parent.name
+    target = blender.folder.root / BAKES / PurePosixPath(inside).parent.name
     target.mkdir(parents=True, exist_ok=True)
     number = 1 + max((int(path.name) for path in target.iterdir() if path.name.isdigit()), default=0)
     target /= f"{number:04d}"
-    copy_from_workspace(blender.folder, _files(blender.folder.workspace.mount, inside), target)
+    files = [(f"{inside}/{name}", name) for name in workspace.files_below(inside)]
+    copy_from_workspace(blender.folder, files, target)
     return target
-
-
-def _files(workspace: Path, inside: PurePosixPath) -> Iterator[tuple[str, str]]:
-    """(path in the workspace, path in the folder) of each file."""
-    for place, _, names in os.walk(workspace / inside):
-        for name in names:
-            relative = (Path(place) / name).relative_to(workspace)
-            yield str(relative), str(relative.relative_to(inside))
 
 
 def _with_seconds(data: Any, took: dict[str, float]) -> Any:

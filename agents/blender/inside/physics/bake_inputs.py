@@ -114,9 +114,9 @@ def _settings(owner, cache):
     if cache.modifier.type != "PARTICLE_SYSTEM":
         holders = [getattr(cache.modifier, name) for name in _SETTINGS[cache.modifier.type]]
         return _structs(owner, [holder for holder in holders if holder is not None])
-    system = cache.holder
-    settings = system.settings
-    return _digest(_structs(settings, [settings, settings.effector_weights]), system.seed)
+    settings = cache.holder.settings
+    seeds = [system.seed for system in owner.particle_systems if system.settings == settings]
+    return _digest(_structs(settings, [settings, settings.effector_weights]), seeds)
 
 
 def _part_of_partner(obj, kind):

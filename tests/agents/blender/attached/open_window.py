@@ -135,6 +135,17 @@ class OpenWindow:
         assert becomes(lambda: not acts.exists() or self.process.poll() is not None)
         acts.unlink(missing_ok=True)
 
+    def require_numpy(self) -> None:
+        """Skips the test, with the reason, where this Blender's Python has no numpy."""
+        told = self.root / "numpy.txt"
+        self.choose(
+            "import sys\ntry:\n    import numpy\n    why = ''\n"
+            "except ImportError as error:\n    why = f'{error}; sys.path is {sys.path}'\n"
+            f"open({str(told)!r}, 'w').write(why)"
+        )
+        if why := told.read_text():
+            pytest.skip(f"{self._blender} cannot import numpy here: {why}")
+
     def kill(self) -> None:
         """Ends Blender as a crash would."""
         os.killpg(self.process.pid, signal.SIGKILL)
@@ -174,10 +185,12 @@ def _virtual_display() -> tuple[subprocess.Popen[bytes], str]:
     return process, f":{number}"
 
 
-def opened(root: Path) -> Iterator[OpenWindow]:
-    """A window for a fixture."""
+def opened(root: Path, *, numpy: bool = False) -> Iterator[OpenWindow]:
+    """A window for a fixture; of a Blender that has ``numpy``, if asked for."""
     window = OpenWindow(root)
     try:
+        if numpy:
+            window.require_numpy()
         yield window
     finally:
         window.close()

@@ -60,7 +60,7 @@ def anyio_backend() -> str:
 
 @pytest.fixture(scope="module")
 def window(tmp_path_factory: pytest.TempPathFactory) -> Iterator[OpenWindow]:
-    yield from opened(tmp_path_factory.mktemp("window"))
+    yield from opened(tmp_path_factory.mktemp("window"), numpy=True)
 
 
 @pytest.fixture(scope="module")

@@ -262,6 +262,7 @@ async def test_a_scene_that_is_too_large_to_copy_is_told(client: Client, window:
 @pytest.fixture
 async def large_scene(client: Client, window: OpenWindow) -> AsyncIterator[None]:
     """A scene with a mesh that takes too long to copy, beside others that do not."""
+    window.require_numpy()
     code = """# a large one
 import numpy
 mesh = bpy.data.meshes.new("Large")
