@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import stat
 from dataclasses import dataclass, field
 from fnmatch import fnmatch
 from functools import cache
@@ -142,11 +143,26 @@ def matches(path: Path, patterns: Iterable[str], top: Path) -> bool:
 
 @cache
 def _package_root(folder: Path) -> Path | None:
-    """The topmost folder that is marked as a package, of those that hold the folder within its project."""
+    """The topmost folder that is marked as a package, of those that hold the folder within its project.
+
+    A folder that Python cannot import from ends a package, and none begins in a folder that belongs to everyone.
+    """
     root = None
     for here in (folder, *folder.parents):
+        if _is_everyones(here):
+            break
         if any((here / mark).is_file() for mark in _PACKAGE_MARKS):
             root = here
-        if any((here / mark).exists() for mark in _TOP_MARKS):
+        if not here.name.isidentifier() or any((here / mark).exists() for mark in _TOP_MARKS):
             break
     return root
+
+
+def _is_everyones(folder: Path) -> bool:
+    """Whether a folder is a user's home, the system's, or one that anybody may put files in: no package of anybody."""
+    if folder in {Path(os.path.realpath(Path.home())), Path(folder.anchor)}:
+        return True
+    try:
+        return bool(folder.stat().st_mode & stat.S_ISVTX)
+    except OSError:
+        return False

@@ -7,12 +7,9 @@ base in process.
 from __future__ import annotations
 
 import contextlib
-import queue
-import subprocess
-import threading
 import time
 from dataclasses import dataclass, field
-from typing import IO, TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any
 
 import anyio
 from httpx2 import AsyncClient
@@ -21,23 +18,19 @@ from mcp.client.streamable_http import streamable_http_client
 
 from bench.markdown_tables import Table
 from kb_serve.knowledge_base import KnowledgeBase
+from measurements.http_server import running
 from measurements.memory import resident_mb
-from measurements.setting import REPO, brief, environment, percentile, say
+from measurements.setting import brief, percentile, say
 
 if TYPE_CHECKING:
-    from collections.abc import AsyncGenerator, Generator, Mapping, Sequence
+    from collections.abc import AsyncGenerator, Mapping, Sequence
 
     from measurements.setting import Setting
 
 CLIENTS = 64
 _TOOL = "blender_docs"
-_START_SECONDS = 120  # of a machine that others use as well
 _PATIENCE_SECONDS = 30.0  # a call that takes longer is an error
 _KEPT = 20  # errors and wrong answers that the report quotes
-
-
-class NoServer(Exception):  # noqa: N818 - reads as the state it names
-    """The HTTP server did not start; the message has its output."""
 
 
 @dataclass(slots=True)
@@ -64,59 +57,12 @@ def measure(
     seconds = min(5.0, setting.load_seconds) if setting.quick else setting.load_seconds
     say(f"load: {CLIENTS} HTTP clients for {seconds:g} s")
     result = LoadResult()
-    with _server(serve, setting) as (url, pid):
+    with running(serve, setting) as (url, process):
         right = anyio.run(_alone, url, queries, result)
         anyio.run(_together, url, right, seconds, result)
-        memory = resident_mb(pid)
+        memory = resident_mb(process.pid)
     result.wrong += _not_as_in_process(setting, right)
     return result, memory
-
-
-@contextlib.contextmanager
-def _server(serve: Sequence[str], setting: Setting) -> Generator[tuple[str, int]]:
-    """A server on a free port: its address and process id."""
-    process = subprocess.Popen(
-        [*serve, "--http", "--port", "0"],
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-        env=environment(setting.home),
-        cwd=REPO,
-    )
-    try:
-        assert process.stderr is not None
-        yield address_printed(process.stderr), process.pid
-    finally:
-        process.terminate()
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(10)
-        process.kill()
-        process.wait()
-
-
-def address_printed(stream: IO[str]) -> str:
-    """Reads the address that the server prints on stderr; later output is read and dropped."""
-    addresses: queue.Queue[str] = queue.Queue()
-    lines: list[str] = []
-
-    def read() -> None:
-        for line in stream:
-            lines.append(line.strip())
-            if "http://" in line:
-                addresses.put("http://" + line.split("http://", 1)[1].split()[0])
-        addresses.put("")
-
-    threading.Thread(target=read, daemon=True).start()
-    try:
-        url = addresses.get(timeout=_START_SECONDS)
-    except queue.Empty:
-        url = ""
-    if not url:
-        raise NoServer(
-            f"simworlds serve --http printed no address: {' '.join(lines[-3:]) or 'it printed nothing'}"
-        )
-    return url
 
 
 @contextlib.asynccontextmanager

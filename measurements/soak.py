@@ -12,7 +12,6 @@ import itertools
 import json
 import secrets
 import statistics
-import subprocess
 import time
 from dataclasses import asdict, dataclass, field
 from functools import partial
@@ -25,14 +24,15 @@ from httpx2 import AsyncClient, HTTPError
 
 from bench.markdown_tables import Table
 from bench.sweep.command import simworlds_command
-from measurements.load import address_printed, connected
+from measurements.http_server import running
+from measurements.load import connected
 from measurements.memory import resident_mb
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.retrieval import read_queries
-from measurements.setting import BLENDER, REPO, brief, environment, percentile, say
+from measurements.setting import BLENDER, brief, percentile, say
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Coroutine, Generator, Iterator, Sequence
+    from collections.abc import Callable, Coroutine, Iterator, Sequence
 
     from measurements.setting import Setting
 
@@ -97,14 +97,14 @@ def _of_documents(setting: Setting) -> ReportPart:
         ("blender_check", {"code": code})
         for code, _ in zip(itertools.cycle(_CODE), calls[::20], strict=False)
     ]
-    command = [*simworlds_command(), "serve", "--blender", BLENDER, "--no-rebuild", "--http", "--port", "0"]
+    command = [*simworlds_command(), "serve", "--blender", BLENDER, "--no-rebuild"]
     return _soak("simworlds serve", command, calls, 8, setting)
 
 
 def _of_blender(setting: Setting) -> ReportPart:
     calls: list[_Call] = [("blender_execute", {"code": code}) for code in _CODE]
     calls += [("blender_scene_state", {}), ("blender_docs", {"query": "ClothSettings.quality"})]
-    command = [*simworlds_command(), "mcp", "--http", "--port", "0", "--sessions", "4", "--idle", "0.5"]
+    command = [*simworlds_command(), "mcp", "--sessions", "4", "--idle", "0.5"]
     return _soak("simworlds mcp", command, calls, 2, setting)
 
 
@@ -114,10 +114,11 @@ def _soak(
     say(f"soak: {name} for {setting.load_seconds / 60:g} min")
     soaked = _Soaked()
     mark = secrets.token_hex(8)
-    with _server(command, setting, mark) as (url, process):
+    with running(command, setting, {_MARK: mark}) as (url, process):
         anyio.run(_together, (url, process.pid), calls, polite, setting.load_seconds, soaked)
         if process.poll() is not None:
             soaked.errors.append(f"the server ended with exit code {process.returncode}")
+    time.sleep(1.0)  # for what was told to end
     soaked.orphans = sum(1 for _ in _marked(mark))
     figures = (
         TargetFigure("soak_errors", len(soaked.errors), f"{name}: of {len(soaked.times):,} calls"),
@@ -169,32 +170,6 @@ def _table(name: str, soaked: _Soaked, seconds: float) -> Table:
 
 
 # The server
-
-
-@contextlib.contextmanager
-def _server(
-    command: Sequence[str], setting: Setting, mark: str
-) -> Generator[tuple[str, subprocess.Popen[str]]]:
-    """A server on a free port: its address and process."""
-    process = subprocess.Popen(
-        command,
-        stdin=subprocess.DEVNULL,
-        stdout=subprocess.DEVNULL,
-        stderr=subprocess.PIPE,
-        text=True,
-        env={**environment(setting.home), _MARK: mark},
-        cwd=REPO,
-    )
-    try:
-        assert process.stderr is not None
-        yield address_printed(process.stderr), process
-    finally:
-        process.terminate()
-        with contextlib.suppress(subprocess.TimeoutExpired):
-            process.wait(30)
-        process.kill()
-        process.wait()
-        time.sleep(1.0)  # for what was told to end
 
 
 def _marked(mark: str) -> Iterator[int]:

@@ -59,6 +59,7 @@ class Analyzer(Statements):
         for _ in range(_MOST_ROUNDS):
             if not self._read_functions():
                 break
+        self.doubt_denials()
 
     def read_file(self, file: SourceFile) -> None:
         """See :class:`core.Core`."""
@@ -95,7 +96,7 @@ class Analyzer(Statements):
             if file is None or not file.complete or function.runs >= _MOST_ROUNDS:
                 continue
             settled = function.runs >= _ROUNDS or function.seen == self.stamp(function)
-            if settled and not function.stale:
+            if settled and not function.stale and self.is_current(function):
                 continue
             found = True
             self.depth, self.steps_left = 0, file.steps_left

@@ -335,7 +335,7 @@ class Calls(Narrowing):
         self._run_now(callee.number)
         # What it returns is not known where it was not read with what this call passes.
         is_read = function.running or not function.stale
-        return function.returned if is_read and function.returned is not None else UNKNOWN
+        return (self.returned(callee.number) if is_read else None) or UNKNOWN
 
     def _run_now(self, number: int) -> None:
         """Reads a function for what it returns, or for what it binds, unless it is known or too far inside."""

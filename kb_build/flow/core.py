@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
+from kb_build.flow.source_files import SourceFile
 from kb_build.flow.types import (
     UNKNOWN,
     ClassObject,
@@ -25,11 +27,11 @@ if TYPE_CHECKING:
 
     from kb_build.flow.api import Api
     from kb_build.flow.scopes import Loop, Scope
-    from kb_build.flow.source_files import SourceFile
 
 DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other
 _MOST_BASES = 40
+Reader = FunctionDefinition | SourceFile
 ANY = "*"  # any class, any name: what a script computes
 
 
@@ -73,6 +75,7 @@ class Core:
         self.function: FunctionDefinition | None = None
         self.statement: ast.stmt | None = None
         self._bases: dict[int, tuple[tuple[str, ...], bool]] = {}
+        self._denials: list[tuple[dict[ast.AST, Resolution], ast.AST, Reader]] = []
 
     # What the parts give each other.
 
@@ -136,6 +139,25 @@ class Core:
             node, kind, value, _once(symbols), _once(missing), _once(possible),
             sure and not self.guessing, guarded or self.tolerant > 0 or self.scope.state.doubts(), self.statement,
         )  # fmt: skip
+        if missing:
+            self._denials.append((self.resolutions, node, self.function or self.file))
+
+    def is_current(self, reader: Reader) -> bool:
+        """Whether what a function or a module took from other definitions is still all that is known of them."""
+        return all(self._known(number, name) == kind for (number, name), kind in reader.readings.items())
+
+    def doubt_denials(self) -> None:
+        """Marks as unsure what was found missing in what turned out to be more, and was not read again."""
+        for resolutions, node, reader in self._denials:
+            row = resolutions.get(node)
+            if row is not None and row.missing and row.sure and not self.is_current(reader):
+                resolutions[node] = replace(row, sure=False)
+
+    def _known(self, number: int, name: str) -> Type | None:
+        if not name:
+            return self.functions[number].returned
+        found = self._find_attribute(number, name)
+        return found[0] if found else None
 
     # What a script adds to the API.
 
@@ -178,6 +200,21 @@ class Core:
 
     def class_attribute(self, number: int, name: str) -> tuple[Type, int] | None:
         """An attribute that the script gives to a class or to one of its bases: (type, class)."""
+        found = self._find_attribute(number, name)
+        if found is None or not isinstance(found[0], LocalFunction):
+            self._note(number, name, found[0] if found else None)
+        return found
+
+    def returned(self, number: int) -> Type | None:
+        """What a function is known to return so far; None where nothing is known."""
+        kind = self.functions[number].returned
+        self._note(number, "", kind)
+        return kind
+
+    def _note(self, number: int, name: str, kind: Type | None) -> None:
+        (self.function or self.file).readings.setdefault((number, name), kind)
+
+    def _find_attribute(self, number: int, name: str) -> tuple[Type, int] | None:
         for kind in self.ancestors(number):
             if isinstance(kind, LocalClass):
                 found = self.classes[kind.number].attributes.get(name)
@@ -221,7 +258,7 @@ class Core:
         if function.is_property:
             if function.returned is None and not function.running and self.depth < DEEPEST_RUN:
                 self.run(kind.number)
-            return function.returned or UNKNOWN
+            return self.returned(kind.number) or UNKNOWN
         return LocalFunction(kind.number, receiver)
 
     def instance_of(self, kind: Type) -> Type:

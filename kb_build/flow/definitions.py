@@ -15,6 +15,10 @@ if TYPE_CHECKING:
     from kb_build.flow.source_files import SourceFile
 
 
+# What was known of other definitions when they were read: (class, attribute), or (function, "") for what it returns.
+Readings = dict[tuple[int, str], Type | None]
+
+
 @dataclass(slots=True)
 class FunctionDefinition:
     """A function of the script.
@@ -22,7 +26,7 @@ class FunctionDefinition:
     ``received`` joins what calls pass as far as it is known; ``unknown`` names the parameters for which some pass
     something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
     ``used`` are the attributes that it reads from each name, ``asks_version`` whether it looks at Blender's version,
-    once they were asked for. ``file`` is where it stands.
+    once they were asked for. ``file`` is where it stands, ``readings`` what the last run took from other definitions.
     """
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -41,6 +45,7 @@ class FunctionDefinition:
     used: dict[str, set[str]] | None = None
     asks_version: bool | None = None
     file: SourceFile | None = None
+    readings: Readings = field(default_factory=dict["tuple[int, str]", "Type | None"])
 
 
 @dataclass(slots=True)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.scopes import Scope
 
 if TYPE_CHECKING:
+    from kb_build.flow.definitions import Readings
     from kb_build.flow.types import Resolution, Type
 
 
@@ -18,7 +19,7 @@ class SourceFile:
     """One file: its module's dotted name, its text as a tree (None with an ``error``), and what was found in it.
 
     ``keeps_annotations``: Python leaves its annotations unread. ``steps_left`` is what may still be spent on reading
-    it, ``complete`` whether that was enough.
+    it, ``complete`` whether that was enough, ``readings`` what its module took from definitions.
     """
 
     name: str
@@ -30,6 +31,7 @@ class SourceFile:
     module: Scope = field(default_factory=Scope)
     types: dict[ast.expr, Type] = field(default_factory=dict["ast.expr", "Type"])
     resolutions: dict[ast.AST, Resolution] = field(default_factory=dict["ast.AST", "Resolution"])
+    readings: Readings = field(default_factory=dict["tuple[int, str]", "Type | None"])
     started: bool = False
     complete: bool = True
 

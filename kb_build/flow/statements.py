@@ -535,6 +535,7 @@ class Statements(Calls):
         function = self.functions[number]
         function.running, function.stale, function.runs = True, False, function.runs + 1
         function.seen = self.stamp(function)
+        function.readings = {}
         try:
             with self.inside(function.file or self.file, Scope(function.scope), function):
                 self._read_function(function)

@@ -99,6 +99,67 @@ def test_files_may_import_each_other(api: Api) -> None:
     assert all(analysis.complete for analysis in read(api, files).values())
 
 
+CIRCLE = {
+    "addon/inputs.py": """
+        def remember(caches):
+            print([inputs(cache) for cache in caches])
+        def changed(cache):
+            return inputs(cache)
+        def inputs(cache):
+            owner, = (cache.owner,)
+            return seed(owner, cache)
+        def seed(owner, cache):
+            system = cache.holder
+            return system.seed
+    """,
+    "addon/cache.py": """
+        from . import inputs
+        class Cache:
+            def __init__(self, owner, holder):
+                self.owner, self.holder = owner, holder
+            def changed(self):
+                return inputs.changed(self)
+        def find(scene):
+            return [Cache(scene, scene.rigidbody_world)]
+        def of_modifier(obj, modifier):
+            yield Cache(obj, modifier.particle_system)
+    """,
+    "addon/steps.py": """
+        from . import cache
+        class Steps:
+            def __init__(self):
+                self.held = [one for one in waiting()]
+        def waiting():
+            return [one for one in cache.find()]
+    """,
+}
+
+
+def test_what_turns_out_to_be_more_is_read_again(api: Api) -> None:
+    """An attribute is known by one of the two things that the class is made with when it is first read."""
+    assert unknown(api, CIRCLE) == set()
+
+
+def test_what_is_not_read_again_denies_nothing(api: Api) -> None:
+    """A module is read once, before the functions of those that it uses."""
+    files = {
+        "addon/__init__.py": """
+            import bpy
+            class Kept:
+                def __init__(self):
+                    self.thing = bpy.context.scene
+                def replace(self, thing):
+                    self.thing = bpy.context.object
+            print(Kept().thing.particle_systems, Kept().thing.nothing)
+        """
+    }
+    assert unknown(api, files) == set()
+    files["addon/__init__.py"] = files["addon/__init__.py"].replace("bpy.context.object", "thing.id_data")
+    assert unknown(api, files) == set()
+    files["addon/__init__.py"] = files["addon/__init__.py"].replace("thing.id_data", "bpy.context.scene")
+    assert unknown(api, files) == {("Scene", "particle_systems"), ("Scene", "nothing")}
+
+
 def test_a_long_chain_of_imports_ends(api: Api) -> None:
     files = {f"addon/m{n}.py": f"from .m{n + 1} import x" for n in range(400)}
     assert all(analysis.complete for analysis in read(api, files).values())

@@ -55,6 +55,20 @@ def test_of_one_file_of_a_package_the_others_are_read_too(tree: Path) -> None:
     assert groups(tree, "addon/sub/b.py") == [["(addon/__init__.py)", "(addon/a.py)", "addon/sub/b.py"]]
 
 
+@pytest.mark.parametrize("between", ["pytest-of-root", "open"])
+def test_a_mark_in_somebody_elses_folder_makes_no_package(tmp_path: Path, between: str) -> None:
+    """A stray file in a temporary folder, or above one that no module can have the name of."""
+    inner = tmp_path / "above" / between / "scripts"
+    inner.mkdir(parents=True)
+    (tmp_path / "above" / between).chmod(0o1777 if between == "open" else 0o755)
+    for path in (tmp_path / "above", tmp_path / "above" / between):
+        (path / "__init__.py").touch()
+    (inner / "a.py").touch()
+    (inner / "b.py").touch()
+    expected = [["a.py"]] if between == "open" else [["(../__init__.py)", "(b.py)", "a.py"]]
+    assert groups(inner, "a.py") == expected
+
+
 def test_what_is_named_twice_is_checked_once(tree: Path) -> None:
     (tree / "link.py").symlink_to("loose.py")
     assert groups(tree, "loose.py", "./loose.py", "link.py") == [["loose.py"]]
