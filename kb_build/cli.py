@@ -113,7 +113,7 @@ def _roles(_context: click.Context, _parameter: click.Parameter, value: str | No
 def build(version: str | None, **given: Any) -> None:
     """Build a Blender's knowledge base.
 
-    VERSION is 5.1 or 5.1.2; without it, the Blender of this environment, else the newest known. Nothing is
+    VERSION is 5.1 or 5.1.2; without it, the Blender of this environment, else 5.1. Nothing is
     done when nothing has changed.
     """
     if not SYSTEM.limits_processes:

@@ -30,9 +30,12 @@ _SIGNS: dict[State, tuple[str, str]] = {"good": ("✓", "green"), "poor": ("!", 
 @options.VERSION
 @options.EXECUTABLE
 @options.SANDBOX
+@click.option("--install", is_flag=True, help="Install Blender (about 350 MB) if there is none.")
 @click.option("--json", "as_json", is_flag=True, help="Print all results as JSON.")
-def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | None, as_json: bool) -> None:
-    """Test what a live Blender needs on this machine, and report what is missing.
+def doctor(
+    *, blender: str | None, blender_exe: Path | None, sandbox: Kind | None, install: bool, as_json: bool
+) -> None:
+    """Test what a live Blender needs on this machine, and report what is missing. Nothing is installed unasked.
 
     Exits with 0 if Blender can work here, otherwise with 1.
     """
@@ -41,7 +44,7 @@ def doctor(*, blender: str | None, blender_exe: Path | None, sandbox: Kind | Non
     from agents.commands.doctor_checks import BlenderChoice  # noqa: PLC0415
     from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
 
-    results = _run_checks(BlenderChoice(blender, blender_exe, sandbox), Console(sys.stderr))
+    results = _run_checks(BlenderChoice(blender, blender_exe, sandbox, install), Console(sys.stderr))
     well = all(result.state != "bad" for result in results if result.name in _NEEDED)
     if as_json:
         data = {"works": well, "findings": [asdict(result) for result in results]}

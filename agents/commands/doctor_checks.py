@@ -23,7 +23,7 @@ from agents.blender.supervisor import Supervisor
 from simworlds.own_command import own_command
 from simworlds.releases import USUAL
 from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault
-from simworlds.sandbox.errors import BlenderError, CannotStart
+from simworlds.sandbox.errors import BlenderError, CannotStart, NotInstalled
 from simworlds.sandbox.launch import find_blender
 from simworlds.sandbox.replies import mapping
 from simworlds.sandbox.resource_limits import GIB
@@ -85,11 +85,12 @@ class DoctorResult:
 
 @dataclass(frozen=True, slots=True)
 class BlenderChoice:
-    """Which Blender is checked, and in which sandbox."""
+    """Which Blender is checked, in which sandbox, and whether it may be installed for that."""
 
     version: str | None = None
     blender_exe: Path | None = None
     sandbox: Kind | None = None
+    install: bool = False
 
 
 Check = tuple[str, "Callable[[], DoctorResult]"]
@@ -135,7 +136,10 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
 
 def _find(choice: BlenderChoice, runtimes: list[Runtime]) -> DoctorResult:
     try:
-        runtime = find_blender(choice.version, choice.blender_exe)
+        runtime = find_blender(choice.version, choice.blender_exe, install=choice.install)
+    except NotInstalled as error:
+        advice = f"{own_command()} doctor --install gets it (about 350 MB), as does the first command that needs it"
+        return DoctorResult("Blender", "bad", str(error), advice=advice)
     except CannotStart as error:
         return DoctorResult("Blender", "bad", str(error))
     runtimes.append(runtime)

@@ -2,6 +2,7 @@
 
 BlenderError
 ├── RuntimeMissing     no interpreter with the wanted Blender version, and none could be installed
+│   └── NotInstalled   it may be installed, but not without leave
 ├── ProgramFailed      a program that ran in Blender did not finish
 ├── CannotStart        there is no Blender, or it does not start
 ├── Refusal            the tool cannot do this; Blender still runs
@@ -29,6 +30,14 @@ class BlenderError(UserError):
 
 class RuntimeMissing(BlenderError):  # noqa: N818
     """No interpreter with the wanted Blender version was found or could be installed."""
+
+
+class NotInstalled(RuntimeMissing):
+    """There was no leave to install Blender ``version``."""
+
+    def __init__(self, version: str) -> None:
+        self.version = version
+        super().__init__(f"Blender {version} is not installed.")
 
 
 class ProgramFailed(BlenderError):  # noqa: N818

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from simworlds.sandbox.control_group import ControlGroup, group_parents
-from simworlds.sandbox.errors import CannotStart, RuntimeMissing
+from simworlds.sandbox.errors import CannotStart, NotInstalled, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 from simworlds.sandbox.runtime import Runtime, clean_environment, find_runtime
 from simworlds.sandbox.usage import UsageMonitor
@@ -107,11 +107,20 @@ class Launch:
         self.workspace.remove_named(HALF_WRITTEN)
 
 
-def find_blender(version: str | None = None, blender_exe: Path | None = None) -> Runtime:
-    """The Blender to work in; a missing one is installed, which takes minutes, and is told. Raises CannotStart."""
+def find_blender(
+    version: str | None = None, blender_exe: Path | None = None, *, install: bool = True
+) -> Runtime:
+    """The Blender to work in; a missing one is installed, which takes minutes, and is told.
+
+    Raises CannotStart; NotInstalled without leave to ``install``.
+    """
     try:
         with shown_progress() as progress:
-            return find_runtime(version, home=home_folder(), blender_exe=blender_exe, progress=progress)
+            return find_runtime(
+                version, home=home_folder(), blender_exe=blender_exe, progress=progress, install=install
+            )
+    except NotInstalled:
+        raise
     except RuntimeMissing as error:
         raise CannotStart(f"No Blender was found: {error}") from error
 

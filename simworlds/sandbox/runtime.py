@@ -17,8 +17,8 @@ from typing import Literal
 from simworlds.files import staged_folder
 from simworlds.operating_system import SYSTEM
 from simworlds.processes import CommandFailed, run_group
-from simworlds.releases import Release, minor_of, release, releases, same_version
-from simworlds.sandbox.errors import ProgramFailed, RuntimeMissing
+from simworlds.releases import USUAL, Release, minor_of, release, releases, same_version
+from simworlds.sandbox.errors import NotInstalled, ProgramFailed, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 
 Kind = Literal["executable", "environment", "managed"]
@@ -57,19 +57,20 @@ def find_runtime(
     home: Path,
     blender_exe: Path | None = None,
     progress: Report | None = None,
+    install: bool = True,
 ) -> Runtime:
     """The runtime of a Blender version (``"5.1"``: its newest wheel, ``"5.1.2"``: exactly that one).
 
     ``blender_exe`` is an executable or its folder; without ``version`` it decides the version. ``home`` keeps installed
-    environments. Raises RuntimeMissing, which says what was tried.
+    environments. Raises RuntimeMissing, which says what was tried; NotInstalled without leave to ``install``.
     """
     if blender_exe is not None:
         return _named_executable(blender_exe.expanduser(), version)
     installed = installed_bpy()
-    wanted = version or installed or releases()[-1].bpy
+    wanted = version or installed or USUAL
     if installed is not None and same_version(wanted, installed):
         return Runtime(Path(sys.executable), "environment", installed)
-    return _managed(wanted, home / "runtimes", progress)
+    return _managed(wanted, home / "runtimes", progress, install=install)
 
 
 def installed_bpy() -> str | None:
@@ -171,7 +172,7 @@ def executable_version(executable: Path) -> str:
     return match[1]
 
 
-def _managed(wanted: str, runtimes: Path, progress: Report | None) -> Runtime:
+def _managed(wanted: str, runtimes: Path, progress: Report | None, *, install: bool) -> Runtime:
     entry = release(wanted)
     if entry is None:
         known = ", ".join(row.minor for row in releases())
@@ -182,6 +183,8 @@ def _managed(wanted: str, runtimes: Path, progress: Report | None) -> Runtime:
     version = entry.bpy if wanted.count(".") == 1 else wanted
     folder = runtimes / version
     if not folder.is_dir():
+        if not install:
+            raise NotInstalled(version)
         _install(version, entry, folder, progress)
     return Runtime(SYSTEM.python_in(folder), "managed", version)
 

@@ -246,3 +246,12 @@ def test_stopping_the_checks_ends_blender(tmp_path: Path, monkeypatch: pytest.Mo
     each.close()
     assert list(tmp_path.iterdir()) == []
     monkeypatch.setattr("tempfile.tempdir", None)
+
+
+def test_nothing_is_installed_unasked(tmp_path: Path) -> None:
+    done = run("--json", "--blender", "4.2.0", home=tmp_path)
+    assert done.returncode == 1
+    found = findings(done)["Blender"]
+    assert found["text"] == "Blender 4.2.0 is not installed."
+    assert "doctor --install gets it (about 350 MB)" in found["advice"]
+    assert not (tmp_path / "home" / "runtimes").exists()
