@@ -6,17 +6,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_build.flow.scopes import kept
-from kb_build.flow.types import UNKNOWN, Type, join
+from kb_build.flow.types import UNKNOWN, Readings, Type, join
 
 if TYPE_CHECKING:
     import ast
 
     from kb_build.flow.scopes import Scope
     from kb_build.flow.source_files import SourceFile
-
-
-# What was known of other definitions when they were read: (class, attribute), or (function, "") for what it returns.
-Readings = dict[tuple[int, str], Type | None]
 
 
 @dataclass(slots=True)
@@ -45,7 +41,7 @@ class FunctionDefinition:
     used: dict[str, set[str]] | None = None
     asks_version: bool | None = None
     file: SourceFile | None = None
-    readings: Readings = field(default_factory=dict["tuple[int, str]", "Type | None"])
+    readings: Readings = field(default_factory=Readings)
 
 
 @dataclass(slots=True)

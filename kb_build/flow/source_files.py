@@ -8,9 +8,9 @@ from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
 from kb_build.flow.scopes import Scope
+from kb_build.flow.types import Readings
 
 if TYPE_CHECKING:
-    from kb_build.flow.definitions import Readings
     from kb_build.flow.types import Resolution, Type
 
 
@@ -31,7 +31,7 @@ class SourceFile:
     module: Scope = field(default_factory=Scope)
     types: dict[ast.expr, Type] = field(default_factory=dict["ast.expr", "Type"])
     resolutions: dict[ast.AST, Resolution] = field(default_factory=dict["ast.AST", "Resolution"])
-    readings: Readings = field(default_factory=dict["tuple[int, str]", "Type | None"])
+    readings: Readings = field(default_factory=Readings)
     started: bool = False
     complete: bool = True
 

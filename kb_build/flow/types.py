@@ -188,6 +188,9 @@ Type = (
     | Union
 )
 
+# What was known of other definitions when they were read: (class, attribute), or (function, "") for what it returns.
+Readings = dict[tuple[int, str], Type | None]
+
 UNKNOWN = Unknown()
 NONE = NoneValue()
 BOOL = Plain("bool")
