@@ -147,7 +147,7 @@ def note_verdict(run: Run, stage: Stage, attempt: int, verdict: VerifierVerdict)
 
 def format_review(review: Review, tactic: TacticalPlan) -> str:
     """The review in words, for the other roles; of the lines of acceptance, those that do not hold."""
-    lines = [f"{'Blocking' if review.blocks else 'Not blocking'}: {review.summary}"]
+    lines = [f"{_verdict(review)}: {review.summary}"]
     lines += [
         f"- {'yes' if one.holds else 'NO'}: {one.question} ({one.evidence})" for one in review.judgements
     ]
@@ -160,10 +160,18 @@ def format_review(review: Review, tactic: TacticalPlan) -> str:
     return "\n".join(lines)
 
 
+def _verdict(review: Review) -> str:
+    if review.blocks and not review.blocking:
+        return "Not blocking, but a line of acceptance fails, which keeps the stage open"
+    return "Blocking" if review.blocking else "Not blocking"
+
+
 def still_open(how: str, verdict: VerifierVerdict, review: Review) -> str:
     """What keeps a stage from being closed; "" if nothing does (paper, "Per-Stage Execution Loop")."""
     if not verdict.ok:
         return f"The verifier has {verdict.hard} hard finding{'s' if verdict.hard != 1 else ''}."
-    if review.blocks:
+    if review.blocking:
         return "The review blocks."
+    if review.blocks:
+        return "The review does not block, but a line of acceptance fails."
     return "" if how == "done" else f"The coder did not finish ({how})."

@@ -211,7 +211,7 @@ def quality_of(film: FilmSettings, plan: RenderSettings, asked: int | None, made
     if film.samples != (asked or plan.samples):
         steps.append(f"{film.samples} fitted to the time")
     if made is not None and made != film.samples:
-        steps.append(f"{made} in the last frames, since frames took longer than expected")
+        steps.append(f"{made} in some frames, since frames took longer than expected")
     width, height = plan.resolution
     size = f"{film.width}×{film.height}"
     planned = "" if (film.width, film.height) == (width, height) else f" instead of {width}×{height}"

@@ -205,16 +205,19 @@ class _Ownership:
         tops = [name for name in rest if not any(above in rest for above in self._above(name))]
         best = max((self._object_matches[name][0].quality for name in tops), default=0)
         if units:
-            # Beside a collection of that name, only an object of exactly that name is a unit of its own.
+            # Beside a collection of that name, only an object of exactly that name counts.
             tops = [name for name in tops if self._object_matches[name][0].quality == 3]
-            return units + [self._tree(name, actor.name) for name in tops], "collection"
+            trees = [self._tree(name, actor.name) for name in tops]
+            if actor.count == 1:  # a cannon, and the charge in it that has one of its names
+                return [_joined([*units, *trees])], "collection"
+            return units + trees, "collection"
         leading = [name for name in tops if self._object_matches[name][0].quality == best]
         trees = [self._tree(name, actor.name) for name in leading]
         parts = [part for name in tops if name not in leading for part in self._tree(name, actor.name)]
         if best < 3 and actor.count == 1 and trees:
-            trees = [tuple(dict.fromkeys(part for tree in trees for part in tree))]
+            trees = [_joined(trees)]
         if len(trees) == 1 and parts:
-            trees = [tuple(dict.fromkeys((*trees[0], *parts)))]
+            trees = [_joined([trees[0], parts])]
         return trees, "name"
 
     def _topmost(self, groups: list[str], name: str) -> str:
@@ -298,6 +301,11 @@ class _Ownership:
     def tree(self, name: str) -> tuple[Object, ...]:
         """An object without an owner, with its descendants."""
         return tuple(self.objects[member] for member in self._tree(name, None))
+
+
+def _joined(parts: Iterable[Iterable[str]]) -> tuple[str, ...]:
+    """The names of all parts, each once."""
+    return tuple(dict.fromkeys(name for part in parts for name in part))
 
 
 # Hints

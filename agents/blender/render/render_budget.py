@@ -1,4 +1,4 @@
-"""The time budget of a render: which samples and which frames fit into it. Samples give way first, then frames."""
+"""The time budget of a render: which samples and how many frames fit into it. Samples give way first, then frames."""
 
 from __future__ import annotations
 
@@ -13,6 +13,7 @@ LEAST = 4  # samples; frames with fewer are useless
 _SECOND_TRIAL_LEAST, _SECOND_TRIAL_MOST = 8, 16  # samples
 _SECOND_TRIAL_SHARE = 0.25  # of the time left
 _SURELY = 0.9  # of the time left, for frames that are taken up again
+_WORTH_RAISING = 1.5  # times the samples
 _SLACK = 1.05  # a little over the budget is not worth a change
 
 
@@ -20,7 +21,8 @@ class RenderBudget:
     """``seconds`` from now on for frames of ``samples`` each (None: the engine has no samples to lower).
 
     A frame takes a fixed time plus a time per sample; both are measured on the first frame and corrected by every
-    later one. Samples are never raised again, since a video whose grain changes flickers.
+    later one. Samples are raised again, up to those asked for, only where there is time for many more: a video whose
+    grain keeps changing flickers.
     """
 
     def __init__(
@@ -28,7 +30,7 @@ class RenderBudget:
     ) -> None:
         self._clock = clock
         self._end = clock() + seconds
-        self.samples = samples
+        self.samples = self._wanted = samples
         self._fixed = 0.0
         self._per_sample = 0.0
         self._drift = 1.0
@@ -74,28 +76,38 @@ class RenderBudget:
         else:
             self._drift = (self._drift + seconds / (expected / self._drift)) / 2
 
-    def lower_samples(self, frames: int) -> None:
-        """Lowers ``samples`` as far as the remaining ``frames`` need it."""
-        left = self.left
-        if self._fits(frames, left) or self.samples is None or self._per_sample <= 0:
-            return
-        fitting = (left / frames / self._drift - self._fixed) / self._per_sample
-        self.samples = min(self.samples, max(LEAST, math.floor(fitting)))
+    def fit_samples(self, frames: int) -> None:
+        """Fits ``samples`` to the ``frames`` that are wanted yet, those that were dropped too.
 
-    def affordable_step(self, frames: int) -> int:
-        """n if only every n-th of the remaining ``frames`` fits at the current samples; 0 if none does."""
+        They are lowered as far as needed, and raised where there is time for many more.
+        """
+        if self.samples is None or self._wanted is None or self._per_sample <= 0:
+            return
+        left = self.left
+        if not self._fits(frames, left):
+            self.samples = min(self.samples, max(LEAST, self._affordable_samples(left / frames)))
+        elif (more := min(self._wanted, self._affordable_samples(left * _SURELY / frames))) >= (
+            self.samples * _WORTH_RAISING
+        ):
+            self.samples = more
+
+    def affordable(self, frames: int) -> int:
+        """How many of the remaining ``frames`` there is time for at the current samples."""
         left = self.left
         if self._fits(frames, left):
-            return 1
-        affordable = math.floor(left * _SLACK / self._cost(self.samples))
-        return math.ceil(frames / affordable) if affordable else 0
+            return frames
+        return min(frames, math.floor(left * _SLACK / self._cost(self.samples)))
 
-    def affords(self, frames: int) -> bool:
-        """Whether there is surely time for so many frames more."""
-        return self._cost(self.samples) * frames <= self.left * _SURELY
+    def surely_affordable(self, frames: int) -> int:
+        """For how many of so many frames more there is surely time."""
+        cost = self._cost(self.samples)
+        return min(frames, math.floor(self.left * _SURELY / cost)) if cost > 0 else frames
 
     def _fits(self, frames: int, left: float) -> bool:
         return self._cost(self.samples) * frames <= left * _SLACK
+
+    def _affordable_samples(self, seconds: float) -> int:
+        return math.floor((seconds / self._drift - self._fixed) / self._per_sample)
 
     def _cost(self, samples: int | None) -> float:
         return self._drift * (self._fixed + self._per_sample * (samples or 0))

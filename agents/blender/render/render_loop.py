@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 import time
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -93,10 +92,10 @@ def render_frames(
         if budget is not None and todo:
             while (few := budget.next_trial(len(todo))) is not None:
                 budget.add_trial(few, render(todo[0], few, trial=True))
-        while (todo := todo or _taken_up_again(budget, frames, outcome)) and not call.cancelled.is_set():
+        while (todo := todo or _taken_up_again(budget, outcome)) and not call.cancelled.is_set():
             samples = wanted
             if budget is not None:
-                budget.lower_samples(len(todo))
+                budget.fit_samples(len(todo) + len(outcome.dropped))
                 samples = budget.samples
             number = todo[0]
             trial = store.get(number)
@@ -123,31 +122,32 @@ def render_frames(
 
 
 def _drop_frames(budget: RenderBudget, todo: list[int], outcome: RenderOutcome) -> bool:
-    """Drops the frames for which there is no time; whether there are any. At least one frame is rendered."""
-    step = budget.affordable_step(len(todo))
-    if step == 1:
+    """Drops the frames for which there is no time, evenly; whether there are any. At least one frame is rendered."""
+    count = budget.affordable(len(todo))
+    if count == len(todo):
         return False
-    first = step - 1 if outcome.available else 0
-    stay = todo[first::step] if step else todo[: not outcome.available]
-    dropped = sorted({*todo} - {*stay})
-    outcome.dropped += dropped
+    is_first = not outcome.available
+    stay = _spread(todo, max(count, int(is_first)), with_first=is_first)
+    outcome.dropped += sorted({*todo} - {*stay})
     todo[:] = stay
-    return bool(dropped)
+    return True
 
 
-def _taken_up_again(budget: RenderBudget | None, frames: list[int], outcome: RenderOutcome) -> list[int]:
-    """Dropped frames for which there turned out to be time: those with which every n-th is there, n the least."""
+def _taken_up_again(budget: RenderBudget | None, outcome: RenderOutcome) -> list[int]:
+    """Dropped frames for which there turned out to be time, evenly from all."""
     if budget is None or not outcome.dropped:
         return []
-    there = {*outcome.available}
-    places = [place for place, number in enumerate(frames) if number in there]
-    widest = max((after - before for before, after in itertools.pairwise(places)), default=len(frames))
-    for step in range(1, widest):
-        again = [number for number in frames[places[0] % step :: step] if number not in there]
-        if again and budget.affords(len(again)):
-            outcome.dropped = sorted({*outcome.dropped} - {*again})
-            return again
-    return []
+    dropped = sorted(outcome.dropped)
+    again = _spread(dropped, budget.surely_affordable(len(dropped)), with_first=False)
+    outcome.dropped = sorted({*dropped} - {*again})
+    return again
+
+
+def _spread(frames: list[int], count: int, *, with_first: bool) -> list[int]:
+    """So many of the frames, evenly apart."""
+    if with_first:
+        return [frames[place * len(frames) // count] for place in range(count)]
+    return [frames[-(-(place + 1) * len(frames) // count) - 1] for place in range(count)]
 
 
 def _is_reusable(frame: RenderedFrame | None, samples: int | None, hurried: bool) -> bool:

@@ -92,7 +92,7 @@ def test_a_film_planned_in_eevee_is_drawn_by_what_drew_its_stills() -> None:
             FilmSettings(480, 270, 13, 84, 0.0),
             16,
             4,
-            "32 planned, 16 asked for by the run's options, 13 fitted to the time, 4 in the last frames, since frames "
+            "32 planned, 16 asked for by the run's options, 13 fitted to the time, 4 in some frames, since frames "
             "took longer than expected. Its size: 480×270 instead of 960×540. What time has lowered is not held "
             "against the scene.",
         ),

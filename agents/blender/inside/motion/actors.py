@@ -217,13 +217,18 @@ def _vertex_areas(mesh):
 
 
 def _particle_places(evaluated):
-    """(places, whether alive) of each system of an object."""
-    alive = bpy.types.Particle.bl_rna.properties["alive_state"].enum_items["ALIVE"].value
+    """(places, whether there to be seen) of each system of an object: alive, or dead and shown so."""
+    named = bpy.types.Particle.bl_rna.properties["alive_state"].enum_items
     for index in _particles(evaluated):
-        particles = evaluated.particle_systems[index].particles
+        system = evaluated.particle_systems[index]
+        particles, settings = system.particles, system.settings
         states = numpy.empty(len(particles), numpy.int32)
         particles.foreach_get("alive_state", states)
-        yield coordinates(particles, "location").astype(float), states == alive
+        shown = ["ALIVE", *["DEAD"] * settings.use_dead]
+        yield (
+            coordinates(particles, "location").astype(float),
+            numpy.isin(states, [named[name].value for name in shown]),
+        )
 
 
 def _fluid(evaluated):

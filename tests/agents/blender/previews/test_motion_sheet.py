@@ -204,6 +204,18 @@ def test_cloth_is_measured_by_its_vertices_for_its_origin_stays(session: LiveSes
     assert 6 <= ball["frames"][0][0] <= 12
 
 
+@pytest.mark.parametrize("shown", [True, False])
+def test_dead_particles_count_where_they_are_shown(session: LiveSession, shown: bool) -> None:
+    session.run(
+        "import bpy\nbpy.ops.mesh.primitive_plane_add(size=1, location=(0, 0, 3)); o = bpy.context.object\n"
+        "o.name = 'Shower'; bpy.context.scene.frame_end = 30\n"
+        "o.modifiers.new('P', 'PARTICLE_SYSTEM')\np = o.particle_systems[0].settings\n"
+        f"p.count, p.frame_start, p.frame_end, p.lifetime, p.use_dead = 20, 1, 2, 10, {shown}\n"
+    )
+    shower = actor(session.use(TOOL, actors=["Shower"], frames=[1, 8, 28]), "Shower")
+    assert (shower["phases"][0].get("there", [1, 28])[1] == 28) is shown
+
+
 def test_particles_are_measured_by_their_mean_from_the_first_one_on(session: LiveSession) -> None:
     session.run(
         "s = bpy.context.scene\ns.frame_end = 40\n"
