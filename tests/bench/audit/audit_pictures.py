@@ -35,6 +35,9 @@ LARGEST, LARGEST_OF_ALL = 20_000, 600_000  # bytes
 # What a predicate is asked with, where that is not its default.
 PARAMS: dict[str, dict[str, Any]] = {
     "cloth_collision_partners": {"partners": ["B"]},
+    "rigid_shape": {"shapes": ["MESH"]},
+    "rigid_positive_mass": {"min": 2.0},
+    "particle_type": {"type": "HAIR"},
     "particle_collision_partners": {"partners": ["B"]},
 }
 TOLERANCES = {"NextTo": 0.2}
@@ -114,7 +117,7 @@ def words(value: Any) -> str:
         return ", ".join(f"{key}: {words(part)}" for key, part in value.items()) or "none"
     if isinstance(value, list | tuple):
         return " ".join(map(words, value)) or "none"
-    return str(value)
+    return str(value) or "–"
 
 
 def verdict(name: str, blend: Path) -> tuple[bool, dict[str, Any]]:
