@@ -84,8 +84,8 @@ site: $(STAMP) ## Build the documentation site in build/site, links checked, wit
 rule-pictures: $(STAMP) ## Draw the pictures on the rules' pages [RULES="V1 V2"]
 	@$(PY) tests/agents/protocol/rule_pictures.py $(RULES)
 
-audit-pictures: $(STAMP) ## Draw the pictures of the audit's relations and predicates
-	@$(PY) tests/bench/audit/audit_pictures.py
+audit-pictures: $(STAMP) ## Draw the pictures of the audit's relations and predicates [PICTURES="Above rigid_type"]
+	@$(PY) tests/bench/audit/audit_pictures.py $(PICTURES)
 
 window-figures: $(STAMP) ## Measure SimWorlds in an open Blender, and draw its picture
 	@$(PY) tests/agents/blender/attached/window_figures.py docs/open-blender.png

@@ -26,13 +26,13 @@ def facts_of(script: str, place: Path) -> dict[str, Scene]:
     return {name: read.validate_python(told) for name, told in run(script, place).items()}
 
 
-def run(script: str, place: Path) -> dict[str, Any]:
-    """What the script wrote to the file that it was given."""
+def run(script: str, place: Path, *further: str) -> dict[str, Any]:
+    """What the script wrote to the file that it was given; ``further``: arguments of its own."""
     if installed_bpy() is None:
         pytest.skip("there is no Blender in this environment")
     result = place / "result.json"
     done = subprocess.run(
-        [sys.executable, "-P", str(HERE / script), str(place), str(result)],
+        [sys.executable, "-P", str(HERE / script), str(place), str(result), *further],
         env=clean_environment(place / "settings")
         | {"PYTHONDONTWRITEBYTECODE": "1", "PYTHONPATH": str(HERE), "TMPDIR": str(place)},
         capture_output=True,

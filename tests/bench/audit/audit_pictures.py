@@ -1,4 +1,4 @@
-"""Draws the pictures on the pages of relations and predicates; run as a script.
+"""Draws the pictures on the pages of relations and predicates: all, or those named; run as a script.
 
 Each shows on the left a scene in which one holds, on the right one in which it does not, with the values that the audit
 saw. Nothing is drawn of which the audit says otherwise.
@@ -10,7 +10,7 @@ import io
 import sys
 import tempfile
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 REPO = Path(__file__).resolve().parents[3]
 sys.path[:0] = [str(REPO), str(REPO / "tests"), str(REPO / "tests" / "bench")]
@@ -23,16 +23,22 @@ from bench.audit.audit import audit  # noqa: E402
 from bench.audit.relations import RELATIONS  # noqa: E402
 from bench.scenes.spec import Spec  # noqa: E402
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
 FOLDER = REPO / "docs" / "audit"
 COLOURS = 96
+STEP = 6  # between shades: the noise of a plain floor is less, and would be most of a file
 GREEN: contact_sheet.Colour = (25, 135, 60)
 RED: contact_sheet.Colour = (200, 30, 30)
-LARGEST = 600_000  # bytes, of all pictures
-# Predicate → the role of the actor, and the parameters.
-PREDICATES: dict[str, tuple[str, dict[str, Any]]] = {
-    "cloth_collision_partners": ("cloth", {"partners": ["B"]}),
-    "rigid_type": ("rigid_active", {"type": "ACTIVE"}),
-    "particle_collision_partners": ("particle_emitter", {"partners": ["B"]}),
+LARGEST, LARGEST_OF_ALL = 20_000, 600_000  # bytes
+# What a predicate is asked with, where that is not its default.
+PARAMS: dict[str, dict[str, Any]] = {
+    "cloth_collision_partners": {"partners": ["B"]},
+    "rigid_shape": {"shapes": ["MESH"]},
+    "rigid_positive_mass": {"min": 2.0},
+    "particle_type": {"type": "HAIR"},
+    "particle_collision_partners": {"partners": ["B"]},
 }
 TOLERANCES = {"NextTo": 0.2}
 
@@ -41,20 +47,20 @@ class Otherwise(Exception):  # noqa: N818 - reads as the state it names
     """The audit says of a scene otherwise than its picture would."""
 
 
-def main() -> None:
-    """Draws all pictures."""
+def main(names: list[str]) -> None:
+    """Draws the pictures of these relations and predicates; all, if none is named."""
     FOLDER.mkdir(exist_ok=True)
-    size, wrong = 0, list[str]()
+    wrong = list[str]()
     with tempfile.TemporaryDirectory(prefix="audit-pictures-", ignore_cleanup_errors=True) as place:
         Path(place).chmod(0o755)  # the audit's Blender runs as another user, where this one is root
-        made = run("picture_scenes.py", Path(place).resolve())
+        made = run("picture_scenes.py", Path(place).resolve(), *names)
         for name in made:
             if name.endswith("_not"):
                 continue
             try:
                 columns = [
-                    column(name, Path(blend), Path(picture), holds=key == name)
-                    for key, (blend, picture) in made.items()
+                    column(name, Path(blend), list(map(Path, frames)), holds=key == name)
+                    for key, (blend, frames) in made.items()
                     if key in {name, f"{name}_not"}
                 ]
             except Otherwise as otherwise:
@@ -62,29 +68,44 @@ def main() -> None:
                 continue
             path = FOLDER / f"{name}.png"
             path.write_bytes(beside(columns))
-            size += path.stat().st_size
+            wrong += too_large(path, LARGEST)
             sys.stdout.write(f"{path.relative_to(REPO)}: {path.stat().st_size / 1000:.1f} kB\n")
-    sys.exit("\n".join(wrong) or (f"{size:,} bytes are too many." if size > LARGEST else 0))
+    wrong += too_large(FOLDER, LARGEST_OF_ALL)
+    sys.exit("\n".join(wrong) or 0)
 
 
-def column(name: str, blend: Path, picture: Path, *, holds: bool) -> Image.Image:
+def too_large(path: Path, most: int) -> Iterator[str]:
+    """Says so, of a picture or of a folder of them."""
+    size = sum(file.stat().st_size for file in (path.glob("*.png") if path.is_dir() else (path,)))
+    if size > most:
+        yield f"{path.relative_to(REPO)}: {size:,} bytes are more than {most:,}"
+
+
+def column(name: str, blend: Path, frames: list[Path], *, holds: bool) -> Image.Image:
     """One of the two scenes, with what the audit says of it."""
     told, seen = verdict(name, blend)
     if told is not holds:
         raise Otherwise(f"{blend.stem}: the audit says {told}, {seen}")
     colour = GREEN if holds else RED
-    with Image.open(picture) as image:
-        framed = contact_sheet.grid([contact_sheet.Panel(image.convert("RGB"), border=colour)], 1)
+    panels = [contact_sheet.Panel(opened(frame), border=colour) for frame in frames]
+    framed = contact_sheet.grid(panels, len(panels))
     values = ", ".join(f"{key.replace('_', ' ')} {words(value)}" for key, value in seen.items())
-    title = f"✓ {name} holds" if holds else f"✗ {name} does not hold"
     return contact_sheet.stack(
         [
-            contact_sheet.paragraph(title, framed.width, contact_sheet.Style(14, colour)),
+            contact_sheet.paragraph(name, framed.width, contact_sheet.Style(14)),
+            contact_sheet.paragraph(
+                "✓ holds" if holds else "✗ does not hold", framed.width, contact_sheet.Style(14, colour)
+            ),
             framed,
             contact_sheet.paragraph(values or "–", framed.width, contact_sheet.Style(12)),
         ],
         4,
     )
+
+
+def opened(picture: Path) -> Image.Image:
+    with Image.open(picture) as image:
+        return image.convert("RGB")
 
 
 def words(value: Any) -> str:
@@ -93,35 +114,29 @@ def words(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.3g}"
     if isinstance(value, dict):
-        return ", ".join(f"{key}: {words(part)}" for key, part in value.items())
+        return ", ".join(f"{key}: {words(part)}" for key, part in value.items()) or "none"
     if isinstance(value, list | tuple):
         return " ".join(map(words, value)) or "none"
-    return str(value)
+    return str(value) or "–"
 
 
 def verdict(name: str, blend: Path) -> tuple[bool, dict[str, Any]]:
     """Whether the audit of the file says that it holds of ``A`` (and ``B``), and what it saw."""
-    role, params = PREDICATES.get(name, ("static", {}))
     told: dict[str, Any] = {
-        "id": "cloth_D1_99" if name in PREDICATES else "static_D1_99",
-        "category": "cloth" if name in PREDICATES else "static",
+        "id": "static_D1_99",
+        "category": "static",
         "level": "D1",
         "prompt": "Two things, one of which is called A and the other B.",
         "actors": [
-            {
-                "name": "A",
-                "role": role,
-                "must_have": [{name: params} if name in PREDICATES else "renderable"],
-            },
+            {"name": "A", "role": "static", "must_have": ["renderable"]},
             {"name": "B", "role": "static", "must_have": ["renderable"]},
         ],
-        "relations": [],
     }
     if name in RELATIONS:
         relation: dict[str, Any] = {"type": name, "a": "A", "b": "B"}
         told["relations"] = [relation | ({"tolerance": TOLERANCES[name]} if name in TOLERANCES else {})]
     else:
-        told["frames"] = {"min": 12}
+        told["actors"][0]["must_have"] = [{name: PARAMS.get(name, {})}]
     result = audit(blend, Spec.model_validate(told))
     assert result.not_scored is None, result.not_scored
     if name in RELATIONS:
@@ -140,9 +155,10 @@ def beside(columns: list[Image.Image]) -> bytes:
         picture.paste(one, (x, margin))
         x += one.width + gap
     written = io.BytesIO()
+    picture = picture.point([shade // STEP * STEP + STEP // 2 for shade in range(256)] * 3)
     picture.quantize(COLOURS, dither=Image.Dither.NONE).save(written, "PNG", optimize=True)
     return written.getvalue()
 
 
 if __name__ == "__main__":
-    main()
+    main(sys.argv[1:])

@@ -1,0 +1,57 @@
+"""Scenes for the pictures of what is checked of particles."""
+
+import math
+
+import bpy
+from making import add, bake
+from picture_parts import A, B, Shot, ball, box, coloured, solid
+
+
+def grains(source, count=120):
+    """Grains that leave a surface in the first frames, without a push; the settings."""
+    seed = ball("Seed", (5, 0, -1), 0.04, A)
+    source.modifiers.new("Grains", "PARTICLE_SYSTEM")
+    system = source.particle_systems[0]
+    system.point_cache.frame_end = 30
+    settings = system.settings
+    settings.count, settings.lifetime, settings.frame_start, settings.frame_end = count, 60, 1, 10
+    settings.particle_size, settings.normal_factor = 1.0, 0.0
+    settings.render_type, settings.instance_object = "OBJECT", seed
+    return settings
+
+
+def plate(place, size=0.5):
+    return coloured(add("plane", "A", place, size=size), A)
+
+
+def particle_type(holds):
+    settings = grains(ball("A", (0, 0, 0.55), 0.3, A), 500)
+    if holds:
+        settings.type, settings.render_type, settings.hair_length = "HAIR", "PATH", 0.25
+    else:
+        settings.count, settings.normal_factor = 150, 0.5
+    bake()
+
+
+def particle_collision_partners(holds):
+    shelf = box("B", (0, 0, 0.45), (0.9, 0.9, 0.08), B)
+    if holds:
+        solid(shelf).collision.damping_factor = 0.9
+    grains(plate((0, 0, 1.0)))
+    bake()
+
+
+def particle_force_fields(holds):
+    fan = coloured(add("cylinder", "B", (-0.8, 0, 0.6), radius=0.45, depth=0.1), B)
+    fan.rotation_euler.y = math.radians(90)
+    bpy.ops.object.forcefield_toggle()
+    fan.field.type, fan.field.strength = "WIND", 12 if holds else 0
+    grains(plate((0, 0, 1.2), 0.3)).frame_end = 26
+    bake()
+
+
+SHOTS = {
+    "particle_type": Shot(particle_type, (14,)),
+    "particle_collision_partners": Shot(particle_collision_partners, (30,)),
+    "particle_force_fields": Shot(particle_force_fields, (26,), look=(0.1, 0, 0.6)),
+}
