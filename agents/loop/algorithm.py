@@ -6,6 +6,7 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from agents.loop.asset_library import prompt_with_assets
+from agents.loop.draft import room_for_film
 from agents.loop.errors import NotSaved
 from agents.loop.events import PlanMade, StageMoved
 from agents.loop.journal import PLAN_NAME
@@ -35,7 +36,7 @@ def make(run: Run) -> RenderResult:
     """From the prompt to a rendered scene (paper, Algorithm 1). Raises RunError, ModelError."""
     run.save("modeling", START)
     planner = Planner(run.context)
-    plan = planner.strategic(prompt_with_assets(run))
+    plan = planner.strategic(prompt_with_assets(run), room_for_film(run))
     run.write(PLAN_NAME, plan_file(plan))
     run.journal.note(PlanMade(plan=plan))
     staged = run.options.stages

@@ -15,6 +15,7 @@ from agents.loop.run import RENDER, RUNNER
 from agents.loop.run_state import DEFAULT_RENDER_MINUTES
 from agents.loop.telling_frames import telling_frames
 from simworlds.llm.messages import Picture, Text
+from simworlds.operating_system import SYSTEM
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -34,6 +35,11 @@ _FITTED = """\
 Frames {frames} of the film: its ends, and where most happens, with its own size, samples and denoising.
 The film: {film}. A frame takes about {each:.1f} s, as asked for it would take {full:.1f} s; all of it takes about \
 {minutes:.0f} min; {most:g} min are allowed.{options}"""
+_ROOM = """\
+The film may take {minutes:g} minutes on the {cores} cores here; no GPU is counted on. In that time Cycles makes some \
+{millions:,.0f} million samples (frames × width × height × samples a pixel) of a simple scene, and half as many with \
+glass, volumes or many lights. What is planned beyond that is made smaller."""
+_SAMPLES_A_CORE_SECOND = 0.15  # million, of a furnished room
 _OPTIONS = " The run's options ask for {} samples, the plan for {}: the options hold."
 
 
@@ -58,6 +64,13 @@ def asked_of(plan: RenderSettings) -> dict[str, Any]:
 def minutes_of(run: Run) -> float:
     """How long the film may take."""
     return run.render_minutes or DEFAULT_RENDER_MINUTES
+
+
+def room_for_film(run: Run) -> str:
+    """What a film can have in its time on this machine, in words for who plans it."""
+    minutes, cores = minutes_of(run), SYSTEM.cores()
+    millions = round(minutes * 60 * cores * _SAMPLES_A_CORE_SECOND, -1)
+    return _ROOM.format(minutes=minutes, cores=cores, millions=millions)
 
 
 def draft(run: Run, plan: RenderSettings, number: int) -> Draft:

@@ -82,9 +82,10 @@ class Planner:
         self._plan: tuple[str, ...] = ()
         self._news: tuple[str, ...] = ()
 
-    def strategic(self, prompt: str) -> ScenePlan:
-        """The scene plan, which contradicts itself nowhere."""
-        plan = self._talk.data("", ScenePlan, _STRATEGIC.format(prompt=prompt), reader=_PlanReader())
+    def strategic(self, prompt: str, room: str = "") -> ScenePlan:
+        """The scene plan, which contradicts itself nowhere. ``room`` tells how much of a film there is time for."""
+        said = [_STRATEGIC.format(prompt=prompt), *([room] if room else [])]
+        plan = self._talk.data("", ScenePlan, *said, reader=_PlanReader())
         self._plan = (self._talk.said,)
         return plan
 
