@@ -205,7 +205,7 @@ class AttachedBlender:
         try:
             sock = socket.create_connection(("127.0.0.1", blender.port), timeout=link.MEET_SECONDS)
             sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            end = link.Link(sock, blender.token, listens=False)
+            end = link.Link(sock, blender.token)
             end.send({"hello": {"name": self._client, "protocol": link.PROTOCOL}})
             first = end.receive()
         except (OSError, EOFError, channel.ForgedFrame) as error:

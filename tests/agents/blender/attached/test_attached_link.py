@@ -45,10 +45,20 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def listener() -> Iterator[Listener]:
-    """What listens as the extension does; the tests answer in Blender's place."""
+    """What listens as the extension does; the tests answer in Blender's place, and a thread is its timer."""
     listening = Listener(TOKEN, ABOUT)
     announcement.write({"port": listening.port, "token": TOKEN, **ABOUT})
+    ending = threading.Event()
+
+    def tick() -> None:
+        while not ending.wait(0.01):
+            listening.turn()
+
+    timer = threading.Thread(target=tick)
+    timer.start()
     yield listening
+    ending.set()
+    timer.join()
     listening.stop("the end")
 
 
@@ -124,7 +134,7 @@ def test_one_client_at_a_time_unless_the_user_allows_more(listener: Listener) ->
 
 def test_a_stranger_learns_nothing(listener: Listener) -> None:
     with socket.create_connection(("127.0.0.1", listener.port)) as sock:
-        end = link.Link(sock, "b" * 64, listens=False)
+        end = link.Link(sock, "b" * 64)
         end.send({"hello": {"name": "a stranger", "protocol": link.PROTOCOL}})
         with pytest.raises((EOFError, OSError)):
             end.receive()
