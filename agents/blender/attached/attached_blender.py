@@ -212,8 +212,8 @@ class AttachedBlender:
             if sock is not None:
                 sock.close()
             raise Refusal(
-                f"{blender.about} does not answer ({type(error).__name__}). Ask the user to press Stop and Start in "
-                "the panel SimWorlds, then call again."
+                f"{blender.about} does not answer ({type(error).__name__}). If it is busy, call again when it is done; "
+                "else ask the user to press Stop and Start in the panel SimWorlds, then call again."
             ) from error
         if "refused" in first:
             end.close()

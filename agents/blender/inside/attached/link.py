@@ -70,7 +70,7 @@ class OpenEnd:
         sock.setblocking(False)
         self._sock, self._token = sock, token
         self._mine = secrets.token_bytes(NONCE_BYTES)
-        self._received, self._unsent = bytearray(), bytearray(self._mine)
+        self._received, self._unsent = b"", self._mine
         self._encode = self._decoder = None
 
     @property
@@ -100,7 +100,7 @@ class OpenEnd:
         self._received += data
         if len(self._received) < NONCE_BYTES:
             return []
-        theirs, more = bytes(self._received[:NONCE_BYTES]), bytes(self._received[NONCE_BYTES:])
+        theirs, more = self._received[:NONCE_BYTES], self._received[NONCE_BYTES:]
         key = _key(self._token, self._mine + theirs)
         self._encode = channel.Encoder(key, channel.WORKER)
         self._decoder = channel.Decoder(key, channel.SUPERVISOR)
@@ -118,7 +118,7 @@ class OpenEnd:
         """Sends what the other end takes now. Raises OSError."""
         with contextlib.suppress(BlockingIOError):
             while self._unsent:
-                del self._unsent[: self._sock.send(self._unsent)]
+                self._unsent = self._unsent[self._sock.send(self._unsent) :]
 
     def close(self):
         """Closes the socket, in any state."""
