@@ -205,15 +205,15 @@ class AttachedBlender:
         try:
             sock = socket.create_connection(("127.0.0.1", blender.port), timeout=link.MEET_SECONDS)
             sock.setsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY, 1)
-            end = link.Link(sock, blender.token, listens=False)
+            end = link.Link(sock, blender.token)
             end.send({"hello": {"name": self._client, "protocol": link.PROTOCOL}})
             first = end.receive()
         except (OSError, EOFError, channel.ForgedFrame) as error:
             if sock is not None:
                 sock.close()
             raise Refusal(
-                f"{blender.about} does not answer ({type(error).__name__}). Ask the user to press Stop and Start in "
-                "the panel SimWorlds, then call again."
+                f"{blender.about} does not answer ({type(error).__name__}). If it is busy, call again when it is done; "
+                "else ask the user to press Stop and Start in the panel SimWorlds, then call again."
             ) from error
         if "refused" in first:
             end.close()

@@ -21,12 +21,12 @@ _LINES_AROUND = 3  # lines shown before and after the one that failed
 def execute(arguments, report):
     """Runs ``code``. Returns ``value`` (of a final expression), ``changed``, and ``error`` if it failed."""
     del report
-    from . import interpreter_state  # the user's own Blender, where code runs too, keeps no such state
+    from . import interpreter_state  # the user's own Blender, where code runs too, keeps another
 
     def restore(loaded):
         interpreter_state.current.stop_alarms_and_tracers()  # pyright: ignore[reportAttributeAccessIssue]
-        interpreter_state.current.forget_modules(loaded)  # pyright: ignore[reportAttributeAccessIssue]
-        interpreter_state.current.restore_names()  # pyright: ignore[reportAttributeAccessIssue]
+        interpreter_state.current.names.forget_modules(loaded)  # pyright: ignore[reportAttributeAccessIssue]
+        interpreter_state.current.names.restore()  # pyright: ignore[reportAttributeAccessIssue]
 
     return run_watched(arguments["code"], restore)
 

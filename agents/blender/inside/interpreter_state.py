@@ -2,37 +2,22 @@
 """Restores the Python interpreter after each call, so that executed code cannot break the next one."""
 
 import _thread
-import builtins
 import contextlib
 import ctypes
 import faulthandler
 import fcntl
-import gc
-import locale
 import os
 import signal
 import sys
-import threading
 import time
-import types
-import warnings
+
+from .kept_names import KeptNames
+from .kept_settings import KeptSettings
 
 _GRACE_SECONDS = 0.5
 _STREAMS = ("stdin", "stdout", "stderr")
-_ALARMS = (signal.ITIMER_REAL, signal.ITIMER_VIRTUAL, signal.ITIMER_PROF)
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM, signal.SIGVTALRM, signal.SIGPROF, signal.SIGCHLD)
-# Modules of which every name is restored: the tools depend on them.
-_RESTORED_MODULES = (
-    *("ast", "builtins", "contextlib", "ctypes", "fcntl", "functools", "gc", "hashlib", "hmac"),
-    *("importlib", "io"),
-    *("json", "json.decoder", "json.encoder", "linecache", "math", "os", "posixpath", "re"),
-    *("signal", "struct"),
-    *("threading", "time", "traceback", "types", "bpy", "bpy.ops", "bpy.path", "bpy.utils", "mathutils"),
-)
-_CODE = (types.FunctionType, types.BuiltinFunctionType, types.ModuleType, type)
-_ABOVE = (__package__, "simworlds")
-_OWN = tuple(f"{name}." for name in _ABOVE)  # how the names of our modules begin
-_OF_FUNCTIONS = frozenset({"__code__", "__defaults__", "__kwdefaults__"})
+_PACKAGES = (__package__, "simworlds")
 _current_frames = sys._current_frames
 _count_started = _thread._count
 
@@ -49,84 +34,25 @@ class InterpreterState:
         # On a crash, writes which line of Python it was in.
         faulthandler.enable(file=self._fds[2], all_threads=False)
         self._streams = {name: getattr(sys, name) for name in _STREAMS}
-        self._modules = {**sys.modules}
-        self._names = [
-            (module, {**vars(module)})
-            for name in _RESTORED_MODULES
-            if (module := sys.modules.get(name)) is not None
-        ]
-        self._code = {}
-        for module, names in self._names:
-            self._remember_code(module.__name__, names)
-        self._seen = 0
-        self._builtins = {**vars(builtins)}
-        self._environment = {**os.environ}
-        self._lists = [
-            (kept, [*kept])
-            for kept in (sys.path, sys.meta_path, sys.path_hooks, warnings.filters, gc.callbacks)
-        ]
-        self._folder = os.getcwd()
-        self._mask = os.umask(0o077)
-        os.umask(self._mask)
-        self._locale = locale.setlocale(locale.LC_ALL)
+        self.names = KeptNames(_PACKAGES)
+        self._settings = KeptSettings()
         self._cores = getattr(os, "sched_getaffinity", lambda _: None)(0)
-        self._recursion = sys.getrecursionlimit()
-        self._switch = sys.getswitchinterval()
-        self._hooks = (sys.excepthook, sys.unraisablehook, sys.displayhook, threading.excepthook)
         # None: set by Blender itself, in C. Code that replaces it leaves Python's default behind.
         self._signals = {number: signal.getsignal(number) or signal.SIG_DFL for number in _SIGNALS}
         self._threads = self._tasks = set()
         self._started = 0
         self._flush_c = ctypes.CDLL(None).fflush
         self._audited = 0
-        self._recoded = False
         sys.addaudithook(self._note_events)
         globals()["current"] = self
 
-    def _note_events(self, event, arguments):
+    def _note_events(self, event, _arguments):
         if event == "sys.addaudithook":
             self._audited += 1
-        elif event == "object.__setattr__" and arguments[1] in _OF_FUNCTIONS:
-            self._recoded = True
 
     def protect_modules(self):
         """Has the functions and classes of all our modules that are loaded restored as well."""
-        if len(sys.modules) == self._seen:
-            return
-        self._seen = len(sys.modules)
-        known = {id(module) for module, _ in self._names}
-        for module in list(sys.modules.values()):
-            name = str(getattr(module, "__name__", ""))
-            if (name in _ABOVE or name.startswith(_OWN)) and id(module) not in known:
-                code = {name: value for name, value in vars(module).items() if isinstance(value, _CODE)}
-                self._names.append((module, code))
-                self._remember_code(module.__name__, code)
-
-    def forget_modules(self, loaded):
-        """Forgets our modules that are not among ``loaded``: code has imported them, and may have changed them."""
-        for name in [name for name in sys.modules if name.startswith(_OWN) and name not in loaded]:
-            del sys.modules[name]
-            above, _, last = name.rpartition(".")
-            if above in sys.modules:
-                vars(sys.modules[above]).pop(last, None)
-
-    def _remember_code(self, module, names):
-        """Remembers what the module's own functions and methods do: code can be put into a function as it stands."""
-        own = [
-            value
-            for value in names.values()
-            if isinstance(value, (types.FunctionType, type)) and value.__module__ == module
-        ]
-        classes = [value for value in own if isinstance(value, type)]
-        for value in [*own, *(value for owner in classes for value in vars(owner).values())]:
-            function = value
-            if isinstance(value, (staticmethod, classmethod)):
-                function = value.__func__
-            elif isinstance(value, property):
-                function = value.fget
-            if isinstance(function, types.FunctionType):
-                kept = (function.__code__, function.__defaults__, function.__kwdefaults__)
-                self._code[id(function)] = (function, *kept)
+        self.names.protect_packages()
 
     def before(self):
         """Call it before a call: what that leaves behind is counted from here."""
@@ -155,19 +81,10 @@ class InterpreterState:
 
     def stop_alarms_and_tracers(self):
         """Ends what code has set up to interrupt others later."""
-        for alarm in _ALARMS:
-            signal.setitimer(alarm, 0)
-        faulthandler.cancel_dump_traceback_later()
+        self._settings.stop_alarms_and_tracers()
         for number, handler in self._signals.items():
             signal.signal(number, handler)
         signal.pthread_sigmask(signal.SIG_SETMASK, ())
-        sys.settrace(None)
-        sys.setprofile(None)
-        monitoring = getattr(sys, "monitoring", None)
-        for tool in range(6) if monitoring else ():
-            if monitoring.get_tool(tool) is not None:
-                monitoring.set_events(tool, 0)
-                monitoring.free_tool_id(tool)
 
     def _restore(self):
         for number, kept in self._fds.items():
@@ -176,46 +93,10 @@ class InterpreterState:
             if stream is not None and stream.closed:
                 self._streams[name] = self._reopened(name)
             setattr(sys, name, self._streams[name])
-        self.restore_names()
-        for kept, content in self._lists:
-            kept[:] = content  # pyright: ignore[reportCallIssue, reportIndexIssue]
-        sys.path, sys.meta_path, sys.path_hooks, warnings.filters = (kept for kept, _ in self._lists[:4])
-        sys.excepthook, sys.unraisablehook, sys.displayhook, threading.excepthook = self._hooks
-        if {**os.environ} != self._environment:
-            os.environ.clear()
-            os.environ.update(self._environment)
-        os.chdir(self._folder)
-        os.umask(self._mask)
-        sys.setrecursionlimit(self._recursion)
-        sys.setswitchinterval(self._switch)
-        if locale.setlocale(locale.LC_ALL) != self._locale:
-            locale.setlocale(locale.LC_ALL, self._locale)
+        self.names.restore()
+        self._settings.restore()
         if self._cores is not None and os.sched_getaffinity(0) != self._cores:
             os.sched_setaffinity(0, self._cores)
-        if (numpy := sys.modules.get("numpy")) is not None:
-            numpy.seterr(divide="warn", over="warn", under="ignore", invalid="warn")
-        gc.enable()
-
-    def restore_names(self):
-        """Restores the names in protected modules, what their functions do, the builtins, and ``sys.modules``.
-
-        New names in modules stay: importing a submodule adds one.
-        """
-        for module, kept in self._names:
-            now = vars(module)
-            for name, value in kept.items():
-                if now.get(name) is not value:
-                    now[name] = value
-        if self._recoded:
-            for function, *kept in self._code.values():
-                function.__code__, function.__defaults__, function.__kwdefaults__ = kept
-            self._recoded = False
-        for name in vars(builtins).keys() - self._builtins.keys():
-            del vars(builtins)[name]  # pyright: ignore[reportIndexIssue]
-        for name, module in self._modules.items():
-            sys.modules.setdefault(name, module)
-        for module, _ in self._names:
-            sys.modules[module.__name__] = module
 
     @staticmethod
     def _reopened(name):

@@ -12,12 +12,18 @@ from ..changes import listen
 from ..execute import run_watched
 from .code_guard import CodeGuard, is_of_fluid
 from .undo_steps import MOST_BLOCKS
+from .user_python import UserPython
+
+_interrupt = ctypes.pythonapi.PyThreadState_SetAsyncExc
 
 
 def apply(arguments, report):
-    """Runs ``code`` for at most ``seconds``: as ``execute`` does, but guarded. Adds ``noted`` to its result."""
+    """Runs ``code`` for at most ``seconds``: as ``execute`` does, but guarded. Adds ``noted`` to its result.
+
+    The interpreter is left as it was.
+    """
     del report
-    guard = CodeGuard()
+    guard, python = CodeGuard(), UserPython()
 
     @contextlib.contextmanager
     def guarded():
@@ -25,7 +31,10 @@ def apply(arguments, report):
             guard.check_operators(arguments["code"])
             yield
 
-    return {**run_watched(arguments["code"], around=guarded, most=MOST_BLOCKS), "noted": guard.noted}
+    result = run_watched(
+        arguments["code"], restore=lambda _loaded: python.restore(), around=guarded, most=MOST_BLOCKS
+    )
+    return {**result, "noted": guard.noted}
 
 
 def rehearse(arguments, report):
@@ -71,11 +80,11 @@ class OutOfTime(BaseException):
 @contextlib.contextmanager
 def _deadline(seconds):
     """Ends Python code that runs on, at its next line: what Blender itself does cannot be interrupted."""
-    main, done = threading.get_ident(), threading.Event()
+    main, done = ctypes.c_ulong(threading.get_ident()), threading.Event()
 
     def watch():
         if not done.wait(seconds):
-            ctypes.pythonapi.PyThreadState_SetAsyncExc(ctypes.c_ulong(main), ctypes.py_object(OutOfTime))
+            _interrupt(main, ctypes.py_object(OutOfTime))
 
     watcher = threading.Thread(target=watch, name="simworlds-deadline", daemon=True)
     watcher.start()
@@ -84,3 +93,7 @@ def _deadline(seconds):
     finally:
         done.set()
         watcher.join(1.0)
+        for _ in range(
+            2
+        ):  # at the end of a loop Python raises what it was told to: here, and not in what comes after
+            pass

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Runs the calls of clients on Blender's main thread, one at a time, from a timer."""
+"""Listens to clients and runs their calls, one at a time, from a timer of Blender's."""
 
 import contextlib
 import importlib
@@ -95,8 +95,6 @@ class CallRunner:
         self._opened = 1  # files, one after the other
         self._wanted = deque()
 
-    # Main thread
-
     @property
     def clients(self):
         """The names of the clients."""
@@ -161,18 +159,21 @@ class CallRunner:
         self._wanted.append(work)
 
     def tick(self):
-        """Runs one call at most. Blender's timer calls it; returns seconds until the next time."""
+        """Takes messages, and runs one call at most. Blender's timer calls it; returns seconds until the next time."""
         if self.listener is None:
             return None
-        if self.listener.changed.is_set():
-            self.listener.changed.clear()
-            self._redraw()
         try:
+            self.listener.turn()
+            if self.listener.changed:
+                self.listener.changed = False
+                self._redraw()
             self._step()
         except Exception:
             traceback.print_exc()
-        now = time.monotonic()
-        return _QUICK if now < self._lively or self._head is not None or self._work is not None else _SLOW
+        if self.listener is None:
+            return None
+        waits = self._head is not None or self._work is not None or self.listener.is_talking
+        return _QUICK if waits or time.monotonic() < self._lively else _SLOW
 
     def _step(self):
         copies.keep_unsaved()
@@ -254,9 +255,9 @@ class CallRunner:
             return {"refused": str(error)[:_LONGEST], "kind": "large"}
         except Refused as error:
             return {"refused": str(error)[:_LONGEST]}
-        except ModuleNotFoundError as error:
-            return {"missing": str(error.name)}
         except Exception as error:
+            if isinstance(error, ModuleNotFoundError) and not str(error.name).startswith(_WORKER):
+                return {"missing": str(error.name)}
             return {
                 "failed": f"{type(error).__name__}: {error}"[:_LONGEST],
                 "traceback": traceback.format_exc()[-8000:],

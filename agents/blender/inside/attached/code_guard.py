@@ -53,6 +53,7 @@ _EVENTS = {
     "os.kill": "ends processes",
     "os.chdir": "changes the current folder",
     "_thread.start_new_thread": "starts a thread",
+    "sys.addaudithook": "watches the interpreter for good",
     "signal.pthread_kill": "ends processes",
 }
 _ON_FILES = {

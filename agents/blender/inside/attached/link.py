@@ -14,15 +14,17 @@ import socket
 from simworlds.sandbox.inside import channel
 
 NONCE_BYTES = 32
-MEET_SECONDS = 5.0
+MEET_SECONDS = 20.0  # Blender answers when it has done what it is doing
 PROTOCOL = 1
 _CHUNK = 1 << 16
+_MOST_AT_ONCE = 64  # chunks that are read before the window gets its turn
+_MOST_UNSENT = 64 * 1024 * 1024
 
 
 class Link:
-    """One end of a connection. ``send`` may be called by one thread and ``receive`` by another."""
+    """SimWorlds' end of a connection, which waits. ``send`` may be called by one thread and ``receive`` by another."""
 
-    def __init__(self, sock, token, *, listens):
+    def __init__(self, sock, token):
         """Exchanges the random bytes. Raises OSError, and EOFError if the other end closes."""
         self._sock = sock
         sock.settimeout(MEET_SECONDS)
@@ -31,16 +33,10 @@ class Link:
         theirs = b""
         while len(theirs) < NONCE_BYTES:
             theirs += self._read(NONCE_BYTES - len(theirs))
-        both = mine + theirs if listens else theirs + mine
-        key = hmac.new(token.encode(), b"simworlds/" + both, hashlib.sha256).digest()
-        own, other = (channel.WORKER, channel.SUPERVISOR) if listens else (channel.SUPERVISOR, channel.WORKER)
-        self._encode = channel.Encoder(key, own)
-        self._decoder = channel.Decoder(key, other)
+        key = _key(token, theirs + mine)
+        self._encode = channel.Encoder(key, channel.SUPERVISOR)
+        self._decoder = channel.Decoder(key, channel.WORKER)
         self._waiting = []
-
-    def fileno(self):
-        """The socket's descriptor."""
-        return self._sock.fileno()
 
     def timeout(self, seconds):
         """Sets for how long reading and writing may wait; None: for ever."""
@@ -64,6 +60,76 @@ class Link:
 
     def close(self):
         """Closes the socket, in any state, from any thread."""
-        with contextlib.suppress(OSError):
-            self._sock.shutdown(socket.SHUT_RDWR)
-        self._sock.close()
+        _close(self._sock)
+
+
+class OpenEnd:
+    """The open Blender's end of a connection, which never waits: ``receive`` and ``flush`` do what can be done now."""
+
+    def __init__(self, sock, token):
+        sock.setblocking(False)
+        self._sock, self._token = sock, token
+        self._mine = secrets.token_bytes(NONCE_BYTES)
+        self._received, self._unsent = b"", self._mine
+        self._encode = self._decoder = None
+
+    @property
+    def is_sent(self):
+        """Whether all has left."""
+        return not self._unsent
+
+    def receive(self):
+        """The messages that have come, maybe none. Raises EOFError, OSError, and channel.ForgedFrame for a wrong
+        token."""
+        messages = []
+        try:
+            for _ in range(_MOST_AT_ONCE):
+                data = self._sock.recv(_CHUNK)
+                if not data and not messages:
+                    raise EOFError
+                if not data:
+                    break
+                messages += self._taken(data)
+        except BlockingIOError:
+            pass
+        return messages
+
+    def _taken(self, data):
+        if self._decoder is not None:
+            return self._decoder.feed(data)
+        self._received += data
+        if len(self._received) < NONCE_BYTES:
+            return []
+        theirs, more = self._received[:NONCE_BYTES], self._received[NONCE_BYTES:]
+        key = _key(self._token, self._mine + theirs)
+        self._encode = channel.Encoder(key, channel.WORKER)
+        self._decoder = channel.Decoder(key, channel.SUPERVISOR)
+        return self._decoder.feed(more)
+
+    def send(self, message):
+        """Sends a dictionary, now or with ``flush``. Raises OSError, channel.TooLarge, and what JSON cannot hold."""
+        assert self._encode is not None
+        self._unsent += self._encode(message)
+        if len(self._unsent) > _MOST_UNSENT:
+            raise OSError("the other end does not take what it is sent")
+        self.flush()
+
+    def flush(self):
+        """Sends what the other end takes now. Raises OSError."""
+        with contextlib.suppress(BlockingIOError):
+            while self._unsent:
+                self._unsent = self._unsent[self._sock.send(self._unsent) :]
+
+    def close(self):
+        """Closes the socket, in any state."""
+        _close(self._sock)
+
+
+def _key(token, both):
+    return hmac.new(token.encode(), b"simworlds/" + both, hashlib.sha256).digest()
+
+
+def _close(sock):
+    with contextlib.suppress(OSError):
+        sock.shutdown(socket.SHUT_RDWR)
+    sock.close()

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 TOKEN = "a" * 64
+TURNS = threading.Lock()  # in Blender all this is done on one thread
 ABOUT: dict[str, Any] = {
     "process": os.getpid(),
     "blender": "4.2.1 LTS",
@@ -45,10 +46,21 @@ def home(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 @pytest.fixture
 def listener() -> Iterator[Listener]:
-    """What listens as the extension does; the tests answer in Blender's place."""
+    """What listens as the extension does; the tests answer in Blender's place, and a thread is its timer."""
     listening = Listener(TOKEN, ABOUT)
     announcement.write({"port": listening.port, "token": TOKEN, **ABOUT})
+    ending = threading.Event()
+
+    def tick() -> None:
+        while not ending.wait(0.01):
+            with TURNS:
+                listening.turn()
+
+    timer = threading.Thread(target=tick)
+    timer.start()
     yield listening
+    ending.set()
+    timer.join()
     listening.stop("the end")
 
 
@@ -93,10 +105,11 @@ def test_a_call_is_answered_with_what_the_user_did(listener: Listener) -> None:
 
     def answer() -> None:
         request = listener.requests.get(timeout=10)
-        request.client.send({"ticket": request.ticket, "progress": [1, 2, "half"]})
-        request.reply(
-            value=request.arguments, seconds=0.1, left=[], events=["The user has saved."], stdout="hi"
-        )
+        with TURNS:
+            request.client.send({"ticket": request.ticket, "progress": [1, 2, "half"]})
+            request.reply(
+                value=request.arguments, seconds=0.1, left=[], events=["The user has saved."], stdout="hi"
+            )
 
     thread = threading.Thread(target=answer)
     thread.start()
@@ -124,7 +137,7 @@ def test_one_client_at_a_time_unless_the_user_allows_more(listener: Listener) ->
 
 def test_a_stranger_learns_nothing(listener: Listener) -> None:
     with socket.create_connection(("127.0.0.1", listener.port)) as sock:
-        end = link.Link(sock, "b" * 64, listens=False)
+        end = link.Link(sock, "b" * 64)
         end.send({"hello": {"name": "a stranger", "protocol": link.PROTOCOL}})
         with pytest.raises((EOFError, OSError)):
             end.receive()
@@ -173,8 +186,9 @@ def test_what_a_client_has_asked_is_dropped_when_it_leaves(listener: Listener) -
 def test_a_goodbye_is_told_once_and_the_next_call_connects_again(listener: Listener) -> None:
     blender = attached()
     assert blender.about
-    for client in listener.clients:
-        client.end("The user has stopped SimWorlds in Blender's panel.")
+    with TURNS:
+        for client in listener.clients:
+            client.end("The user has stopped SimWorlds in Blender's panel.")
     assert becomes(lambda: not listener.clients)
     with pytest.raises(Refusal, match="The user has stopped SimWorlds in Blender's panel"):
         blender.about  # noqa: B018 - connects

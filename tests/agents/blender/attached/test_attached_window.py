@@ -27,6 +27,36 @@ pytestmark = [pytest.mark.window, pytest.mark.anyio]
 
 STATE = {"detail": "normal", "objects": None, "sections": ["collections", "objects", "view"]}
 
+BREAK_PYTHON = """\
+# what careless code does
+import builtins, gc, os, sys, warnings
+sys.path.clear()
+sys.path_hooks.clear()
+sys.path_importer_cache.clear()
+try:
+    import chunk  # every folder is now remembered as one without modules
+except ImportError:
+    pass
+for name in [name for name in sys.modules if name.split(".")[0] in ("json", "numpy")]:
+    del sys.modules[name]
+sys.meta_path.clear()
+builtins.sorted = None
+builtins.added = 1
+os.path.join = os.getcwd = None
+os.environ["PATH"] = "/nowhere"
+warnings.simplefilter("error")
+sys.setrecursionlimit(300)
+sys.settrace(lambda *_: None)
+gc.disable()
+"""
+LOOK_AT_PYTHON = """\
+import builtins, gc, os, sys, warnings
+kept = [sys.path, sys.meta_path, sys.path_hooks, sorted(sys.path_importer_cache), warnings.filters, sys.stdout]
+kept += [sorted, hasattr(builtins, "added"), os.path.join, os.getcwd, os.environ["PATH"], gc.isenabled()]
+kept += [sys.getrecursionlimit(), sys.gettrace(), "json" in sys.modules]
+open({!r}, "w").write(repr(kept))
+"""
+
 
 @pytest.fixture(scope="module")
 def anyio_backend() -> str:
@@ -228,6 +258,31 @@ async def test_harmful_code_never_arrives(client: Client, code: str, said: str) 
     assert said in text(result)
     assert "Nothing was done in the open Blender" in text(result)
     assert await digests(client) == before
+
+
+async def test_no_thread_of_ours_runs_beside_blenders_operators(client: Client, window: OpenWindow) -> None:
+    """While an operator runs, Blender looks into Python's dictionaries without keeping other threads out."""
+    await state(client)
+    told = window.root / "threads.txt"
+    names = "[thread.name for thread in threading.enumerate()]"
+    window.choose(f"import threading; open({str(told)!r}, 'w').write(repr({names}))")
+    assert told.read_text() == "['MainThread']"
+
+
+async def test_code_leaves_the_users_python_whole(client: Client, window: OpenWindow) -> None:
+    told = window.root / "python.txt"
+    look = LOOK_AT_PYTHON.format(str(told))
+    window.choose(look)
+    before = told.read_text()
+    broken = await use(client, "blender_execute", code=BREAK_PYTHON)
+    assert not broken.is_error, text(broken)
+    window.choose(look)
+    assert told.read_text() == before
+    imported = await use(
+        client, "blender_execute", code="import chunk, json\njson.dumps(len(chunk.__name__))"
+    )
+    assert not imported.is_error, text(imported)
+    assert "'5'" in text(imported)
 
 
 async def test_unrehearsed_code_needs_the_users_leave(client: Client) -> None:
