@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import os
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import pytest
 from made_once import made_once
 from places import REPO
+
+from simworlds.settings import SHADERS_VARIABLE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -57,6 +59,30 @@ def _begin_with_long_files(items: list[pytest.Item]) -> None:
     marks = ("blender", "corpora", "slow")
     long = {item.path for item in items if any(item.get_closest_marker(mark) for mark in marks)}
     items.sort(key=lambda item: item.path not in long)
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Before the first test with a Blender: shaders for all of them, as `simworlds doctor` keeps them for its user."""
+    if item.get_closest_marker("blender") and SHADERS_VARIABLE not in os.environ:
+        factory = cast("pytest.TempPathFactory", item.config._tmp_path_factory)  # type: ignore[attr-defined]
+        os.environ[SHADERS_VARIABLE] = str(made_once(factory, "shaders", _compiled))
+
+
+def _compiled(folder: Path) -> Path:
+    from agents.blender.first_pictures import keep_drawn
+    from agents.blender.launch import make_launch
+    from agents.blender.run_folder import RunFolder
+    from agents.blender.supervisor import Supervisor
+    from simworlds.sandbox.errors import BlenderError
+    from simworlds.sandbox.runtime import installed_bpy
+
+    os.environ[SHADERS_VARIABLE] = str(folder / "kept")
+    if installed_bpy() is not None:
+        run = RunFolder.make(folder / "run")
+        with suppress(BlenderError, OSError), Supervisor(make_launch(run.workspace), run) as blender:
+            keep_drawn(blender)
+    return folder / "kept"
 
 
 @pytest.fixture(scope="session")
