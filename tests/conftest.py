@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, cast
 import pytest
 from made_once import made_once
 from places import REPO
+from whole import IS_WHOLE
 
 from simworlds.settings import SHADERS_VARIABLE
 
@@ -39,8 +40,14 @@ pytest.TempPathFactory.mktemp = _readable_mktemp
 _OF_BLENDER = frozenset({"base", "built_once", "extract", "kb", "reader", "small"})
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks tests by the fixtures that they ask for, by way of others too: `make test-fast` leaves them out."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leaves out what only `make test-whole` takes.
+
+    Marks tests by the fixtures that they ask for, by way of others too: `make test-fast` leaves them out.
+    """
+    if not IS_WHOLE and (left_out := [item for item in items if item.get_closest_marker("whole")]):
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if not item.get_closest_marker("whole")]
     for item in items:
         names = frozenset(getattr(item, "fixturenames", ()))
         if names & _OF_BLENDER:
