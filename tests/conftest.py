@@ -61,11 +61,14 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
 def _begin_with_long_files(items: list[pytest.Item]) -> None:
     """Moves the files that `make test-fast` has nothing or little of to the front.
 
-    What is left for the end then takes moments, and no process works alone on a long file while others wait.
+    What is left for the end then takes moments, and no process works alone on a long file while others wait. Of the
+    long ones, one that needs the base is the first, and those that need none are next: the others need not wait for it.
     """
     marks = ("blender", "corpora", "slow")
     long = {item.path for item in items if any(item.get_closest_marker(mark) for mark in marks)}
-    items.sort(key=lambda item: item.path not in long)
+    of_base = [item.path for item in items if "built_once" in getattr(item, "fixturenames", ())]
+    builds, waiting = of_base[:1], {*of_base}
+    items.sort(key=lambda item: (item.path not in builds, item.path not in long, item.path in waiting))
 
 
 @pytest.hookimpl(tryfirst=True)
