@@ -13,7 +13,7 @@ from simworlds.sandbox.control_group import ControlGroup, group_parents
 from simworlds.sandbox.errors import CannotStart, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 from simworlds.sandbox.runtime import Runtime, clean_environment, find_runtime
-from simworlds.sandbox.shader_cache import lend_shaders
+from simworlds.sandbox.shader_cache import IN_ONE_FILE, lend_shaders
 from simworlds.sandbox.usage import UsageMonitor
 from simworlds.settings import home_folder
 from simworlds.terminal.progress import shown_progress
@@ -67,7 +67,8 @@ class Launch:
         private = self.private.for_blender()
         names = ("HOME", "TMPDIR", "TEMP", "TMP", "XDG_CACHE_HOME", "XDG_RUNTIME_DIR")
         own = dict.fromkeys(names, private)
-        return clean_environment(self.private.mount) | own | {"PYTHONDONTWRITEBYTECODE": "1"}
+        own |= {"PYTHONDONTWRITEBYTECODE": "1", **IN_ONE_FILE}
+        return clean_environment(self.private.mount) | own
 
     @property
     def folders(self) -> tuple[HostileGround, HostileGround]:

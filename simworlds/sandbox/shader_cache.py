@@ -22,7 +22,9 @@ if TYPE_CHECKING:
     from simworlds.sandbox.hostile_ground import HostileGround
 
 _MESA = "mesa_shader_cache"  # how the names of its folders begin
-_LARGEST = 4 << 20  # bytes of a file
+IN_ONE_FILE = {"MESA_DISK_CACHE_SINGLE_FILE": "1"}
+"""For the environment of each Blender: a file for each shader would be counted, and copied, one by one."""
+_LARGEST = 16 << 20  # bytes of a file
 _MOST = 1000  # files
 
 

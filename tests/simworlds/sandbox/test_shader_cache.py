@@ -53,7 +53,7 @@ def test_links_are_not_followed(private: HostileGround, tmp_path: Path) -> None:
 
 def test_a_file_that_is_too_large_is_refused(private: HostileGround) -> None:
     with (private.mount / "mesa_shader_cache" / "large").open("wb") as file:
-        file.truncate(5 << 20)
+        file.truncate(17 << 20)
     with pytest.raises(Refusal, match="at most"):
         keep_shaders(private)
 
