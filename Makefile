@@ -31,7 +31,7 @@ TEST_PROCESSES ?= $(shell python3 -c 'import os; cores = len(os.sched_getaffinit
   memory = os.sysconf("SC_PAGE_SIZE") * os.sysconf("SC_PHYS_PAGES") >> 31; print(max(2, min(cores + 1, memory, 8)))')
 
 .DEFAULT_GOAL := help
-.PHONY: help setup blender-mcp kb test test-fast serve bench bench-validate soak lint docs docs-check site rule-pictures audit-pictures \
+.PHONY: help setup blender-mcp kb test test-whole test-fast serve bench bench-validate soak lint docs docs-check site rule-pictures audit-pictures \
   window-figures dist \
   dist-validate licences fuzz lock clean
 
@@ -52,6 +52,9 @@ kb: $(STAMP) ## Build the knowledge base of BLENDER=5.1 [MANUAL= GUIDES= BLENDER
 
 test: $(STAMP) ## Run the tests, a file at a time on each core [PYTEST_ARGS=]
 	@$(PY) -m pytest --numprocesses=$(TEST_PROCESSES) --dist=loadfile --no-loadscope-reorder --durations=30 $(PYTEST_ARGS)
+
+test-whole: $(STAMP) ## Run them with every cell of the tables that `make test` takes a part of [PYTEST_ARGS=]
+	@SIMWORLDS_WHOLE=1 $(MAKE) --no-print-directory test PYTEST_ARGS="$(PYTEST_ARGS)"
 
 test-fast: $(STAMP) ## Run the tests that need no Blender, in under a minute [PYTEST_ARGS=]
 	@$(PY) -m pytest --numprocesses=2 --dist=loadfile -m "not blender and not corpora and not slow and not window" $(PYTEST_ARGS)

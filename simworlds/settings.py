@@ -11,6 +11,7 @@ from simworlds.releases import minor_of
 HOME_VARIABLE = "SIMWORLDS_HOME"
 CORPORA_VARIABLE = "SIMWORLDS_CORPORA"
 BASE_URL_VARIABLE = "SIMWORLDS_BASE_URL"
+SHADERS_VARIABLE = "SIMWORLDS_SHADERS"
 
 _BASE = re.compile(r"blender-(\d+)\.(\d+)\.sqlite")
 

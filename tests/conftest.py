@@ -3,13 +3,16 @@
 from __future__ import annotations
 
 import os
-from contextlib import closing
+from contextlib import closing, suppress
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
 import pytest
 from made_once import made_once
 from places import REPO
+from whole import IS_WHOLE
+
+from simworlds.settings import SHADERS_VARIABLE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -37,8 +40,14 @@ pytest.TempPathFactory.mktemp = _readable_mktemp
 _OF_BLENDER = frozenset({"base", "built_once", "extract", "kb", "reader", "small"})
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
-    """Marks tests by the fixtures that they ask for, by way of others too: `make test-fast` leaves them out."""
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
+    """Leaves out what only `make test-whole` takes.
+
+    Marks tests by the fixtures that they ask for, by way of others too: `make test-fast` leaves them out.
+    """
+    if not IS_WHOLE and (left_out := [item for item in items if item.get_closest_marker("whole")]):
+        config.hook.pytest_deselected(items=left_out)
+        items[:] = [item for item in items if not item.get_closest_marker("whole")]
     for item in items:
         names = frozenset(getattr(item, "fixturenames", ()))
         if names & _OF_BLENDER:
@@ -52,11 +61,38 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 def _begin_with_long_files(items: list[pytest.Item]) -> None:
     """Moves the files that `make test-fast` has nothing or little of to the front.
 
-    What is left for the end then takes moments, and no process works alone on a long file while others wait.
+    What is left for the end then takes moments, and no process works alone on a long file while others wait. Of the
+    long ones, one that needs the base is the first, and those that need none are next: the others need not wait for it.
     """
     marks = ("blender", "corpora", "slow")
     long = {item.path for item in items if any(item.get_closest_marker(mark) for mark in marks)}
-    items.sort(key=lambda item: item.path not in long)
+    of_base = [item.path for item in items if "built_once" in getattr(item, "fixturenames", ())]
+    builds, waiting = of_base[:1], {*of_base}
+    items.sort(key=lambda item: (item.path not in builds, item.path not in long, item.path in waiting))
+
+
+@pytest.hookimpl(tryfirst=True)
+def pytest_runtest_setup(item: pytest.Item) -> None:
+    """Before the first test with a Blender: shaders for all of them, as `simworlds doctor` keeps them for its user."""
+    if item.get_closest_marker("blender") and SHADERS_VARIABLE not in os.environ:
+        factory = cast("pytest.TempPathFactory", item.config._tmp_path_factory)  # type: ignore[attr-defined]
+        os.environ[SHADERS_VARIABLE] = str(made_once(factory, "shaders", _compiled))
+
+
+def _compiled(folder: Path) -> Path:
+    from agents.blender.first_pictures import keep_drawn
+    from agents.blender.launch import make_launch
+    from agents.blender.run_folder import RunFolder
+    from agents.blender.supervisor import Supervisor
+    from simworlds.sandbox.errors import BlenderError
+    from simworlds.sandbox.runtime import installed_bpy
+
+    os.environ[SHADERS_VARIABLE] = str(folder / "kept")
+    if installed_bpy() is not None:
+        run = RunFolder.make(folder / "run")
+        with suppress(BlenderError, OSError), Supervisor(make_launch(run.workspace), run) as blender:
+            keep_drawn(blender)
+    return folder / "kept"
 
 
 @pytest.fixture(scope="session")

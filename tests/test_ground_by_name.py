@@ -18,11 +18,18 @@ TO_BLENDER = {"call", "ask", "_ask"}  # what carries arguments to Blender
 
 def breaches(code: str) -> Iterator[int]:
     """Lines that take a ground's whole path, or give the path that is meant for Blender to anything else."""
+    if "mount" not in code and "for_blender" not in code:
+        return
     tree = ast.parse(code)
     for node in ast.walk(tree):
         if isinstance(node, ast.Attribute) and node.attr == "mount":
             yield node.lineno
-    functions = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)]
+    functions = [
+        node
+        for node in ast.walk(tree)
+        if isinstance(node, ast.FunctionDef | ast.AsyncFunctionDef)
+        and any(is_for_blender(inner) for inner in ast.walk(node))
+    ]
     for function in functions:
         names = {
             target.id

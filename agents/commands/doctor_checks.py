@@ -10,12 +10,13 @@ import subprocess
 import sys
 import tempfile
 import time
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal
 
 from agents.blender.attached.open_blenders import open_blenders
+from agents.blender.first_pictures import keep_drawn
 from agents.blender.fluid_support import check_fluids
 from agents.blender.launch import launch_in, runs_folder
 from agents.blender.run_folder import RunFolder
@@ -27,6 +28,7 @@ from simworlds.sandbox.errors import BlenderError, CannotStart, NotInstalled
 from simworlds.sandbox.launch import find_blender
 from simworlds.sandbox.replies import mapping
 from simworlds.sandbox.resource_limits import GIB
+from simworlds.sandbox.shader_cache import are_kept
 from simworlds.sandbox.walls import WALLS, WITHOUT
 
 if TYPE_CHECKING:
@@ -116,7 +118,7 @@ def checks(choice: BlenderChoice) -> Generator[Check]:
             yield "trying the sandbox", lambda: _confined(blender, sandbox, choice.sandbox)
             yield (
                 "drawing with Workbench",
-                lambda: _tried(blender, "Workbench", "check_workbench", _workbench),
+                lambda: _drawn(blender),
             )
             yield "rendering with Cycles", lambda: _tried(blender, "Cycles", "check_cycles", _cycles)
             yield "checking for video", lambda: _tried(blender, "Films", "check_video", _films)
@@ -281,6 +283,15 @@ def _tried(
         return blender.call(key, {}, describe, timeout=_TRY_SECONDS).value
     except BlenderError as error:
         return DoctorResult(name, "poor", f"does not work: {error}".partition(" A new Blender")[0])
+
+
+def _drawn(blender: Supervisor) -> DoctorResult:
+    """Tries Workbench; what is compiled for it is kept, once, for the first pictures of other Blenders."""
+    result = _tried(blender, "Workbench", "check_workbench", _workbench)
+    if result.state == "good" and not are_kept():
+        with suppress(BlenderError, OSError):  # each Blender then compiles its own
+            keep_drawn(blender)
+    return result
 
 
 def _workbench(facts: dict[str, Any]) -> DoctorResult:

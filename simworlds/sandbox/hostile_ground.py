@@ -12,6 +12,7 @@ import ctypes
 import errno
 import os
 import secrets
+import shutil
 import stat
 import struct
 import tempfile
@@ -143,6 +144,19 @@ class HostileGround:
                 os.replace(name, name, src_dir_fd=scratch, dst_dir_fd=ground)
             except OSError as error:
                 raise _cannot_write(f"{self.mount.name}/{name}", error) from error
+
+    def put_folder(self, source: Path, name: str) -> None:
+        """Copies a folder of ours to it as ``name``, replacing whatever is there; it stays ours. Raises Refusal."""
+        try:
+            with (
+                tempfile.TemporaryDirectory(prefix=".handover-", dir=self.mount.parent) as scratch,
+                _opened_folder(self.mount) as ground,
+            ):
+                copy = shutil.copytree(source, Path(scratch, name), copy_function=shutil.copyfile)
+                self._clear(ground, name)
+                os.rename(copy, name, dst_dir_fd=ground)
+        except OSError as error:  # as are the errors of copytree
+            raise _cannot_write(f"{self.mount.name}/{name}", error) from error
 
     def write(self, relative: str, content: bytes, *, over: bytes) -> None:
         """Writes a file that only its owner reads, whole or not at all. Raises Refusal.

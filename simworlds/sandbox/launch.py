@@ -13,6 +13,7 @@ from simworlds.sandbox.control_group import ControlGroup, group_parents
 from simworlds.sandbox.errors import CannotStart, NotInstalled, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 from simworlds.sandbox.runtime import Runtime, clean_environment, find_runtime
+from simworlds.sandbox.shader_cache import IN_ONE_FILE, lend_shaders
 from simworlds.sandbox.usage import UsageMonitor
 from simworlds.settings import home_folder
 from simworlds.terminal.progress import shown_progress
@@ -66,7 +67,8 @@ class Launch:
         private = self.private.for_blender()
         names = ("HOME", "TMPDIR", "TEMP", "TMP", "XDG_CACHE_HOME", "XDG_RUNTIME_DIR")
         own = dict.fromkeys(names, private)
-        return clean_environment(self.private.mount) | own | {"PYTHONDONTWRITEBYTECODE": "1"}
+        own |= {"PYTHONDONTWRITEBYTECODE": "1", **IN_ONE_FILE}
+        return clean_environment(self.private.mount) | own
 
     @property
     def folders(self) -> tuple[HostileGround, HostileGround]:
@@ -84,7 +86,7 @@ class Launch:
         return (self.private, *([self.lent] if self.lent is not None else []))
 
     def prepare(self) -> None:
-        """Makes the private and the lent folder, empty, and removes files that an earlier Blender left half written.
+        """Makes the private folder, empty but for shaders, and the lent one, and removes what was left half written.
 
         Raises CannotStart.
         """
@@ -94,6 +96,7 @@ class Launch:
             except OSError as error:
                 raise CannotStart(f"{folder.mount} cannot be made: {error.strerror or error}") from error
             folder.empty()
+        lend_shaders(self.private)
         self.group.renew()
         self.workspace.remove_named(HALF_WRITTEN)
 

@@ -15,34 +15,43 @@ from simworlds.sandbox import confine_self
 from simworlds.sandbox.confined_command import bubblewrap_fault
 
 if TYPE_CHECKING:
+    from _pytest.mark.structures import ParameterSet
     from attack import Attackers, Outcome
     from hosts import Host, Who
     from way import Kind, Way
 
 
-def cells(kind: Kind) -> list[object]:
+def cells(kind: Kind) -> list[ParameterSet]:
     """The parameters of one sandbox's tests: (way, who).
 
     Every way is tried in both sandboxes. Behind bubblewrap, those against the same walls are tried as root and as a
     user by turns, and one that is the only one of its kind as both. Behind Landlock, all are tried as a user, and the
     first against some walls as root too, whose Blender starts there only where others may read its Python.
+
+    `make test` leaves out those marked ``whole``: of those against the same walls, all but the first are then tried in
+    one sandbox, by turns. So every way is tried, and all walls in every column.
     """
-    alike: dict[frozenset[str], list[str]] = {}
+    alike: dict[tuple[frozenset[str], bool], list[Way]] = {}
     for way in WAYS:
-        if not way.once:
-            alike.setdefault(frozenset(way.attacks), []).append(way.name)
+        alike.setdefault((frozenset(way.attacks), way.once), []).append(way)
 
     def who_tries(way: Way) -> tuple[Who, ...]:
         if way.once:
             return _anybody(kind)
-        names = alike[frozenset(way.attacks)]
-        turn = names.index(way.name)
+        others = alike[frozenset(way.attacks), False]
+        turn = others.index(way)
         if kind == "landlock":
             return WHO if turn == 0 else ("user",)
-        return WHO if len(names) == 1 or way.kinds != KINDS else (WHO[turn % 2],)
+        return WHO if len(others) == 1 or way.kinds != KINDS else (WHO[turn % 2],)
+
+    def marks(way: Way) -> tuple[pytest.MarkDecorator, ...]:
+        turn = alike[frozenset(way.attacks), way.once].index(way)
+        # Two in a row have the same turn: behind bubblewrap, one of them is tried as root and one as a user.
+        is_its_turn = turn == 0 or way.kinds != KINDS or KINDS[turn // 2 % len(KINDS)] == kind
+        return () if is_its_turn else (pytest.mark.whole,)
 
     return [
-        pytest.param(way, who, id=f"{way.name}-{kind}-{who}")
+        pytest.param(way, who, id=f"{way.name}-{kind}-{who}", marks=marks(way))
         for way in WAYS
         if kind in way.kinds
         for who in who_tries(way)

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, get_args
+from typing import TYPE_CHECKING, Any, get_args
 
 import pytest
-from columns import skip_unless_it_works
+from columns import cells, skip_unless_it_works
 from hosts import WHO
 from outside import rights_of
 from table import WAYS
@@ -25,6 +25,24 @@ _ALWAYS = {"environment"}
 def test_every_wall_is_attacked() -> None:
     attacked = {aim for way in WAYS for aim in way.attacks}
     assert {*WALLS} - _ALWAYS <= attacked <= {*WALLS, *get_args(Server)}
+
+
+def test_a_part_of_the_table_has_every_way_and_all_walls_in_every_column() -> None:
+    table: list[tuple[str, Any, Any]] = []
+    part: list[tuple[str, Any, Any]] = []
+    for kind in KINDS:
+        for cell in cells(kind):
+            way, who = cell.values
+            table.append((kind, way, who))
+            part += [] if cell.marks else table[-1:]
+    assert {way.name for _, way, _ in part} == {way.name for way in WAYS}
+    for way in WAYS:
+        if not way.once:
+            alike = {other.name for other in WAYS if {*other.attacks} == {*way.attacks} and not other.once}
+            columns = [
+                {(kind, who) for kind, one, who in rows if one.name in alike} for rows in (table, part)
+            ]
+            assert columns[0] == columns[1], way.attacks
 
 
 @pytest.mark.blender

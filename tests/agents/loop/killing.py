@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from run_sessions import at_home, go_on, sit
+from whole import IS_WHOLE
 
 from agents.loop.journal import KEYS, NAME, Journal
 
@@ -47,7 +48,11 @@ def events(rows: Iterable[Mapping[str, Any]]) -> list[Event]:
 
 
 def kinds(rows: Iterable[Mapping[str, Any]]) -> list[Kind]:
-    """What happens in each row, whenever it does: its type, whose call or question it is, and of which tool."""
+    """What happens in each row, whenever it does: its type, whose question it is, whose call and of which tool.
+
+    Tools and roles are told apart only where the whole table is asked for: a run goes on from its rows, and rows of one
+    type are read alike.
+    """
     asked: dict[int, str] = {}
     found: list[Kind] = []
     for row in rows:
@@ -55,6 +60,9 @@ def kinds(rows: Iterable[Mapping[str, Any]]) -> list[Kind]:
         if kind == "model.asked":
             asked[row["n"]] = row["role"]
         role = asked[row["n"]] if kind == "model.answered" else row.get("role")
+        if not IS_WHOLE:
+            found.append((kind, None, None))
+            continue
         found.append((kind, role, row.get("name") if kind.startswith("tool.") else None))
     return found
 

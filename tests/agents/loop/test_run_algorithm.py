@@ -78,6 +78,8 @@ def test_a_decision_to_plan_anew_may_bring_the_plan(play: Callable[..., Played])
     replans = [REPLAN | {"tactic": tactic} for tactic in (plan, plan | {"stage": "uv"}, {"goal": 3})]
     played = play(Team(decisions={"modeling": (*replans, ABORT)}))
     assert [row["taken"] for row in played.of("decided")] == ["replan"] * 3 + ["abort"]
+    assert played.ended.how == "aborted"
+    assert "This cannot be built." in played.ended.why
     asked = [last_words(one) for one in of_role(played, "planner", "modeling")]
     begun = [words for words in asked if "The stage modeling begins." in words]
     assert ["The last plan did not do" in words for words in begun] == [False, True, True]
@@ -194,20 +196,13 @@ def test_when_retries_are_used_up_the_run_is_given_up(play: Callable[..., Played
 def test_when_replans_are_used_up_the_last_checkpoint_stands(
     play: Callable[..., Played], tmp_path: Path
 ) -> None:
-    builds = [turn for _ in range(6) for turn in (run(crates.CAMERA), DONE)]
-    team = Team(coder={"camera": builds}, decisions={"camera": (REPLAN,)})
+    builds = [turn for _ in range(6) for turn in (run(crates.LIGHT), DONE)]
+    team = Team(coder={"light": builds}, decisions={"light": (REPLAN,)})
     played = play(team)
-    assert [taken for stage, taken in played.taken if stage == "camera"] == ["replan"] * 5 + ["abort"]
+    assert [taken for stage, taken in played.taken if stage == "light"] == ["replan"] * 5 + ["abort"]
     assert played.ended.how == "aborted"
     assert played.ended.file == played.root / "scene.blend"
     (kept,) = scenes(tmp_path, played.ended.file)
-    assert "Object Planks" in kept
-    assert "Object Camera" not in kept
+    assert "Object Camera" in kept
+    assert "Object Sun" not in kept
     assert played.rows[-1]["file"] == "scene.blend"
-
-
-def test_the_planner_may_give_up(play: Callable[..., Played]) -> None:
-    abort = {"transition": "abort", "reason": "Crates are beyond us."}
-    played = play(Team(decisions={"modeling": (abort,)}))
-    assert (played.ended.how, played.taken) == ("aborted", [("modeling", "abort")])
-    assert "Crates are beyond us." in played.ended.why

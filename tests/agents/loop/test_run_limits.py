@@ -84,13 +84,19 @@ def test_a_limit_leaves_the_newest_sound_scene_and_a_picture(
     assert (cameras != closed) == is_delivered
     with Image.open(root / LATEST) as picture:
         assert picture.width >= 64
-    if is_delivered:
-        assert go_on(root, seat(RunLimits(max_cost=50))).ended.how == "done"
 
 
-def test_roles_are_told_the_minutes_that_are_left(api: FakeMessagesAPI, tmp_path: Path) -> None:
+def test_roles_have_models_of_their_own_and_are_told_the_minutes_that_are_left(
+    api: FakeMessagesAPI, tmp_path: Path
+) -> None:
     api.answer = _short()
-    sit(tmp_path / "run", seat(RunLimits(max_minutes=60)))
+    named = {"model": "claude-sonnet-5-5", "models": {"planner": "claude-haiku-5-5"}}
+    played = sit(tmp_path / "run", seat(RunLimits(max_minutes=60)), **named)
+    assert {row["role"]: row["model"] for row in played.of("model.asked")} == {
+        "planner": "claude-haiku-5-5",
+        "coder": "claude-sonnet-5-5",
+        "reviewer": "claude-sonnet-5-5",
+    }
     asked = [text for request in api.received(MESSAGES) for text in texts(request.body)]
     assert any("About 58 minutes are left" in text for text in asked if text.startswith("The stage modeling"))
 
@@ -110,17 +116,6 @@ def test_a_model_without_a_known_price_has_no_limit_that_could_be_kept(
     played = sit(tmp_path / "run", seat(RunLimits(max_cost=5)), model="llama-of-mine")
     assert (played.ended.how, api.requests) == ("stopped", [])
     assert "No price is known for the model 'llama-of-mine'" in played.ended.why
-
-
-def test_roles_may_have_models_of_their_own(api: FakeMessagesAPI, tmp_path: Path) -> None:
-    api.answer = _short()
-    played = sit(tmp_path / "run", model="claude-sonnet-5-5", models={"planner": "claude-haiku-5-5"})
-    models = {row["role"]: row["model"] for row in played.of("model.asked")}
-    assert models == {
-        "planner": "claude-haiku-5-5",
-        "coder": "claude-sonnet-5-5",
-        "reviewer": "claude-sonnet-5-5",
-    }
 
 
 def test_when_the_time_is_up_the_run_stops_at_the_next_safe_point(

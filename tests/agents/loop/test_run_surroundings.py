@@ -9,7 +9,7 @@ import crates
 import pytest
 from fake_messages_api import Reply
 from run_sessions import answered, go_on, scenes, seat, sit
-from team import DONE, Team, run, words_of
+from team import ABORT, DONE, Team, run, words_of
 
 from agents.loop import interruptible
 from agents.loop.journal import NAME, read_rows
@@ -50,7 +50,7 @@ def test_a_coder_mends_what_keeps_the_scene_from_being_saved(api: FakeMessagesAP
 
     api.answer = Team(
         coder={"modeling": (run(crates.STANDING + LINKED), Reply(DONE), mend, Reply(DONE))},
-        decisions={"camera": ({"transition": "abort", "reason": "Enough."},)},
+        decisions={"camera": (ABORT,)},
     )
     played = sit(tmp_path / "run", verifier=False)
     assert played.ended.how == "aborted"
@@ -113,7 +113,7 @@ def test_the_scene_stands_from_the_first_closed_stage_on_and_is_replaced(
 
 
 def test_a_save_names_the_path_at_which_the_scene_stays(api: FakeMessagesAPI, tmp_path: Path) -> None:
-    api.answer = Team(decisions={"modeling": ({"transition": "abort", "reason": "Enough."},)})
+    api.answer = Team(decisions={"modeling": (ABORT,)})
     played = sit(tmp_path / "run")
     saved = played.of("tool.answered", name="blender_save")[0]["content"][0]["text"]
     assert str(played.root / "checkpoints" / "start.blend") in saved
@@ -130,11 +130,11 @@ def test_a_stop_does_not_wait_for_a_model_that_does_not_answer(
             at.stop.event.set()
             over.wait(120)
 
-    with answered(home, Team(first=hang)):
+    with answered(home, Team(first=hang, decisions={"modeling": (ABORT,)})):
         played = sit(tmp_path / "run", at)
         rows = read_rows(tmp_path / "run" / NAME)
         over.set()
         assert played.ended.how == "stopped"
         assert "had not answered; it is asked again" in played.ended.why
         assert [row["type"] for row in rows[-2:]] == ["model.asked", "run.ended"]
-        assert go_on(tmp_path / "run").ended.how == "done"
+        assert go_on(tmp_path / "run").ended.how == "aborted"

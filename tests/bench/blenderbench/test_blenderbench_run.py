@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 import clip_sample
 import pytest
+import run_sessions
 import team
 from click.testing import CliRunner
 from fake_messages_api import FakeMessagesAPI
@@ -313,7 +314,8 @@ PLAN = {
 
 @pytest.fixture
 def api(monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeMessagesAPI]:
-    """Answers for all roles: the camera goes to where the goal has it."""
+    """Answers for all roles: the camera goes to where the goal has it. What they are shown is small."""
+    run_sessions.make_small(monkeypatch)
     with FakeMessagesAPI(team.Team(plan=PLAN, code={"camera": MOVED})) as server:
         monkeypatch.setenv("ANTHROPIC_API_KEY", "any")
         monkeypatch.setenv("ANTHROPIC_BASE_URL", server.base_url)

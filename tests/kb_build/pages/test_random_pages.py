@@ -8,6 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
+from whole import examples
 
 from kb_build.pages.readers.html import read_html
 from kb_build.pages.readers.rst import read_rst
@@ -113,7 +114,7 @@ SPANS = "<table><tr>" + "<td colspan=1000 rowspan=1000>x</td>" * 2_000
 HTML = st.recursive(TEXTS, elements, max_leaves=40)
 pytestmark = pytest.mark.slow
 BOUNDED = settings(
-    max_examples=10,
+    max_examples=examples(10),
     deadline=None,
     derandomize=True,
     database=None,

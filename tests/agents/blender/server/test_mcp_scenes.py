@@ -223,7 +223,14 @@ def shows_something(image: Image.Image) -> bool:
     return high - low > 40
 
 
-@pytest.mark.parametrize("name", SCENES)
+# One whose frames are kept as points, and one that keeps them in files of its own. The solvers themselves are tried in
+# tests/agents/blender/physics.
+_BOTH_CACHES = ("cloth", "liquid")
+
+
+@pytest.mark.parametrize(
+    "name", [pytest.param(name, marks=() if name in _BOTH_CACHES else pytest.mark.whole) for name in SCENES]
+)
 async def test_a_client_makes_a_scene_of_each_solver(client: Client, name: str) -> None:
     scene, slug = SCENES[name], name.replace(" ", "-")
     await use(client, "blender_execute", code=STAGE.format(frames=scene.frames) + scene.build)

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING
 import pytest
 from live_session import LiveSession
 from processes import becomes, of_run
+from whole import examples
 
 from agents.blender.tools.execute import TOOL
 from simworlds.sandbox.errors import BlenderError, Lost
@@ -25,7 +26,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-KILLS = 6  # of each of the five, half of them of the process around Blender
+KILLS = 2 * examples(4)  # of each of the five, half of them of the process around Blender
 SEED = 20251
 
 # A scene that takes a moment to write, and has something to bake and to render.
