@@ -30,6 +30,9 @@ if TYPE_CHECKING:
 TRANSCRIPTS = {
     "rigid_D2_01": "dominoes",
     "cloth_D1_01": "tablecloth",
+    "cloth_D2_02": "velvet",
+    "fluid_D1_02": "smoke",
+    "particle_D1_02": "confetti",
     "fluid_D1_01": "pour",  # cider from a keg into a glass, where the scene has milk from a jug into a bowl
 }
 KEYS = ("ANTHROPIC_API_KEY", "ANTHROPIC_AUTH_TOKEN")
