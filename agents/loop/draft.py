@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.errors import NotRendered
-from agents.loop.events import Drafted, FilmFitted, SceneRendered
+from agents.loop.events import Drafted, FilmFitted, PlanMade, RoomTold, SceneRendered
 from agents.loop.film_settings import FilmSettings, FrameTime, fitted
 from agents.loop.pictures import link, pictures_of
 from agents.loop.run import RENDER, RUNNER
@@ -67,10 +67,17 @@ def minutes_of(run: Run) -> float:
 
 
 def room_for_film(run: Run) -> str:
-    """What a film can have in its time on this machine, in words for who plans it."""
-    minutes, cores = minutes_of(run), SYSTEM.cores()
-    millions = round(minutes * 60 * cores * _SAMPLES_A_CORE_SECOND, -1)
-    return _ROOM.format(minutes=minutes, cores=cores, millions=millions)
+    """What a film can have in its time on this machine, in words for who plans it.
+
+    A session that resumes says the same again, also on another machine; "" where the plan was made without it.
+    """
+    if run.journal.find(PlanMade()) is None:
+        minutes, cores = minutes_of(run), SYSTEM.cores()
+        millions = round(minutes * 60 * cores * _SAMPLES_A_CORE_SECOND, -1)
+        text = _ROOM.format(minutes=minutes, cores=cores, millions=millions)
+        run.journal.note(RoomTold(text=text))
+    told = run.journal.find(RoomTold())
+    return told.text if told is not None else ""
 
 
 def draft(run: Run, plan: RenderSettings, number: int) -> Draft:

@@ -181,6 +181,13 @@ class TimeTold(Event):
     minutes: int = 0
 
 
+class RoomTold(Event):
+    """The planner was told, in these words, what there is time for in a film."""
+
+    type: Literal["room.told"] = "room.told"
+    text: str = ""
+
+
 class AttemptBegan(Event):
     """The coder began an attempt."""
 
@@ -357,7 +364,7 @@ class Edited(Event):
 
 KnownEvent = Annotated[
     RunBegan | SessionBegan | SceneRestored | RunEnded | PlanMade | ReferenceKept
-    | StageMoved | TacticMade | TimeTold | AttemptBegan | AttemptEnded
+    | StageMoved | TacticMade | TimeTold | RoomTold | AttemptBegan | AttemptEnded
     | Verified | Reviewed | Withdrew | Decided | RolledBack | ModelAsked | ModelAnswered
     | ToolCalled | ToolAnswered | Drafted | FilmFitted | FilmDecided | SceneRendered | FinalReviewed | Edited,
     Field(discriminator="type"),
