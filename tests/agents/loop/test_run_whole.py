@@ -60,6 +60,7 @@ def test_every_row_is_numbered_and_stands_in_its_place(mended: Played) -> None:
     assert stages == [
         ("run.began", None),
         ("sitting.began", None),
+        ("room.told", None),
         ("plan", None),
         *((kind, "modeling") for kind in ("stage.began", "tactic", *attempt, *attempt, "stage.closed")),
         *(("stage.skipped", stage) for stage in ("uv", "texture", "deformation_setup", "motion")),
