@@ -138,7 +138,10 @@ def of_role(played: Played, role: str, stage: str) -> list[str]:
 def test_a_line_that_fails_keeps_the_stage_open(answered: Played) -> None:
     assert answered.ended.how == "done"
     first, second = answered.of("decided", stage="modeling")
-    assert (first["taken"], first["why"]) == ("retry", "The review does not block, but a line of acceptance fails.")
+    assert (first["taken"], first["why"]) == (
+        "retry",
+        "The review does not block, but a line of acceptance fails.",
+    )
     assert second["taken"] == "advance"
     again = next(
         words for words in of_role(answered, "coder", "modeling") if "The stage is not done" in words
