@@ -190,11 +190,12 @@ class AttachedBlender:
 
     def _admitted(self, blender: OpenBlender) -> Any:
         """A connection, once a client that is just leaving has left. Raises Refusal."""
-        deadline = time.monotonic() + _LEAVING_SECONDS
+        deadline = None  # from Blender's first answer on: before that, it may be busy
         while True:
             try:
                 return self._met(blender)
             except _Occupied:
+                deadline = deadline or time.monotonic() + _LEAVING_SECONDS
                 if time.monotonic() > deadline:
                     raise
                 time.sleep(_CHECK_SECONDS)

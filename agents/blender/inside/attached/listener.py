@@ -132,15 +132,15 @@ class Listener:
 
     def turn(self):
         """Lets clients in, takes what they have sent, and sends what they take; it never waits."""
-        self._accept()
-        for stranger in list(self._strangers):
-            self._meet(*stranger)
-        for client in list(self._clients):
+        for client in list(self._clients):  # before strangers, who may come in place of one that has left
             client.flush()
             if client.open:
                 self._take(client, client.receive())
             if not client.open:
                 self._forget(client)
+        self._accept()
+        for stranger in list(self._strangers):
+            self._meet(*stranger)
 
     def stop(self, why):
         """Tells all clients ``why``, and stops listening."""

@@ -5,6 +5,8 @@ from __future__ import annotations
 import contextlib
 import json
 import os
+import queue
+import random
 import socket
 import subprocess
 import sys
@@ -194,3 +196,80 @@ def test_a_goodbye_is_told_once_and_the_next_call_connects_again(listener: Liste
         blender.about  # noqa: B018 - connects
     assert blender.about.process == os.getpid()
     blender.close()
+
+
+def test_a_client_that_left_while_blender_was_busy_keeps_nobody_out(listener: Listener) -> None:
+    first, second = attached(), attached()
+    assert first.about
+    with TURNS:  # Blender is busy
+        first.close()
+        enters = threading.Thread(target=lambda: second.about)
+        enters.start()
+        enters.join(2.5)  # longer than a client that leaves is waited for
+    enters.join(10)
+    assert [client.open for client in listener.clients] == [True]
+    assert second.about
+    second.close()
+
+
+def _mischief(port: int, chance: random.Random) -> None:
+    """What a broken or a hostile client sends."""
+    with (
+        contextlib.suppress(OSError, EOFError),
+        socket.create_connection(("127.0.0.1", port), timeout=2) as sock,
+    ):
+        kind = chance.randrange(6)
+        if kind == 0:
+            return  # gone at once
+        if kind == 1:
+            sock.sendall(chance.randbytes(chance.randrange(1, 5000)))
+            return
+        end = link.Link(sock, TOKEN if kind > 2 else "c" * 64)
+        if kind == 3:
+            end.send(chance.choice([{}, {"hello": None}, {"hello": {"protocol": 99}}, {"ticket": "t"}]))
+        else:
+            end.send({"hello": {"name": "x" * 5000, "protocol": link.PROTOCOL}})
+            end.receive()
+            for message in ({"tool": 1}, {"ticket": [], "tool": "", "arguments": 5}, {"withdraw": {}}):
+                end.send(message)
+        if kind == 5:
+            sock.sendall(chance.randbytes(100))
+        end.timeout(0.2)
+        end.receive()
+
+
+def test_an_honest_client_is_served_among_broken_ones(listener: Listener) -> None:
+    listener.several = True
+    blender = attached()
+    ending = threading.Event()
+
+    def answer() -> None:
+        while not ending.is_set():
+            with contextlib.suppress(queue.Empty):
+                request = listener.requests.get(timeout=0.05)
+                with TURNS:
+                    request.reply(value=request.arguments, seconds=0.0, left=[], events=[])
+                    listener.finished(request)
+
+    def trouble(seed: int) -> None:
+        chance = random.Random(seed)
+        while not ending.is_set():
+            _mischief(listener.port, chance)
+
+    assert blender.about
+    threads = [
+        threading.Thread(target=answer),
+        *(threading.Thread(target=trouble, args=(n,)) for n in range(4)),
+    ]
+    for thread in threads:
+        thread.start()
+    try:
+        for number in range(100):
+            assert blender.call("tool", {"n": number}, dict, timeout=20).value == {"n": number}
+    finally:
+        ending.set()
+        for thread in threads:
+            thread.join()
+    assert becomes(lambda: len(listener.clients) == 1 and not listener._strangers)
+    blender.close()
+    assert becomes(lambda: not listener.clients and not listener._waiting)
