@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar, TypeVar
@@ -10,7 +11,8 @@ from pydantic import Field
 
 from agents.blender.launch import WORKER, launch_in
 from agents.blender.supervisor import Supervisor
-from simworlds.sandbox.errors import CannotStart, Refusal
+from simworlds.releases import minor_of, version_key
+from simworlds.sandbox.errors import CannotStart, NotInstalled, Refusal
 from simworlds.sandbox.launch import find_blender
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.replies import Claim, Count, Name, Place, mapping
@@ -155,21 +157,34 @@ class Twin:
         if self._supervisor is not None and self._program == about.executable:
             return self._supervisor
         self.close()
-        try:
-            supervisor = self._start(find_blender(None, Path(about.executable)))
-        except CannotStart as error:
-            supervisor = self._start(find_blender())
-            other = supervisor.launch.runtime.version
-            if tuple(map(int, other.split(".")[:2])) < tuple(map(int, about.version.split(".")[:2])):
-                supervisor.close()
-                raise CannotStart(
-                    f"Blender {about.version} does not start in the sandbox ({error}), and {other} is older: nothing "
-                    "can be drawn or rehearsed here"
-                ) from error
-            attached.note_once(
-                f"Copies are looked at and code is rehearsed in Blender {other}, not {about.version}: {error}."
-            )
+        supervisor = self._start_best(attached)
         self._supervisor, self._program = supervisor, about.executable
+        return supervisor
+
+    def _start_best(self, attached: AttachedBlender) -> Supervisor:
+        """The open Blender's own program, else its version as a package, else the usual one. Raises CannotStart."""
+        about = attached.about
+        version = minor_of(about.version)
+        try:
+            own = find_blender(None, Path(about.executable))
+            if minor_of(own.version) != version:
+                raise CannotStart(f"{about.executable or 'its program'} is Blender {own.version} now")
+            return self._start(own)
+        except CannotStart as error:
+            why = error
+        with suppress(CannotStart, NotInstalled):
+            return self._start(find_blender(version, install=False))
+        supervisor = self._start(find_blender())
+        other = supervisor.launch.runtime.version
+        if version_key(minor_of(other)) < version_key(version):
+            supervisor.close()
+            raise CannotStart(
+                f"Blender {about.version} does not start in the sandbox ({why}), and {other} is older: nothing can be "
+                "drawn or rehearsed here"
+            ) from why
+        attached.note_once(
+            f"Copies are looked at and code is rehearsed in Blender {other}, not {about.version}: {why}."
+        )
         return supervisor
 
     def _start(self, runtime: Runtime) -> Supervisor:

@@ -7,6 +7,7 @@ import time
 import bpy
 
 from ..blend.file_io import make_own
+from . import libraries
 from .code_reach import Reach
 from .copies import TooLarge, check_drawn, check_size, paths_used
 from .user_state import main_window
@@ -45,7 +46,7 @@ def write_part(arguments, report):
     check_drawn([block for block in needed if isinstance(block, bpy.types.Object)], arguments)
     check_size(needed, arguments["seconds"])
     started = time.perf_counter()
-    bpy.data.libraries.write(arguments["path"], chosen, path_remap="ABSOLUTE", compress=False)
+    libraries.write(arguments["path"], chosen, path_remap="ABSOLUTE", compress=False)
     objects = sorted(block.name for block in needed if isinstance(block, bpy.types.Object))
     tree = {scene.collection.name, *(own.name for own in scene.collection.children_recursive)}
     places = {

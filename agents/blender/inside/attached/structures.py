@@ -9,7 +9,7 @@ import os
 import struct
 import tempfile
 
-import bpy
+from . import libraries
 
 _POINTER = struct.calcsize("P")
 _SINCE_5 = b"BLENDER17"
@@ -28,7 +28,7 @@ def _search(structure, member):
     """Raises ValueError if there is none, OSError, RuntimeError and the like if the file is not as expected."""
     with tempfile.TemporaryDirectory() as folder:
         path = os.path.join(folder, "structures.blend")
-        bpy.data.libraries.write(path, set(), compress=False)
+        libraries.write(path, (), compress=False)
         with open(path, "rb") as file:
             data = file.read()
     if data[:9] == _SINCE_5:

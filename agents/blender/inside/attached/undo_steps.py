@@ -63,9 +63,10 @@ class UndoSteps:
         self.busy = True
         try:
             for _ in taken:
-                with in_window():
-                    if "FINISHED" not in bpy.ops.ed.undo():
-                        raise Refused("Blender has no more undo steps (Preferences > System > Undo Steps).")
+                if not _undo():
+                    raise Refused(
+                        "Blender has no more undo steps (Preferences > System > Undo Steps, and Global Undo)."
+                    )
                 self.steps.pop()
         finally:
             self.busy = False
@@ -94,6 +95,15 @@ class UndoSteps:
             "The user has changed the scene after SimWorlds' last step, so undoing would take back their work. "
             "Ask them to use Edit > Undo History, where the steps are named 'SimWorlds: …'."
         )
+
+
+def _undo():
+    """Has Blender undo a step; returns whether there was one."""
+    try:
+        with in_window():
+            return "FINISHED" in bpy.ops.ed.undo()
+    except RuntimeError:  # it has none
+        return False
 
 
 def _operators():

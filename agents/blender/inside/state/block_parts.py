@@ -38,6 +38,7 @@ _NEVER_OF = {
         """location location_absolute width height hide color use_custom_color internal_links
         warning_propagation"""
     ),
+    "NodeSocket": _words("enabled"),  # by the node's mode, at latest when the file is read again
     "NodesModifierPanel": _words("is_open"),
     "BoneCollection": _words("is_expanded"),
     "FCurve": _words("hide lock"),

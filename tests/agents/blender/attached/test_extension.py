@@ -14,7 +14,10 @@ from click.testing import CliRunner
 
 from agents.blender import extension
 from agents.commands.extension import extension as command
-from simworlds.sandbox.runtime import installed_bpy
+from simworlds.releases import releases
+from simworlds.sandbox.errors import NotInstalled
+from simworlds.sandbox.runtime import environment_of_others, find_runtime
+from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -91,13 +94,22 @@ def test_imports_are_made_relative_from_any_depth() -> None:
 
 
 @pytest.mark.blender
-def test_this_environments_blender_loads_all_of_it(tmp_path: Path) -> None:
-    if installed_bpy() is None:
-        pytest.skip("there is no Blender in this environment")
+@pytest.mark.parametrize("version", [row.minor for row in releases()])
+def test_blender_as_a_package_loads_all_of_it(version: str, tmp_path: Path) -> None:
+    try:
+        runtime = find_runtime(version, home=home_folder(), install=False)
+    except NotInstalled:
+        pytest.skip(
+            f"Blender {version} is not installed here (simworlds doctor --blender {version} --install)"
+        )
     with zipfile.ZipFile(extension.build(tmp_path)) as archive:
         archive.extractall(tmp_path)
     done = subprocess.run(
-        [sys.executable, "-c", LOAD, str(tmp_path)], capture_output=True, text=True, check=False
+        [str(runtime.executable), "-c", LOAD, str(tmp_path)],
+        env=environment_of_others(),
+        capture_output=True,
+        text=True,
+        check=False,
     )
     assert done.stdout.strip().splitlines()[-1:] == ["True [] [1.0, 2.0, 3.0] True"], (
         done.stdout + done.stderr
