@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from base64 import b64decode
 from io import BytesIO
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 from mcp import Client, StdioServerParameters
 from mcp_types import ImageContent, TextContent
@@ -12,8 +12,9 @@ from PIL import Image
 from places import REPO
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
     from mcp_types import CallToolResult
-    from open_window import OpenWindow
 
 BUILD = """\
 # add {name}
@@ -25,9 +26,23 @@ made.location = ({x}, 0, 0)
 """
 
 
-def server(window: OpenWindow) -> StdioServerParameters:
-    words = window.command
-    return StdioServerParameters(command=words[0], args=words[1:], env=window.server_environment, cwd=REPO)
+class OpenBlender(Protocol):
+    """A Blender that the extension listens in."""
+
+    @property
+    def command(self) -> Sequence[str]:
+        """The command of a server that attaches to it …"""
+        ...
+
+    @property
+    def server_environment(self) -> Mapping[str, str]:
+        """… and its environment."""
+        ...
+
+
+def server(blender: OpenBlender) -> StdioServerParameters:
+    program, *words = blender.command
+    return StdioServerParameters(command=program, args=words, env=dict(blender.server_environment), cwd=REPO)
 
 
 async def use(client: Client, tool: str, /, **arguments: Any) -> CallToolResult:

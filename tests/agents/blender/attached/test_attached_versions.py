@@ -1,4 +1,4 @@
-"""The extension in Blenders of several versions, without a window: each is a ``bpy`` package that turns its own timer."""
+"""The extension in Blenders of several versions, without a window: ``bpy`` packages that turn its timer themselves."""
 
 from __future__ import annotations
 
