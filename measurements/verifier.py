@@ -129,7 +129,7 @@ def _motion(setting: Setting, place: Path) -> ReportPart:
     checks = [_checked(setting, scene, "--plan", str(plan), "--rules", "T") for _ in range(3)]
     _expect(checks[0].found, [])
     idle = [rule["id"] for rule in checks[0].report["rules"] if rule["state"] != "holds"]
-    _expect(idle, [])
+    _expect(idle, ["T8"])  # of liquids and gases, which the scene has none of
     times = [check.seconds for check in checks]
     note = f"rigid bodies; {sum(rule['state'] == 'holds' for rule in checks[0].report['rules'])} rules hold"
     return ReportPart(
