@@ -26,7 +26,7 @@ def execute(arguments, report):
     def restore(loaded):
         interpreter_state.current.stop_alarms_and_tracers()  # pyright: ignore[reportAttributeAccessIssue]
         interpreter_state.current.names.forget_modules(loaded)  # pyright: ignore[reportAttributeAccessIssue]
-        interpreter_state.current.names.restore()  # pyright: ignore[reportAttributeAccessIssue]
+        interpreter_state.current.restore_names()  # pyright: ignore[reportAttributeAccessIssue]
 
     return run_watched(arguments["code"], restore)
 

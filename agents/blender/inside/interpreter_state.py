@@ -18,6 +18,7 @@ _GRACE_SECONDS = 0.5
 _STREAMS = ("stdin", "stdout", "stderr")
 _SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGALRM, signal.SIGVTALRM, signal.SIGPROF, signal.SIGCHLD)
 _PACKAGES = (__package__, "simworlds")
+_OF_FUNCTIONS = frozenset({"__code__", "__defaults__", "__kwdefaults__"})  # what they do
 _current_frames = sys._current_frames
 _count_started = _thread._count
 
@@ -43,12 +44,15 @@ class InterpreterState:
         self._started = 0
         self._flush_c = ctypes.CDLL(None).fflush
         self._audited = 0
+        self._recoded = False
         sys.addaudithook(self._note_events)
         globals()["current"] = self
 
-    def _note_events(self, event, _arguments):
+    def _note_events(self, event, arguments):
         if event == "sys.addaudithook":
             self._audited += 1
+        elif event == "object.__setattr__" and arguments[1] in _OF_FUNCTIONS:
+            self._recoded = True
 
     def protect_modules(self):
         """Has the functions and classes of all our modules that are loaded restored as well."""
@@ -79,6 +83,11 @@ class InterpreterState:
             left.append("an audit hook, which Python cannot remove")
         return left
 
+    def restore_names(self):
+        """Puts back names in modules, and what functions do."""
+        self.names.restore(functions=self._recoded)
+        self._recoded = False
+
     def stop_alarms_and_tracers(self):
         """Ends what code has set up to interrupt others later."""
         self._settings.stop_alarms_and_tracers()
@@ -93,7 +102,7 @@ class InterpreterState:
             if stream is not None and stream.closed:
                 self._streams[name] = self._reopened(name)
             setattr(sys, name, self._streams[name])
-        self.names.restore()
+        self.restore_names()
         self._settings.restore()
         if self._cores is not None and os.sched_getaffinity(0) != self._cores:
             os.sched_setaffinity(0, self._cores)

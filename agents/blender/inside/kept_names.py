@@ -73,10 +73,11 @@ class KeptNames:
                 kept = (function.__code__, function.__defaults__, function.__kwdefaults__)
                 self._code[id(function)] = (function, *kept)
 
-    def restore(self):
+    def restore(self, *, functions=True):
         """Puts back names, what functions do, the builtins, and modules that are gone from ``sys.modules``.
 
-        New names in modules stay: importing a submodule adds one.
+        New names in modules stay: importing a submodule adds one. ``functions``: whether some may have got other code;
+        looking takes a millisecond, as Python tells its audit hooks of every look.
         """
         sys.modules = self._table
         for module, kept in self._names:
@@ -84,7 +85,7 @@ class KeptNames:
             for name, value in kept.items():
                 if now.get(name) is not value:
                     now[name] = value
-        for function, code, defaults, of_keywords in self._code.values():
+        for function, code, defaults, of_keywords in self._code.values() if functions else ():
             if function.__code__ is not code:
                 function.__code__ = code
             if function.__defaults__ is not defaults:

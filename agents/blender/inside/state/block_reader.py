@@ -47,6 +47,19 @@ def _kind_of(kind):
     return rna.identifier
 
 
+_known_plans = {}
+
+
+def _plan_of(struct, kind, *, pictures):
+    """As reading_plan_of, which takes long; what a type had is used again unless properties were registered since."""
+    properties = struct.bl_rna.properties
+    registered = (len(properties), properties[-1].identifier, properties[-1].type)  # new ones come last
+    known = _known_plans.get((kind, pictures))
+    if known is None or known[0] != registered:
+        known = _known_plans[kind, pictures] = registered, reading_plan_of(struct, pictures=pictures)
+    return known[1]
+
+
 class BlockReader:
     """Reads one data-block. Within a part, a struct is referred to by the number that it got when it was met first."""
 
@@ -128,7 +141,7 @@ class BlockReader:
         kind = type(struct)
         plan = self._plans.get(kind)
         if plan is None:
-            plan = self._plans[kind] = reading_plan_of(struct, pictures=self._pictures)
+            plan = self._plans[kind] = _plan_of(struct, kind, pictures=self._pictures)
         return plan
 
     def _plans_by_part(self, block):
