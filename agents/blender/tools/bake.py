@@ -34,7 +34,7 @@ class BakeArguments(Arguments):
 DESCRIPTION = """\
 Bake physics: cloth, soft bodies, particles, hair, rigid bodies, dynamic paint, liquid and gas. Earlier bakes are \
 replaced; frames simulated already are kept if nothing has changed. Every cache is checked: baked, whole, and \
-something moved; else the likely causes are named. Never call bpy.ops.fluid.free_all, which crashes later calls: use \
+something moved; else likely causes are named. Never call bpy.ops.fluid.free_all, which crashes later calls: use \
 `free`. Past `timeout` it is undone."""
 
 

@@ -53,8 +53,8 @@ class SaveArguments(Arguments):
 SAVE_DESCRIPTION = """\
 Save the scene as a .blend in the run's folder that opens elsewhere: images, sounds and fonts are packed, caches on \
 disk (fluids, point caches) copied to `blendcache_NAME` beside it; keep both together. A file of that name is \
-replaced, whole or not at all. A second Blender opens the copy to check that caches are baked there too. Without a \
-name: a checkpoint, for blender_load."""
+replaced. A second Blender opens the copy to check that caches are baked there too. Without a name: a checkpoint, for \
+blender_load."""
 
 
 class LoadArguments(Arguments):

@@ -69,7 +69,7 @@ class GroupArguments(Arguments):
 DESCRIPTION = """\
 Make logical objects of the scene protocol out of meshes, many in one call: their collections (L3, and L2 unless \
 there), a root Empty each, parents and tags. Members leave other collections, but those of physics. Nothing moves in \
-the world. What cannot be done is refused as a whole. The reply says what the protocol still requires. For what is \
+the world. A call is done whole or not at all. The reply says what the protocol still requires. For what is \
 grouped already it sets tags: give the object and what changes."""
 
 

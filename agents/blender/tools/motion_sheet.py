@@ -81,7 +81,7 @@ class MotionSheetArguments(Arguments):
 DESCRIPTION = """\
 See and measure how objects move. For each actor its path in pictures, displacement and speed over the frames with \
 phases, keys, contacts and caches; for each phase displacement and path (m), peak and final speed (m/s), turn \
-(degrees), what was touched from which frame on. Measured on the mean of the evaluated surface, particles or fluid. \
+(degrees), what was touched from when on. Measured on the mean of the evaluated surface, particles or fluid. \
 Unbaked simulations are stepped."""
 
 

@@ -75,7 +75,7 @@ class SceneLayoutArguments(LayoutArguments):
     )
 
 
-_ALIKE = "from front, right, top and three-quarter, as evaluated, with scale bars and axes, in plain colours."
+_ALIKE = "from front, right, top and three-quarter, evaluated, with scale bars, in plain colours."
 
 
 def run_single_mesh(context: ToolContext, arguments: SingleMeshArguments, call: Call) -> Result:

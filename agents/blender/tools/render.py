@@ -71,7 +71,7 @@ class RenderArguments(Arguments):
 
 
 DESCRIPTION = """\
-Render what the camera sees: a still, or an animation (frames and an MP4). Whole frames of the same `name`, scene \
+Render what the camera sees: a still, or an animation (frames and an MP4). Frames of the same `name`, scene \
 and settings are kept: a call that broke off goes on. Bake first: the unbaked is stepped. Within `time_budget` fewer \
 samples are taken, then frames left out; the reply says so. Begin with a small still, and look at its numbers."""
 

@@ -68,7 +68,7 @@ class SceneStateArguments(Arguments):
 
 
 DESCRIPTION = """\
-Read the scene: collections with protocol tags; objects with world transform, extent (world bounding box at this \
+Read the scene: collections with protocol tags; objects with world transform, extent (world bounds at this \
 frame), materials, modifiers and constraints where they differ from defaults; physics and caches; animation; \
 cameras, lights, world; likely mistakes, marked with !. Series are folded (Brick.001 … Brick.400); what does not fit \
 is counted, with the call that shows it."""

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
 pytestmark = [pytest.mark.blender, pytest.mark.anyio]
 
 MOST_SENT = {"docs": 3_000, "look": 11_000, "build": 18_000}  # bytes of the list of tools
+_AROUND = 200  # bytes of the answer that has the list
 
 
 @pytest.fixture(scope="module")
@@ -44,9 +45,8 @@ async def offered(home: Path, profile: str) -> AsyncIterator[tuple[Client, dict[
 
 
 def size(tools: dict[str, Tool]) -> int:
-    return sum(
-        len(tool.model_dump_json(by_alias=True, exclude_none=True).encode()) + 1 for tool in tools.values()
-    )
+    listed = (tool.model_dump_json(by_alias=True, exclude_none=True).encode() for tool in tools.values())
+    return _AROUND + sum(len(tool) + 1 for tool in listed)
 
 
 async def resource(client: Client, uri: str) -> Any:
