@@ -13,6 +13,7 @@ from kb_build.base_file import read_meta
 from kb_serve.errors import KBServeError
 from measurements import report
 from measurements.builds import BuildFailed, run_build
+from measurements.kept_parts import KeptPart, keep, kept_part, told_by_conditions
 from measurements.retrieval import BadQueries, misses
 from measurements.setting import BLENDER, QUERIES, REPO, Setting, say
 from simworlds.errors import UserError
@@ -60,6 +61,11 @@ def _arguments(words: Sequence[str] | None) -> argparse.Namespace:
         default=30.0,
         help="length of the HTTP load, and of each server's soak (default: 30)",
     )
+    parser.add_argument(
+        "--add",
+        action="store_true",
+        help="add to the report what earlier runs with the same --output measured of the other parts",
+    )
     parser.add_argument("--misses", action="store_true", help="list the queries without a correct answer")
     parser.add_argument("--output", type=Path, default=REPO / "reports", help="folder of the reports")
     return parser.parse_args(words)
@@ -100,10 +106,18 @@ def main(given: Sequence[str] | None = None) -> int:
         base = _base(home)
         setting = Setting(base, home, queries, options.quick, options.load_seconds)
         facts = report.machine_facts(read_meta(base), base)
-        parts = [measure(name, setting) for name in (*PARTS, *LONG) if name in options.only]
+        kept: list[KeptPart] = []
+        for name in (*PARTS, *LONG):
+            if name in options.only:
+                kept.append(keep(options.output, measure(name, setting), facts))
+            elif options.add and (earlier := kept_part(options.output, name)) is not None:
+                kept.append(earlier)
     except (BadQueries, BuildFailed, UserError, KBServeError) as error:
         print(f"Error: {error}", file=sys.stderr)
         return 2
+    parts = [one.part for one in kept]
+    if options.add:
+        facts["measured"] = told_by_conditions(kept)
     text = report.write(options.output, parts, facts)
     print(text)
     if options.misses:

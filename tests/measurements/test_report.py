@@ -7,9 +7,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from bench.markdown_tables import Table
+from measurements.kept_parts import keep, kept_part, told_by_conditions
 from measurements.main import main
 from measurements.report import ReportPart, TargetFigure, markdown, targets_table, write
 from measurements.targets import TARGETS, Target, format_value
+from simworlds.errors import UserError
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -76,3 +79,23 @@ def test_an_invalid_base_is_an_error_without_traceback(
     (tmp_path / "kb" / "blender-5.1.sqlite").write_text("not a database", encoding="utf-8")
     assert main(["--only", "retrieval", "--home", str(tmp_path), "--output", str(tmp_path)]) == 2
     assert "Error: " in capsys.readouterr().err
+
+
+def test_what_was_measured_before_is_kept_with_its_conditions(tmp_path: Path) -> None:
+    table = Table("Builds", ("what", "s"), (("all", "8"),), "a note")
+    part = ReportPart("builds", (TargetFigure("size", 50.0, "built"),), (table,), ("old: gone",), {"a": [1]})
+    facts = {"date": "today", "commit": "abc", "machine": "fast", "base": "5.1"}
+    kept = keep(tmp_path, part, facts)
+    again = kept_part(tmp_path, "builds")
+    assert again == kept
+    assert kept_part(tmp_path, "latency") is None
+    other = keep(tmp_path, ReportPart("latency"), {**facts, "commit": "def"})
+    assert told_by_conditions([kept, other]) == "builds: today, abc, fast; latency: today, def, fast"
+
+
+@pytest.mark.parametrize("text", ["{", "[]", '{"part": {"name": 1}}'])
+def test_a_damaged_part_is_told(tmp_path: Path, text: str) -> None:
+    keep(tmp_path, ReportPart("builds"), dict.fromkeys(("date", "commit", "machine"), "x"))
+    (tmp_path / "parts" / "builds.json").write_text(text, encoding="utf-8")
+    with pytest.raises(UserError, match="measure the part again"):
+        kept_part(tmp_path, "builds")
