@@ -62,7 +62,7 @@ class Expressions:
             later = 0.02 * min(position, 5)
             readings = self._resolver.resolve(chain)
             if taken_as := self._old.still_taken(readings):
-                self._former_name(taken_as, later, recognition)
+                recognition.add_former_name(taken_as, 0.97 - later)
                 continue
             variable = not chain.steps and (chain.assigned or len(code) > 1)
             if not variable and (old := self._old.in_chain(chain, readings)):
@@ -118,11 +118,6 @@ class Expressions:
             if further is None:
                 return
             old = further
-
-    @staticmethod
-    def _former_name(taken_as: str, later: float, recognition: Recognition) -> None:
-        recognition.add(taken_as, 0.97 - later, "former name")
-        recognition.notes.append(f"The former name still works here; the name is now `{taken_as}`.")
 
     def _reading(
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition

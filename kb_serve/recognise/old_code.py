@@ -250,6 +250,12 @@ class OldCode:
             if removed := self._removed.of_path(path):
                 yield removed
 
+    def still_taken_in_strings(self, text: str) -> Iterator[str]:
+        """The classes that one gets by former names which are quoted: ``nodes.new("ShaderNodeBsdfGlossy")``."""
+        for match in islice(_CLASS_NAME.finditer(text), _MOST_QUOTED):
+            if taken_as := self._reader.still_works(TYPES + match[2]):
+                yield taken_as
+
     def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed classes, operators and properties whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""
         for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, "bpy.ops.")):

@@ -81,6 +81,8 @@ class Recogniser:
         """Adds removed values and arguments of what was recognised, and notes on wrong ones."""
         for removed in (*self._old.in_imports(query), *self._old.in_strings(query)):
             recognition.add_removed(removed)
+        for taken_as in self._old.still_taken_in_strings(query):
+            recognition.add_former_name(taken_as, _SURE)
         for chain in chains:
             called = bool(chain.steps) and chain.steps[-1].kind == "call"
             if not (called or chain.values):

@@ -59,6 +59,11 @@ class Recognition:
         if all(known.path != removed.path for known in self.removed):
             self.removed.append(removed)
 
+    def add_former_name(self, taken_as: str, sure: float) -> None:
+        """Adds the symbol that the query names by a former name which this Blender still takes."""
+        self.add(taken_as, sure, "former name")
+        self.notes.append(f"The former name still works here; the name is now `{taken_as}`.")
+
     @property
     def dead_end(self) -> bool:
         """Whether the query names removed symbols, and it is known of each that nothing takes its place."""

@@ -63,6 +63,9 @@ class Spellings:
             if self._reader.entry(path):
                 recognition.add(path, 1.0, "exact")
                 return
+        if taken_as := self._reader.still_works(TYPES + text):
+            recognition.add_former_name(taken_as, 1.0)
+            return
         if slug := find_page(text, self._reader):
             recognition.add(slug, 1.0, "exact")
             return

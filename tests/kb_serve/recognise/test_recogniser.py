@@ -429,6 +429,19 @@ def test_removed_symbols_are_noted_with_their_versions(
         assert (gone or f"new in {first}") in note, note
 
 
+@pytest.mark.parametrize("query", ["{}", "bpy.types.{}", 'nodes.new("{}")', "n = tree.nodes.new(type='{}')"])
+def test_a_class_that_is_still_taken_by_its_former_name_is_told(
+    kb: KnowledgeBase, reader: BaseReader, query: str
+) -> None:
+    rows = reader.rows("SELECT path, taken_as FROM still_works WHERE path NOT LIKE '%[%'")
+    assert rows
+    for path, taken_as in rows:
+        answer = kb.query(query.format(path.removeprefix(TYPES)))
+        assert any("still works here" in note and taken_as in note for note in answer.notes), path
+        assert not says_gone(kb, query, path)
+        assert taken_as in [hit.id for hit in answer.hits][:2]
+
+
 @pytest.mark.parametrize("form", ["{}()", "{}(a=1)", "x = {}('EXEC_DEFAULT')"])
 def test_a_removed_operator_is_noted_when_called(kb: KnowledgeBase, reader: BaseReader, form: str) -> None:
     for path in former(reader, "path GLOB 'bpy.ops.*.*' AND path NOT GLOB '*[(:]*'", 60):
