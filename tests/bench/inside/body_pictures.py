@@ -3,8 +3,9 @@
 import math
 
 import bpy
-from making import add, bake, body, empty, get
-from picture_parts import A, B, Shot, ball, box, coloured
+from cloth_pictures import sheet
+from making import add, bake, body, cloth_on, empty, get
+from picture_parts import A, B, Shot, ball, box, coloured, group, solid
 
 
 def fixed(thing, shape="BOX"):
@@ -20,6 +21,14 @@ def joint(kind, place, first, second):
     constraint = bpy.context.object.rigid_body_constraint
     constraint.object1, constraint.object2 = first, second
     return constraint
+
+
+def rigid_settings(holds):
+    fixed(box("B", (0, 0, 0), (1.2, 0.8, 0.2), B))
+    body(box("A", (0, 0, 0.9), (0.35, 0.35, 0.35), A))
+    if not holds:
+        bpy.context.scene.rigidbody_world.collection.objects.unlink(get("A"))
+    bake()
 
 
 def rigid_type(holds):
@@ -39,6 +48,15 @@ def rigid_shape(holds):
     bake()
 
 
+def rigid_world_populated(holds):
+    fixed(get("Floor"))
+    for name, x in (("Left", -0.65), ("A", 0), ("Right", 0.65)):
+        body(box(name, (x, 0, 0.6), (0.35, 0.35, 0.35), A if name == "A" else B))
+    if not holds:
+        bpy.context.scene.rigidbody_world.collection.objects.unlink(get("Right"))
+    bake()
+
+
 def rigid_constraint(holds):
     fixed(get("Floor"))
     fixed(box("B", (0, 0, 1.15), (0.3, 0.3, 0.12), B))
@@ -46,6 +64,24 @@ def rigid_constraint(holds):
     body(rod)
     rod.location, rod.rotation_euler.y = (0.3, 0, 0.92), math.radians(-60)
     joint("POINT", (0, 0, 1.1), get("B"), rod if holds else None)
+    bake()
+
+
+def rigid_constraint_no_collision(holds):
+    fixed(get("Floor"))
+    fixed(box("B", (-0.3, 0, 0), (0.25, 0.25, 1), B))
+    door = box("A", (0.1, 0, 0.35), (0.8, 0.12, 0.4), A)
+    body(door).collision_shape = "BOX"
+    joint("POINT", (-0.3, 0, 0.55), get("B"), door).disable_collisions = holds
+    joint("HINGE", (-0.3, 0, 0.55), get("B"), door).disable_collisions = holds
+    bake()
+
+
+def rigid_collision_modifier(holds):
+    table = fixed(box("A", (0, 0, 0), (0.8, 0.8, 0.6), A))
+    if holds:
+        solid(table)
+    cloth_on(sheet("B", (0, 0, 0.8), B), 30)
     bake()
 
 
@@ -62,9 +98,71 @@ def rigid_positive_mass(holds):
     bake()
 
 
+def soft(name, place, size):
+    """A box of many faces, and its soft-body modifier."""
+    thing = box(name, place, size, A)
+    bpy.context.view_layer.objects.active = thing
+    bpy.ops.object.transform_apply(location=False, rotation=False, scale=True)
+    finer = thing.modifiers.new("Parts", "SUBSURF")
+    finer.subdivision_type, finer.levels = "SIMPLE", 3
+    bpy.ops.object.modifier_apply(modifier="Parts")
+    modifier = thing.modifiers.new("Softbody", "SOFT_BODY")
+    modifier.point_cache.frame_end = 30
+    settings = modifier.settings
+    settings.use_goal, settings.use_stiff_quads = False, True
+    settings.pull, settings.push, settings.shear, settings.bend = 0.9, 0.9, 1.0, 4.0
+    return thing
+
+
+def soft_modifier(holds):
+    solid(box("B", (0, 0, 0), (1.2, 0.9, 0.2), B))
+    jelly = soft("A", (0, 0, 0.5), (0.5, 0.5, 0.5))
+    if not holds:
+        jelly.modifiers.clear()
+    bake()
+
+
+def soft_collision_partners(holds):
+    solid(get("Floor"))
+    shelf = box("B", (0, 0, 0.45), (0.9, 0.9, 0.06), B)
+    if holds:
+        solid(shelf)
+    soft("A", (0, 0, 0.7), (0.4, 0.4, 0.4))
+    bake()
+
+
+def soft_goal_group(holds):
+    solid(get("Floor"))
+    box("B", (-0.65, 0, 0), (0.25, 0.4, 1), B)
+    bar = soft("A", (0, 0, 0.7), (1.2, 0.16, 0.16))
+    settings = bar.modifiers["Softbody"].settings
+    settings.use_goal = holds
+    settings.vertex_group_goal = group(bar, "Held", lambda place: place.x < -0.5)
+    settings.goal_min, settings.goal_max, settings.goal_spring = 0, 1, 0.9
+    bake()
+
+
+def soft_rigid_partners(holds):
+    solid(fixed(get("Floor")))
+    soft("A", (0, 0, 0.02), (0.9, 0.9, 0.4))
+    weight = ball("B", (0, 0, 1.0), 0.22, B)
+    body(weight).collision_shape = "SPHERE"
+    if holds:
+        solid(weight)
+    bake()
+
+
 SHOTS = {
+    "rigid_settings": Shot(rigid_settings, (30,)),
     "rigid_type": Shot(rigid_type, (30,)),
     "rigid_shape": Shot(rigid_shape, (30,), look=(0, 0, 0.25), away=(1.6, -2.8, 2)),
+    "rigid_world_populated": Shot(rigid_world_populated, (30,)),
     "rigid_constraint": Shot(rigid_constraint, (30,), look=(0, 0, 0.6)),
+    "rigid_constraint_no_collision": Shot(rigid_constraint_no_collision, (30,), look=(0, 0, 0.5)),
+    "rigid_collision_modifier": Shot(rigid_collision_modifier, (30,)),
     "rigid_positive_mass": Shot(rigid_positive_mass, (30,), look=(0, 0, 0.3), away=(0.8, -3.6, 1)),
+    "soft_modifier": Shot(soft_modifier, (30,)),
+    "soft_collision_partners": Shot(soft_collision_partners, (30,)),
+    "soft_goal_group": Shot(soft_goal_group, (30,)),
+    "soft_rigid_partners": Shot(soft_rigid_partners, (12,)),
 }

@@ -17,6 +17,32 @@ def renderable(holds):
     ball("A", (0, 0, 0.75), 0.25, A).hide_render = not holds
 
 
+def solver_enabled(holds):
+    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
+    cloth_on(sheet("A", (0, 0, 0.8), A), 30)
+    bake()
+    get("A").modifiers["Cloth"].show_render = holds
+
+
+def cloth_modifier(holds):
+    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
+    thing = sheet("A", (0, 0, 0.8), A)
+    if holds:
+        cloth_on(thing, 30)
+        bake()
+
+
+def cloth_self_collision(holds):
+    solid(get("Floor"))
+    thing = coloured(add("grid", "A", (0, 0, 0.8), size=1.5, x_subdivisions=10, y_subdivisions=45), A)
+    thing.scale.x, thing.rotation_euler.x = 0.25, math.radians(86)
+    cloth = cloth_on(thing, 30)
+    cloth.settings.quality = 6
+    cloth.collision_settings.use_self_collision = holds
+    cloth.collision_settings.self_distance_min = 0.03
+    bake()
+
+
 def cloth_pin_group(holds):
     solid(get("Floor"))
     box("B", (0, 0, 1.1), (1.3, 0.06, 0.06), B)
@@ -37,6 +63,9 @@ def cloth_collision_partners(holds):
 
 SHOTS = {
     "renderable": Shot(renderable),
+    "solver_enabled": Shot(solver_enabled, (30,)),
+    "cloth_modifier": Shot(cloth_modifier, (30,)),
+    "cloth_self_collision": Shot(cloth_self_collision, (30,), look=(0, 0, 0.2), away=(1.6, -2.2, 0.7)),
     "cloth_pin_group": Shot(cloth_pin_group, (30,), look=(0, 0, 0.6)),
     "cloth_collision_partners": Shot(cloth_collision_partners, (30,)),
 }
