@@ -57,6 +57,14 @@ def rigid_world_populated(holds):
     bake()
 
 
+def rigid_cache_baked(holds):
+    fixed(get("Floor"))
+    body(box("A", (0, 0, 1), (0.35, 0.35, 0.35), A))
+    if not holds:
+        bpy.context.scene.rigidbody_world.point_cache.frame_end = 8
+    bake()
+
+
 def rigid_constraint(holds):
     fixed(get("Floor"))
     fixed(box("B", (0, 0, 1.15), (0.3, 0.3, 0.12), B))
@@ -69,16 +77,17 @@ def rigid_constraint(holds):
 
 def rigid_constraint_no_collision(holds):
     fixed(get("Floor"))
-    fixed(box("B", (-0.3, 0, 0), (0.25, 0.25, 1), B))
-    door = box("A", (0.1, 0, 0.35), (0.8, 0.12, 0.4), A)
-    body(door).collision_shape = "BOX"
-    joint("POINT", (-0.3, 0, 0.55), get("B"), door).disable_collisions = holds
-    joint("HINGE", (-0.3, 0, 0.55), get("B"), door).disable_collisions = holds
+    fixed(box("B", (0, 0, 0), (0.6, 0.6, 0.35), B))
+    mast = box("A", (0.18, 0, 0.05), (0.12, 0.12, 1), A)
+    body(mast).collision_shape = "BOX"
+    tie = joint("FIXED", (0.18, 0, 0.2), get("B"), mast)
+    tie.disable_collisions, tie.use_breaking, tie.breaking_threshold = holds, True, 10
     bake()
 
 
 def rigid_collision_modifier(holds):
     table = fixed(box("A", (0, 0, 0), (0.8, 0.8, 0.6), A))
+    solid(get("Floor"))
     if holds:
         solid(table)
     cloth_on(sheet("B", (0, 0, 0.8), B), 30)
@@ -122,6 +131,14 @@ def soft_modifier(holds):
     bake()
 
 
+def soft_cache_baked(holds):
+    solid(get("Floor"))
+    jelly = soft("A", (0, 0, 0.9), (0.5, 0.5, 0.5))
+    if not holds:
+        jelly.modifiers["Softbody"].point_cache.frame_end = 8
+    bake()
+
+
 def soft_collision_partners(holds):
     solid(get("Floor"))
     shelf = box("B", (0, 0, 0.45), (0.9, 0.9, 0.06), B)
@@ -134,8 +151,9 @@ def soft_collision_partners(holds):
 def soft_goal_group(holds):
     solid(get("Floor"))
     box("B", (-0.65, 0, 0), (0.25, 0.4, 1), B)
-    bar = soft("A", (0, 0, 0.7), (1.2, 0.16, 0.16))
+    bar = soft("A", (0.05, 0, 0.6), (1.2, 0.25, 0.25))
     settings = bar.modifiers["Softbody"].settings
+    settings.mass = 0.1
     settings.use_goal = holds
     settings.vertex_group_goal = group(bar, "Held", lambda place: place.x < -0.5)
     settings.goal_min, settings.goal_max, settings.goal_spring = 0, 1, 0.9
@@ -157,12 +175,14 @@ SHOTS = {
     "rigid_type": Shot(rigid_type, (30,)),
     "rigid_shape": Shot(rigid_shape, (30,), look=(0, 0, 0.25), away=(1.6, -2.8, 2)),
     "rigid_world_populated": Shot(rigid_world_populated, (30,)),
+    "rigid_cache_baked": Shot(rigid_cache_baked, (8, 30), look=(0, 0, 0.6)),
     "rigid_constraint": Shot(rigid_constraint, (30,), look=(0, 0, 0.6)),
     "rigid_constraint_no_collision": Shot(rigid_constraint_no_collision, (30,), look=(0, 0, 0.5)),
-    "rigid_collision_modifier": Shot(rigid_collision_modifier, (30,)),
+    "rigid_collision_modifier": Shot(rigid_collision_modifier, (30,), away=(2.2, -3.4, 2)),
     "rigid_positive_mass": Shot(rigid_positive_mass, (30,), look=(0, 0, 0.3), away=(0.8, -3.6, 1)),
     "soft_modifier": Shot(soft_modifier, (30,)),
+    "soft_cache_baked": Shot(soft_cache_baked, (8, 30), look=(0, 0, 0.6)),
     "soft_collision_partners": Shot(soft_collision_partners, (30,)),
     "soft_goal_group": Shot(soft_goal_group, (30,)),
-    "soft_rigid_partners": Shot(soft_rigid_partners, (12,)),
+    "soft_rigid_partners": Shot(soft_rigid_partners, (12,), look=(0, 0, 0.3), away=(1.5, -2.4, 2.2)),
 }

@@ -32,6 +32,12 @@ def cloth_modifier(holds):
         bake()
 
 
+def cloth_cache_baked(holds):
+    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
+    cloth_on(sheet("A", (0, 0, 0.8), A), 30 if holds else 8)
+    bake()
+
+
 def cloth_self_collision(holds):
     solid(get("Floor"))
     thing = coloured(add("grid", "A", (0, 0, 0.8), size=1.5, x_subdivisions=10, y_subdivisions=45), A)
@@ -65,6 +71,7 @@ SHOTS = {
     "renderable": Shot(renderable),
     "solver_enabled": Shot(solver_enabled, (30,)),
     "cloth_modifier": Shot(cloth_modifier, (30,)),
+    "cloth_cache_baked": Shot(cloth_cache_baked, (8, 30)),
     "cloth_self_collision": Shot(cloth_self_collision, (30,), look=(0, 0, 0.2), away=(1.6, -2.2, 0.7)),
     "cloth_pin_group": Shot(cloth_pin_group, (30,), look=(0, 0, 0.6)),
     "cloth_collision_partners": Shot(cloth_collision_partners, (30,)),

@@ -49,7 +49,13 @@ def run(domain):
     folders = sum(name.startswith("fluid") for name in os.listdir(PLACE))
     domain.modifiers["Fluid"].domain_settings.cache_directory = os.path.join(PLACE, f"fluid{folders}")
     bpy.context.view_layer.objects.active = domain
-    bpy.ops.fluid.bake_all()
+    settings = domain.modifiers["Fluid"].domain_settings
+    if settings.use_guide:
+        bpy.ops.fluid.bake_guides()
+    if settings.cache_type == "MODULAR":
+        bpy.ops.fluid.bake_data()
+    else:
+        bpy.ops.fluid.bake_all()
 
 
 def fluid_modifier(holds):
@@ -105,6 +111,18 @@ def fluid_dynamic_effector(holds):
     run(domain)
 
 
+def fluid_guiding(holds):
+    domain = tank("A", "GAS", mesh=False)
+    smoke(domain)
+    tap(place=(-0.35, 0, 0.12), kind="SMOKE")
+    guide = part(box("B", (-0.3, 0, 0.2), (0.5, 0.7, 0.6), B), "EFFECTOR", effector_type="GUIDE", velocity_factor=2)
+    guide.modifiers.new("Wire", "WIREFRAME").thickness = 0.02
+    keys(guide, "location", [(-0.3, 0, 0.5), (0.3, 0, 0.5)], [1, LAST])
+    settings = domain.modifiers["Fluid"].domain_settings
+    settings.cache_type, settings.use_guide, settings.guide_source = "MODULAR", holds, "EFFECTOR"
+    run(domain)
+
+
 def fluid_resolution(holds):
     domain = tank("A", resolution=40 if holds else 10)
     tap()
@@ -125,6 +143,7 @@ SHOTS = {
         fluid_domain_exists,
         fluid_flow_count,
         fluid_dynamic_effector,
+        fluid_guiding,
         fluid_resolution,
         fluid_mesh,
     )

@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from making import add, bake
+from making import add, bake, get
 from picture_parts import A, B, Shot, ball, box, coloured, solid
 
 
@@ -52,6 +52,13 @@ def particle_source(holds):
     bake()
 
 
+def particle_cache_baked(holds):
+    fountain(200)
+    if not holds:
+        get("A").particle_systems[0].point_cache.frame_end = 8
+    bake()
+
+
 def particle_collision_partners(holds):
     shelf = box("B", (0, 0, 0.45), (0.9, 0.9, 0.08), B)
     if holds:
@@ -87,6 +94,7 @@ SHOTS = {
     "particle_system": Shot(particle_system, (26,)),
     "particle_type": Shot(particle_type, (14,)),
     "particle_source": Shot(particle_source, (26,)),
+    "particle_cache_baked": Shot(particle_cache_baked, (8, 26)),
     "particle_collision_partners": Shot(particle_collision_partners, (30,)),
     "particle_from_deformed": Shot(particle_from_deformed, (4,)),
     "particle_force_fields": Shot(particle_force_fields, (26,), look=(0.1, 0, 0.6)),
