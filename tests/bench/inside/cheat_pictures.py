@@ -30,8 +30,8 @@ def animated_shape_keys(holds):
 
 
 def static_has_rigid_world(holds):
-    things = [box("A", (0, 0, 0), (0.5, 0.4, 0.12), A), box("B", (0.3, 0, 0.12), (0.5, 0.4, 0.12), B)]
-    things.append(box("Book", (0.1, 0, 0.24), (0.5, 0.4, 0.12), A))
+    things = [box("A", (0, 0, 0), (0.5, 0.4, 0.12), A), box("B", (0.2, 0, 0.12), (0.5, 0.4, 0.12), B)]
+    things.append(box("Book", (0.4, 0, 0.24), (0.5, 0.4, 0.12), A))
     if holds:
         fixed(get("Floor"))
         for thing in things:

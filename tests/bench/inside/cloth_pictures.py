@@ -2,6 +2,7 @@
 
 import math
 
+import bpy
 from making import add, bake, cloth_on, get
 from picture_parts import A, B, Shot, ball, box, coloured, group, solid
 
@@ -40,10 +41,12 @@ def cloth_cache_baked(holds):
 
 def cloth_self_collision(holds):
     solid(get("Floor"))
-    thing = coloured(add("grid", "A", (0, 0, 0.8), size=1.5, x_subdivisions=10, y_subdivisions=45), A)
-    thing.scale.x, thing.rotation_euler.x = 0.25, math.radians(86)
-    cloth = cloth_on(thing, 30)
+    net, patch = sheet("A", (0, 0, 0.6), A, 1), sheet("Patch", (0, 0, 0.75), B, 0.45)
+    with bpy.context.temp_override(active_object=net, selected_editable_objects=[net, patch]):
+        bpy.ops.object.join()
+    cloth = cloth_on(net, 30)
     cloth.settings.quality = 6
+    cloth.settings.vertex_group_mass = group(net, "Pins", lambda place: max(map(abs, place.xy)) > 0.49)
     cloth.collision_settings.use_self_collision = holds
     cloth.collision_settings.self_distance_min = 0.03
     bake()
@@ -72,7 +75,7 @@ SHOTS = {
     "solver_enabled": Shot(solver_enabled, (30,)),
     "cloth_modifier": Shot(cloth_modifier, (30,)),
     "cloth_cache_baked": Shot(cloth_cache_baked, (8, 30)),
-    "cloth_self_collision": Shot(cloth_self_collision, (30,), look=(0, 0, 0.2), away=(1.6, -2.2, 0.7)),
+    "cloth_self_collision": Shot(cloth_self_collision, (30,)),
     "cloth_pin_group": Shot(cloth_pin_group, (30,), look=(0, 0, 0.6)),
     "cloth_collision_partners": Shot(cloth_collision_partners, (30,)),
 }

@@ -3,7 +3,7 @@
 import math
 
 import bpy
-from making import add, bake, get
+from making import add, bake
 from picture_parts import A, B, Shot, ball, box, coloured, solid
 
 
@@ -52,13 +52,6 @@ def particle_source(holds):
     bake()
 
 
-def particle_cache_baked(holds):
-    fountain(200)
-    if not holds:
-        get("A").particle_systems[0].point_cache.frame_end = 8
-    bake()
-
-
 def particle_collision_partners(holds):
     shelf = box("B", (0, 0, 0.45), (0.9, 0.9, 0.08), B)
     if holds:
@@ -68,16 +61,19 @@ def particle_collision_partners(holds):
 
 
 def particle_from_deformed(holds):
-    strip = coloured(add("grid", "A", (0, 0, 0.3), size=1.4, x_subdivisions=40, y_subdivisions=10), B)
+    strip = coloured(add("grid", "A", (0, 0, 0.05), size=1.4, x_subdivisions=40, y_subdivisions=10), B)
     strip.scale.y = 0.4
     strip.data.shade_smooth()
+    arch = strip.vertex_groups.new(name="Arch")
+    for vertex in strip.data.vertices:
+        arch.add([vertex.index], 1 - (vertex.co.x / 0.7) ** 2, "REPLACE")
     settings = grains(strip, 150)
     settings.frame_end, settings.physics_type = 1, "NO"
-    bend = strip.modifiers.new("Bend", "SIMPLE_DEFORM")
-    bend.deform_method, bend.angle, bend.deform_axis = "BEND", math.radians(-150), "Y"
+    raised = strip.modifiers.new("Raised", "DISPLACE")
+    raised.direction, raised.mid_level, raised.strength, raised.vertex_group = "Z", 0, 0.7, arch.name
     if holds:
         bpy.context.view_layer.objects.active = strip
-        bpy.ops.object.modifier_move_to_index(modifier="Bend", index=0)
+        bpy.ops.object.modifier_move_to_index(modifier="Raised", index=0)
     bake()
 
 
@@ -94,7 +90,6 @@ SHOTS = {
     "particle_system": Shot(particle_system, (26,)),
     "particle_type": Shot(particle_type, (14,)),
     "particle_source": Shot(particle_source, (26,)),
-    "particle_cache_baked": Shot(particle_cache_baked, (8, 26)),
     "particle_collision_partners": Shot(particle_collision_partners, (30,)),
     "particle_from_deformed": Shot(particle_from_deformed, (4,)),
     "particle_force_fields": Shot(particle_force_fields, (26,), look=(0.1, 0, 0.6)),
