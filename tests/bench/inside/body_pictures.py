@@ -78,10 +78,11 @@ def rigid_constraint(holds):
 def rigid_constraint_no_collision(holds):
     fixed(get("Floor"))
     fixed(box("B", (0, 0, 0), (0.6, 0.6, 0.35), B))
-    mast = box("A", (0.18, 0, 0.05), (0.12, 0.12, 1), A)
+    mast = box("A", (0.17, 0, 0.27), (0.12, 0.12, 1), A)
+    mast.rotation_euler.y = math.radians(20)
     body(mast).collision_shape = "BOX"
-    tie = joint("FIXED", (0.18, 0, 0.2), get("B"), mast)
-    tie.disable_collisions, tie.use_breaking, tie.breaking_threshold = holds, True, 10
+    tie = joint("FIXED", (0, 0, 0.3), get("B"), mast)
+    tie.disable_collisions, tie.use_breaking, tie.breaking_threshold = holds, True, 1
     bake()
 
 
@@ -153,9 +154,9 @@ def soft_goal_group(holds):
     box("B", (-0.65, 0, 0), (0.25, 0.4, 1), B)
     bar = soft("A", (0.05, 0, 0.6), (1.2, 0.25, 0.25))
     settings = bar.modifiers["Softbody"].settings
-    settings.mass = 0.1
+    settings.mass, settings.pull, settings.push = 0.05, 0.98, 0.98
     settings.use_goal = holds
-    settings.vertex_group_goal = group(bar, "Held", lambda place: place.x < -0.5)
+    settings.vertex_group_goal = group(bar, "Held", lambda place: place.x < -0.4)
     settings.goal_min, settings.goal_max, settings.goal_spring = 0, 1, 0.9
     bake()
 
