@@ -35,8 +35,6 @@ LARGEST, LARGEST_OF_ALL = 20_000, 600_000  # bytes
 # What a predicate is asked with, where that is not its default.
 PARAMS: dict[str, dict[str, Any]] = {
     "cloth_collision_partners": {"partners": ["B"]},
-    "fluid_type": {"type": "DOMAIN", "kind": "LIQUID"},
-    "fluid_flow_count": {"min": 2},
     "rigid_shape": {"shapes": ["MESH"]},
     "rigid_world_populated": {"min": 4},
     "rigid_positive_mass": {"min": 2.0},
@@ -44,7 +42,6 @@ PARAMS: dict[str, dict[str, Any]] = {
     "particle_source": {"min": 100},
     "particle_collision_partners": {"partners": ["B"]},
     "soft_collision_partners": {"partners": ["B"]},
-    "soft_rigid_partners": {"partners": ["B"]},
 }
 ROLES = {"solver_enabled": "cloth"}
 TOLERANCES = {"NextTo": 0.2}

@@ -5,7 +5,7 @@ import math
 import bpy
 from cloth_pictures import sheet
 from making import add, bake, body, cloth_on, empty, get
-from picture_parts import A, B, Shot, ball, box, coloured, group, solid
+from picture_parts import A, B, Shot, ball, box, coloured, solid
 
 
 def fixed(thing, shape="BOX"):
@@ -75,17 +75,6 @@ def rigid_constraint(holds):
     bake()
 
 
-def rigid_constraint_no_collision(holds):
-    fixed(get("Floor"))
-    fixed(box("B", (0, 0, 0), (0.6, 0.6, 0.35), B))
-    mast = box("A", (0.17, 0, 0.27), (0.12, 0.12, 1), A)
-    mast.rotation_euler.y = math.radians(20)
-    body(mast).collision_shape = "BOX"
-    tie = joint("FIXED", (0, 0, 0.3), get("B"), mast)
-    tie.disable_collisions, tie.use_breaking, tie.breaking_threshold = holds, True, 1
-    bake()
-
-
 def rigid_collision_modifier(holds):
     table = fixed(box("A", (0, 0, 0), (0.8, 0.8, 0.6), A))
     solid(get("Floor"))
@@ -149,28 +138,6 @@ def soft_collision_partners(holds):
     bake()
 
 
-def soft_goal_group(holds):
-    solid(get("Floor"))
-    box("B", (-0.65, 0, 0), (0.25, 0.4, 1), B)
-    bar = soft("A", (0.05, 0, 0.6), (1.2, 0.25, 0.25))
-    settings = bar.modifiers["Softbody"].settings
-    settings.mass, settings.pull, settings.push = 0.05, 0.98, 0.98
-    settings.use_goal = holds
-    settings.vertex_group_goal = group(bar, "Held", lambda place: place.x < -0.4)
-    settings.goal_min, settings.goal_max, settings.goal_spring = 0, 1, 0.9
-    bake()
-
-
-def soft_rigid_partners(holds):
-    solid(fixed(get("Floor")))
-    soft("A", (0, 0, 0.02), (0.9, 0.9, 0.4))
-    weight = ball("B", (0, 0, 1.0), 0.22, B)
-    body(weight).collision_shape = "SPHERE"
-    if holds:
-        solid(weight)
-    bake()
-
-
 SHOTS = {
     "rigid_settings": Shot(rigid_settings, (30,)),
     "rigid_type": Shot(rigid_type, (30,)),
@@ -178,12 +145,9 @@ SHOTS = {
     "rigid_world_populated": Shot(rigid_world_populated, (30,)),
     "rigid_cache_baked": Shot(rigid_cache_baked, (8, 30), look=(0, 0, 0.6)),
     "rigid_constraint": Shot(rigid_constraint, (30,), look=(0, 0, 0.6)),
-    "rigid_constraint_no_collision": Shot(rigid_constraint_no_collision, (30,), look=(0, 0, 0.5)),
     "rigid_collision_modifier": Shot(rigid_collision_modifier, (30,), away=(2.2, -3.4, 2)),
     "rigid_positive_mass": Shot(rigid_positive_mass, (30,), look=(0, 0, 0.3), away=(0.8, -3.6, 1)),
     "soft_modifier": Shot(soft_modifier, (30,)),
     "soft_cache_baked": Shot(soft_cache_baked, (8, 30), look=(0, 0, 0.6)),
     "soft_collision_partners": Shot(soft_collision_partners, (30,)),
-    "soft_goal_group": Shot(soft_goal_group, (30,)),
-    "soft_rigid_partners": Shot(soft_rigid_partners, (12,), look=(0, 0, 0.3), away=(1.5, -2.4, 2.2)),
 }

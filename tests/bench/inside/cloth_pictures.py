@@ -2,13 +2,12 @@
 
 import math
 
-import bpy
 from making import add, bake, cloth_on, get
 from picture_parts import A, B, Shot, ball, box, coloured, group, solid
 
 
-def sheet(name, place, colour, size=1.3, faces=32):
-    thing = coloured(add("grid", name, place, size=size, x_subdivisions=faces, y_subdivisions=faces), colour)
+def sheet(name, place, colour, size=1.3):
+    thing = coloured(add("grid", name, place, size=size, x_subdivisions=32, y_subdivisions=32), colour)
     thing.data.shade_smooth()
     return thing
 
@@ -39,19 +38,6 @@ def cloth_cache_baked(holds):
     bake()
 
 
-def cloth_self_collision(holds):
-    solid(get("Floor"))
-    net, patch = sheet("A", (0, 0, 0.6), A, 1), sheet("Patch", (0, 0, 0.75), B, 0.45, 12)
-    with bpy.context.temp_override(active_object=net, selected_editable_objects=[net, patch]):
-        bpy.ops.object.join()
-    cloth = cloth_on(net, 30)
-    cloth.settings.quality = 5
-    cloth.settings.vertex_group_mass = group(net, "Pins", lambda place: max(map(abs, place.xy)) > 0.49)
-    cloth.collision_settings.use_self_collision = holds
-    cloth.collision_settings.self_distance_min = 0.015
-    bake()
-
-
 def cloth_pin_group(holds):
     solid(get("Floor"))
     box("B", (0, 0, 1.1), (1.3, 0.06, 0.06), B)
@@ -75,7 +61,6 @@ SHOTS = {
     "solver_enabled": Shot(solver_enabled, (30,)),
     "cloth_modifier": Shot(cloth_modifier, (30,)),
     "cloth_cache_baked": Shot(cloth_cache_baked, (8, 30)),
-    "cloth_self_collision": Shot(cloth_self_collision, (30,)),
     "cloth_pin_group": Shot(cloth_pin_group, (30,), look=(0, 0, 0.6)),
     "cloth_collision_partners": Shot(cloth_collision_partners, (30,)),
 }
