@@ -36,10 +36,14 @@ LARGEST, LARGEST_OF_ALL = 20_000, 600_000  # bytes
 PARAMS: dict[str, dict[str, Any]] = {
     "cloth_collision_partners": {"partners": ["B"]},
     "rigid_shape": {"shapes": ["MESH"]},
+    "rigid_world_populated": {"min": 4},
     "rigid_positive_mass": {"min": 2.0},
     "particle_type": {"type": "HAIR"},
+    "particle_source": {"min": 100},
     "particle_collision_partners": {"partners": ["B"]},
+    "soft_collision_partners": {"partners": ["B"]},
 }
+ROLES = {"solver_enabled": "cloth"}
 TOLERANCES = {"NextTo": 0.2}
 
 
@@ -128,7 +132,7 @@ def verdict(name: str, blend: Path) -> tuple[bool, dict[str, Any]]:
         "level": "D1",
         "prompt": "Two things, one of which is called A and the other B.",
         "actors": [
-            {"name": "A", "role": "static", "must_have": ["renderable"]},
+            {"name": "A", "role": ROLES.get(name, "static"), "must_have": ["renderable"]},
             {"name": "B", "role": "static", "must_have": ["renderable"]},
         ],
     }

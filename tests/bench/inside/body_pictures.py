@@ -3,8 +3,9 @@
 import math
 
 import bpy
-from making import add, bake, body, empty, get
-from picture_parts import A, B, Shot, ball, box, coloured
+from cloth_pictures import sheet
+from making import add, bake, body, cloth_on, empty, get
+from picture_parts import A, B, Shot, ball, box, coloured, solid
 
 
 def fixed(thing, shape="BOX"):
@@ -20,6 +21,14 @@ def joint(kind, place, first, second):
     constraint = bpy.context.object.rigid_body_constraint
     constraint.object1, constraint.object2 = first, second
     return constraint
+
+
+def rigid_settings(holds):
+    fixed(box("B", (0, 0, 0), (1.2, 0.8, 0.2), B))
+    body(box("A", (0, 0, 0.9), (0.35, 0.35, 0.35), A))
+    if not holds:
+        bpy.context.scene.rigidbody_world.collection.objects.unlink(get("A"))
+    bake()
 
 
 def rigid_type(holds):
@@ -39,6 +48,23 @@ def rigid_shape(holds):
     bake()
 
 
+def rigid_world_populated(holds):
+    fixed(get("Floor"))
+    for name, x in (("Left", -0.65), ("A", 0), ("Right", 0.65)):
+        body(box(name, (x, 0, 0.6), (0.35, 0.35, 0.35), A if name == "A" else B))
+    if not holds:
+        bpy.context.scene.rigidbody_world.collection.objects.unlink(get("Right"))
+    bake()
+
+
+def rigid_cache_baked(holds):
+    fixed(get("Floor"))
+    body(box("A", (0, 0, 1), (0.35, 0.35, 0.35), A))
+    if not holds:
+        bpy.context.scene.rigidbody_world.point_cache.frame_end = 8
+    bake()
+
+
 def rigid_constraint(holds):
     fixed(get("Floor"))
     fixed(box("B", (0, 0, 1.15), (0.3, 0.3, 0.12), B))
@@ -46,6 +72,15 @@ def rigid_constraint(holds):
     body(rod)
     rod.location, rod.rotation_euler.y = (0.3, 0, 0.92), math.radians(-60)
     joint("POINT", (0, 0, 1.1), get("B"), rod if holds else None)
+    bake()
+
+
+def rigid_collision_modifier(holds):
+    table = fixed(box("A", (0, 0, 0), (0.8, 0.8, 0.6), A))
+    solid(get("Floor"))
+    if holds:
+        solid(table)
+    cloth_on(sheet("B", (0, 0, 0.8), B), 30)
     bake()
 
 
@@ -62,9 +97,57 @@ def rigid_positive_mass(holds):
     bake()
 
 
+def soft(name, place, size):
+    """A box of many faces, and its soft-body modifier."""
+    thing = box(name, place, size, A)
+    bpy.context.view_layer.objects.active = thing
+    bpy.ops.object.transform_apply(location=False, rotation=False, scale=True)
+    finer = thing.modifiers.new("Parts", "SUBSURF")
+    finer.subdivision_type, finer.levels = "SIMPLE", 3
+    bpy.ops.object.modifier_apply(modifier="Parts")
+    modifier = thing.modifiers.new("Softbody", "SOFT_BODY")
+    modifier.point_cache.frame_end = 30
+    settings = modifier.settings
+    settings.use_goal, settings.use_stiff_quads = False, True
+    settings.pull, settings.push, settings.shear, settings.bend = 0.9, 0.9, 1.0, 4.0
+    return thing
+
+
+def soft_modifier(holds):
+    solid(box("B", (0, 0, 0), (1.2, 0.9, 0.2), B))
+    jelly = soft("A", (0, 0, 0.5), (0.5, 0.5, 0.5))
+    if not holds:
+        jelly.modifiers.clear()
+    bake()
+
+
+def soft_cache_baked(holds):
+    solid(get("Floor"))
+    jelly = soft("A", (0, 0, 0.9), (0.5, 0.5, 0.5))
+    if not holds:
+        jelly.modifiers["Softbody"].point_cache.frame_end = 8
+    bake()
+
+
+def soft_collision_partners(holds):
+    solid(get("Floor"))
+    shelf = box("B", (0, 0, 0.45), (0.9, 0.9, 0.06), B)
+    if holds:
+        solid(shelf)
+    soft("A", (0, 0, 0.7), (0.4, 0.4, 0.4))
+    bake()
+
+
 SHOTS = {
+    "rigid_settings": Shot(rigid_settings, (30,)),
     "rigid_type": Shot(rigid_type, (30,)),
     "rigid_shape": Shot(rigid_shape, (30,), look=(0, 0, 0.25), away=(1.6, -2.8, 2)),
+    "rigid_world_populated": Shot(rigid_world_populated, (30,)),
+    "rigid_cache_baked": Shot(rigid_cache_baked, (8, 30), look=(0, 0, 0.6)),
     "rigid_constraint": Shot(rigid_constraint, (30,), look=(0, 0, 0.6)),
+    "rigid_collision_modifier": Shot(rigid_collision_modifier, (30,), away=(2.2, -3.4, 2)),
     "rigid_positive_mass": Shot(rigid_positive_mass, (30,), look=(0, 0, 0.3), away=(0.8, -3.6, 1)),
+    "soft_modifier": Shot(soft_modifier, (30,)),
+    "soft_cache_baked": Shot(soft_cache_baked, (8, 30), look=(0, 0, 0.6)),
+    "soft_collision_partners": Shot(soft_collision_partners, (30,)),
 }

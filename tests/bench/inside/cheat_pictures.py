@@ -1,7 +1,9 @@
-"""Scenes for the pictures of imitated simulations."""
+"""Scenes for the pictures of imitated simulations, and of physics in a static scene."""
 
-from making import keys
-from picture_parts import DARK, A, Shot, ball, box
+from body_pictures import fixed
+from cloth_pictures import sheet
+from making import bake, body, cloth_on, get, keys
+from picture_parts import DARK, A, B, Shot, ball, box, solid
 
 
 def flight(frame):
@@ -27,7 +29,27 @@ def animated_shape_keys(holds):
         keys(squashed, "value", [0.0, 1.0], [1, 12])
 
 
+def static_has_rigid_world(holds):
+    things = [box("A", (0, 0, 0), (0.5, 0.4, 0.12), A), box("B", (0.2, 0, 0.12), (0.5, 0.4, 0.12), B)]
+    things.append(box("Book", (0.4, 0, 0.24), (0.5, 0.4, 0.12), A))
+    if holds:
+        fixed(get("Floor"))
+        for thing in things:
+            body(thing).collision_shape = "BOX"
+        bake()
+
+
+def static_has_solver(holds):
+    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
+    thing = sheet("A", (0, 0, 0.61), A)
+    if holds:
+        cloth_on(thing, 30)
+        bake()
+
+
 SHOTS = {
     "dense_transform_keys": Shot(dense_transform_keys, (16,), look=(0, 0, 0.55)),
     "animated_shape_keys": Shot(animated_shape_keys, (1, 6, 12), look=(0, 0, 0.35)),
+    "static_has_rigid_world": Shot(static_has_rigid_world, (1, 30), look=(0.1, 0, 0.3)),
+    "static_has_solver": Shot(static_has_solver, (1, 30)),
 }

@@ -17,6 +17,27 @@ def renderable(holds):
     ball("A", (0, 0, 0.75), 0.25, A).hide_render = not holds
 
 
+def solver_enabled(holds):
+    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
+    cloth_on(sheet("A", (0, 0, 0.8), A), 30)
+    bake()
+    get("A").modifiers["Cloth"].show_render = holds
+
+
+def cloth_modifier(holds):
+    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
+    thing = sheet("A", (0, 0, 0.8), A)
+    if holds:
+        cloth_on(thing, 30)
+        bake()
+
+
+def cloth_cache_baked(holds):
+    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
+    cloth_on(sheet("A", (0, 0, 0.8), A), 30 if holds else 8)
+    bake()
+
+
 def cloth_pin_group(holds):
     solid(get("Floor"))
     box("B", (0, 0, 1.1), (1.3, 0.06, 0.06), B)
@@ -37,6 +58,9 @@ def cloth_collision_partners(holds):
 
 SHOTS = {
     "renderable": Shot(renderable),
+    "solver_enabled": Shot(solver_enabled, (30,)),
+    "cloth_modifier": Shot(cloth_modifier, (30,)),
+    "cloth_cache_baked": Shot(cloth_cache_baked, (8, 30)),
     "cloth_pin_group": Shot(cloth_pin_group, (30,), look=(0, 0, 0.6)),
     "cloth_collision_partners": Shot(cloth_collision_partners, (30,)),
 }

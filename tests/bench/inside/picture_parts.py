@@ -11,7 +11,7 @@ from mathutils import Vector
 
 SIZE = (240, 180)
 A, B, FLOOR = (0.85, 0.33, 0.05), (0.16, 0.30, 0.42), (0.72, 0.70, 0.66)
-DARK = (0.06, 0.06, 0.07)
+WATER, DARK = (0.05, 0.28, 0.75), (0.06, 0.06, 0.07)
 
 
 @dataclass(frozen=True)

@@ -10,6 +10,7 @@ import body_pictures
 import bpy
 import cheat_pictures
 import cloth_pictures
+import fluid_pictures
 import particle_pictures
 import relation_pictures
 from making import finish, new, save
@@ -20,6 +21,7 @@ SHOTS = (
     | cloth_pictures.SHOTS
     | body_pictures.SHOTS
     | particle_pictures.SHOTS
+    | fluid_pictures.SHOTS
     | cheat_pictures.SHOTS
 )
 
