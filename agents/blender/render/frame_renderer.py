@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from simworlds.sandbox.picture_decoder import PictureDecoder
 
 _STEP_SECONDS = 20.0  # of stepping through a simulation in one call
-_SHARE = 0.95  # of a frame's progress that its own rendering makes up
 _LONGEST = 400  # characters of the note about a lost Blender
 _MASK = 256  # pixels, of the longer side of the picture by which subjects are measured
 _PATIENCE = 10.0  # seconds: a frame that takes no longer is finished when the call is cancelled
@@ -49,7 +48,7 @@ class FrameRenderer:
         self._at: int | None = None
         self._pid: int | None = None  # of the Blender that holds the planned scene
         self._moved: int | None = None  # of the Blender that has left the scene's own frame
-        self._what, self._done, self._total = "", 0.0, 0.0
+        self._what, self._done, self._total, self._share = "", 0.0, 0.0, 0.0
         self.notes: list[str] = []
         blender.keep("before rendering")
         self._plan = self._make_plan()
@@ -92,12 +91,14 @@ class FrameRenderer:
         """Unbaked simulations, because of which frames are stepped."""
         return self._plan.unbaked
 
-    def render(self, frame: int, samples: int | None, target: Path, done: float, total: float) -> float:
-        """Renders a frame into ``target``; returns the seconds it took. Progress counts from ``done`` of ``total``.
+    def render(
+        self, frame: int, samples: int | None, target: Path, span: tuple[float, float], total: float
+    ) -> float:
+        """Renders a frame into ``target``; returns the seconds it took. Its progress fills ``span`` of ``total``.
 
         If Blender is lost meanwhile, the frame is tried once more.
         """
-        self._done, self._total = done, total
+        self._done, self._share, self._total = span[0], span[1] - span[0], total
         try:
             return self._render(frame, samples, target)
         except Interrupted:
@@ -214,7 +215,7 @@ class FrameRenderer:
 
         def report(done: float, total: float | None, text: str) -> None:
             if self._call.progress is not None:
-                share = _SHARE * done / total if total else 0.0
+                share = self._share * done / total if total else 0.0
                 self._call.progress(self._done + share, self._total or None, f"{self._what}: {text}")
 
         reply = self._blender.call(

@@ -18,6 +18,12 @@ if TYPE_CHECKING:
     from agents.blender.tools.base import Call
 
 
+_OF_A_TRIAL = (
+    0.02  # of a frame's progress; the frame itself comes after its trials, and begins where they end
+)
+_OF_A_FRAME = 0.95  # the rest is for storing and measuring it
+
+
 class StillStore:
     """The one file of a still, which every call renders anew."""
 
@@ -79,9 +85,14 @@ def render_frames(
         (outcome.kept if reusable else todo).append(number)
     started = time.monotonic()
 
+    tried = 0.0  # what trials have filled of the first frame's progress
+
     def render(number: int, samples: int | None, *, trial: bool = False) -> float:
+        nonlocal tried
         done = len(frames) - len(todo) - len(outcome.dropped)
-        seconds = renderer.render(number, samples, store.path(number), done, len(frames))
+        span = (done + tried, done + (tried + _OF_A_TRIAL if trial else _OF_A_FRAME))
+        tried = span[1] - done if trial else 0.0
+        seconds = renderer.render(number, samples, store.path(number), span, len(frames))
         size = store.path(number).stat().st_size
         store.add(number, RenderedFrame(samples, round(seconds, 3), size, trial))
         if call.progress is not None and not trial:

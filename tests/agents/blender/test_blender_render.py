@@ -447,6 +447,19 @@ def test_a_time_budget_lowers_samples_and_such_frames_are_made_again_without_it(
     assert (found.data["kept"], found.data["missing_count"]) == (0, 2)
 
 
+def test_progress_of_a_still_goes_on_after_its_trial(session: LiveSession) -> None:
+    session.run(MOVING + "cube.scale = (9, 1, 9)")
+    told: list[tuple[float, str]] = []
+    call = Call(lambda done, _total, text: told.append((done, text)))
+    asked: dict[str, Any] = {"kind": "still", "engine": "cycles", "width": 640, "height": 480}
+    session.use(TOOL, call, **asked, samples=60_000, time_budget=6)
+    trial = [done for done, text in told if f" of {LEAST}" in text]
+    frame = [done for done, text in told if "sample" in text and f" of {LEAST}" not in text]
+    assert max(trial, default=0.0) < 0.1
+    assert frame == sorted(frame)
+    assert frame[-1] > 0.5
+
+
 class Clock:
     """Time that passes as it is told to; frames take ``fixed`` seconds and ``seconds_per_frame`` for a sample."""
 
