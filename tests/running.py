@@ -1,4 +1,4 @@
-"""The command as a process of its own."""
+"""The command: in this process, and as one of its own."""
 
 from __future__ import annotations
 
@@ -6,11 +6,17 @@ import json
 import os
 import subprocess
 import sys
+import tempfile
 from typing import TYPE_CHECKING, Any
 
+import pytest
+from click.testing import CliRunner
 from places import REPO
 
+from simworlds.cli import main
+
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
 COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
@@ -20,6 +26,26 @@ def environment(home: Path, **more: str) -> dict[str, str]:
     """The environment of a command that works in ``home`` and knows nothing of the user's own settings."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith("SIMWORLDS_")}
     return {**kept, "SIMWORLDS_HOME": str(home), "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error", **more}
+
+
+def run_here(
+    words: Sequence[str], environment: Mapping[str, str], folder: Path, given: bytes = b""
+) -> subprocess.CompletedProcess[bytes]:
+    """What the command says and does in that environment and folder; a process's start is spared.
+
+    An exception that the command does not turn into words fails the test.
+    """
+    with pytest.MonkeyPatch.context() as patch:
+        for name in os.environ.keys() - environment.keys():
+            patch.delenv(name)
+        for name, value in environment.items():
+            patch.setenv(name, value)
+        patch.chdir(folder)
+        patch.setattr(tempfile, "tempdir", None)
+        done = CliRunner().invoke(main, list(words), input=given, prog_name="simworlds")
+    if done.exception is not None and not isinstance(done.exception, SystemExit):
+        raise done.exception
+    return subprocess.CompletedProcess(list(words), done.exit_code, done.stdout_bytes, done.stderr_bytes)
 
 
 class Wire:

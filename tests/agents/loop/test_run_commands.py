@@ -50,15 +50,13 @@ def test_make_ends_with_a_scene_a_picture_and_a_report(
     assert "camera" in err
 
 
-def test_a_stage_that_cannot_be_closed_is_exit_code_1(
-    home: Path, command: Callable[..., Command], tmp_path: Path
-) -> None:
+def test_a_stage_that_cannot_be_closed_is_exit_code_1(home: Path, tmp_path: Path) -> None:
     root = tmp_path / "run"
-    with answered(home, Team(decisions={"modeling": (ABORT,)})) as api:
-        code, out, err = command("make", "A crate", "--run", root, "--quiet", url=api.base_url).end()
-    assert code == 1, err
-    assert "Aborted: The stage modeling could not be closed: This cannot be built." in err
-    assert out.splitlines() == [str(root / "report.html")]
+    with answered(home, Team(decisions={"modeling": (ABORT,)})):
+        result = said("make", "A crate", "--run", root, "--quiet")
+    assert result.exit_code == 1, result.stderr
+    assert "Aborted: The stage modeling could not be closed: This cannot be built." in result.stderr
+    assert result.stdout.splitlines() == [str(root / "report.html")]
 
 
 def test_without_a_key_make_fails_with_exit_code_2_and_says_what_to_do(alone: None, tmp_path: Path) -> None:
@@ -67,16 +65,14 @@ def test_without_a_key_make_fails_with_exit_code_2_and_says_what_to_do(alone: No
     assert "ANTHROPIC_API_KEY" in result.stderr
 
 
-def test_a_limit_that_is_reached_is_exit_code_3(
-    home: Path, command: Callable[..., Command], tmp_path: Path
-) -> None:
+def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> None:
     root = tmp_path / "run"
     with answered(home, Team()) as api:
         words = ("--max-cost", 0, "--quiet")
-        code, _, err = command("make", "A crate", "--run", root, *words, url=api.base_url).end()
-        assert code == 3, err
-        assert f"Continue with: simworlds resume {root}" in err
-        assert command("resume", root, *words, url=api.base_url).end()[0] == 3
+        result = said("make", "A crate", "--run", root, *words)
+        assert result.exit_code == 3, result.stderr
+        assert f"simworlds resume {root}" in " ".join(result.stderr.split())
+        assert said("resume", root, *words).exit_code == 3
         assert not api.requests
 
 

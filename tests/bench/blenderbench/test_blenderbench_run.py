@@ -313,9 +313,14 @@ PLAN = {
 
 
 @pytest.fixture
-def api(monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeMessagesAPI]:
-    """Answers for all roles: the camera goes to where the goal has it. What they are shown is small."""
+def api(base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeMessagesAPI]:
+    """Answers for all roles: the camera goes to where the goal has it. What they are shown is small.
+
+    There is a knowledge base, which would be built beside the edit otherwise.
+    """
     run_sessions.make_small(monkeypatch)
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home" / "kb").symlink_to(base.parent)
     with FakeMessagesAPI(team.Team(plan=PLAN, code={"camera": MOVED})) as server:
         monkeypatch.setenv("ANTHROPIC_API_KEY", "any")
         monkeypatch.setenv("ANTHROPIC_BASE_URL", server.base_url)

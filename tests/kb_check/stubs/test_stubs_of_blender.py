@@ -30,13 +30,10 @@ def folder(base: Path, tmp_path_factory: pytest.TempPathFactory) -> Path:
     return target
 
 
-@pytest.fixture(scope="module")
-def found(folder: Path) -> list[dict[str, Any]]:
-    """What pyright reports of the samples, and of the stubs themselves."""
-    for sample in SAMPLES.glob("sample_*.py"):
-        shutil.copy(sample, folder.parent)
+def reported(project: Path, *include: str) -> list[dict[str, Any]]:
+    """What pyright reports of these files of a project."""
     settings = {
-        "include": ["."],
+        "include": list(include),
         "typeCheckingMode": "standard",
         "reportMissingModuleSource": False,
         # The samples only mention things.
@@ -44,14 +41,23 @@ def found(folder: Path) -> list[dict[str, Any]]:
         # Scripts return a set of literals without saying so.
         "reportIncompatibleMethodOverride": False,
     }
-    (folder.parent / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
+    (project / "pyrightconfig.json").write_text(json.dumps(settings), encoding="utf-8")
     done = subprocess.run(
-        [sys.executable, "-m", "pyright", "--project", str(folder.parent), "--outputjson"],
+        [sys.executable, "-m", "pyright", "--project", str(project), "--outputjson"],
         capture_output=True,
         text=True,
         check=False,
     )
-    return json.loads(done.stdout)["generalDiagnostics"]
+    told = json.loads(done.stdout)
+    assert told["summary"]["filesAnalyzed"] >= len(include)
+    return told["generalDiagnostics"]
+
+
+@pytest.fixture(scope="module")
+def found(folder: Path) -> list[dict[str, Any]]:
+    """What pyright reports of the samples."""
+    samples = [Path(shutil.copy(sample, folder.parent)).name for sample in SAMPLES.glob("sample_*.py")]
+    return reported(folder.parent, *samples)
 
 
 def lines_in(found: list[dict[str, Any]], name: str) -> dict[int, str]:
@@ -62,9 +68,21 @@ def lines_in(found: list[dict[str, Any]], name: str) -> dict[int, str]:
     }
 
 
-def test_the_stubs_themselves_have_no_errors(found: list[dict[str, Any]]) -> None:
-    of_stubs = [entry for entry in found if entry["file"].endswith(".pyi")]
-    assert [(entry["file"], entry["range"]["start"], entry["message"]) for entry in of_stubs] == []
+def errors_of(project: Path) -> list[tuple[str, dict[str, int], str]]:
+    """What is wrong with the stubs themselves."""
+    return [
+        (entry["file"], entry["range"]["start"], entry["message"]) for entry in reported(project, "typings")
+    ]
+
+
+def test_stubs_of_a_few_symbols_have_no_errors(small_base: Path, tmp_path: Path) -> None:
+    write_folder(small_base, tmp_path / "typings", with_docs=True)
+    assert errors_of(tmp_path) == []
+
+
+@pytest.mark.whole
+def test_the_stubs_themselves_have_no_errors(folder: Path) -> None:
+    assert errors_of(folder.parent) == []
 
 
 def test_right_code_is_right(found: list[dict[str, Any]]) -> None:
