@@ -16,6 +16,7 @@ from live_session import LiveSession
 from places import REPO
 from running import run_here
 from sandboxes import skip_unless_it_works
+from whole import by_turns
 
 from agents.commands import doctor_checks
 from simworlds.own_command import own_command
@@ -200,7 +201,20 @@ def test_detects_a_sandbox_that_does_not_hold(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "wall",
-    ["files", "capabilities", "namespaces", "sockets", "processes", "signals", "memfd", "kernel", "limits"],
+    by_turns(
+        [
+            "files",
+            "capabilities",
+            "namespaces",
+            "sockets",
+            "processes",
+            "signals",
+            "memfd",
+            "kernel",
+            "limits",
+        ],
+        3,
+    ),
 )
 def test_names_the_wall_that_is_down(tmp_path: Path, wall: Wall) -> None:
     skip_unless_it_works("bubblewrap")

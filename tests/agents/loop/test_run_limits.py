@@ -62,7 +62,10 @@ def test_no_call_is_made_beyond_the_limit_and_with_more_money_the_run_goes_on(
     assert len(api.requests) == len(more.of("model.answered"))
 
 
-@pytest.mark.parametrize(("camera", "is_delivered"), [(crates.CODE["camera"], True), ("1 + 1", False)])
+@pytest.mark.parametrize(
+    ("camera", "is_delivered"),
+    [(crates.CODE["camera"], True), pytest.param("1 + 1", False, marks=pytest.mark.whole)],
+)
 def test_a_limit_leaves_the_newest_sound_scene_and_a_picture(
     api: FakeMessagesAPI, tmp_path: Path, camera: str, *, is_delivered: bool
 ) -> None:

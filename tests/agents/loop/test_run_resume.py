@@ -249,7 +249,7 @@ def test_deleted_folder_ends_the_session_with_an_error(api: FakeMessagesAPI, tmp
 # Where the disk is full
 
 
-@pytest.mark.parametrize("room", [9, 23])
+@pytest.mark.parametrize("room", [pytest.param(9, marks=pytest.mark.whole), 23])
 def test_run_resumes_after_a_full_disk(
     api: FakeMessagesAPI, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: int
 ) -> None:

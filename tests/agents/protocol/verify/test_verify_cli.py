@@ -314,7 +314,7 @@ thing("Broken", bad)
     assert done.returncode == 1
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.whole)])
 def test_an_interrupt_leaves_nothing_behind(
     session: LiveSession, tmp_path: Path, number: signal.Signals
 ) -> None:
