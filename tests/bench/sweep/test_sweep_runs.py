@@ -169,7 +169,7 @@ def test_ctrl_c_stops_a_waiting_run_which_can_be_resumed(
 
     def wait(_: Any) -> Reply:
         asked.set()
-        answer.wait(120)
+        answer.wait(240)  # longer than a busy machine takes to send the signal
         return REFUSAL
 
     with FakeMessagesAPI(wait) as api:
