@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import subprocess
 import sys
 import tempfile
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from click.testing import CliRunner
 from places import REPO
 
 from simworlds.cli import main
@@ -33,19 +34,31 @@ def run_here(
 ) -> subprocess.CompletedProcess[bytes]:
     """What the command says and does in that environment and folder; a process's start is spared.
 
-    An exception that the command does not turn into words fails the test.
+    An exception that the command does not turn into words fails the test. Its streams are files: processes that it
+    starts write to them, too.
     """
-    with pytest.MonkeyPatch.context() as patch:
+    with ExitStack() as opened:
+        files = [opened.enter_context(tempfile.TemporaryFile()) for _ in range(3)]
+        patch = opened.enter_context(pytest.MonkeyPatch.context())
+        files[0].write(given)
+        files[0].seek(0)
+        for name, file in zip(("stdin", "stdout", "stderr"), files, strict=True):
+            errors = "backslashreplace" if name == "stderr" else "strict"
+            stream = io.TextIOWrapper(file, "utf-8", errors, write_through=True)
+            patch.setattr(sys, name, opened.enter_context(stream))
         for name in os.environ.keys() - environment.keys():
             patch.delenv(name)
         for name, value in environment.items():
             patch.setenv(name, value)
         patch.chdir(folder)
         patch.setattr(tempfile, "tempdir", None)
-        done = CliRunner().invoke(main, list(words), input=given, prog_name="simworlds")
-    if done.exception is not None and not isinstance(done.exception, SystemExit):
-        raise done.exception
-    return subprocess.CompletedProcess(list(words), done.exit_code, done.stdout_bytes, done.stderr_bytes)
+        with pytest.raises(SystemExit) as ended:
+            main(list(words), prog_name="simworlds")
+        for file in files[1:]:
+            file.seek(0)
+        code = ended.value.code
+        assert code is None or isinstance(code, int)
+        return subprocess.CompletedProcess(list(words), code or 0, files[1].read(), files[2].read())
 
 
 class Wire:
