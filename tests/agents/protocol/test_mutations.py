@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-COUNT = (6 if IS_WHOLE else 3) * len(KINDS)  # the script beside it makes more
+COUNT = (6 if IS_WHOLE else 4) * len(KINDS)  # the script beside it makes more
 
 
 def test_breaches_are_found_by_the_rules_that_own_them_and_valid_scenes_raise_no_alarm(

@@ -151,7 +151,7 @@ def cells() -> Iterator[ParameterSet]:
             yield pytest.param(kind, way, marks=() if turn % 2 == place else pytest.mark.whole)
 
 
-@pytest.mark.parametrize(("kind", "way"), cells())
+@pytest.mark.parametrize(("kind", "way"), [*cells()])
 def test_a_twin_that_looks_the_same_is_no_simulation(session: LiveSession, kind: str, way: str) -> None:
     script = f"{DECLARED}\nscene.frame_start, scene.frame_end = 1, {LAST}\n{STAGE}{SOLVED[kind]}{SEEN.get(kind, '')}"
     build(session, f"{script}\ndeclared('Actor', {kind!r}, 'bake')")
