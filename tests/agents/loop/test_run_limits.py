@@ -148,6 +148,7 @@ def test_a_stop_that_is_asked_for_lets_the_call_under_way_end(api: FakeMessagesA
 HANG = "import time\ntime.sleep(600)"
 
 
+@pytest.mark.timeout(600)
 def test_signals_stop_a_run_gently_then_at_once_and_it_can_be_gone_on_with(
     home: Path, command: Callable[..., Command], tmp_path: Path
 ) -> None:
