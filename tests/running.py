@@ -1,16 +1,23 @@
-"""The command as a process of its own."""
+"""The command: in this process, and as one of its own."""
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import subprocess
 import sys
+import tempfile
+from contextlib import ExitStack
 from typing import TYPE_CHECKING, Any
 
+import pytest
 from places import REPO
 
+from simworlds.cli import main
+
 if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
     from pathlib import Path
 
 COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
@@ -20,6 +27,38 @@ def environment(home: Path, **more: str) -> dict[str, str]:
     """The environment of a command that works in ``home`` and knows nothing of the user's own settings."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith("SIMWORLDS_")}
     return {**kept, "SIMWORLDS_HOME": str(home), "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error", **more}
+
+
+def run_here(
+    words: Sequence[str], environment: Mapping[str, str], folder: Path, given: bytes = b""
+) -> subprocess.CompletedProcess[bytes]:
+    """What the command says and does in that environment and folder; a process's start is spared.
+
+    An exception that the command does not turn into words fails the test. Its streams are files: processes that it
+    starts write to them, too.
+    """
+    with ExitStack() as opened:
+        files = [opened.enter_context(tempfile.TemporaryFile()) for _ in range(3)]
+        patch = opened.enter_context(pytest.MonkeyPatch.context())
+        files[0].write(given)
+        files[0].seek(0)
+        for name, file in zip(("stdin", "stdout", "stderr"), files, strict=True):
+            errors = "backslashreplace" if name == "stderr" else "strict"
+            stream = io.TextIOWrapper(file, "utf-8", errors, write_through=True)
+            patch.setattr(sys, name, opened.enter_context(stream))
+        for name in os.environ.keys() - environment.keys():
+            patch.delenv(name)
+        for name, value in environment.items():
+            patch.setenv(name, value)
+        patch.chdir(folder)
+        patch.setattr(tempfile, "tempdir", None)
+        with pytest.raises(SystemExit) as ended:
+            main(list(words), prog_name="simworlds")
+        for file in files[1:]:
+            file.seek(0)
+        code = ended.value.code
+        assert code is None or isinstance(code, int)
+        return subprocess.CompletedProcess(list(words), code or 0, files[1].read(), files[2].read())
 
 
 class Wire:

@@ -6,6 +6,7 @@ import json
 import re
 import shutil
 import sqlite3
+import tarfile
 from contextlib import closing
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
@@ -98,12 +99,26 @@ def test_pages_are_not_read_again_when_only_an_option_changes(small: Built) -> N
     assert {path: stamp(path) for path in (small.home / "cache" / "pages").iterdir()} == kept
 
 
-def test_force_builds_again_what_has_not_changed(built: Built) -> None:
-    before = stamp(built.path)
-    report = build(None, options=replace(built.options, force=True), home=built.home)
+def test_force_asks_blender_and_builds_again_what_has_not_changed(small: Built, tmp_path: Path) -> None:
+    """Of a program that says of its API what Blender said, of few symbols."""
+    (extract,) = (small.home / "extracts").glob("*.jsonl")
+    blender, asked, home = tmp_path / "blender", tmp_path / "asked", tmp_path / "theirs"
+    shutil.copytree(small.home / "cache", home / "cache")  # so that Blender's scripts are not read again
+    blender.write_text(
+        f'#!/bin/sh\n[ "$1" = --version ] && echo "Blender {small.report.version}" && exit\n'
+        f"for word; do last=$word; done\necho >> {asked}\ncp {extract} $last\n"
+    )
+    blender.chmod(0o755)
+    options = BuildOptions(blender_exe=blender, pages=False)
+    first = build(small.minor, options=options, home=home)
+    before = stamp(first.path)
+    assert not build(small.minor, options=options, home=home).built
+    assert asked.read_text() == "\n"
+    report = build(small.minor, options=replace(options, force=True), home=home)
     assert report.built
-    assert report.meta["fingerprint"] == built.report.meta["fingerprint"]
-    assert stamp(built.path) != before
+    assert report.meta["fingerprint"] == first.meta["fingerprint"]
+    assert stamp(first.path) != before
+    assert asked.read_text() == "\n\n"
 
 
 def test_a_damaged_base_is_built_again(small: Built) -> None:
@@ -170,6 +185,31 @@ def test_of_two_pages_with_one_name_the_manuals_is_kept_and_the_other_named(smal
 
 
 @pytest.mark.corpora
+def test_a_part_of_the_real_manual_and_the_real_guides_are_built(corpora: Path, small: Built) -> None:
+    """The chapters about physics, without which the others' references to them would be the only ones."""
+    if small.minor != "5.1":
+        pytest.skip("the sources here are of Blender 5.1")
+    manual = small.corpora / "manual-5.1-rst"
+    shutil.rmtree(manual)
+    with tarfile.open(corpora / "manual-5.1-rst.tar.xz") as files:
+        for member in files:
+            steps = member.name.split("/")
+            if "physics" in steps or len(steps) < 4:
+                files.extract(member, small.corpora / "part", filter="data")
+    min((small.corpora / "part").rglob("index.rst"), key=lambda path: len(path.parts)).parent.rename(manual)
+    shutil.rmtree(small.corpora / "part")
+    guides = corpora / "api-guides-5.1-rst.tar.xz"
+    options = replace(small.options, guides=guides, require=frozenset({"manual", "guides"}))
+    report = build("5.1", options=options, home=small.home)
+    counts = json.loads(report.meta["counts"])
+    assert counts["pages"]["manual"] >= 90
+    assert counts["pages"]["guide"] >= 14
+    assert report.warnings == ()
+
+
+@pytest.mark.whole
+@pytest.mark.corpora
+@pytest.mark.timeout(600)
 def test_the_real_manual_and_guides_are_built_whole(
     corpora: Path, built_once: Built, tmp_path: Path, blender_version: str
 ) -> None:

@@ -84,7 +84,9 @@ def files_below(folder: Path) -> list[str]:
     return sorted(path.name for path in folder.rglob("*") if path.is_file())
 
 
-@pytest.mark.parametrize("step", ["Reading the manual", "Summarising", "Writing"])
+@pytest.mark.parametrize(
+    "step", ["Reading the manual", pytest.param("Summarising", marks=pytest.mark.whole), "Writing"]
+)
 def test_a_killed_build_leaves_the_old_base_and_no_process(small: Built, step: str) -> None:
     change_a_page(small)
     with start(small) as process:
@@ -109,8 +111,15 @@ def test_a_build_that_cannot_fork_removes_what_a_killed_one_left(small: Built) -
     assert files_below(small.home / "cache" / "scratch") == []
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-@pytest.mark.parametrize("step", ["Reading the manual", "Asking Blender"])
+@pytest.mark.parametrize(
+    ("step", "number"),
+    [
+        ("Reading the manual", signal.SIGTERM),
+        ("Asking Blender", signal.SIGINT),
+        pytest.param("Reading the manual", signal.SIGINT, marks=pytest.mark.whole),
+        pytest.param("Asking Blender", signal.SIGTERM, marks=pytest.mark.whole),
+    ],
+)
 def test_an_interrupted_build_says_so_and_leaves_nothing_running(
     small: Built, step: str, number: signal.Signals
 ) -> None:

@@ -1,4 +1,4 @@
-"""``simworlds check``, and commands like it, as processes of their own."""
+"""``simworlds check``, and commands like it."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from places import REPO
+from running import run_here
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -61,6 +62,11 @@ class Command:
         return {**kept, **more}
 
     def __call__(self, *arguments: str, given: bytes = b"", folder: Path | None = None) -> Outcome:
+        done = run_here([self.name, *arguments], self.environment, folder or self.folder, given)
+        return Outcome(done.returncode, done.stdout.decode(), done.stderr.decode())
+
+    def as_process(self, *arguments: str, given: bytes = b"", folder: Path | None = None) -> Outcome:
+        """The same in a process of its own."""
         done = subprocess.run(
             [*SIMWORLDS, self.name, *arguments],
             input=given,

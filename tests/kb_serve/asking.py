@@ -7,6 +7,8 @@ import re
 import string
 from typing import TYPE_CHECKING
 
+from whole import examples
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
@@ -16,22 +18,23 @@ if TYPE_CHECKING:
 
 TYPES = "bpy.types."
 SEED = 20
+MANY = examples(300)
 
 
-def paths(reader: BaseReader, kind: str, count: int = 300, where: str = "1") -> list[str]:
+def paths(reader: BaseReader, kind: str, count: int = MANY, where: str = "1") -> list[str]:
     """A sample of the paths of one kind."""
     rows = reader.rows(f"SELECT path FROM symbols WHERE kind = ? AND {where} ORDER BY path", kind)
     found = [row[0] for row in rows]
     return random.Random(SEED).sample(found, min(count, len(found)))
 
 
-def of_data(reader: BaseReader, kind: str, count: int = 300) -> list[str]:
+def of_data(reader: BaseReader, kind: str, count: int = MANY) -> list[str]:
     """A sample of members of the data classes of ``bpy.types``."""
     owners = "owner IN (SELECT path FROM symbols WHERE kind = 'class' AND grp = 'data' AND path LIKE 'bpy.types.%')"
     return paths(reader, kind, count, owners)
 
 
-def classes(reader: BaseReader, group: str = "data", count: int = 300) -> list[str]:
+def classes(reader: BaseReader, group: str = "data", count: int = MANY) -> list[str]:
     """A sample of the classes of ``bpy.types``."""
     return paths(reader, "class", count, f"path LIKE 'bpy.types.%' AND grp = '{group}'")
 

@@ -9,7 +9,7 @@ from dataclasses import asdict
 from typing import TYPE_CHECKING
 
 import pytest
-from running import COMMAND, REPO, environment
+from running import COMMAND, REPO, environment, run_here
 
 from kb_build.records import page_from_json, symbol_from_json
 from kb_serve.knowledge_base import KnowledgeBase
@@ -21,7 +21,14 @@ if TYPE_CHECKING:
 QUALITY = "bpy.types.ClothSettings.quality"
 
 
-def run(home: Path, *words: str | bytes) -> subprocess.CompletedProcess[str]:
+def run(home: Path, *words: str) -> subprocess.CompletedProcess[str]:
+    done = run_here(words, environment(home), REPO)
+    return subprocess.CompletedProcess(
+        done.args, done.returncode, done.stdout.decode("utf-8"), done.stderr.decode("utf-8")
+    )
+
+
+def run_in_a_process(home: Path, *words: str | bytes) -> subprocess.CompletedProcess[str]:
     command: list[str | bytes] = [*COMMAND, *words]
     return subprocess.run(
         command,
@@ -49,7 +56,7 @@ def expected(base: Path) -> Callable[..., dict[str, object]]:
 
 
 def test_the_answer_is_printed_as_markdown(home: Path, expected: Callable[..., dict[str, object]]) -> None:
-    done = run(home, "docs", "ClothSettings.quality")
+    done = run_in_a_process(home, "docs", "ClothSettings.quality")
     assert (done.returncode, done.stderr) == (0, "")
     assert done.stdout == f"{expected('ClothSettings.quality')['text']}\n"
 
@@ -83,7 +90,6 @@ def test_raw_is_the_whole_record_of_a_page(home: Path, base: Path) -> None:
 def test_nothing_found_is_exit_code_1(home: Path, way: tuple[str, ...]) -> None:
     done = run(home, "docs", "qqqzzzxxqv", *way)
     assert done.returncode == 1
-    assert "Traceback" not in done.stderr
     assert done.stdout or done.stderr
 
 
@@ -106,7 +112,6 @@ def test_errors_are_exit_code_2_and_say_why(home: Path, words: tuple[str, ...], 
     done = run(home, "docs", *words)
     assert (done.returncode, done.stdout) == (2, "")
     assert hint in done.stderr
-    assert "Traceback" not in done.stderr
 
 
 def test_without_a_base_it_says_what_to_do(tmp_path: Path) -> None:
@@ -130,12 +135,11 @@ def test_a_damaged_base_is_named(tmp_path: Path) -> None:
 def test_any_text_is_answered_or_refused_in_words(home: Path, query: str) -> None:
     done = run(home, "docs", "--", query)
     assert done.returncode in {0, 1}
-    assert "Traceback" not in done.stderr
 
 
 @pytest.mark.skipif(os.name == "nt", reason="arguments are bytes on POSIX only")
 def test_bytes_that_are_no_text_are_no_crash(home: Path) -> None:
-    done = run(home, "docs", b"cloth \xff\xfe")
+    done = run_in_a_process(home, "docs", b"cloth \xff\xfe")
     assert done.returncode in {0, 1}
     assert "Traceback" not in done.stderr
 

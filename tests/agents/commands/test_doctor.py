@@ -14,7 +14,9 @@ from typing import Any
 import pytest
 from live_session import LiveSession
 from places import REPO
+from running import run_here
 from sandboxes import skip_unless_it_works
+from whole import by_turns
 
 from agents.commands import doctor_checks
 from simworlds.own_command import own_command
@@ -29,14 +31,24 @@ DEBIANS = Path("/usr/bin/blender")
 COMMAND = "from simworlds.cli import main; main(prog_name='simworlds')"
 
 
-def run(*words: str, home: Path, **environment: str) -> subprocess.CompletedProcess[str]:
-    kept = {name: value for name, value in os.environ.items() if name not in {"BLENDER_EXE", "COLUMNS"}}
+def surroundings(home: Path) -> dict[str, str]:
+    """A home and a folder for temporary files, nothing of the user's own."""
+    kept = {name: value for name, value in os.environ.items() if name != "BLENDER_EXE"}
     place = home / "temporary"
     place.mkdir(exist_ok=True)
-    given = {**kept, "SIMWORLDS_HOME": str(home / "home"), "TMPDIR": str(place), **environment}
+    return {**kept, "SIMWORLDS_HOME": str(home / "home"), "TMPDIR": str(place), "COLUMNS": "80"}
+
+
+def run(*words: str, home: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    """What it says in this process."""
+    done = run_here(["doctor", *words], surroundings(home) | environment, home)
+    return subprocess.CompletedProcess(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
+
+
+def run_in_a_process(*words: str, home: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [sys.executable, "-c", COMMAND, "doctor", *words],
-        env=given,
+        env=surroundings(home),
         capture_output=True,
         text=True,
         timeout=200,
@@ -52,7 +64,7 @@ def findings(done: subprocess.CompletedProcess[str]) -> dict[str, dict[str, Any]
 def here(tmp_path_factory: pytest.TempPathFactory) -> subprocess.CompletedProcess[str]:
     """What it says of this machine, as JSON."""
     home = tmp_path_factory.mktemp("doctor")
-    done = run("--json", home=home)
+    done = run_in_a_process("--json", home=home)
     assert list((home / "temporary").iterdir()) == []
     return done
 
@@ -189,7 +201,20 @@ def test_detects_a_sandbox_that_does_not_hold(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     "wall",
-    ["files", "capabilities", "namespaces", "sockets", "processes", "signals", "memfd", "kernel", "limits"],
+    by_turns(
+        [
+            "files",
+            "capabilities",
+            "namespaces",
+            "sockets",
+            "processes",
+            "signals",
+            "memfd",
+            "kernel",
+            "limits",
+        ],
+        3,
+    ),
 )
 def test_names_the_wall_that_is_down(tmp_path: Path, wall: Wall) -> None:
     skip_unless_it_works("bubblewrap")

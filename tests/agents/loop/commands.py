@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).resolve().parent
 REPO = HERE.parent.parent.parent
+PATH = os.pathsep.join(map(str, (REPO, HERE, HERE.parent, HERE.parent.parent)))
 _SECONDS = 240.0
 _MAIN = """\
 import pytest
@@ -26,17 +27,20 @@ with pytest.MonkeyPatch.context() as patch:
 """
 
 
+SIMWORLDS = [sys.executable, "-c", _MAIN]
+"""Needs PATH as PYTHONPATH."""
+
+
 class Command:
     """Started when it is made."""
 
     def __init__(self, home: Path, *words: object, url: str = "") -> None:
-        path = os.pathsep.join(map(str, (REPO, HERE, HERE.parent, HERE.parent.parent)))
-        given = {"SIMWORLDS_HOME": str(home), "PYTHONPATH": path, "COLUMNS": "120"}
+        given = {"SIMWORLDS_HOME": str(home), "PYTHONPATH": PATH, "COLUMNS": "120"}
         if url:
             given |= {"ANTHROPIC_API_KEY": "any", "ANTHROPIC_BASE_URL": url}
         kept = {name: value for name, value in os.environ.items() if not name.startswith("ANTHROPIC_")}
         self.process = subprocess.Popen(
-            [sys.executable, "-c", _MAIN, *map(str, words)],
+            [*SIMWORLDS, *map(str, words)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

@@ -26,6 +26,9 @@ if TYPE_CHECKING:
 Event = tuple[Any, ...]
 Kind = tuple[str, str | None, str | None]
 _SECONDS = 240.0
+# What a run goes on from by ways of its own: a question, an answer, a call of a tool and its outcome, a checkpoint, a
+# picture. Rows of all types are taken where the whole table is asked for.
+_TELLING = {"model.asked", "model.answered", "tool.called", "tool.answered", "stage.closed", "rendered"}
 
 
 def events(rows: Iterable[Mapping[str, Any]]) -> list[Event]:
@@ -67,6 +70,11 @@ def kinds(rows: Iterable[Mapping[str, Any]]) -> list[Kind]:
     return found
 
 
+def is_tried(kind: Kind) -> bool:
+    """Whether sessions are killed at events of that kind."""
+    return IS_WHOLE or kind[0] in _TELLING
+
+
 def killed_at_every_kind(root: Path, home: Path, url: str, **options: Any) -> list[tuple[Kind, str]]:
     """Plays a run to its end; (kind of event, "before" or "behind") of every death."""
     context = multiprocessing.get_context("forkserver")
@@ -106,7 +114,7 @@ def _sit(root: Path, home: Path, url: str, deaths: Path, options: dict[str, Any]
     def append(journal: Journal, row: Mapping[str, Any]) -> None:
         known = kinds(journal.rows)
         (*_, kind) = kinds([*journal.rows, row])
-        new = kind not in known and kind not in past
+        new = kind not in known and kind not in past and is_tried(kind)
         if new and len(before) % 2:
             die(kind, "before")
         write(journal, row)

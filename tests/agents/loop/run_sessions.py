@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 from fake_messages_api import FakeMessagesAPI, Reply
+from live_session import LiveSession
 
-from agents.blender.blender_sessions import SessionSetup
 from agents.blender.tools import material_preview, previews, uv_preview
+from agents.blender.tools.files import LOAD
+from agents.blender.tools.scene_state import TOOL as SCENE_STATE
 from agents.loop import answer_source, evidence
 from agents.loop.journal import NAME, Row, read_rows
 from agents.loop.options import Options, RunLimits
 from agents.loop.session import Ended, RunSession, Stop, begin, resume
-from agents.loop.tool_client import ToolClient
 from simworlds.llm.providers import connect
-from simworlds.sandbox.confined_command import best_sandbox
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -143,10 +143,9 @@ def scenes(folder: Path, *files: Path) -> list[dict[str, str]]:
     """{"Object Cube": digest, …} of all that is in each file."""
     read = tuple({file.parent for file in files})
     found: list[dict[str, str]] = []
-    with ToolClient(SessionSetup(best_sandbox(), run=folder, read=read)) as tools:
+    session = LiveSession(folder, read=read)
+    with session.blender:
         for file in files:
-            loaded = tools.call("blender_load", {"path": str(file)})
-            assert not loaded.failed, loaded.text
-            state = tools.call("blender_scene_state", {"sections": ["data_blocks"]})
-            found.append(dict(state.data["data_blocks"]))
+            session.use(LOAD, path=str(file))
+            found.append(dict(session.use(SCENE_STATE, sections=["data_blocks"]).data["data_blocks"]))
     return found

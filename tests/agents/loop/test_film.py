@@ -161,6 +161,7 @@ def test_the_planner_sees_the_stills_once_and_may_have_something_mended(drafted:
     assert [row["round"] for row in drafted.of("rendered")] == [1]
 
 
+@pytest.mark.whole
 @pytest.mark.blender
 def test_a_run_that_is_stopped_in_its_film_shows_its_draft_and_goes_on_with_another_time(
     api: FakeMessagesAPI, tmp_path: Path

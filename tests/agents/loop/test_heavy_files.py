@@ -10,6 +10,7 @@ from heavy_files import HEAVY, LIGHT, make_heavy_files
 from live_session import LiveSession
 from run_sessions import answered, asked_of, sit
 from team import Team
+from whole import by_turns
 
 from agents.blender.tools.files import LOAD
 from bench.audit.untrusted_blend import JobRefused, UntrustedBlend
@@ -59,7 +60,7 @@ def test_the_audit_refuses_it_and_says_why(name: str, refused: dict[str, str]) -
     assert "the limit is " in refused[name]
 
 
-@pytest.mark.parametrize("name", HEAVY)
+@pytest.mark.parametrize("name", by_turns(HEAVY))
 def test_loading_it_is_refused_and_leaves_the_scene(
     name: str, files: Path, live: LiveSession, refused: dict[str, str]
 ) -> None:
@@ -69,7 +70,7 @@ def test_loading_it_is_refused_and_leaves_the_scene(
     assert "The scene is unchanged" in str(error.value)
 
 
-@pytest.mark.parametrize("name", ["subdivision", "array", "objects", "grid", "particles"])
+@pytest.mark.parametrize("name", by_turns(["array", "subdivision", "objects", "grid", "particles"]))
 def test_verify_refuses_it(name: str, files: Path, refused: dict[str, str]) -> None:
     path = files / f"{name}.blend"
     done = CliRunner().invoke(main, ["verify", str(path)])
@@ -77,7 +78,7 @@ def test_verify_refuses_it(name: str, files: Path, refused: dict[str, str]) -> N
     assert done.stderr.endswith(f"Error: {path} could not be checked: {refused[name]}\n")
 
 
-@pytest.mark.parametrize("name", ["subdivision", "objects"])
+@pytest.mark.parametrize("name", by_turns(["subdivision", "objects"]))
 def test_an_edit_of_it_ends_before_a_model_is_asked(
     name: str, files: Path, home: Path, tmp_path: Path, refused: dict[str, str]
 ) -> None:
@@ -88,7 +89,7 @@ def test_an_edit_of_it_ends_before_a_model_is_asked(
         assert asked_of(api) == []
 
 
-@pytest.mark.parametrize("name", LIGHT)
+@pytest.mark.parametrize("name", by_turns(LIGHT))
 def test_what_is_within_the_limits_is_opened(
     name: str, files: Path, audited: UntrustedBlend, live: LiveSession
 ) -> None:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import pytest
 from hostile_text import HOSTILE, on_terminal, steering
 from places import REPO
+from running import run_here
 from sample_runs import Tape, write
 
 from simworlds.sandbox.runtime import clean_environment, installed_bpy
@@ -117,7 +118,7 @@ WORDS = {
 }
 
 
-def command(place: Path, name: str) -> list[str]:
+def words_of(place: Path, name: str) -> list[str]:
     paths = {
         "BLEND": place / f"{NAME}.blend",
         "HEAVY": place / f"{NAME}-heavy.blend",
@@ -127,29 +128,34 @@ def command(place: Path, name: str) -> list[str]:
         "RUN": place / "home" / "runs" / NAME,
         "BROKEN": place / "home" / "runs" / f"{NAME}-broken",
     }
-    return [*COMMAND, *(str(paths.get(word, word)) for word in WORDS[name])]
+    return [str(paths.get(word, word)) for word in WORDS[name]]
 
 
 # For programs, which read no terminal.
 FOR_PROGRAMS = {"verify-json", "verify-sarif", "audit-json"}
 # Drawn on a terminal only: what makes their text plain for a file is tried with the others.
 ALIKE = {"verify-plan", "verify-heavy", "verify-none", "audit-heavy", "show-broken", "replay", "scenes", "kb"}
+# What of those that are tried in both ways draws most: a table, a list, lines as a run goes on.
+DRAWN = {"verify", "runs", "edit"}
+ON_TERMINAL = [
+    pytest.param(name, marks=() if name in ALIKE | DRAWN else pytest.mark.whole)
+    for name in WORDS
+    if name not in FOR_PROGRAMS
+]
 
 
 @pytest.mark.parametrize("name", [name for name in WORDS if name not in ALIKE])
 def test_what_a_command_prints_steers_nothing(name: str, place: Path) -> None:
-    done = subprocess.run(
-        command(place, name), env=environment(place), capture_output=True, check=False, timeout=280
-    )
+    done = run_here(words_of(place, name), environment(place), place)
     printed = (done.stdout + done.stderr).decode()
     assert "evil" in printed, printed
     assert "Traceback" not in printed
     assert steering(printed) == []
 
 
-@pytest.mark.parametrize("name", [name for name in WORDS if name not in FOR_PROGRAMS])
+@pytest.mark.parametrize("name", ON_TERMINAL)
 def test_what_a_command_draws_on_a_terminal_steers_nothing(name: str, place: Path) -> None:
-    printed = on_terminal(command(place, name), environment(place))
+    printed = on_terminal([*COMMAND, *words_of(place, name)], environment(place))
     assert "evil" in printed, printed
     assert "Traceback" not in printed
     assert steering(printed, is_terminal=True) == []
@@ -168,7 +174,7 @@ def test_pages_steer_nothing(place: Path, small: Built) -> None:
         ("docs", "evil live", "--json"),
         ("kb", "info"),
     ):
-        done = subprocess.run([*COMMAND, *words], env=given, capture_output=True, check=False, timeout=280)
+        done = run_here(words, given, place)
         printed = (done.stdout + done.stderr).decode()
         assert done.returncode in (0, 1), printed
         assert words[1] != "build" or "Built the knowledge base" in printed

@@ -193,6 +193,7 @@ def test_when_retries_are_used_up_the_run_is_given_up(play: Callable[..., Played
     assert "0 retries and 5 replans are left" in lefts[-1]
 
 
+@pytest.mark.whole
 def test_when_replans_are_used_up_the_last_checkpoint_stands(
     play: Callable[..., Played], tmp_path: Path
 ) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import os
 import shutil
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 from click.testing import CliRunner, Result
 from run_sessions import answered, at_home
+from running import run_here
 from team import ABORT, Team
 
 from agents.loop.journal import NAME
@@ -15,7 +18,6 @@ from simworlds.cli import main
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
-    from pathlib import Path
 
     from commands import Command
     from run_sessions import Played
@@ -28,6 +30,12 @@ def said(*words: object) -> Result:
     result = CliRunner().invoke(main, [str(word) for word in words], env={"COLUMNS": "200"})
     assert result.exception is None or isinstance(result.exception, SystemExit), result.exception
     return result
+
+
+def live(*words: object) -> tuple[int, str, str]:
+    """(exit code, stdout, stderr) of a command in this process that works with a Blender."""
+    done = run_here([str(word) for word in words], {**os.environ, "COLUMNS": "200"}, Path.cwd())
+    return done.returncode, done.stdout.decode(), done.stderr.decode()
 
 
 @pytest.fixture
@@ -50,12 +58,10 @@ def test_make_ends_with_a_scene_a_picture_and_a_report(
     assert "camera" in err
 
 
-def test_a_stage_that_cannot_be_closed_is_exit_code_1(
-    home: Path, command: Callable[..., Command], tmp_path: Path
-) -> None:
+def test_a_stage_that_cannot_be_closed_is_exit_code_1(home: Path, tmp_path: Path) -> None:
     root = tmp_path / "run"
-    with answered(home, Team(decisions={"modeling": (ABORT,)})) as api:
-        code, out, err = command("make", "A crate", "--run", root, "--quiet", url=api.base_url).end()
+    with answered(home, Team(decisions={"modeling": (ABORT,)})):
+        code, out, err = live("make", "A crate", "--run", root, "--quiet")
     assert code == 1, err
     assert "Aborted: The stage modeling could not be closed: This cannot be built." in err
     assert out.splitlines() == [str(root / "report.html")]
@@ -67,16 +73,14 @@ def test_without_a_key_make_fails_with_exit_code_2_and_says_what_to_do(alone: No
     assert "ANTHROPIC_API_KEY" in result.stderr
 
 
-def test_a_limit_that_is_reached_is_exit_code_3(
-    home: Path, command: Callable[..., Command], tmp_path: Path
-) -> None:
+def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> None:
     root = tmp_path / "run"
     with answered(home, Team()) as api:
         words = ("--max-cost", 0, "--quiet")
-        code, _, err = command("make", "A crate", "--run", root, *words, url=api.base_url).end()
+        code, _, err = live("make", "A crate", "--run", root, *words)
         assert code == 3, err
         assert f"Continue with: simworlds resume {root}" in err
-        assert command("resume", root, *words, url=api.base_url).end()[0] == 3
+        assert live("resume", root, *words)[0] == 3
         assert not api.requests
 
 

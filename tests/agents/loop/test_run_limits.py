@@ -62,7 +62,10 @@ def test_no_call_is_made_beyond_the_limit_and_with_more_money_the_run_goes_on(
     assert len(api.requests) == len(more.of("model.answered"))
 
 
-@pytest.mark.parametrize(("camera", "is_delivered"), [(crates.CODE["camera"], True), ("1 + 1", False)])
+@pytest.mark.parametrize(
+    ("camera", "is_delivered"),
+    [(crates.CODE["camera"], True), pytest.param("1 + 1", False, marks=pytest.mark.whole)],
+)
 def test_a_limit_leaves_the_newest_sound_scene_and_a_picture(
     api: FakeMessagesAPI, tmp_path: Path, camera: str, *, is_delivered: bool
 ) -> None:
@@ -142,9 +145,10 @@ def test_a_stop_that_is_asked_for_lets_the_call_under_way_end(api: FakeMessagesA
     assert not played.rows[-2]["failed"]
 
 
-HANG = "while True:\n    pass"
+HANG = "import time\ntime.sleep(600)"
 
 
+@pytest.mark.timeout(600)
 def test_signals_stop_a_run_gently_then_at_once_and_it_can_be_gone_on_with(
     home: Path, command: Callable[..., Command], tmp_path: Path
 ) -> None:

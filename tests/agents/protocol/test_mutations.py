@@ -8,13 +8,14 @@ from typing import TYPE_CHECKING
 import pytest
 from mutating import measure_rates
 from mutations import KINDS
+from whole import IS_WHOLE
 
 if TYPE_CHECKING:
     from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
 
-COUNT = 6 * len(KINDS)  # the script beside it makes more
+COUNT = (6 if IS_WHOLE else 4) * len(KINDS)  # the script beside it makes more
 
 
 def test_breaches_are_found_by_the_rules_that_own_them_and_valid_scenes_raise_no_alarm(

@@ -197,7 +197,7 @@ def _installed(tmp_path_factory: pytest.TempPathFactory) -> Iterator[LiveSession
     session.blender.close()
 
 
-@pytest.fixture(params=["the bpy package", "installed"])
+@pytest.fixture(params=["the bpy package", pytest.param("installed", marks=pytest.mark.whole)])
 def blender(request: pytest.FixtureRequest) -> LiveSession:
     """An empty scene in each Blender that this machine has."""
     session: LiveSession = request.getfixturevalue(

@@ -16,8 +16,9 @@ from bench.blenderbench.task_set import TaskSet, read_set
 from simworlds.sandbox.runtime import clean_environment, installed_bpy
 
 HERE = Path(__file__).parent
-# The team that answers for all roles of an edit, and a second provider's server.
-sys.path += [str(HERE.parent.parent / "agents" / "loop"), str(HERE.parent / "judge")]
+# The team that answers for all roles of an edit, with a Blender of its own, and a second provider's server.
+AGENTS = HERE.parent.parent / "agents"
+sys.path += [str(AGENTS / "loop"), str(AGENTS), str(HERE.parent / "judge")]
 
 
 @pytest.fixture(scope="session")

@@ -11,8 +11,8 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 import clip_sample
+import commands
 import pytest
-import run_sessions
 import team
 from click.testing import CliRunner
 from fake_messages_api import FakeMessagesAPI
@@ -28,6 +28,7 @@ from bench.blenderbench.run import run
 from bench.blenderbench.systems import RendersFolder, UneditedStart
 from bench.blenderbench.task_scenes import make_start, render
 from bench.blenderbench.task_set import read_set
+from bench.sweep import command
 from simworlds.cli import main
 
 if TYPE_CHECKING:
@@ -313,9 +314,15 @@ PLAN = {
 
 
 @pytest.fixture
-def api(monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeMessagesAPI]:
-    """Answers for all roles: the camera goes to where the goal has it. What they are shown is small."""
-    run_sessions.make_small(monkeypatch)
+def api(base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[FakeMessagesAPI]:
+    """Answers for all roles: the camera goes to where the goal has it. What they are shown is small.
+
+    There is a knowledge base, which would be built beside the edit otherwise.
+    """
+    monkeypatch.setattr(command, "simworlds_command", lambda: commands.SIMWORLDS)
+    monkeypatch.setenv("PYTHONPATH", commands.PATH)
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home" / "kb").symlink_to(base.parent)
     with FakeMessagesAPI(team.Team(plan=PLAN, code={"camera": MOVED})) as server:
         monkeypatch.setenv("ANTHROPIC_API_KEY", "any")
         monkeypatch.setenv("ANTHROPIC_BASE_URL", server.base_url)

@@ -14,6 +14,7 @@ HERE = Path(__file__).parent
 sys.path += [str(HERE.parent), str(HERE.parent / "judge")]
 
 from in_blender import run  # noqa: E402
+from made_once import made_once  # noqa: E402
 from PIL import Image  # noqa: E402
 from sweeping import Command  # noqa: E402
 
@@ -24,9 +25,14 @@ if TYPE_CHECKING:
 @pytest.fixture(scope="session")
 def made(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """What a system made: a cloth, keys instead of one, nothing, something that is no .blend, and a still room."""
-    place = tmp_path_factory.mktemp("scenes")
+    return made_once(tmp_path_factory, "swept", _make)
+
+
+def _make(top: Path) -> Path:
+    place, folder = top / "scenes", top / "made"
+    for each in (place, folder):
+        each.mkdir()
     run("frame_scenes.py", place)
-    folder = tmp_path_factory.mktemp("made")
     shutil.copy(place / "baked.blend", folder / "cloth_D1_01.blend")
     (folder / "cloth_D1_02").mkdir()
     shutil.copy(place / "keyed.blend", folder / "cloth_D1_02" / "anything.blend")

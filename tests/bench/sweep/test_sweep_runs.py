@@ -126,12 +126,20 @@ def test_every_transcript_has_an_existing_scene() -> None:
 # Real runs, against a model that does not help
 
 
+@pytest.fixture
+def known(base: Path, tmp_path: Path) -> dict[str, str]:
+    """The settings of a home with a knowledge base, which would be built beside a run otherwise."""
+    (tmp_path / "home").mkdir()
+    (tmp_path / "home" / "kb").symlink_to(base.parent)
+    return {"SIMWORLDS_HOME": str(tmp_path / "home")}
+
+
 @pytest.mark.blender
 def test_records_why_a_run_failed_and_resumes_it_in_the_next_sweep(
-    tmp_path: Path, command: Callable[..., Command]
+    known: dict[str, str], tmp_path: Path, command: Callable[..., Command]
 ) -> None:
     with FakeMessagesAPI(lambda _: REFUSAL) as api:
-        reached = {"ANTHROPIC_API_KEY": "any", "ANTHROPIC_BASE_URL": api.base_url}
+        reached = {**known, "ANTHROPIC_API_KEY": "any", "ANTHROPIC_BASE_URL": api.base_url}
         words = ("run", "--system", "simworlds", "--scenes", SCENE, "--out", tmp_path, "--no-stages", *CHEAP)
         code, out, _ = command(*words, **reached).end()
         assert (code, "1 scene: 0 scored" in out) == (0, True)
@@ -155,17 +163,17 @@ def test_records_why_a_run_failed_and_resumes_it_in_the_next_sweep(
 
 @pytest.mark.blender
 def test_ctrl_c_stops_a_waiting_run_which_can_be_resumed(
-    tmp_path: Path, command: Callable[..., Command]
+    known: dict[str, str], tmp_path: Path, command: Callable[..., Command]
 ) -> None:
     asked, answer = threading.Event(), threading.Event()
 
     def wait(_: Any) -> Reply:
         asked.set()
-        answer.wait(120)
+        answer.wait(240)  # longer than a busy machine takes to send the signal
         return REFUSAL
 
     with FakeMessagesAPI(wait) as api:
-        reached = {"ANTHROPIC_API_KEY": "any", "ANTHROPIC_BASE_URL": api.base_url}
+        reached = {**known, "ANTHROPIC_API_KEY": "any", "ANTHROPIC_BASE_URL": api.base_url}
         words = ("run", "--system", "simworlds", "--scenes", SCENE, "--out", tmp_path, *CHEAP)
         sweep = command(*words, **reached)
         assert asked.wait(120)

@@ -456,7 +456,7 @@ def start_build(api: FakeMessagesAPI, store: SummaryStore) -> subprocess.Popen[b
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("how", ["kill", "interrupt"])
+@pytest.mark.parametrize("how", ["kill", pytest.param("interrupt", marks=pytest.mark.whole)])
 def test_a_build_that_dies_while_waiting_picks_its_batch_up_again(store, how):
     import signal
 

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
 def test_a_finding_is_shown_with_its_line_and_its_fix(command: Command) -> None:
     command.write("a.py", WRONG)
-    done = command("a.py")
+    done = command.as_process("a.py")
     lines = done.out.splitlines()
     assert lines[0].startswith(
         "a.py:2:20: error[unknown-attribute] `bpy.types.Object.draw_type` does not exist"
@@ -187,7 +187,9 @@ def test_several_versions_are_a_table(command: Command, base: Path) -> None:
 
 
 def test_standard_input_is_checked(command: Command) -> None:
-    assert command("-", "--json", given=WRONG.encode()).places == [("<stdin>", 2, "unknown-attribute")]
+    assert command.as_process("-", "--json", given=WRONG.encode()).places == [
+        ("<stdin>", 2, "unknown-attribute")
+    ]
     diff = command("-", "--diff", given=WRONG.encode()).out
     assert '+bpy.context.object.display_type = "WIRE"' in diff
 
@@ -314,7 +316,7 @@ def test_several_processes_find_what_one_does(command: Command) -> None:
     for number in range(12):
         command.write(f"{number}.py", WRONG + f"# {number} {'x' * 100}\n" * 500)
     one = command("--json", "--no-cache", "--jobs", "1")
-    assert command("--json", "--no-cache", "--jobs", "3").out == one.out
+    assert command.as_process("--json", "--no-cache", "--jobs", "3").out == one.out
     assert len(one.places) == 12
 
 

@@ -1,4 +1,4 @@
-"""``simworlds migrate`` as a process of its own."""
+"""``simworlds migrate``: what it says, writes and leaves."""
 
 from __future__ import annotations
 

@@ -22,9 +22,9 @@ def test_missing_table_is_found_and_made(check: Check, tmp_path: Path, line: str
     assert finding.fix is not None
     assert finding.fix.sure
     [edit] = finding.fix.edits
-    [*_, refused] = run_statements(tmp_path, [*SETTING, line])
+    answers = run_statements(tmp_path, [*SETTING, line, *SETTING, edit.text + line])
+    refused, fixed = answers[len(SETTING)], answers[-1]
     assert "outdated internal index table" in refused[0]
-    [*_, fixed] = run_statements(tmp_path, [*SETTING, edit.text + line])
     assert not fixed[0]
 
 

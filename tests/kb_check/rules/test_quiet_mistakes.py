@@ -176,6 +176,7 @@ def test_given_contexts_are_no_finding(check: Check, code: str) -> None:
     assert check("needs-context", f"import bpy\n{code}\n") == []
 
 
+@pytest.mark.whole
 def test_table_of_areas_is_what_this_blender_answers(tmp_path: Path) -> None:
     """The whole table is made again, by the program that made it."""
     from kb_check.rules import needs_context

@@ -23,6 +23,7 @@ from asking import (
     spaced,
     wrong,
 )
+from whole import examples
 
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_SHORT
@@ -40,7 +41,7 @@ def test_a_full_path_is_that_symbol_and_its_whole_answer(
     kb: KnowledgeBase, reader: BaseReader, kind: str
 ) -> None:
     sample = paths(reader, kind)
-    assert len(sample) > 100
+    assert len(sample) > examples(100)
     for path in sample:
         answer = kb.query(path)
         assert (answer.kind, answer.hits[0].id, answer.hits[0].kind) == ("schema", path, kind)
@@ -51,7 +52,7 @@ def test_a_full_path_is_that_symbol_and_its_whole_answer(
 def test_punctuation_around_a_name_does_not_matter(
     kb: KnowledgeBase, reader: BaseReader, around: str
 ) -> None:
-    sample = of_data(reader, "property", 60) + paths(reader, "operator", 60)
+    sample = of_data(reader, "property", examples(60)) + paths(reader, "operator", examples(60))
     assert wrong(kb, [(around.format(path), path) for path in sample]) == []
 
 
@@ -61,8 +62,8 @@ def test_punctuation_around_a_name_does_not_matter(
 def test_a_call_is_the_function_or_operator_called(
     kb: KnowledgeBase, reader: BaseReader, arguments: str
 ) -> None:
-    sample = of_data(reader, "function", 100) + paths(reader, "operator", 100)
-    sample += paths(reader, "function", 100, "path NOT LIKE 'bpy.%'")
+    sample = of_data(reader, "function", examples(100)) + paths(reader, "operator", examples(100))
+    sample += paths(reader, "function", examples(100), "path NOT LIKE 'bpy.%'")
     assert wrong(kb, [(path + arguments, path) for path in sample]) == []
 
 
@@ -104,7 +105,7 @@ def test_a_member_is_found_in_every_usual_spelling(
     clear = [
         case for case in cases if only(reader, case[0]) or (spelling in DOTTED and not case[0].isupper())
     ]
-    assert len(clear) > 250
+    assert len(clear) > examples(250)
     assert wrong(kb, clear) == []
 
 
@@ -161,14 +162,14 @@ def test_an_operator_is_found_by_its_call_and_by_its_class(
         module, _, name = query.partition(".")
         if query not in registered and not reader.entry(f"{TYPES}{module.title()}.{name}"):
             cases.append((query, path))
-    assert len(cases) > 200
+    assert len(cases) > examples(200)
     assert wrong(kb, cases) == []
 
 
 @pytest.mark.parametrize("form", ["{}", "{}.default_value", "{}.default_value = 0.5", "node.{}"])
 def test_a_socket_is_found_by_class_and_name(kb: KnowledgeBase, reader: BaseReader, form: str) -> None:
     cases: list[tuple[str, str]] = []
-    for path in paths(reader, "socket", 150):
+    for path in paths(reader, "socket", examples(150)):
         entry = reader.entry(path)
         assert entry is not None
         valued = reader.entry(f"{TYPES}{entry.target}.default_value") is not None
@@ -189,14 +190,14 @@ def test_context_and_data_are_abbreviated_as_in_blenders_console(
     for entry in reader.members("bpy.types.BlendData").values():
         if entry.kind == "property":
             cases += [(f"D.{entry.name}", entry.path), (f"bpy.data.{entry.name}", entry.path)]
-    assert len(cases) > 400
+    assert len(cases) > examples(400)
     assert wrong(kb, cases) == []
 
 
 def test_inherited_members_resolve_to_their_own_class(kb: KnowledgeBase, reader: BaseReader) -> None:
     chance = random.Random(SEED)
     cases: list[tuple[str, str]] = []
-    for path in classes(reader, count=400):
+    for path in classes(reader, count=examples(400)):
         own = reader.members(path)
         inherited: dict[str, str] = {}
         for ancestor in [entry.path for entry in reader.lineage(path)][1:-1]:
@@ -209,7 +210,7 @@ def test_inherited_members_resolve_to_their_own_class(kb: KnowledgeBase, reader:
                 (f"{path}.{name}", inherited[name]),
                 (f"{path.removeprefix(TYPES)}.{name}", inherited[name]),
             ]
-    assert len(cases) > 300
+    assert len(cases) > examples(300)
     assert wrong(kb, cases) == []
 
 
@@ -234,7 +235,7 @@ def unique_names(reader: BaseReader) -> list[tuple[str, str]]:
     """(name, path) of members whose name, of several words, nothing else has."""
     counts = Counter(row[0] for row in reader.rows("SELECT name FROM symbols"))
     found = [(path.rpartition(".")[2], path) for path in of_data(reader, "property", 5_000)]
-    return [(name, path) for name, path in found if counts[name] == 1 and "_" in name][:200]
+    return [(name, path) for name, path in found if counts[name] == 1 and "_" in name][: examples(200)]
 
 
 @pytest.mark.parametrize("sentence", ["{}", "what does {} do?", "the `{}` setting", "x.{} = 1"])
@@ -256,8 +257,8 @@ def test_a_label_that_only_one_symbol_has_leads_there(kb: KnowledgeBase, reader:
             and counts[entry.label.lower()] == 1
         ):
             cases.append((entry.label, path))
-    cases = cases[::10]
-    assert len(cases) > 100
+    cases = cases[:: 3000 // examples(300)]
+    assert len(cases) > examples(100)
     assert len(wrong(kb, cases, within=5)) <= 0.02 * len(cases)
 
 
@@ -279,18 +280,18 @@ def test_a_misspelt_member_is_corrected_with_a_note(
             said = any(f"`{written}` does not exist; read as `{name}`" in note for note in answer.notes)
             assert said or key(written) == key(name)  # another spelling is no mistake
             checked += 1
-    assert checked > 100
+    assert checked > examples(100)
 
 
 def test_a_misspelt_class_is_corrected(kb: KnowledgeBase, reader: BaseReader) -> None:
     chance = random.Random(SEED)
     cases = [
         (f"{misspelt(owner, chance)}.{name}", path)
-        for path in of_data(reader, "property", 400)
+        for path in of_data(reader, "property", examples(400))
         for owner, name in [owner_and_name(path)]
         if len(owner) >= 12 and not owner.startswith(("NodeTreeInterface", "NodeSocket", "FunctionNode"))
     ]
-    assert len(cases) > 150
+    assert len(cases) > examples(150)
     assert len(wrong(kb, cases)) <= 0.03 * len(cases)
 
 
@@ -301,20 +302,22 @@ def test_a_misspelt_operator_is_corrected(kb: KnowledgeBase, reader: BaseReader)
         module, _, name = path.rpartition(".")
         if len(name) >= 10:
             cases.append((f"{module}.{misspelt(name, chance)}()", path))
-    assert len(cases) > 150
+    assert len(cases) > examples(150)
     assert len(wrong(kb, cases)) <= 0.01 * len(cases)
 
 
 def test_a_misspelt_lone_name_is_corrected(kb: KnowledgeBase, reader: BaseReader) -> None:
     chance = random.Random(SEED)
     cases = [(misspelt(name, chance), path) for name, path in unique_names(reader) if len(name) >= 12]
-    assert len(cases) > 50
+    assert len(cases) > examples(50)
     assert len(wrong(kb, cases)) <= 0.04 * len(cases)  # some slips make another word: ``swap`` of ``snap``
 
 
 def test_a_right_name_is_not_corrected(kb: KnowledgeBase, reader: BaseReader) -> None:
     for path in (
-        of_data(reader, "property", 200) + paths(reader, "operator", 100) + paths(reader, "class", 100)
+        of_data(reader, "property", examples(200))
+        + paths(reader, "operator", examples(100))
+        + paths(reader, "class", examples(100))
     ):
         assert kb.query(path).notes == ()
 
@@ -338,7 +341,7 @@ def enum_items(reader: BaseReader) -> list[tuple[str, str]]:
         for item, owner in found
         if (entry := reader.entry(owner)) and not _of_ui(reader, entry.owner)
     ]
-    return random.Random(SEED).sample(found, 250)
+    return random.Random(SEED).sample(found, examples(250))
 
 
 def _of_ui(reader: BaseReader, owner: str) -> bool:
@@ -357,7 +360,7 @@ def test_an_item_assigned_leads_to_the_property_assigned(kb: KnowledgeBase, read
         entry = reader.entry(owner)
         if entry and entry.kind == "property":
             cases.append((f"{owner.removeprefix(TYPES)} = '{item}'", owner))
-    assert len(cases) > 50
+    assert len(cases) > examples(50)
     assert wrong(kb, cases) == []
 
 
@@ -375,7 +378,7 @@ def test_an_attribute_error_leads_to_the_attribute_that_was_meant(
             written = misspelt(name, chance)
             if written not in reader.members(TYPES + owner):
                 cases.append((f"AttributeError: '{owner}' object has no attribute '{written}'", path))
-    assert len(cases) > 100
+    assert len(cases) > examples(100)
     assert wrong(kb, cases, within=5) == []
 
 
@@ -387,24 +390,28 @@ def test_an_enum_error_leads_to_the_property_with_those_items(kb: KnowledgeBase,
             items = ", ".join(f"'{one.identifier}'" for one in symbol.enum_items)
             text = f'TypeError: bpy_struct: item.attr = val: enum "X{item}" not found in ({items})'
             checked.append((text, owner))
-    assert len(checked) > 50
+    assert len(checked) > examples(50)
     assert wrong(kb, checked, within=2) == []
 
 
 def test_a_failed_poll_leads_to_the_operator(kb: KnowledgeBase, reader: BaseReader) -> None:
     message = "RuntimeError: Operator {}.poll() failed, context is incorrect"
-    assert wrong(kb, [(message.format(path), path) for path in paths(reader, "operator", 100)]) == []
+    assert (
+        wrong(kb, [(message.format(path), path) for path in paths(reader, "operator", examples(100))]) == []
+    )
 
 
 def test_an_unknown_keyword_leads_to_the_operator_called(kb: KnowledgeBase, reader: BaseReader) -> None:
     message = 'TypeError: Converting py args to operator properties: : keyword "foo" unrecognized\n{}(foo=1)'
-    assert wrong(kb, [(message.format(path), path) for path in paths(reader, "operator", 100)]) == []
+    assert (
+        wrong(kb, [(message.format(path), path) for path in paths(reader, "operator", examples(100))]) == []
+    )
 
 
 # Other versions
 
 
-def former(reader: BaseReader, where: str, count: int = 250) -> list[str]:
+def former(reader: BaseReader, where: str, count: int = examples(250)) -> list[str]:
     rows = reader.rows(f"SELECT path FROM removed WHERE {where} ORDER BY path")
     return random.Random(SEED).sample([row[0] for row in rows], count)
 
@@ -444,7 +451,7 @@ def test_a_class_that_is_still_taken_by_its_former_name_is_told(
 
 @pytest.mark.parametrize("form", ["{}()", "{}(a=1)", "x = {}('EXEC_DEFAULT')"])
 def test_a_removed_operator_is_noted_when_called(kb: KnowledgeBase, reader: BaseReader, form: str) -> None:
-    for path in former(reader, "path GLOB 'bpy.ops.*.*' AND path NOT GLOB '*[(:]*'", 60):
+    for path in former(reader, "path GLOB 'bpy.ops.*.*' AND path NOT GLOB '*[(:]*'", examples(60)):
         assert says_gone(kb, form.format(path), path), path
         message = f'AttributeError: Calling operator "{path}" error, could not be found'
         assert says_gone(kb, message, path), path
@@ -455,7 +462,7 @@ def test_what_takes_a_removed_symbols_place_comes_first(kb: KnowledgeBase, reade
         f"SELECT DISTINCT path FROM successors JOIN removed USING (path) WHERE target != '' AND {MEMBERS} ORDER BY path"
     )
     assert len(rows) > 100
-    for (path,) in random.Random(SEED).sample(rows, 100):
+    for (path,) in random.Random(SEED).sample(rows, examples(100)):
         targets = {plain_path(successor.target) for successor in reader.successors(path)}
         assert first_id(kb.query(path)) in targets, path
 
@@ -465,7 +472,7 @@ def test_nothing_stands_in_for_what_has_no_successor(kb: KnowledgeBase, reader: 
         f"SELECT path FROM successors JOIN removed USING (path) WHERE target = '' AND {MEMBERS}"
     )
     assert len(rows) > 20
-    for (path,) in rows[:60]:
+    for (path,) in rows[: examples(60)]:
         answer = kb.query(path)
         assert any("Nothing takes its place." in note for note in answer.notes), path
         name = path.rpartition(".")[2]  # which a class below may have still
@@ -475,7 +482,7 @@ def test_nothing_stands_in_for_what_has_no_successor(kb: KnowledgeBase, reader: 
 
 
 def test_a_former_item_or_argument_is_known_too(kb: KnowledgeBase, reader: BaseReader) -> None:
-    for path in former(reader, "path LIKE '%:%'", 150):
+    for path in former(reader, "path LIKE '%:%'", examples(150)):
         assert says_gone(kb, path, path), path
 
 
@@ -491,8 +498,10 @@ def test_an_attribute_error_of_a_former_member_says_so(kb: KnowledgeBase, reader
 
 
 def test_what_works_is_not_called_gone(kb: KnowledgeBase, reader: BaseReader) -> None:
-    lines = [f"{owner}.{name}" for owner, name in map(owner_and_name, of_data(reader, "property", 400))]
-    lines += [f"{path}()" for path in paths(reader, "operator", 200)]
+    lines = [
+        f"{owner}.{name}" for owner, name in map(owner_and_name, of_data(reader, "property", examples(400)))
+    ]
+    lines += [f"{path}()" for path in paths(reader, "operator", examples(200))]
     lines += [f"ob.{entry.name} = x" for entry in reader.members(f"{TYPES}Object").values()]
     lines += [f"cam.{entry.name} = x" for entry in reader.members(f"{TYPES}Object").values()]
     lines += [f"mat.{entry.name}" for entry in reader.members(f"{TYPES}Material").values()]

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from asking import SEED, TYPES, classes, first_id, wrong
+from whole import examples
 
 from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.resolver import Resolver
@@ -45,7 +46,7 @@ def test_every_way_to_reach_a_class_leads_to_it_or_to_what_it_is(
 ) -> None:
     """``reached`` expressions are what answers show: they must be answered themselves."""
     checked, lost = 0, []
-    for path in classes(reader, count=2_000):
+    for path in classes(reader, count=examples(2_000)):
         symbol = reader.symbol(path)
         if symbol is None or not symbol.reached:
             continue
@@ -57,7 +58,7 @@ def test_every_way_to_reach_a_class_leads_to_it_or_to_what_it_is(
         twin = reader.entry(target)
         if target not in lineage(reader, path) and not (twin and default_name(twin) == label):
             lost.append((symbol.reached, path, found))
-    assert checked > 1_300
+    assert checked > examples(1_300)
     assert len(lost) <= 5, lost
 
 
@@ -87,8 +88,8 @@ def test_an_element_is_known_by_the_name_that_blender_gives_it(
         if names[default_name(entry)] == 1
         for member in properties(reader, entry.path)
     ]
-    sample = random.Random(SEED).sample(cases, min(len(cases), 200))
-    assert len(sample) >= 70
+    sample = random.Random(SEED).sample(cases, min(len(cases), examples(200)))
+    assert len(sample) >= examples(70)
     assert wrong(kb, sample) == []
 
 
@@ -119,7 +120,7 @@ def test_a_socket_of_a_named_node_is_that_socket(
             if member.kind == "socket" and names[node.label] == 1 and (valued or "default" not in suffix):
                 side = member.path[len(node.path) :]
                 cases.append((f'{holder}.nodes["{node.label}"]{side}{suffix}', member.path))
-    sample = random.Random(SEED).sample(cases, 200)
+    sample = random.Random(SEED).sample(cases, examples(200))
     assert wrong(kb, sample) == []
 
 
@@ -152,7 +153,7 @@ def test_members_of_a_well_known_expression_are_found(
         for entry in reader.members(TYPES + ROOTS[root]).values()
         if entry.kind in {"property", "function"} and not entry.name.startswith("bl_rna")
     ]
-    sample = random.Random(SEED).sample(members, min(len(members), 40))
+    sample = random.Random(SEED).sample(members, min(len(members), examples(40)))
     cases = [(f"{root}.{entry.name}", entry.path) for entry in sample]
     # ``mesh.reveal`` may be the operator just as well.
     assert wrong(kb, [case for case in cases if reader.entry(f"bpy.ops.{case[0]}") is None]) == []
@@ -166,7 +167,7 @@ def test_data_blocks_are_found_by_name_or_number(kb: KnowledgeBase, reader: Base
         if entry.type == "collection"
         for member in properties(reader, TYPES + entry.target)
     ]
-    assert wrong(kb, random.Random(SEED).sample(cases, 250)) == []
+    assert wrong(kb, random.Random(SEED).sample(cases, examples(250))) == []
 
 
 def test_a_collection_has_its_own_methods_and_those_of_every_collection(
