@@ -68,7 +68,8 @@ def census(session: LiveSession) -> dict[str, Any]:
     return json.loads((session.blender.folder.workspace.mount / "census.json").read_text())
 
 
-def test_no_preview_leaves_a_trace(session: LiveSession) -> None:
+def test_no_preview_leaves_a_trace(session: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(material_preview, "_PANEL", 64)
     build(session, LIVED_IN)
     before = census(session)
     session.use(previews.SCENE_LAYOUT)
