@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import chain, zip_longest
 from typing import TYPE_CHECKING
 
 import pytest
@@ -48,8 +47,8 @@ def _cases() -> list[object]:
     ]
     shown: set[str] = set()
     telling: set[str] = set()
-    by_turns = zip_longest(*([case for case in cases if case[0] == kind] for kind, _ in samples))
-    for _, walls, way in filter(None, chain.from_iterable(by_turns)):
+    turns = {kind: [way for one, _, way in cases if one == kind] for kind, _ in samples}
+    for _, walls, way in sorted(cases, key=lambda case: turns[case[0]].index(case[2])):
         if new := {*walls} - shown:
             shown |= new
             telling.add(way.name)
