@@ -32,7 +32,6 @@ from simworlds.sandbox.confined_command import best_sandbox
 if TYPE_CHECKING:
     from collections.abc import AsyncIterator
 
-    from built_base import Built
     from mcp_types import CallToolResult
 
 pytestmark = [pytest.mark.blender, pytest.mark.anyio]
@@ -375,11 +374,11 @@ def test_stdout_has_only_messages_and_no_process_stays(home: Path) -> None:
     assert place.is_dir(), "the run is kept"
 
 
-def test_unused_run_leaves_no_folder(small: Built) -> None:
-    with ByHand(small.home) as wire:
+def test_unused_run_leaves_no_folder(tmp_path: Path) -> None:
+    with ByHand(tmp_path) as wire:
         wire.hang_up()
         assert wire.process.wait(ENDS) == 0
-    assert list((small.home / "runs").glob("*")) == []
+    assert list((tmp_path / "runs").glob("*")) == []
 
 
 def test_a_client_that_goes_away_while_blender_is_busy_leaves_no_process_behind(home: Path) -> None:
