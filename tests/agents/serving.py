@@ -16,6 +16,8 @@ from typing import TYPE_CHECKING, Any
 from mcp import StdioServerParameters
 from places import REPO
 
+from simworlds.settings import SHADERS_VARIABLE
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -23,9 +25,16 @@ COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name
 
 
 def environment(home: Path, **more: str) -> dict[str, str]:
-    """The environment of a server that keeps everything in ``home`` and knows nothing of the user's own settings."""
+    """The environment of a server that keeps everything in ``home`` and knows nothing of the user's own settings.
+
+    It has the shaders of all tests: each compiles its own otherwise.
+    """
     dropped = ("SIMWORLDS_", "BLENDER_")
-    kept = {name: value for name, value in os.environ.items() if not name.startswith(dropped)}
+    kept = {
+        name: value
+        for name, value in os.environ.items()
+        if name == SHADERS_VARIABLE or not name.startswith(dropped)
+    }
     return {**kept, "SIMWORLDS_HOME": str(home), "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error", **more}
 
 

@@ -63,6 +63,7 @@ class Attackers:
         self._hosts: dict[tuple[Kind, Who, tuple[str, ...], bool], Host] = {}
         self._how: dict[int, str] = {}  # a host's number → how it is to be cleaned
         self._count = 0
+        self._is_new = False  # whether the Blender of the last attack has run none of its code
 
     def host(self, kind: Kind, who: Who, without: tuple[str, ...] = (), *, liar: bool = False) -> Host:
         """A running host of that kind."""
@@ -100,11 +101,14 @@ class Attackers:
             host.clean(self._how.pop(id(host), "folder"))
             forget_peak(host.pid)
             before, process = rights_of(host.process), host.process
+            self._is_new = False
             try:
                 if way.lies:
                     host.lie(outside.helpers(host), dict(way.lies))
                 for step in way.steps:
+                    attacked = host.process
                     self._take(step, way, host, outcome)
+                    self._is_new = host.process != attacked or (self._is_new and isinstance(step, Tool))
             except HostLost as fault:
                 outcome.evidence.append(str(fault))
                 host.close()
@@ -132,9 +136,9 @@ class Attackers:
     def _put_right(self, way: Way, host: Host, outcome: Outcome) -> None:
         if outcome.evidence:
             self._outside.restore()
-        if way.spoils or outcome.evidence:
+        if outcome.evidence or (way.spoils and not self._is_new):
             self._how[id(host)] = "anew"
-        elif any("bpy." in step for step in way.steps if isinstance(step, str)):
+        elif way.spoils or any("bpy." in step for step in way.steps if isinstance(step, str)):
             self._how[id(host)] = "scene"
 
     def close(self) -> None:

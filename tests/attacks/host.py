@@ -30,6 +30,8 @@ MIB = 1 << 20
 LIMITS = ResourceLimits(memory=1600 * MIB, file_size=128 * MIB, disk=64 * MIB, files=400, threads=300)
 LIAR = Program("simworlds_liar.liar", {**SHARED, "simworlds_liar": Path(__file__).parent / "inside"})
 LIES = ".lies.json"
+_FACTORY = "bpy.ops.wm.read_factory_settings(use_empty=True)"
+_EMPTY = "bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)"  # a new Blender has no other settings
 _OWN_FILE = ("scene.blend",)
 _OWN_FOLDERS = ("workspace", "private", "checkpoints", "lent")
 
@@ -113,7 +115,7 @@ class Session:
                 elif path.name != ".lock":
                     path.unlink(missing_ok=True)
         if how != "folder":
-            self._use("blender_execute", {"code": "bpy.ops.wm.read_factory_settings(use_empty=True)"})
+            self._use("blender_execute", {"code": _EMPTY if how == "anew" else _FACTORY})
 
 
 def main() -> None:

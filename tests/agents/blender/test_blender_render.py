@@ -391,6 +391,7 @@ def test_survives_a_lost_blender_with_the_same_frames(
     assert own_session.run("bpy.context.scene.frame_current") == 1
 
 
+@pytest.mark.whole
 def test_repeated_crashes_keep_finished_frames(own_session: LiveSession) -> None:
     own_session.run(MOVING)
     over = threading.Event()

@@ -11,8 +11,6 @@ from agents.protocol import vocabulary
 from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
-
     from live_session import LiveSession
 
 pytestmark = pytest.mark.blender
@@ -105,8 +103,7 @@ def test_a_tagged_scene_carries_the_properties_and_misses_nothing(session: LiveS
     assert "object 'Leg': contact_with 'Slab', 'Top'" in found.text
 
 
-def test_tags_survive_a_fresh_process(make_session: Callable[[str], LiveSession]) -> None:
-    session = make_session("run")
+def test_tags_survive_a_fresh_process(session: LiveSession) -> None:
     session.run(ROOM)
     session.use(TOOL, **TAGGED)
     before = properties(session)

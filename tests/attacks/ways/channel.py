@@ -15,7 +15,7 @@ _AFTER = "1 + 1 != 2"
 
 def _send(name: str, code: str, **more: object) -> Way:
     """A way that writes to the channel, and then waits for what comes of it; a further call must be answered truly."""
-    return way(name, "channel", f"{_WIRE}{code}", _AFTER, timeout=5.0, once=True, **more)
+    return way(name, "channel", f"{_WIRE}{code}", _AFTER, **{"timeout": 5.0, "once": True, **more})
 
 
 WAYS = (
@@ -76,6 +76,7 @@ WAYS = (
     _send(
         "reply-with-half-a-frame",
         "os.write(wire._fd, wire._encode({'ticket': ticket, 'value': None})[:60])\ntime.sleep(10)",
+        timeout=1.5,
     ),
     _send(
         "reply-with-a-frame-of-four-gigabytes",
@@ -99,6 +100,7 @@ WAYS = (
     _send(
         "reply-with-progress-without-end",
         "while True: wire.send({'ticket': ticket, 'progress': [0, None, 'x' * 9999]})",
+        timeout=1.5,
     ),
     _send(
         "reply-with-progress-to-nowhere",

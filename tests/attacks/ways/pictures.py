@@ -49,10 +49,12 @@ _WIDE = (
     "b'\\x89PNG\\r\\n\\x1a\\n' + chunk(b'IHDR', struct.pack('>IIBBBBB', {width}, {height}, "
     "8, 6, 0, 0, 0)) + chunk(b'IDAT', b''.join(pack() for _ in range(1))) + chunk(b'IEND', b'')"
 )
+# Zeros, compressed in parts that stand for themselves: one is made, and repeated, with the checksum of all.
 _PACK = (
-    "import zlib\ndef pack():\n    z = zlib.compressobj(9)\n"
-    "    part = z.compress(bytes(1 << 20))\n"
-    "    return part + b''.join(z.compress(bytes(1 << 20)) for _ in range({mib})) + z.flush()\n"
+    "import zlib\ndef pack(count={mib} + 1):\n    z = zlib.compressobj(9, zlib.DEFLATED, -15)\n"
+    "    part = z.compress(bytes(1 << 20)) + z.flush(zlib.Z_FULL_FLUSH)\n"
+    "    check = struct.pack('>I', (count << 20) % 65521 << 16 | 1)\n"
+    "    return b'x\\xda' + part * count + z.flush() + check\n"
 )
 _BOMBS = {
     "many-pixels": (_PACK.format(mib=600), _WIDE.format(width=12000, height=12000)),
@@ -61,13 +63,12 @@ _BOMBS = {
     "one-endless-row": (_PACK.format(mib=1), _WIDE.format(width=2**31 - 1, height=1)),
     "no-pixels": (_PACK.format(mib=1), _WIDE.format(width=0, height=0)),
     "a-text-that-swells": (
-        "import zlib\n",
-        "png(16, 16, extra=b''.join(chunk(b'zTXt', b'n%d\\0\\0' % n + zlib.compress(bytes(60 << "
-        "20), 9)) for n in range(40)))",
+        _PACK.format(mib=59),
+        "png(16, 16, extra=b''.join(chunk(b'zTXt', b'n%d\\0\\0' % n + pack()) for n in range(40)))",
     ),
     "a-profile-that-swells": (
-        "import zlib\n",
-        "png(16, 16, extra=chunk(b'iCCP', b'p\\0\\0' + zlib.compress(bytes(900 << 20), 1)))",
+        _PACK.format(mib=899),
+        "png(16, 16, extra=chunk(b'iCCP', b'p\\0\\0' + pack()))",
     ),
     "a-chunk-of-four-gigabytes": ("", "png()[:33] + struct.pack('>I', (1 << 32) - 1) + b'tEXt' + bytes(99)"),
     "many-chunks": ("", "png(16, 16, extra=chunk(b'tEXt', b'a\\0b') * 400_000)"),

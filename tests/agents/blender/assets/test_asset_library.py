@@ -21,6 +21,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+    from built_base import Built
+
     from agents.blender.tools.base import Result
 
 pytestmark = pytest.mark.blender
@@ -279,8 +281,9 @@ def test_without_a_library_the_tool_says_what_is_missing(session: LiveSession) -
 
 
 @pytest.mark.anyio
-async def test_the_server_lists_the_tool_only_with_a_library(shelf: Shelf, tmp_path: Path) -> None:
-    async with Client(over_stdio(tmp_path / "home", "--assets", str(shelf.root))) as client:
+async def test_the_server_lists_the_tool_only_with_a_library(shelf: Shelf, built_once: Built) -> None:
+    """What it lists without one, the tests of the server say name by name."""
+    async with Client(over_stdio(built_once.home, "--assets", str(shelf.root))) as client:
         listed = {tool.name for tool in (await client.list_tools()).tools}
         answer = await client.call_tool(TOOL.name, {"query": "sunset"})
         assert client.instructions is not None
@@ -288,5 +291,3 @@ async def test_the_server_lists_the_tool_only_with_a_library(shelf: Shelf, tmp_p
     assert TOOL.name in listed
     assert answer.structured_content is not None
     assert [asset["id"] for asset in answer.structured_content["assets"]] == ["sunset.hdr"]
-    async with Client(over_stdio(tmp_path / "home")) as client:
-        assert TOOL.name not in {tool.name for tool in (await client.list_tools()).tools}

@@ -238,8 +238,8 @@ def test_many_clients_each_get_their_own_replies(server: AddonServer) -> None:
         with server.client() as one:
             return [one.run(f"print({number}, {turn})") for turn in range(4)]
 
-    with ThreadPoolExecutor(16) as threads:
-        for number, said in enumerate(threads.map(use, range(16))):
+    with ThreadPoolExecutor(8) as threads:
+        for number, said in enumerate(threads.map(use, range(8))):
             assert said == [f"{number} {turn}\n" for turn in range(4)]
 
 
@@ -267,8 +267,8 @@ def hasty(tmp_path_factory: pytest.TempPathFactory) -> Iterator[AddonServer]:
     [
         ("while True: pass", ("ran past its deadline of 4 s", "--timeout")),
         ("import os; os.abort()", ("crashed (SIGABRT)",)),
-        ("import os; os._exit(0)", ("ended from inside",)),
-        ("import ctypes; ctypes.string_at(0)", ("SIGSEGV",)),
+        pytest.param("import os; os._exit(0)", ("ended from inside",), marks=pytest.mark.whole),
+        pytest.param("import ctypes; ctypes.string_at(0)", ("SIGSEGV",), marks=pytest.mark.whole),
     ],
 )
 def test_code_that_ends_blender_costs_its_own_call(
@@ -295,7 +295,7 @@ def test_a_hanging_call_does_not_keep_others_from_what_needs_no_blender(hasty: A
 # Beginning and end
 
 
-@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+@pytest.mark.parametrize("number", [signal.SIGINT, pytest.param(signal.SIGTERM, marks=pytest.mark.whole)])
 def test_a_signal_ends_it_in_mid_call_and_the_scene_goes_on(tmp_path: Path, number: signal.Signals) -> None:
     run = ["--run", str(tmp_path / "run")]
     with AddonServer(tmp_path / "home", *run) as server, server.client() as client:

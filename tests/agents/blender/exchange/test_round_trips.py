@@ -89,8 +89,14 @@ def bring_in(session: LiveSession, name: str, **more: Any) -> Result:
     return session.use(IMPORT, path=name, **more)
 
 
-@pytest.mark.parametrize("scene", _SCENES)
-@pytest.mark.parametrize("ending", sorted(_FORMATS))
+@pytest.mark.parametrize(
+    ("ending", "scene"),
+    [
+        pytest.param(ending, scene, marks=() if (row + column) % 3 == 0 else pytest.mark.whole)
+        for row, ending in enumerate(sorted(_FORMATS))
+        for column, scene in enumerate(_SCENES)
+    ],
+)
 def test_a_file_keeps_what_its_format_can(session: LiveSession, ending: str, scene: str) -> None:
     session.run(_SCENES[scene])
     answer = export(session, f"{scene}.{ending}")
@@ -116,16 +122,24 @@ def test_the_same_comes_back_into_the_scene_by_the_runs_own_file(session: LiveSe
     assert session.run("sorted(c.name for c in bpy.context.scene.collection.children)") == ["Came"]
 
 
-def test_motion_comes_back_frame_by_frame(session: LiveSession) -> None:
+@pytest.mark.parametrize(
+    "ending",
+    [
+        "glb",
+        pytest.param("usdc", marks=pytest.mark.whole),
+        pytest.param("fbx", marks=pytest.mark.whole),
+        "abc",
+    ],
+)
+def test_motion_comes_back_frame_by_frame(session: LiveSession, ending: str) -> None:
     session.run(MOTION)
-    for ending in ("glb", "usdc", "fbx", "abc"):
-        poses = export(session, f"moving.{ending}").data["poses"]
-        assert [pose["frame"] for pose in poses] == [1, 24]
-        assert poses[1]["high"][0] > 4
-        still = export(session, f"still.{ending}", animation=False)
-        assert not still.failed, still.text
-        assert still.data["poses"] == []
-        assert still.data["verified"]["animated"] == 0
+    poses = export(session, f"moving.{ending}").data["poses"]
+    assert [pose["frame"] for pose in poses] == [1, 24]
+    assert poses[1]["high"][0] > 4
+    still = export(session, f"still.{ending}", animation=False)
+    assert not still.failed, still.text
+    assert still.data["poses"] == []
+    assert still.data["verified"]["animated"] == 0
 
 
 def test_what_a_file_brings_does_not_change_the_scene_around_it(session: LiveSession) -> None:
@@ -157,12 +171,12 @@ def test_a_name_stands_for_what_is_parented_to_it_and_a_collection_for_what_is_i
     session: LiveSession,
 ) -> None:
     session.run(HIERARCHY + "bpy.ops.mesh.primitive_cube_add(location=(9, 0, 0))")
-    answer = export(session, "one.glb", objects=["Arm"])
+    answer = export(session, "one.glb", objects=["Arm"], verify=False)
     assert answer.data["objects"] == {"MESH": 2}
     assert answer.data["parented"] == 1
     session.run("made = bpy.data.collections.new('Kit'); bpy.context.scene.collection.children.link(made)")
     session.run("made = bpy.data.collections['Kit']; made.objects.link(bpy.data.objects['Cube'])")
-    assert export(session, "kit.glb", objects=["Kit"]).data["objects"] == {"MESH": 1}
+    assert export(session, "kit.glb", objects=["Kit"], verify=False).data["objects"] == {"MESH": 1}
     with pytest.raises(Refusal, match="Nearest: 'Arm'"):
         export(session, "no.glb", objects=["Arn"])
 

@@ -39,6 +39,7 @@ len(box.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.vertices)
 """
 
 
+@pytest.mark.whole  # the next ones bake one too
 def test_executed_code_may_bake_a_fluid(own_session: LiveSession) -> None:
     assert own_session.run(POUR) > 100
 

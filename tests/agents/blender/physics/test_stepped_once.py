@@ -58,7 +58,10 @@ def visited(session: LiveSession, name: str, frame: int = 12) -> tuple[int, list
     return len(frames), answer["value"]["boxes"][name]["low"]
 
 
-@pytest.mark.parametrize(("code", "name"), [(CLOTH_ON_BALL, "Flag"), (ANIMATED, "Flag"), (LIQUID, "Tank")])
+@pytest.mark.parametrize(
+    ("code", "name"),
+    [pytest.param(CLOTH_ON_BALL, "Flag", marks=pytest.mark.whole), (ANIMATED, "Flag"), (LIQUID, "Tank")],
+)
 def test_what_was_stepped_is_measured_again_without_a_step_and_becomes_the_bake(
     session: LiveSession, code: str, name: str
 ) -> None:
@@ -78,7 +81,9 @@ def test_what_was_stepped_is_measured_again_without_a_step_and_becomes_the_bake(
     assert visited(session, name)[1] == pytest.approx(first[1], abs=1e-5)
 
 
-@pytest.mark.parametrize("place", ["in the run", "in Blender's temporary folder"])
+@pytest.mark.parametrize(
+    "place", ["in the run", pytest.param("in Blender's temporary folder", marks=pytest.mark.whole)]
+)
 def test_what_a_liquid_was_stepped_to_outlives_saving(session: LiveSession, place: str) -> None:
     session.run(f"{LIQUID}\n{SAVE}")
     if place == "in the run":

@@ -421,8 +421,8 @@ def test_what_is_not_in_the_view_layer_is_refused(session: LiveSession) -> None:
         session.use(TOOL, actors=["Attic"])
 
 
-def test_rejects_what_is_no_motion(own_session: LiveSession) -> None:
+def test_rejects_what_is_no_motion(session: LiveSession) -> None:
     with pytest.raises(Untrustworthy, match="not a valid reply"):
-        own_session.blender.call("ping", {}, MotionReply.model_validate, timeout=60)
-    own_session.run(FALL)
-    assert own_session.use(TOOL, actors=["Crate"]).data["actors"]
+        session.blender.call("ping", {}, MotionReply.model_validate, timeout=60)
+    session.run(SLIDE)
+    assert session.use(TOOL, actors=["Sledge"], frames=[1, 9]).data["actors"]

@@ -39,7 +39,13 @@ THIN = HOUSE + "box('Shell', (0, 0, 1.25), (4.4, 4.4, 2.5), (.6, .6, .6)).parent
 
 
 @pytest.mark.parametrize(
-    "walls", [THICK, THICK + "house.rotation_euler.z = .6\n", THIN], ids=["thick", "turned", "one box"]
+    "walls",
+    [
+        pytest.param(THICK, marks=pytest.mark.whole),
+        THICK + "house.rotation_euler.z = .6\n",
+        THIN,
+    ],
+    ids=["thick", "turned", "one box"],
 )
 def test_a_closed_room_is_opened_from_every_side(session: LiveSession, walls: str) -> None:
     build(session, room(walls))
@@ -163,10 +169,10 @@ box('Stone', (.3, 0, .3), (.3, .3, .3), (.8, 0, 0))
 """
 
 
-def test_liquid_is_shown_and_not_cut_open(own_session: LiveSession) -> None:
-    build(own_session, POOL)
-    own_session.use(bake.TOOL, frame_start=1, frame_end=3)
-    views = Views(own_session, "scene", frame=2)
+def test_liquid_is_shown_and_not_cut_open(session: LiveSession) -> None:
+    build(session, POOL)
+    session.use(bake.TOOL, frame_start=1, frame_end=3)
+    views = Views(session, "scene", frame=2)
     assert not any(view["cut_away"] for view in views.by_name.values())
     assert views.extent[2] < 0.8
     assert views.share("top", "blue") > 0.2

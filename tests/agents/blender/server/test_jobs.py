@@ -42,7 +42,7 @@ CLOTH = (
     + "bpy.context.scene['stands'] = 1"
 )
 BAKED = "bpy.data.objects['Sheet'].modifiers[0].point_cache.is_baked"
-ENDLESS = {"size": 300, "frames": 5000}
+ENDLESS = {"size": 100, "frames": 100_000}
 SHORT = {"size": 10, "frames": 8}
 LONG_ENOUGH = 200.0  # seconds in which a short job ends on any machine
 

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from anyio.abc import TaskGroup
+    from built_base import Built
     from mcp_types import CallToolResult
 
 pytestmark = [pytest.mark.blender, pytest.mark.anyio]
@@ -46,9 +47,9 @@ def anyio_backend() -> str:
 
 
 @pytest.fixture(scope="module")
-def home(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    """No base: nothing is looked up here."""
-    return tmp_path_factory.mktemp("home")
+def home(built_once: Built) -> Path:
+    """One with a base, though nothing is looked up here: without one, each server would begin to build it."""
+    return built_once.home
 
 
 @pytest.fixture(scope="module")
@@ -110,10 +111,10 @@ class Session:
 # Whose Blender it is
 
 
-@pytest.mark.parametrize("mode", ["auto", "legacy"])
+@pytest.mark.parametrize("mode", ["auto", pytest.param("legacy", marks=pytest.mark.whole)])
 async def test_two_clients_at_once_each_have_a_scene_of_their_own(server: OverHttp, mode: Any) -> None:
     async def count(client: Client, name: str) -> None:
-        for number in range(1, 11):
+        for number in range(1, 6):
             code = f"s = bpy.context.scene\ns[{name!r}] = s.get({name!r}, 0) + 1\ndict(s)[{name!r}], len(s.keys())"
             assert await value(client, code) == f"({number}, 1)"
 
@@ -237,7 +238,7 @@ async def test_requires_the_token(home: Path) -> None:
             httpx2.AsyncClient(headers={"Authorization": f"Bearer {TOKEN}"}) as http,
             Client(streamable_http_client(url, http_client=http)) as client,
         ):
-            assert await value(client, "1 + 1") == "2"
+            assert len((await client.list_tools()).tools) > 1
 
 
 # The end

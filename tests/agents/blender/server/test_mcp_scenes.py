@@ -223,13 +223,12 @@ def shows_something(image: Image.Image) -> bool:
     return high - low > 40
 
 
-# One whose frames are kept as points, and one that keeps them in files of its own. The solvers themselves are tried in
-# tests/agents/blender/physics.
-_BOTH_CACHES = ("cloth", "liquid")
+# The solvers themselves, and both kinds of cache, are tried in tests/agents/blender/physics.
+_ONE = "cloth"
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param(name, marks=() if name in _BOTH_CACHES else pytest.mark.whole) for name in SCENES]
+    "name", [pytest.param(name, marks=() if name == _ONE else pytest.mark.whole) for name in SCENES]
 )
 async def test_a_client_makes_a_scene_of_each_solver(client: Client, name: str) -> None:
     scene, slug = SCENES[name], name.replace(" ", "-")

@@ -79,15 +79,15 @@ def test_keeps_a_small_scene_after_every_changing_call(kept: LiveSession) -> Non
 
 
 def test_keeps_a_large_scene_less_often(kept: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
-    """A real scene of a million vertices, which takes a while to write; nothing is cheap any more."""
+    """A real scene of many vertices, which takes a while to write; nothing is cheap any more."""
     monkeypatch.setattr(checkpoints, "CHEAP_SECONDS", 0.0)
     kept.run(
-        "import numpy\nmesh = bpy.data.meshes.new('Large')\nmesh.vertices.add(1_000_000)\n"
-        "mesh.vertices.foreach_set('co', numpy.random.random(3_000_000))\n"
+        "import numpy\nmesh = bpy.data.meshes.new('Large')\nmesh.vertices.add(400_000)\n"
+        "mesh.vertices.foreach_set('co', numpy.random.random(1_200_000))\n"
         "bpy.context.collection.objects.link(bpy.data.objects.new('Large', mesh))"
     )
     large = kept.blender.keep("a large scene")
-    assert large.bytes > 10_000_000
+    assert large.bytes > 3_000_000
     assert kept.blender.checkpoints._cost > 0
     cost = kept.blender.checkpoints._cost = 0.5  # as long as the calls that follow cannot take
     kept.run(adding("Quick"))
@@ -277,12 +277,12 @@ def test_reports_a_scene_too_large_to_write(tmp_path: Path) -> None:
     try:
         found = session.use(
             TOOL,
-            code="import numpy\nmesh = bpy.data.meshes.new('Large')\nmesh.vertices.add(1_000_000)\n"
-            "mesh.vertices.foreach_set('co', numpy.random.random(3_000_000))\nmesh.use_fake_user = True",
+            code="import numpy\nmesh = bpy.data.meshes.new('Large')\nmesh.vertices.add(500_000)\n"
+            "mesh.vertices.foreach_set('co', numpy.random.random(1_500_000))\nmesh.use_fake_user = True",
         )
         assert "No checkpoint could be taken" in found.text
         assert re.search(r"File too large|A file may have 3 MB at most", found.text), found.text
-        assert session.run("len(bpy.data.meshes['Large'].vertices)") == 1_000_000
+        assert session.run("len(bpy.data.meshes['Large'].vertices)") == 500_000
         assert numbers(session) == [1]
     finally:
         session.blender.close()

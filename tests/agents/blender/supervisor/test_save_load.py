@@ -149,7 +149,7 @@ def elsewhere(path: Path, room: Path, code: str) -> Any:
 @pytest.mark.parametrize(
     ("recipe", "label", "files"),
     [
-        (CLOTH.replace("ON_DISK", "False"), "cloth of 'Sheet'", 0),
+        pytest.param(CLOTH.replace("ON_DISK", "False"), "cloth of 'Sheet'", 0, marks=pytest.mark.whole),
         (CLOTH.replace("ON_DISK", "True"), "cloth of 'Sheet'", 12),
         (LIQUID, "liquid of 'Sheet'", 27),
     ],
@@ -392,7 +392,10 @@ HOSTILE = {
 }
 
 
-@pytest.mark.parametrize("path", HOSTILE)
+@pytest.mark.parametrize(
+    "path",
+    [pytest.param(path, marks=pytest.mark.whole if path == "squeezed.blend" else ()) for path in HOSTILE],
+)
 def test_refuses_files_that_are_not_blend_files(session: LiveSession, path: str) -> None:
     session.run("bpy.ops.mesh.primitive_cube_add()")
     content, because = HOSTILE[path]
