@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
-from agents.loop.edit.baseline import new_findings
+from agents.loop.edit.baseline import format_new, new_findings
 from agents.loop.edit.declared_mechanisms import undeclared
 from agents.loop.events import Reviewed, Verified
 from agents.loop.evidence import evidence, moves
@@ -15,7 +15,7 @@ from agents.plan.tactical import Review
 from simworlds.llm.errors import Declined, Misfit
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Sequence
+    from collections.abc import Callable, Iterable
 
     from agents.loop.run import Run
     from agents.loop.task import Finding, RunTask
@@ -52,11 +52,11 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
     if outcome.failed or "findings" not in outcome.data:
         return _undecided(outcome.text, task)
     findings = new_findings(task.known, outcome.data["findings"])
-    text = _listed(findings) if task.known else outcome.text
+    text = format_new(findings) if task.known else outcome.text
     if task.declared and moves(stage) and (untagged := undeclared(run, stage, task.declared)):
-        findings, text = [*untagged, *findings], f"{_listed(untagged)}\n{text}"
+        findings, text = [*untagged, *findings], f"{format_new(untagged)}\n{text}"
     if task.unplanned is not None and (unplanned := task.unplanned(stage)):
-        findings, text = [*unplanned, *findings], f"{_listed(unplanned)}\n{text}"
+        findings, text = [*unplanned, *findings], f"{format_new(unplanned)}\n{text}"
     return without(VerifierVerdict(text, tuple(findings)), run.withdrawn)
 
 
@@ -88,15 +88,6 @@ def _undecided(why: str, task: RunTask) -> VerifierVerdict:
     }
     text = "The verifier could not judge the scene" + (", as it could not before the edit" if before else "")
     return VerifierVerdict(f"{text}: {why}", (finding,))
-
-
-def _listed(findings: Sequence[Finding]) -> str:
-    if not findings:
-        return "No findings that were not there before the edit."
-    return "\n".join(
-        f"- {one['rule']} ({one['severity']}) {', '.join(one['objects'])}: {one['message']} {one['fix']}".rstrip()
-        for one in findings
-    )
 
 
 # The reviewer

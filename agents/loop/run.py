@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any
 from agents.blender.saved_files import caches_folder
 from agents.blender.tools.scene_order import words_of
 from agents.loop.acceptance import AcceptanceRecord
+from agents.loop.edit.baseline import format_new, new_findings
 from agents.loop.errors import NoRun, NotSaved, RunError, Stopping
 from agents.loop.events import (
     AttemptBegan,
@@ -415,6 +416,9 @@ class RoleTools:
         outcome = self._run.use(self._role, self._stage, call.name, call.input, known)
         if self._role == coder.NAME and call.name == RENDER and not outcome.failed:
             self._run.keep_stills(outcome)
+        if task is not None and task.known and "findings" in outcome.data:
+            found = new_findings(task.known, outcome.data["findings"])
+            return ToolResult(call.id, (Text(format_new(found)), *(outcome.pictures if found else ())))
         return ToolResult(call.id, outcome.content, outcome.failed)
 
 

@@ -34,6 +34,16 @@ def new_findings(known: Iterable[Finding], findings: Sequence[Finding]) -> list[
     return [found[place] for place in sorted(found)]
 
 
+def format_new(findings: Sequence[Finding]) -> str:
+    """Findings that were not there before, for models."""
+    if not findings:
+        return "No findings that were not there before the edit."
+    return "\n".join(
+        f"- {one['rule']} ({one['severity']}) {', '.join(one['objects'])}: {one['message']} {one['fix']}".rstrip()
+        for one in findings
+    )
+
+
 def _about(finding: Mapping[str, Any]) -> tuple[Any, ...]:
     return (finding["rule"], *sorted(finding.get("objects", ())))  # which comes first may depend on sizes
 

@@ -41,7 +41,7 @@ def edit(run: Run) -> RenderResult:
     plan = planner.edit(prompt_with_assets(run), state, before.names, seen.pictures, reference)
     run.write(PLAN_NAME, plan_file(plan))
     run.journal.note(PlanMade(edit=plan))
-    task = replace(_task(run, plan, before), goal=reference, **_still_before(run))
+    run.task = task = replace(_task(run, plan, before), goal=reference, **_still_before(run))
     wanted = plan.stages if options.stages else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
     rendering = finish(run, planner, task, plan.render, last)

@@ -10,7 +10,7 @@ import crates
 import pytest
 from PIL import Image
 from run_sessions import answered, asked_of, scenes, sit
-from team import DONE, Team, reply, run, whose, words_of
+from team import DONE, Team, call, reply, run, whose, words_of
 
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.errors import Unusable
@@ -313,7 +313,10 @@ def brighter(play: Callable[..., Played], tmp_path_factory: pytest.TempPathFacto
     file = build(tmp_path_factory.mktemp("sunk"), "\n".join([SUNK, crates.CAMERA, crates.LIGHT]))
     deeper = 'import bpy\nbpy.data.objects["Crate root"].location.z = -0.2\nbpy.data.lights["Sun"].energy = 5'
     back = 'import bpy\nbpy.data.objects["Crate root"].location.z = -0.1'
-    team = Team(plan=plan(task("light", "Sun")), coder={"light": (run(deeper), DONE, run(back), DONE)})
+    seen = call("blender_verify")
+    team = Team(
+        plan=plan(task("light", "Sun")), coder={"light": (run(deeper), seen, DONE, run(back), seen, DONE)}
+    )
     return play(team, mode="edit", prompt="Make the sun brighter", file=file)
 
 
@@ -329,6 +332,17 @@ def test_faults_that_the_file_had_do_not_count_unless_they_get_worse(brighter: P
     assert second["ok"]
     assert brighter.taken == [("light", "retry"), ("light", "advance")]
     assert brighter.the("edited")["changed"] == ["Light Sun"]
+
+
+def test_a_coder_that_verifies_is_told_of_the_edits_own_faults_alone(brighter: Played) -> None:
+    coders = [
+        words_of(one)
+        for one in brighter.requests
+        if one["system"][0]["text"].startswith("# You are the coder")
+    ]
+    assert any("made this worse" in one for one in coders)
+    assert "No findings that were not there before the edit." in coders[-1]
+    assert not any("Fix: Move them apart" in one for one in coders)
 
 
 def test_the_team_is_told_which_faults_are_not_its_own(brighter: Played) -> None:
