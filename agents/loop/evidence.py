@@ -44,11 +44,12 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     """
     shown = _Shown(run, stage)
     subjects = _subjects(task)
+    first = subjects or list(task.targets)[:_MOST_SUBJECTS]
     shown.take(_LAYOUT, {"subjects": subjects} if subjects else {})
     if stage == "uv":
         shown.take(_UV, {})
     if stage == "texture" or not run.options.stages:
-        shown.take(_MATERIALS, {"width": WIDTH} | ({"first": subjects} if subjects else {}))
+        shown.take(_MATERIALS, {"width": WIDTH} | ({"first": first} if first else {}))
     if task.actors and (stage == "motion" or (moves(stage) and (task.edit or not run.options.stages))):
         phases = task.plan.motion.phases if task.plan is not None and stage == "motion" else ()
         sheets = motion_sheets(task.actors, phases)
@@ -62,7 +63,7 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
         for frame in _telling_frames(task, run.motion):
             shown.take(RENDER, still(f"look-{frame}", frame, _width(task)))
     shown.blocks += _coders_stills(run)
-    shown.take(_STATE, {"first": subjects} if subjects else {})
+    shown.take(_STATE, {"first": first} if first else {})
     return shown.blocks
 
 

@@ -24,7 +24,8 @@ class RunTask:
 
     An ``edit`` has no scene plan; it is judged without what was ``known`` of the file before, and, unless the file is
     ``tagged`` (keeps the scene protocol), without the rules of its layout. ``actors`` are those that move;
-    of an edit, ``declared`` says by what, and ``unplanned`` finds what has changed that its plan does not ask for.
+    of an edit, ``declared`` says by what, ``targets`` are what its plan changes, and ``unplanned`` finds what has
+    changed that its plan does not ask for.
     ``before`` is a still of the file as it was, at ``before_frame``, and ``goal`` a picture of what it is to look like.
     """
 
@@ -35,6 +36,7 @@ class RunTask:
     tagged: bool = True
     known: tuple[Finding, ...] = ()
     declared: tuple[EditedActor, ...] = ()
+    targets: tuple[str, ...] = ()
     unplanned: Callable[[Stage], list[Finding]] | None = None
     before: Picture | None = None
     before_frame: int | None = None

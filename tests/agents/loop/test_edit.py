@@ -193,6 +193,11 @@ def test_an_edit_changes_what_is_asked_for_and_reports_every_data_block(
     assert {name for name in before if before[name] != after.get(name)} == set(report["changed"])
 
 
+def test_the_reviewer_is_shown_first_what_the_plan_changes(taller: Played) -> None:
+    states = taller.of("tool.called", role="runner", name="blender_scene_state", stage="modeling")
+    assert ["Mug", "Jug"] in [row["input"].get("first") for row in states]
+
+
 def test_what_an_edit_moves_beside_what_was_asked_for_keeps_the_stage_open(taller: Played) -> None:
     first, second = taller.of("verified", stage="modeling")
     assert [(one["rule"], one["severity"], one["objects"]) for one in first["findings"]] == [
