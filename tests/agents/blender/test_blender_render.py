@@ -448,19 +448,6 @@ def test_a_time_budget_lowers_samples_and_such_frames_are_made_again_without_it(
     assert (found.data["kept"], found.data["missing_count"]) == (0, 2)
 
 
-def test_progress_of_a_still_goes_on_after_its_trial(session: LiveSession) -> None:
-    session.run(MOVING + "cube.scale = (9, 1, 9)")
-    told: list[tuple[float, str]] = []
-    call = Call(lambda done, _total, text: told.append((done, text)))
-    asked: dict[str, Any] = {"kind": "still", "engine": "cycles", "width": 640, "height": 480}
-    session.use(TOOL, call, **asked, samples=60_000, time_budget=6)
-    trial = [done for done, text in told if f" of {LEAST}" in text]
-    frame = [done for done, text in told if "sample" in text and f" of {LEAST}" not in text]
-    assert max(trial, default=0.0) < 0.1
-    assert frame == sorted(frame)
-    assert frame[-1] > 0.5
-
-
 class Clock:
     """Time that passes as it is told to; frames take ``fixed`` seconds and ``seconds_per_frame`` for a sample."""
 
@@ -559,16 +546,19 @@ def test_frames_of_an_engine_without_samples_are_left_out() -> None:
 class Waiting:
     """Renders no picture: its first frames take long, as where other programs were busy, the later ones a second."""
 
-    shot = SimpleNamespace(samples=None)
-
-    def __init__(self, clock: Clock, slow: int) -> None:
+    def __init__(self, clock: Clock, slow: int, samples: int | None = None) -> None:
         self._clock, self._slow = clock, slow
+        self.shot = SimpleNamespace(samples=samples)
+        self.told: list[tuple[int | None, float, float]] = []  # samples, and what they fill of the progress
 
-    def render(self, number: int, samples: int | None, path: Path, done: int, total: int) -> float:
+    def render(
+        self, number: int, samples: int | None, path: Path, span: tuple[float, float], total: int
+    ) -> float:
         """Lets the time pass."""
-        del number, samples, total
+        del number, total
+        self.told.append((samples, *span))
         path.write_bytes(b"a picture")
-        seconds = 10.0 if done < self._slow else 1.0
+        seconds = 10.0 if span[0] < self._slow else 1.0
         self._clock.now += seconds
         return seconds
 
@@ -610,6 +600,17 @@ def test_a_little_too_little_time_costs_a_few_frames_evenly_apart(tmp_path: Path
     assert 115 <= len(outcome.available) <= 126
     assert max(after - before for before, after in itertools.pairwise(outcome.available)) <= 3
     assert outcome.available[0] == 1
+
+
+def test_progress_of_a_still_goes_on_after_its_trials(tmp_path: Path) -> None:
+    clock = Clock(0, 0)
+    renderer = Waiting(clock, 1, samples=4096)
+    render_frames(renderer, Kept(tmp_path), [1], Call(), RenderBudget(200, 4096, clock))  # type: ignore[arg-type]
+    *trials, (_, begins, ends) = renderer.told
+    assert trials
+    assert all(end <= 0.1 for _, _, end in trials)
+    assert begins == trials[-1][2]
+    assert ends > 0.9
 
 
 def test_one_frame_is_made_however_short_the_time(session: LiveSession) -> None:
