@@ -13,6 +13,7 @@ import pytest
 from attached_client import BUILD, build, digests, picture, server, state, text, use
 from mcp import Client
 from open_window import OpenWindow, opened
+from processes import becomes
 
 from agents.blender.attached.attached_blender import AttachedBlender
 from agents.blender.attached.open_blenders import About, open_blenders
@@ -382,6 +383,27 @@ async def test_never_undoes_the_users_own_work(client: Client, window: OpenWindo
     undone = await use(client, "blender_undo")
     assert "The scene is as it was before them" in text(undone)
     assert "The user has undone" in text(undone)
+
+
+async def test_works_while_the_user_plays_the_animation(client: Client, window: OpenWindow) -> None:
+    before = await digests(client)
+    told = window.root / "plays.txt"
+    look = f"open({str(told)!r}, 'w').write(repr(bpy.context.screen.is_animation_playing))"
+    window.act("mousemove", "500", "380", "key", "space")
+    assert becomes(lambda: window.choose(look) is None and told.read_text() == "True")
+    await build(client, "Added as it plays", 1)
+    undone = await use(client, "blender_undo")
+    assert "The scene is as it was before them" in text(undone)
+    window.choose(look)
+    assert told.read_text() == "True", "looking and undoing stopped it"
+    at = (await state(client))["frame"]
+    deadline = time.monotonic() + 30
+    while (await state(client))["frame"] == at:
+        assert time.monotonic() < deadline, "it plays no more"
+    window.act("key", "space")
+    assert becomes(lambda: window.choose(look) is None and told.read_text() == "False")
+    window.choose("bpy.context.scene.frame_set(1)")
+    assert await digests(client) == before
 
 
 async def test_a_second_client_is_refused_and_told_why(
