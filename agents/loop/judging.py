@@ -6,7 +6,7 @@ from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, cast
 
-from agents.loop.edit.baseline import format_new, new_findings
+from agents.loop.edit.baseline import format_new, told_since
 from agents.loop.edit.declared_mechanisms import undeclared
 from agents.loop.events import Reviewed, Verified
 from agents.loop.evidence import evidence, moves
@@ -51,8 +51,7 @@ def verify(run: Run, stage: Stage, task: RunTask) -> VerifierVerdict:
     outcome = run.use(VERIFIER, stage, VERIFY, {}, task.verification(stage))
     if outcome.failed or "findings" not in outcome.data:
         return _undecided(outcome.text, task)
-    findings = new_findings(task.known, outcome.data["findings"])
-    text = format_new(findings) if task.known else outcome.text
+    findings, text = told_since(task.known, outcome)
     if task.declared and moves(stage) and (untagged := undeclared(run, stage, task.declared)):
         findings, text = [*untagged, *findings], f"{format_new(untagged)}\n{text}"
     if task.unplanned is not None and (unplanned := task.unplanned(stage)):

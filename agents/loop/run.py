@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING, Any
 from agents.blender.saved_files import caches_folder
 from agents.blender.tools.scene_order import words_of
 from agents.loop.acceptance import AcceptanceRecord
-from agents.loop.edit.baseline import format_new, new_findings
+from agents.loop.edit.baseline import told_since
 from agents.loop.errors import NoRun, NotSaved, RunError, Stopping
 from agents.loop.events import (
     AttemptBegan,
@@ -417,8 +417,8 @@ class RoleTools:
         if self._role == coder.NAME and call.name == RENDER and not outcome.failed:
             self._run.keep_stills(outcome)
         if task is not None and task.known and "findings" in outcome.data:
-            found = new_findings(task.known, outcome.data["findings"])
-            return ToolResult(call.id, (Text(format_new(found)), *(outcome.pictures if found else ())))
+            found, text = told_since(task.known, outcome)
+            return ToolResult(call.id, (Text(text), *(outcome.pictures if found else ())))
         return ToolResult(call.id, outcome.content, outcome.failed)
 
 

@@ -252,18 +252,20 @@ class OldCode:
 
     def still_taken_in_strings(self, text: str) -> Iterator[str]:
         """The classes that one gets by former names which are quoted: ``nodes.new("ShaderNodeBsdfGlossy")``."""
-        for match in islice(_CLASS_NAME.finditer(text), _MOST_QUOTED):
-            if taken_as := self._reader.still_works(TYPES + match[2]):
-                yield taken_as
+        yield from filter(None, map(self._reader.still_works, _quoted_paths(text)))
 
     def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed classes, operators and properties whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""
-        for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, "bpy.ops.")):
-            for match in islice(pattern.finditer(text), _MOST_QUOTED):
-                if removed := self._removed.of_path(prefix + match[2]):
-                    yield removed
+        yield from filter(None, map(self._removed.of_path, _quoted_paths(text)))
         for pattern in _PROPERTY_NAMES:
             for match in islice(pattern.finditer(text), _MOST_QUOTED):
                 (chain,) = find_chains(f"{match[1]}.{match[2]}")
                 if old := self.in_chain(chain, self._resolver.resolve(chain)):
                     yield old.removed
+
+
+def _quoted_paths(text: str) -> Iterator[str]:
+    """The paths of classes and operators whose names are quoted."""
+    for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, "bpy.ops.")):
+        for match in islice(pattern.finditer(text), _MOST_QUOTED):
+            yield prefix + match[2]

@@ -18,10 +18,9 @@ if TYPE_CHECKING:
     from agents.blender.tools.base import Call
 
 
-_OF_A_TRIAL = (
-    0.02  # of a frame's progress; the frame itself comes after its trials, and begins where they end
-)
-_OF_A_FRAME = 0.95  # the rest is for storing and measuring it
+# Of a frame's progress: what each trial fills, after which the frame itself begins; where that ends, as it is then
+# stored and measured.
+_OF_A_TRIAL, _OF_A_FRAME = 0.02, 0.95
 
 
 class StillStore:

@@ -9,6 +9,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
     from agents.loop.task import Finding
+    from agents.loop.tool_client import ToolOutcome
 
 _SLACK = 0.01  # of what was measured before, by which it may be worse: measuring is not exact
 _LEAST = 1e-4
@@ -32,6 +33,12 @@ def new_findings(known: Iterable[Finding], findings: Sequence[Finding]) -> list[
         else:
             found[place] = finding
     return [found[place] for place in sorted(found)]
+
+
+def told_since(known: Sequence[Finding], outcome: ToolOutcome) -> tuple[list[Finding], str]:
+    """The findings of a call of the verifier that were not ``known``, and what models are told of it."""
+    findings = new_findings(known, outcome.data["findings"])
+    return findings, format_new(findings) if known else outcome.text
 
 
 def format_new(findings: Sequence[Finding]) -> str:

@@ -1,9 +1,9 @@
 """Scenes for the pictures of imitated simulations, and of physics in a static scene."""
 
 from body_pictures import fixed
-from cloth_pictures import sheet
-from making import bake, body, cloth_on, get, keys
-from picture_parts import DARK, A, B, Shot, ball, box, solid
+from cloth_pictures import drape
+from making import bake, body, get, keys
+from picture_parts import DARK, A, B, Shot, ball, box
 
 
 def flight(frame):
@@ -40,11 +40,7 @@ def static_has_rigid_world(holds):
 
 
 def static_has_solver(holds):
-    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
-    thing = sheet("A", (0, 0, 0.61), A)
-    if holds:
-        cloth_on(thing, 30)
-        bake()
+    drape(0.61, is_cloth=holds)
 
 
 SHOTS = {

@@ -17,25 +17,26 @@ def renderable(holds):
     ball("A", (0, 0, 0.75), 0.25, A).hide_render = not holds
 
 
-def solver_enabled(holds):
+def drape(height=0.8, last=30, *, is_cloth=True):
+    """A sheet above a solid table; if it is cloth, it is baked up to the frame ``last``."""
     solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
-    cloth_on(sheet("A", (0, 0, 0.8), A), 30)
-    bake()
+    thing = sheet("A", (0, 0, height), A)
+    if is_cloth:
+        cloth_on(thing, last)
+        bake()
+
+
+def solver_enabled(holds):
+    drape()
     get("A").modifiers["Cloth"].show_render = holds
 
 
 def cloth_modifier(holds):
-    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
-    thing = sheet("A", (0, 0, 0.8), A)
-    if holds:
-        cloth_on(thing, 30)
-        bake()
+    drape(is_cloth=holds)
 
 
 def cloth_cache_baked(holds):
-    solid(box("B", (0, 0, 0), (0.8, 0.8, 0.6), B))
-    cloth_on(sheet("A", (0, 0, 0.8), A), 30 if holds else 8)
-    bake()
+    drape(last=30 if holds else 8)
 
 
 def cloth_pin_group(holds):

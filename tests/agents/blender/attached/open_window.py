@@ -10,8 +10,9 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from attached_client import listens
 from processes import becomes
-from serving import COMMAND, REPO
+from serving import COMMAND
 
 from agents.blender import extension
 from simworlds.sandbox.errors import RuntimeMissing
@@ -106,22 +107,13 @@ class OpenWindow:
             [str(self._blender), *words], env=self.environment, stdout=log, stderr=log, start_new_session=True
         )
         log.close()
-        file = self.home / "open-blenders" / f"{self.process.pid}.json"
-        listens = becomes(lambda: file.exists() or self.process.poll() is not None, _START_SECONDS)
-        said = (self.root / "blender.log").read_text()[-2000:]
-        assert listens, said
-        assert file.exists(), said
+        listens(self.process, self.home, self.root / "blender.log", _START_SECONDS)
         return self.process
 
     @property
     def command(self) -> list[str]:
         """The command of a server that attaches to it."""
         return [*COMMAND, "--attach"]
-
-    @property
-    def server_environment(self) -> dict[str, str]:
-        """The environment of that server."""
-        return {**self.environment, "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error"}
 
     def act(self, *words: str) -> None:
         """Moves the mouse and presses keys, as ``xdotool`` does with these words."""

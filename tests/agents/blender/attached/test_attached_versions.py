@@ -9,10 +9,9 @@ import zipfile
 from typing import TYPE_CHECKING
 
 import pytest
-from attached_client import build, digests, server, state, text, use
+from attached_client import build_and_undo, listens, never_arrives, server, state, text, use
 from mcp import Client
-from processes import becomes
-from serving import COMMAND, REPO
+from serving import COMMAND
 
 from agents.blender import extension
 from simworlds.releases import releases
@@ -55,7 +54,6 @@ class Windowless:
             "SIMWORLDS_HOME": str(self.home),
             "TMPDIR": str(root),
         }
-        self.server_environment = {**self.environment, "PYTHONPATH": str(REPO), "PYTHONWARNINGS": "error"}
         self.command = [*COMMAND, "--attach", "open"]
         with zipfile.ZipFile(extension.build(root)) as archive:
             archive.extractall(root / "addons")
@@ -64,9 +62,7 @@ class Windowless:
             self.process = subprocess.Popen(
                 words, env=self.environment, stdout=log, stderr=log, start_new_session=True
             )
-        file = self.home / "open-blenders" / f"{self.process.pid}.json"
-        becomes(lambda: file.exists() or self.process.poll() is not None, 60)
-        assert file.exists(), (root / "blender.log").read_text()[-2000:]
+        listens(self.process, self.home, root / "blender.log", 60)
 
     def close(self) -> None:
         """Ends Blender."""
@@ -101,19 +97,7 @@ async def client(blender: Windowless) -> AsyncIterator[Client]:
 
 
 async def test_builds_step_by_step_and_undoes_all(client: Client) -> None:
-    before = await digests(client)
-    rehearsed = await build(client, "One")
-    assert "a copy was kept" in text(rehearsed)
-    await build(client, "Two", 3)
-    grouped = await use(
-        client, "blender_group", groups=[{"object": "pair", "system": "things", "members": ["One", "Two"]}]
-    )
-    assert not grouped.is_error, text(grouped)
-    assert {"Object One", "Object Two", "Object pair root"} <= (await digests(client)).keys()
-    undone = await use(client, "blender_undo", steps=3)
-    assert undone.structured_content is not None, text(undone)
-    assert undone.structured_content["matches"] is True
-    assert await digests(client) == before
+    await build_and_undo(client)
 
 
 @pytest.mark.parametrize(
@@ -125,12 +109,7 @@ async def test_builds_step_by_step_and_undoes_all(client: Client) -> None:
     ],
 )
 async def test_harmful_code_never_arrives(client: Client, code: str, said: str) -> None:
-    before = await digests(client)
-    result = await use(client, "blender_execute", code=code, timeout=5)
-    assert result.is_error
-    assert said in text(result)
-    assert "Nothing was done in the open Blender" in text(result)
-    assert await digests(client) == before
+    await never_arrives(client, code, said)
 
 
 async def test_looking_leaves_the_users_state(client: Client) -> None:

@@ -10,7 +10,18 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
-from attached_client import BUILD, build, digests, picture, server, state, text, use
+from attached_client import (
+    BUILD,
+    build,
+    build_and_undo,
+    digests,
+    never_arrives,
+    picture,
+    server,
+    state,
+    text,
+    use,
+)  # fmt: skip
 from mcp import Client
 from open_window import OpenWindow, opened
 from processes import becomes
@@ -179,26 +190,9 @@ async def test_tools_of_an_open_blender_are_listed_with_the_shared_ones(client: 
 
 
 async def test_builds_step_by_step_and_undoes_all(client: Client, window: OpenWindow) -> None:
-    before = await digests(client)
-    first = await build(client, "One")
-    assert "a copy was kept" in text(first)
+    undone = await build_and_undo(client)
     assert list((window.home / "runs").glob("*/before-changes/*.blend"))
-    await build(client, "Two", 3)
-    tagged = await use(
-        client, "blender_group", groups=[{"object": "pair", "system": "things", "members": ["One", "Two"]}]
-    )
-    assert not tagged.is_error, text(tagged)
-    built = await digests(client)
-    assert {"Object One", "Object Two", "Object pair root"} <= built.keys()
-    undone = await use(client, "blender_undo", steps=3)
-    assert undone.structured_content is not None
-    assert undone.structured_content["undone"] == [
-        "SimWorlds: grouping",
-        "SimWorlds: add Two",
-        "SimWorlds: add One",
-    ]
-    assert undone.structured_content["matches"] is True
-    assert await digests(client) == before
+    assert undone["undone"] == ["SimWorlds: grouping", "SimWorlds: add Two", "SimWorlds: add One"]
 
 
 async def test_the_screenshot_shows_what_was_added(client: Client) -> None:
@@ -253,12 +247,7 @@ async def test_looking_leaves_frame_view_and_selection(client: Client) -> None:
     ],
 )
 async def test_harmful_code_never_arrives(client: Client, code: str, said: str) -> None:
-    before = await digests(client)
-    result = await use(client, "blender_execute", code=code, timeout=5)
-    assert result.is_error
-    assert said in text(result)
-    assert "Nothing was done in the open Blender" in text(result)
-    assert await digests(client) == before
+    await never_arrives(client, code, said)
 
 
 async def test_no_thread_of_ours_runs_beside_blenders_operators(client: Client, window: OpenWindow) -> None:

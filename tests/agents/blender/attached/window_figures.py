@@ -19,7 +19,8 @@ REPO = Path(__file__).resolve().parents[4]
 sys.path[:0] = [str(REPO), str(REPO / "tests"), str(REPO / "tests" / "agents"), str(Path(__file__).parent)]
 
 import anyio  # noqa: E402
-from mcp import Client, StdioServerParameters  # noqa: E402
+from attached_client import server  # noqa: E402
+from mcp import Client  # noqa: E402
 from mcp_types import ImageContent  # noqa: E402
 from open_window import OpenWindow  # noqa: E402
 from PIL import Image  # noqa: E402
@@ -117,9 +118,7 @@ LOOKS: tuple[tuple[str, dict[str, Any]], ...] = (
 
 
 async def measure(window: OpenWindow, picture: Path | None) -> None:
-    words = window.command
-    server = StdioServerParameters(command=words[0], args=words[1:], env=window.server_environment, cwd=REPO)
-    async with Client(server, read_timeout_seconds=300) as client:
+    async with Client(server(window), read_timeout_seconds=300) as client:
 
         async def use(tool: str, **arguments: Any) -> Any:
             result = await client.call_tool(tool, arguments)
