@@ -225,6 +225,13 @@ class BaseReader:
             yield entry
             entry = self.entry(entry.base) if entry.base else None
 
+    def member(self, owners: Iterable[str], name: str) -> SymbolEntry | None:
+        """The first that one of the owners has of a name; of a socket ``inputs["Factor"]``."""
+        paths = {f"{owner}.{name}": owner for owner in owners}
+        self.entry.load(paths)
+        entries = ((self.entry(path), owner) for path, owner in paths.items())
+        return next((entry for entry, owner in entries if entry and entry.owner == owner), None)
+
     def member_names(self, owner: str) -> list[str]:
         """The names of a class's members, inherited ones included, or of a module's."""
         names: dict[str, None] = {}

@@ -87,10 +87,7 @@ class Resolver:
 
     def member(self, cls: str, name: str) -> SymbolEntry | None:
         """A class's own or inherited member."""
-        for ancestor in self._reader.lineage(cls):
-            if entry := self._reader.members(ancestor.path).get(name):
-                return entry
-        return None
+        return self._reader.member((ancestor.path for ancestor in self._reader.lineage(cls)), name)
 
     def resolve(self, chain: Chain) -> list[ResolvedChain]:
         """Every reading of a chain, best first: most steps resolved, then the likelier class for a variable."""
@@ -276,7 +273,7 @@ class Resolver:
             yield value
             return
         socket = value.symbol if "puts[" in value.symbol else ""
-        own = self.member(value.cls, name) if value.cls else self._reader.members(value.symbol).get(name)
+        own = self.member(value.cls, name) if value.cls else self._reader.member((value.symbol,), name)
         if own:
             yield replace(self._value_of(own, value.cls), symbol=socket or own.path, origin=value.cls)
             return
