@@ -3,18 +3,21 @@
 from __future__ import annotations
 
 import heapq
+from functools import cache, partial
 from importlib.resources import files
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stem, terms
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Callable, Iterable, Mapping
 
     from kb_build.index.postings import PostingLists
 
     # A word's stem → the stems of each of its terms, the most likely term first.
     EverydayWords = Mapping[str, tuple[tuple[str, ...], ...]]
+    # A term's stems → the documents that say most of it, and how much.
+    _SaidMost = Callable[[tuple[str, ...]], Mapping[int, float]]
 
 _KNOWN = 30  # documents; a word with more of its own says what it means by itself
 _SHARE = 0.15  # of what a term's document says of the term, what it says of the everyday word
@@ -49,7 +52,9 @@ def lend(postings: PostingLists, words: EverydayWords) -> None:
     A term of several stems lends the documents that have all of them. Documents that have the word itself stay as they
     are.
     """
-    lent = {word: _lent(postings, its_terms) for word, its_terms in words.items()}
+    # Many words share a term.
+    said_most = cache(partial(_said_most, postings))
+    lent = {word: _lent(its_terms, said_most) for word, its_terms in words.items()}
     for word, weights in lent.items():
         if weights:
             own = zip(postings.numbers.get(word, ()), postings.weights.get(word, ()), strict=True)
@@ -58,22 +63,25 @@ def lend(postings: PostingLists, words: EverydayWords) -> None:
             postings.weights[word] = [together[number] for number in postings.numbers[word]]
 
 
-def _lent(postings: PostingLists, its_terms: Iterable[Iterable[str]]) -> dict[int, float]:
+def _lent(its_terms: Iterable[tuple[str, ...]], said_most: _SaidMost) -> dict[int, float]:
     """The documents that a word is lent by its terms, and what they say of it."""
     weights: dict[int, float] = {}
     share = _SHARE
     for stems in its_terms:
-        having = _having_all(postings, stems)
-        for number in heapq.nlargest(_MOST, having, key=having.__getitem__):
-            weights[number] = max(weights.get(number, 0.0), share * having[number])
+        for number, weight in said_most(stems).items():
+            weights[number] = max(weights.get(number, 0.0), share * weight)
         share *= _LESS_LIKELY
     return weights
 
 
-def _having_all(postings: PostingLists, stems: Iterable[str]) -> dict[int, float]:
-    """The documents that have all of the stems, and how much they say of the one of which they say least."""
-    rows = [
-        dict(zip(postings.numbers.get(one, ()), postings.weights.get(one, ()), strict=True)) for one in stems
-    ]
-    common = set(rows[0]).intersection(*rows[1:])
-    return {number: min(row[number] for row in rows) for number in common}
+def _said_most(postings: PostingLists, stems: tuple[str, ...]) -> Mapping[int, float]:
+    """The documents that have all of the stems and say most of them: of the one of which they say least."""
+    having = _row(postings, stems[0])
+    for one in stems[1:]:
+        row = _row(postings, one)
+        having = {number: min(weight, row[number]) for number, weight in having.items() if number in row}
+    return {number: having[number] for number in heapq.nlargest(_MOST, having, key=having.__getitem__)}
+
+
+def _row(postings: PostingLists, one: str) -> dict[int, float]:
+    return dict(zip(postings.numbers.get(one, ()), postings.weights.get(one, ()), strict=True))
