@@ -32,20 +32,22 @@ _FOLDER = Path(__file__).parents[1] / "corpora" / "summaries"
 
 def main(base: str, store: str = "", model: str = "") -> None:
     """Writes the file and prints how much was dropped."""
-    rows: list[ShippedSummary] = []
+    files: dict[str, list[ShippedSummary]] = {}
     phrases = 0
     with KnowledgeBase(Path(base)) as knowledge:
         pages = [page for slug in _slugs(Path(base)) if (page := knowledge.page(slug))]
         written = {**(_bought(pages, Path(store), model) if store else {}), **shipped_summaries(pages)}
+        version = knowledge.meta["minor"]
         for page in pages:
             if (summary := written.get(page.slug)) is None:
                 continue
             found = tuple(text for text in summary.phrases if _finds(knowledge, text, page.slug))
             row = ShippedSummary(page.slug, page.content_hash, summary.model, summary.text, found)
-            rows.append(row)
+            files.setdefault(file_name(version, page.slug), []).append(row)
             phrases += len(summary.phrases)
-        version = knowledge.meta["minor"]
-    write_whole(_FOLDER / file_name(version), "".join(f"{row.to_line()}\n" for row in rows))
+    for name, rows in files.items():
+        write_whole(_FOLDER / name, "".join(f"{row.to_line()}\n" for row in rows))
+    rows = [row for some in files.values() for row in some]
     kept = sum(len(row.phrases) for row in rows)
     print(f"{len(rows)} of {len(pages)} pages; {kept} of {phrases} phrases find their page")
 

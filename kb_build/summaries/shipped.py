@@ -42,9 +42,10 @@ class ShippedSummary:
         return cls(slug, content_hash, model, summary, tuple(phrases))
 
 
-def file_name(version: str) -> str:
-    """The file of the documentation of a version (``5.1``), made with the present prompt."""
-    return f"{version}.{PROMPT_VERSION}.jsonl"
+def file_name(version: str, slug: str) -> str:
+    """The file of a page of a version's (``5.1``) documentation, made with the present prompt."""
+    letters = "a-l" if slug < "m" else "m-z"
+    return f"{version}.{letters}.{PROMPT_VERSION}.jsonl"
 
 
 def shipped_summaries(pages: Iterable[Page]) -> dict[str, PageSummary]:

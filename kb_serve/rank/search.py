@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
-TOPIC_WEIGHT = 0.7
+TOPIC_WEIGHT = 0.4
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 UNKNOWN_IDF = 6.0
 _CORRECTED_WEIGHT = 0.95  # what a corrected word counts, next to one that was written so

@@ -5,7 +5,7 @@ Chosen by hand, near what ``python -m measurements.fit_weights`` finds; ``make b
 
 WEIGHTS: dict[str, float] = {
     "text": 1.0,
-    "asked": 0.6,
+    "asked": 0.9,
     "code": 0.5,
     "code of an error": 0.25,
     "unasked node": -0.5,

@@ -24,15 +24,16 @@ OTHER = replace(PAGE, slug="physics/fluid", title="Fluid", sections=(Section("",
 
 
 def rows() -> list[ShippedSummary]:
-    file = files("corpora").joinpath("summaries", file_name("5.1"))
-    return [ShippedSummary.from_line(line) for line in file.read_text(encoding="utf-8").splitlines()]
+    names = [file_name("5.1", slug) for slug in ("animation", "physics")]
+    texts = [files("corpora").joinpath("summaries", name).read_text(encoding="utf-8") for name in names]
+    return [ShippedSummary.from_line(line) for text in texts for line in text.splitlines()]
 
 
 @pytest.fixture
 def shipped(monkeypatch: pytest.MonkeyPatch, tmp_path) -> None:
     (tmp_path / "summaries").mkdir()
     row = ShippedSummary(PAGE.slug, PAGE.content_hash, "a-model", "What cloth is.", ("flag in the wind",))
-    (tmp_path / "summaries" / file_name("5.1")).write_text(row.to_line() + "\n")
+    (tmp_path / "summaries" / file_name("5.1", PAGE.slug)).write_text(row.to_line() + "\n")
     monkeypatch.setattr("kb_build.summaries.shipped.files", lambda _: tmp_path)
 
 

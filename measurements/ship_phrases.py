@@ -1,0 +1,118 @@
+"""Adds phrases by which people search: ``python -m measurements.ship_phrases add FILE...``, then ``keep BASE FILE...``.
+
+A line of a file names a symbol or a page and what to find it by: ``bpy.types.Object.hide_render: phrase; phrase``.
+``add`` puts its phrases into what ships in corpora/. With a base that was built since, ``keep`` takes those out again
+that do not find their symbol, its class, or their page among the first ten, as doc2query-- does (Gospodinov et al.
+2023).
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import terms
+from kb_serve.knowledge_base import KnowledgeBase
+from simworlds.files import write_whole
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Iterator, Sequence
+
+    # (Symbol path or page slug, its phrases) → those that it is to have.
+    _Change = Callable[[str, Sequence[str]], Sequence[str]]
+
+_FIRST = 10
+_CORPORA = Path(__file__).parents[1] / "corpora"
+_SYMBOLS = _CORPORA / "words" / "query_expansions.txt"
+_PAGES = _CORPORA / "summaries"
+
+
+def add(*files: str) -> None:
+    """Adds the phrases of files to what ships, but for those that say the same as one that ships or is labelled."""
+    written = _read(files)
+    said = {_said(query) for query in _labelled()}
+
+    def added(ref: str, phrases: Sequence[str]) -> list[str]:
+        known = said | {_said(phrase) for phrase in phrases}
+        new = {_said(phrase): phrase for phrase in written.pop(ref, ())}
+        return [*phrases, *(phrase for told, phrase in new.items() if told and told not in known)]
+
+    _change_pages(added)
+    _change_symbols(added)
+    write_whole(_SYMBOLS, _SYMBOLS.read_text("utf-8") + "".join(_rows(written, added)))
+
+
+def keep(base: str, *files: str) -> None:
+    """Takes out the phrases of files that do not find in ``base`` what they were written for, and counts them."""
+    written = _read(files)
+    counts = {True: 0, False: 0}
+    with KnowledgeBase(Path(base)) as knowledge:
+
+        def kept(ref: str, phrases: Sequence[str]) -> list[str]:
+            finding = {
+                phrase: _finds(knowledge, phrase, ref) for phrase in phrases if phrase in written.get(ref, ())
+            }
+            for finds in finding.values():
+                counts[finds] += 1
+            return [phrase for phrase in phrases if finding.get(phrase, True)]
+
+        _change_pages(kept)
+        _change_symbols(kept)
+    print(f"{counts[True]:,} of {sum(counts.values()):,} phrases find what they were written for")
+
+
+def _read(files: Sequence[str]) -> dict[str, list[str]]:
+    rows = (line.partition(": ") for file in files for line in Path(file).read_text("utf-8").splitlines())
+    return {
+        ref: [phrase.strip() for phrase in phrases.split(";")]
+        for ref, _, phrases in rows
+        if phrases.strip(" -")
+    }
+
+
+def _labelled() -> Iterator[str]:
+    for file in (_CORPORA / "queries").glob("*.jsonl"):
+        yield from (json.loads(line)["query"] for line in file.read_text("utf-8").splitlines())
+
+
+def _said(phrase: str) -> frozenset[str]:
+    return frozenset(terms(phrase))
+
+
+def _finds(knowledge: KnowledgeBase, phrase: str, ref: str) -> bool:
+    return any(hit.id in {ref, ref.rpartition(".")[0]} for hit in knowledge.query(phrase, limit=_FIRST).hits)
+
+
+def _change_pages(change: _Change) -> None:
+    for file in _PAGES.glob("*.jsonl"):
+        rows = (json.loads(line) for line in file.read_text("utf-8").splitlines())
+        changed = ([slug, *told, change(slug, phrases)] for slug, *told, phrases in rows)
+        lines = [json.dumps(row, ensure_ascii=False, separators=(",", ":")) for row in changed]
+        write_whole(file, "".join(f"{line}\n" for line in lines))
+
+
+def _change_symbols(change: _Change) -> None:
+    lines = _SYMBOLS.read_text("utf-8").splitlines()
+    write_whole(_SYMBOLS, "".join(_changed(line, change) for line in lines))
+
+
+def _changed(line: str, change: _Change) -> str:
+    ref, _, phrases = line.partition(": ")
+    if line.startswith("#"):
+        return f"{line}\n"
+    return _row(ref, change(ref, phrases.split("; ")))
+
+
+def _row(ref: str, phrases: Sequence[str]) -> str:
+    return f"{ref}: {'; '.join(phrases)}\n" if phrases else ""
+
+
+def _rows(written: dict[str, list[str]], change: _Change) -> Iterator[str]:
+    for ref in sorted(written):
+        yield _row(ref, change(ref, ()))
+
+
+if __name__ == "__main__":
+    {"add": add, "keep": keep}[sys.argv[1]](*sys.argv[2:])
