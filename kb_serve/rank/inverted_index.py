@@ -25,7 +25,7 @@ Scores = NDArray[np.float32]
 
 K1 = 2.2
 _NUMBER_BYTES = 4
-_KEPT = 600  # stems; a query has a dozen
+_KEPT = 300  # stems; a query has a dozen at most
 
 
 @dataclass(frozen=True, slots=True)
