@@ -237,9 +237,14 @@ def _write_level(
 
 
 def _phrases(
-    topics: Sequence[Document], targets: Mapping[str, int], expansions: Mapping[str, str]
+    units: Sequence[Document],
+    topics: Sequence[Document],
+    targets: Mapping[str, int],
+    expansions: Mapping[str, str],
 ) -> Iterator[tuple[str, int]]:
-    """(phrase, number of the document that it leads to): the query expansions, and the titles of pages."""
+    """(phrase, number of the document that it leads to): the query expansions, titles of pages, names of symbols with
+    their class.
+    """
     for ref, row in expansions.items():
         if ref in targets:
             for phrase in row.split(";"):
@@ -247,6 +252,9 @@ def _phrases(
     for topic in topics:
         if topic.kind in PAGE_SOURCES:
             yield topic.title, targets[topic.ref]
+    for unit in units:
+        if unit.kind in _MEMBERS:
+            yield " ".join((unit.context[0], *unit.name, *unit.heading)), targets[unit.ref]
 
 
 def write_index(
@@ -263,7 +271,7 @@ def write_index(
         unit.ref: len(units) + numbers[unit.ref] if unit.kind in PAGE_SOURCES else number
         for number, unit in enumerate(units)
     }
-    phrases = _phrases(topics, targets, expansions)
+    phrases = _phrases(units, topics, targets, expansions)
     leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, tokenize)
     connection.execute("INSERT INTO phrases VALUES (?)", (np.array(leads_to, np.int32).tobytes(),))
     words = unknown_of(load_everyday_words(), of_units)

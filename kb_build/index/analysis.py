@@ -16,13 +16,13 @@ _NOT_KEY = re.compile(r"[\W_]+")
 
 # Words that say nothing about Blender: they join sentences or frame a question.
 STOP_WORDS = frozenset(
-    """a about after all also am an and any are as at be because been before being but by can cannot could did do
-    does doing don done each either else every etc few for from get gets getting go goes going got had has have
-    having he her here hers him his how however i if in instead into is isn it its just let like make makes making
-    many may me might more most much must my need needs no nor not now of on one only onto or other our out own per
-    please rather s same shall she should so some still such t than that the their them then there these they thing
-    things this those to too until up upon us very via want wants was way we were what when where whether which
-    while who whole whom whose why will with without would yet you your python blender script bpy api code
+    """a about after all also am an and any are as at be because been before being but by can cannot could did do does
+    doing don done each either else every etc few for from get gets getting go goes going got had has have having he
+    her here hers him his how however i if in instead into is isn it its just let letting lets like make makes
+    making many may me might more most much must my need needs no nor not now of on one only onto or other our out
+    own per please rather s same shall she should so some still such t than that the their them then there these
+    they thing things this those to too until up upon us very via want wants was way we were what when where whether
+    which while who whole whom whose why will with without would yet you your python blender script bpy api code
     """.split()  # noqa: SIM905 - a hundred words read best as a paragraph
 )
 

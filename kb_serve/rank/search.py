@@ -7,6 +7,7 @@ name, and a class with the page that explains it.
 
 from __future__ import annotations
 
+from collections import Counter
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -39,6 +40,7 @@ _TWO_TYPOS = 9  # letters from which on two may be wrong
 _MAX_WORDS = 40
 _CANDIDATES = 400
 _DIFFERENT = 5
+_OF_A_CHAPTER = 3
 _INDEX = DOCUMENT_KINDS.index("index")
 
 
@@ -147,26 +149,28 @@ class Searcher:
         that name.
 
         A class or operator and the page that explains it say the same: the second of them waits until the first
-        few different things have been named.
+        few different things have been named. So does the fourth of a chapter, as the query may mean another one.
         """
         units = self.index.levels[0]
         first: list[SearchHit] = []
         waiting: list[SearchHit] = []
         later: list[SearchHit] = []
         seen: set[str | int] = set()
+        chapters: Counter[int] = Counter()
         for number, score in order:
             ref = units.refs[number]
             if ref in seen:
                 continue
             hit = SearchHit(ref, units.anchors[number], score)
             name = f".{ref.rpartition('.')[2]}" if units.members[number] else ref
-            explained = int(units.explained[number])
+            explained, chapter = int(units.explained[number]), int(units.chapters[number])
             if name in seen:
                 later.append(hit)
-            elif explained in seen and len(first) < _DIFFERENT:
+            elif len(first) < _DIFFERENT and (explained in seen or chapters[chapter] == _OF_A_CHAPTER):
                 waiting.append(hit)
             else:
                 first.append(hit)
+                chapters[chapter] += 1
                 if len(first) == _DIFFERENT:
                     first += waiting
             seen.update((ref, name))
