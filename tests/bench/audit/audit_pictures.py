@@ -35,6 +35,8 @@ LARGEST, LARGEST_OF_ALL = 20_000, 600_000  # bytes
 # What a predicate is asked with, where that is not its default.
 PARAMS: dict[str, dict[str, Any]] = {
     "cloth_collision_partners": {"partners": ["B"]},
+    "fluid_type": {"type": "FLOW", "kind": "LIQUID"},
+    "fluid_flow_count": {"min": 2},
     "rigid_shape": {"shapes": ["MESH"]},
     "rigid_world_populated": {"min": 4},
     "rigid_positive_mass": {"min": 2.0},
@@ -42,6 +44,7 @@ PARAMS: dict[str, dict[str, Any]] = {
     "particle_source": {"min": 100},
     "particle_collision_partners": {"partners": ["B"]},
     "soft_collision_partners": {"partners": ["B"]},
+    "soft_rigid_partners": {"partners": ["B"]},
 }
 ROLES = {"solver_enabled": "cloth"}
 TOLERANCES = {"NextTo": 0.2}
@@ -96,7 +99,7 @@ def column(name: str, blend: Path, frames: list[Path], *, holds: bool) -> Image.
     values = ", ".join(f"{key.replace('_', ' ')} {words(value)}" for key, value in seen.items())
     return contact_sheet.stack(
         [
-            contact_sheet.paragraph(name, framed.width, contact_sheet.Style(14)),
+            contact_sheet.paragraph(f"{name}{asked_with(name)}", framed.width, contact_sheet.Style(14)),
             contact_sheet.paragraph(
                 "✓ holds" if holds else "✗ does not hold", framed.width, contact_sheet.Style(14, colour)
             ),
@@ -105,6 +108,12 @@ def column(name: str, blend: Path, frames: list[Path], *, holds: bool) -> Image.
         ],
         4,
     )
+
+
+def asked_with(name: str) -> str:
+    """The parameters of a predicate, in brackets."""
+    params = PARAMS.get(name)
+    return f" ({words(params)})" if params else ""
 
 
 def opened(picture: Path) -> Image.Image:
