@@ -4,8 +4,8 @@ import math
 
 import bpy
 from cloth_pictures import sheet
-from making import add, bake, body, cloth_on, empty, get
-from picture_parts import A, B, Shot, ball, box, coloured, solid
+from making import add, bake, body, cloth_on, empty, get, keys
+from picture_parts import DARK, A, B, Shot, ball, box, coloured, group, solid
 
 
 def fixed(thing, shape="BOX"):
@@ -75,6 +75,18 @@ def rigid_constraint(holds):
     bake()
 
 
+def rigid_constraint_no_collision(holds):
+    fixed(get("Floor"))
+    fixed(box("B", (0, 0.1, 1.0), (0.14, 0.9, 0.14), B))
+    box("Post", (0, 0.6, 0), (0.16, 0.16, 1.2), DARK)
+    arm = box("A", (0.2, 0, 0.94), (0.75, 0.3, 0.26), A)
+    body(arm).collision_shape = "BOX"
+    arm.rigid_body.angular_damping = 0.9
+    joint("HINGE", (0, 0, 1.07), get("B"), arm).disable_collisions = holds
+    get("Joint").rotation_euler.x = math.radians(90)
+    bake()
+
+
 def rigid_collision_modifier(holds):
     table = fixed(box("A", (0, 0, 0), (0.8, 0.8, 0.6), A))
     solid(get("Floor"))
@@ -138,6 +150,31 @@ def soft_collision_partners(holds):
     bake()
 
 
+def soft_goal_group(holds):
+    solid(get("Floor"))
+    box("B", (0, 0, 1.2), (1.2, 0.5, 0.08), B)
+    for x in (-0.55, 0.55):
+        box("Leg", (x, 0, 0), (0.08, 0.3, 1.2), DARK)
+    settings = soft("A", (0, 0, 0.7), (0.5, 0.5, 0.5)).modifiers["Softbody"].settings
+    settings.use_goal = holds
+    settings.vertex_group_goal = group(get("A"), "Held", lambda place: place.z > 0.24)
+    settings.goal_min, settings.goal_max, settings.goal_default = 0, 1, 1
+    settings.pull, settings.push, settings.bend = 0.03, 0.5, 1  # what is not held sags
+    settings.use_stiff_quads = False
+    bake()
+
+
+def soft_rigid_partners(holds):
+    solid(fixed(get("Floor")))
+    soft("A", (0.1, 0, 0.02), (0.5, 0.5, 0.5))
+    weight = ball("B", (-0.8, 0, 0.3), 0.3, B)
+    body(weight).kinematic = True
+    keys(weight, "location", [(-0.8, 0, 0.3), (0.1, 0, 0.3)], [1, 30])
+    if holds:
+        solid(weight)
+    bake()
+
+
 SHOTS = {
     "rigid_settings": Shot(rigid_settings, (30,)),
     "rigid_type": Shot(rigid_type, (30,)),
@@ -145,9 +182,14 @@ SHOTS = {
     "rigid_world_populated": Shot(rigid_world_populated, (30,)),
     "rigid_cache_baked": Shot(rigid_cache_baked, (8, 30), look=(0, 0, 0.6)),
     "rigid_constraint": Shot(rigid_constraint, (30,), look=(0, 0, 0.6)),
+    "rigid_constraint_no_collision": Shot(
+        rigid_constraint_no_collision, (1, 30), look=(0.1, 0, 0.7), away=(1.2, -4, 1)
+    ),
     "rigid_collision_modifier": Shot(rigid_collision_modifier, (30,), away=(2.2, -3.4, 2)),
     "rigid_positive_mass": Shot(rigid_positive_mass, (30,), look=(0, 0, 0.3), away=(0.8, -3.6, 1)),
     "soft_modifier": Shot(soft_modifier, (30,)),
     "soft_cache_baked": Shot(soft_cache_baked, (8, 30), look=(0, 0, 0.6)),
     "soft_collision_partners": Shot(soft_collision_partners, (30,)),
+    "soft_goal_group": Shot(soft_goal_group, (1, 11)),
+    "soft_rigid_partners": Shot(soft_rigid_partners, (1, 30)),
 }

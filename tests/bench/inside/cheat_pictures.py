@@ -1,5 +1,6 @@
 """Scenes for the pictures of imitated simulations, and of physics in a static scene."""
 
+import bpy
 from body_pictures import fixed
 from cloth_pictures import drape
 from making import bake, body, get, keys
@@ -29,6 +30,14 @@ def animated_shape_keys(holds):
         keys(squashed, "value", [0.0, 1.0], [1, 12])
 
 
+def static_has_cache(holds):
+    drape(0.61)
+    if not holds:
+        bpy.context.scene.frame_set(30)
+        bpy.context.view_layer.objects.active = get("A")
+        bpy.ops.object.modifier_apply(modifier="Cloth")
+
+
 def static_has_rigid_world(holds):
     things = [box("A", (0, 0, 0), (0.5, 0.4, 0.12), A), box("B", (0.2, 0, 0.12), (0.5, 0.4, 0.12), B)]
     things.append(box("Book", (0.4, 0, 0.24), (0.5, 0.4, 0.12), A))
@@ -46,6 +55,7 @@ def static_has_solver(holds):
 SHOTS = {
     "dense_transform_keys": Shot(dense_transform_keys, (16,), look=(0, 0, 0.55)),
     "animated_shape_keys": Shot(animated_shape_keys, (1, 6, 12), look=(0, 0, 0.35)),
+    "static_has_cache": Shot(static_has_cache, (1, 30)),
     "static_has_rigid_world": Shot(static_has_rigid_world, (1, 30), look=(0.1, 0, 0.3)),
     "static_has_solver": Shot(static_has_solver, (1, 30)),
 }

@@ -52,6 +52,19 @@ def particle_source(holds):
     bake()
 
 
+def particle_cache_baked(holds):
+    fountain(200)
+    if holds:
+        bake()
+        return
+    for frame in range(1, 9):
+        bpy.context.scene.frame_set(frame)
+    source = bpy.data.objects["A"]
+    cache = source.particle_systems[0].point_cache
+    with bpy.context.temp_override(object=source, point_cache=cache):  # a shorter range would be set back
+        bpy.ops.ptcache.bake_from_cache()
+
+
 def particle_collision_partners(holds):
     shelf = box("B", (0, 0, 0.45), (0.9, 0.9, 0.08), B)
     if holds:
@@ -90,6 +103,7 @@ SHOTS = {
     "particle_system": Shot(particle_system, (26,)),
     "particle_type": Shot(particle_type, (14,)),
     "particle_source": Shot(particle_source, (26,)),
+    "particle_cache_baked": Shot(particle_cache_baked, (8, 26)),
     "particle_collision_partners": Shot(particle_collision_partners, (30,)),
     "particle_from_deformed": Shot(particle_from_deformed, (4,)),
     "particle_force_fields": Shot(particle_force_fields, (26,), look=(0.1, 0, 0.6)),
