@@ -14,8 +14,15 @@ from mcp.shared.exceptions import MCPError
 
 from agents.blender import plan_check
 from agents.plan.part import STAGES
-from agents.protocol.guide import rules_guide
-from agents.roles.prompts import protocol_text, role_text, shapes_text, stage_text, system_prompt, team_text
+from agents.roles.prompts import (
+    protocol_text,
+    role_text,
+    rules_text,
+    shapes_text,
+    stage_text,
+    system_prompt,
+    team_text,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -57,8 +64,8 @@ def _everything(*, edit: bool) -> str:
     return _joined(
         team_text(edit=edit),
         *(role_text(role, edit=edit) for role in ("planner", "coder", "reviewer", "final_reviewer")),
-        protocol_text(),
-        rules_guide(),
+        protocol_text(edit=edit),
+        rules_text(edit=edit),
         shapes_text("planner", edit=edit),
         *(stage_text(stage, edit=edit) for stage in STAGES),
     )

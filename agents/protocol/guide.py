@@ -30,29 +30,43 @@ _HEAD = (
     "Units are metres; Z is up; the front of an object, and of the world, is −Y. Rules judge the scene by "
     "measurements of its evaluated geometry."
 )
-_BRACKETS = "In brackets: tolerances, which a plan may tighten by name. "
+# A file that is edited may have been made without the protocol.
+_FOREIGN = (
+    "A file without any tag `protocol_role` does not follow it: C and G do not judge it, and nothing in it is tagged "
+    "but actors, and contacts of what is new."
+)
 _UNITS = {tolerance.name: tolerance.metadata["unit"] for tolerance in fields(TOLERANCES)}
 
 
-def guide() -> str:
-    """The protocol's words, as Markdown: levels, tags and relations."""
-    return "\n\n".join([_HEAD, _levels(), _tags(), _relations()])
+def guide(*, edit: bool = False) -> str:
+    """The protocol's words, as Markdown: levels, tags and, unless a file is edited, the relations of a scene plan."""
+    if edit:
+        return "\n\n".join([_HEAD, _FOREIGN, _levels(), _tags(_mechanisms())])
+    return "\n\n".join([_HEAD, _levels(), _tags(_required()), _relations()])
 
 
-def builders_guide() -> str:
-    """The protocol's words as far as whoever builds needs them: tools set the tags, and the plan has its relations."""
+def builders_guide(*, edit: bool = False) -> str:
+    """The protocol's words as far as whoever builds needs them: tools set the tags, and a plan has its relations."""
+    if edit:
+        contact = next(tag for tag in vocabulary.PROPERTIES if tag.name == vocabulary.CONTACT_WITH)
+        return "\n\n".join(
+            [_HEAD, _FOREIGN, _levels(), f"{_mechanisms()}\n\nA custom property:\n{_tag(contact)}"]
+        )
     return "\n\n".join([_HEAD, _levels(), _required(), _contacts()])
 
 
-def rules_guide(rules: Iterable[Rule] = RULES, *, with_tolerances: bool = True) -> str:
-    """Rules, each in a sentence, with its tolerances if wanted."""
+def rules_guide(
+    rules: Iterable[Rule] = RULES, *, with_tolerances: bool = True, is_planned: bool = True
+) -> str:
+    """Rules, each in a sentence, with its tolerances if wanted. ``is_planned``: there is a scene plan."""
+    tightened = ", which a plan may tighten by name" if is_planned else ""
     share, most = format_tolerance("contact_share"), format_tolerance("contact_most")
     return "\n".join(
         [
             "## Rules",
             f"ε is {format_tolerance('contact')} or {share} of the smaller object's diagonal, at most {most}; noise is "
             f"{format_tolerance('penetration')} or {format_tolerance('penetration_share')} of the smallest dimension. "
-            f"{_BRACKETS if with_tolerances else ''}Rules are hard unless marked (soft).",
+            f"{f'In brackets: tolerances{tightened}. ' if with_tolerances else ''}Rules are hard unless marked (soft).",
             *_listed(rules, with_tolerances=with_tolerances),
         ]
     )
@@ -84,10 +98,14 @@ def _levels() -> str:
     )
 
 
-def _tags() -> str:
-    lines = [f"- `{tag.name}` (on {_carrier(tag)}): {tag.meaning}" for tag in vocabulary.PROPERTIES]
+def _tags(mechanisms: str) -> str:
+    lines = list(map(_tag, vocabulary.PROPERTIES))
     lines += [f"- `{name}` is one of: {', '.join(choices)}." for name, choices in _KINDS]
-    return "\n".join(["## Tags (custom properties)", *lines, f"- {_required()}"])
+    return "\n".join(["## Tags (custom properties)", *lines, f"- {mechanisms}"])
+
+
+def _tag(tag: vocabulary.CustomProperty) -> str:
+    return f"- `{tag.name}` (on {_carrier(tag)}): {tag.meaning}"
 
 
 def _required() -> str:
@@ -96,6 +114,11 @@ def _required() -> str:
         by_kinds.setdefault(kinds, []).append(role)
     table = "; ".join(f"{', '.join(roles)}: {' + '.join(kinds)}" for kinds, roles in by_kinds.items())
     return f"A planned role requires `deformation_kind` + `motion_kind`: {table}."
+
+
+def _mechanisms() -> str:
+    moving = dict.fromkeys(kinds for kinds in MECHANISMS.values() if set(kinds) != {"none"})
+    return f"An actor has `deformation_kind` + `motion_kind`: {', '.join(' + '.join(kinds) for kinds in moving)}."
 
 
 def _carrier(tag: vocabulary.CustomProperty) -> str:

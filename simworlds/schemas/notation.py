@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, cast
 from simworlds.schemas.json_schema import BOUND_SIGNS, LARGEST_BOUND, SHORT_TEXT, Untitled
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Collection, Iterator, Mapping
 
     from pydantic import BaseModel
 
@@ -23,13 +23,14 @@ def _name(reference: str) -> str:
     return reference.rpartition("/")[2]
 
 
-def shape_of(*models: type[BaseModel], before: str = "") -> str:
+def shape_of(*models: type[BaseModel], before: str = "", without: Collection[str] = ()) -> str:
     """Models in the notation of types that programmers know, a third as long as their JSON Schema.
 
     ``name?: type = default`` is a field that may be left out; its meaning follows ``//``.
-    A model that several use is written once; a description that ``before`` contains is not repeated.
+    A model that several use is written once; a description that ``before`` contains is not repeated; fields that
+    ``without`` names (``Model.field``) are left out.
     """
-    writer = _Writer(before)
+    writer = _Writer(before, without)
     for model in models:
         writer.add(model)
     return "\n\n".join(writer.texts)
@@ -38,8 +39,9 @@ def shape_of(*models: type[BaseModel], before: str = "") -> str:
 class _Writer:
     """Writes models one after the other, each and each longer description once."""
 
-    def __init__(self, before: str) -> None:
+    def __init__(self, before: str, without: Collection[str]) -> None:
         self.texts: list[str] = []
+        self._without = without
         self._before = before
         self._written: set[str] = set()
         self._described: set[str] = set()
@@ -61,6 +63,8 @@ class _Writer:
         lines = [f"{name} {{{'' if meaning in self._before else _comment(meaning)}"]
         required = schema.get("required", ())
         for field, below in schema["properties"].items():
+            if f"{name}.{field}" in self._without:
+                continue
             mark = "" if field in required else "?"
             lines.append(f"  {field}{mark}: {_type(below)}{_default(below)}{self._meaning(below)}")
         return "\n".join([*lines, "}"])

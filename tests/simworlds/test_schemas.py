@@ -57,6 +57,11 @@ def test_descriptions_given_before_are_not_repeated() -> None:
     assert "Wheel {\n" in shape_of(Cart, before="There is this: A wheel; `size` is in metres. And more.")
 
 
+def test_fields_that_are_left_out_are_not_told() -> None:
+    lines = shape_of(Cart).splitlines()
+    assert shape_of(Cart, without={"Wheel.spin"}).splitlines() == [one for one in lines if "spin" not in one]
+
+
 def test_a_shared_model_is_written_once() -> None:
     assert shape_of(Cart, Wheel) == shape_of(Cart)
 

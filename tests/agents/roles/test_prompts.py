@@ -51,13 +51,28 @@ ANSWERS: list[tuple[Role, bool, type[BaseModel]]] = [
 ]
 
 
+# The mark of a line that only one kind of run is told.
+ONE_MODE = re.compile(r"^( *(?:- |\d+\. )?)(?:Making|Editing): ", re.MULTILINE)
+# What only a scene plan has, and what only an edit has, in words.
+OF_SCENE_PLANS = re.compile(
+    r"\brelations?\b|counted from 0|scene plan|\bphases?\b|planned (?:object|role|subject|material|field)"
+    r"|plan's roles?\b|`(?:keyframed|rigid|rig|cloth|soft|fluid|emitter)`|\(L3\)|opt_out|`subjects`|tighten"
+)
+OF_EDITS = re.compile(
+    r"\bedit(?:s|ing)?\b|EditPlan|\btasks name\b|\bactors`|was in the file before", re.IGNORECASE
+)
+
+
 def whole(role: Role, stage: Stage | None = None, *, edit: bool = False) -> str:
     return "\n\n".join(system_prompt(role, stage, edit=edit))
 
 
 def composed() -> str:
     """Every text that any model may be given."""
-    at_once = system_prompt("coder", "light", staged=False)
+    at_once = [
+        *system_prompt("coder", "light", staged=False),
+        *system_prompt("coder", "light", staged=False, edit=True),
+    ]
     return "\n\n".join(
         [*(whole(*one[:2], edit=one[2]) for one in ALL), *at_once, team_text(), team_text(edit=True)]
     )
@@ -73,13 +88,14 @@ def test_every_paragraph_of_every_file_is_used() -> None:
     assert {path.stem for path in files} == {*ROLES, *STAGES, "team", "at_once"}
     told = composed()
     for path in files:
-        for paragraph in path.read_text(encoding="utf-8").split("\n\n"):
-            part = paragraph.partition("{{")[0].strip()
+        for line in path.read_text(encoding="utf-8").splitlines():
+            part = ONE_MODE.sub(r"\1", line.partition("{{")[0]).strip()
             assert part in told, f"{path.name}: {part[:60]}"
 
 
 def test_nothing_is_left_to_be_filled_in() -> None:
     assert "{{" not in composed()
+    assert not ONE_MODE.search(composed())
 
 
 def test_a_hole_that_nothing_fills_is_an_error() -> None:
@@ -197,6 +213,11 @@ def test_a_role_is_told_every_field_of_what_it_answers(
         block = re.search(rf"^{name} {{.*?^}}", text, re.MULTILINE | re.DOTALL)
         assert block, name
         for field, told in part["properties"].items():
+            if (
+                edit and f"{name}.{field}" == "TacticalPlan.relations"
+            ):  # of a scene plan, which there is none of
+                assert field not in block[0]
+                continue
             mark = "" if field in part.get("required", ()) else r"\?"
             assert re.search(rf"^  {field}{mark}: ", block[0], re.MULTILINE), f"{name}.{field}"
             for choice in told.get("enum", ()):
@@ -217,6 +238,7 @@ def test_the_planners_examples_are_answers_that_are_taken() -> None:
     assert all(plan.object(asset.target) for asset in wanted.assets)
     assert max(wanted.relations) < len(plan.relations)
     assert Decision.model_validate(decision).instructions
+    del tactic["relations"]
     assert examples("planner", edit=True) == [tactic, decision], "a file is edited by another plan"
 
 
@@ -238,14 +260,34 @@ def test_what_is_only_for_edits_is_told_for_edits_only(role: Any) -> None:
     assert "one JSON object" in text(False) or role in {"coder", "team"}
 
 
+@pytest.mark.parametrize(("role", "stage"), list(product(ROLES, (None, *STAGES))))
+def test_an_edit_hears_nothing_of_scene_plans_and_the_making_of_a_scene_nothing_of_edits(
+    role: Role, stage: Stage | None
+) -> None:
+    protocol = re.compile(r"^- (?:`|[A-Z]\d).*", re.MULTILINE)  # levels, tags and rules: a file may follow it
+    edited = protocol.sub("", whole(role, stage, edit=True))
+    assert OF_SCENE_PLANS.findall(edited) == []
+    assert OF_EDITS.findall(whole(role, stage).replace("edit mode", "").replace("to be edited", "")) == []
+
+
+def test_an_edit_is_told_of_the_rules_that_need_no_plan() -> None:
+    edited, made = whole("planner", edit=True), whole("planner")
+    for rule in RULES:
+        assert f"\n- {rule.id} " not in edited or not rule.needs_plan
+    assert "\n- R15 " in edited
+    assert "\n- T2 " in made
+    assert len(edited) < len(made) / 2
+
+
 def test_every_stage_says_what_belongs_into_it_when_it_is_done_and_what_judges_it() -> None:
     for stage in STAGES:
         text = prompts.stage_text(stage)
         assert text.startswith(f"# {stage}: ")
-        for word in ("Belongs here: ", "\nNot here: ", "\nDone when ", "\nGoes wrong often:\n- "):
-            assert text.count(word) == 1
         for edit in (False, True):
-            last = prompts.stage_text(stage, edit=edit).splitlines()[-1]
+            text = prompts.stage_text(stage, edit=edit)
+            for word in ("Belongs here: ", "\nNot here: ", "\nDone when ", "\nGoes wrong often:\n- "):
+                assert text.count(word) == 1
+            last = text.splitlines()[-1]
             told = last.removeprefix("Rules that judge this stage: ").removesuffix(".").split(", ")
             assert select_rules(told) == rules_of(stage, edit=edit), "as blender_verify takes them"
 

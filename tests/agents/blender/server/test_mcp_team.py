@@ -64,7 +64,8 @@ async def test_prompts_are_listed_with_what_they_need(client: Client) -> None:
 async def test_every_prompt_ends_with_what_the_user_asked_for(client: Client, prompt: Any) -> None:
     needed = {one.name: FITTING[one.name] for one in prompt.arguments if one.required}
     told = await text(client, prompt.name, **needed)
-    assert (protocol_text() in told) == (prompt.name not in {"stage", "review"})
+    protocol = protocol_text(edit=prompt.name == "edit_scene")
+    assert (protocol in told) == (prompt.name not in {"stage", "review"})
     ((_, wanted),) = needed.items()
     assert wanted in told[-400:]
 
