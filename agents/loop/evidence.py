@@ -63,7 +63,8 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
         for frame in _telling_frames(task, run.motion):
             shown.take(RENDER, still(f"look-{frame}", frame, _width(task)))
     shown.blocks += _coders_stills(run)
-    shown.take(_STATE, {"first": first} if first else {})
+    focus, known = task.readout()
+    shown.take(_STATE, focus or ({"first": first} if first else {}), known)
     return shown.blocks
 
 
@@ -75,9 +76,11 @@ class _Shown:
         self._stage: Stage = stage
         self.blocks: list[Block | str] = []
 
-    def take(self, name: str, arguments: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Shows what a call gives; returns it as data."""
-        outcome = self._run.use(RUNNER, self._stage, name, arguments)
+    def take(
+        self, name: str, arguments: Mapping[str, Any], known: Mapping[str, Any] | None = None
+    ) -> Mapping[str, Any]:
+        """Shows what a call gives; returns it as data. ``known``: arguments that follow from the run."""
+        outcome = self._run.use(RUNNER, self._stage, name, arguments, known)
         self.blocks += [Text(f"{name}:"), *outcome.content]
         return outcome.data
 

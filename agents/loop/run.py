@@ -304,9 +304,15 @@ class Run:
     # The scene
 
     def state(self, stage: Stage) -> str:
-        """The scene's readout; in an edit, what the instruction names comes first."""
-        first = words_of(self.options.prompt)[:_MOST_WORDS] if self.options.mode == "edit" else []
-        return self.use(RUNNER, stage, "blender_scene_state", {"first": first} if first else {}).text
+        """The scene's readout; in an edit, what the instruction names comes first, and once there is a plan, only what
+        it is about is told in full.
+        """
+        if self.task is not None:
+            asked, known = self.task.readout()
+        else:
+            first = words_of(self.options.prompt)[:_MOST_WORDS] if self.options.mode == "edit" else []
+            asked, known = ({"first": first} if first else {}), {}
+        return self.use(RUNNER, stage, "blender_scene_state", asked, known).text
 
     def save(self, stage: Stage, name: str) -> Path:
         """Saves the scene as the checkpoint ``name``, with its caches beside it. Raises NotSaved."""

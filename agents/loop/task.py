@@ -18,14 +18,18 @@ Finding = Mapping[str, Any]
 """A finding of the verifier, as ``agents.protocol.report.json_report.as_json`` gives it."""
 
 
+_MOST_NAMES, _MOST_OLD = 200, 5_000  # of a readout's arguments
+_READOUT_TOKENS = 2_000  # of a readout that is given with every request of an edit
+
+
 @dataclass(frozen=True, slots=True)
 class RunTask:
     """``plan_text`` is the whole plan in words; ``plan`` the scene plan that the verifier compares with.
 
     An ``edit`` has no scene plan; it is judged without what was ``known`` of the file before, and, unless the file is
     ``tagged`` (keeps the scene protocol), without the rules of its layout. ``actors`` are those that move;
-    of an edit, ``declared`` says by what, ``targets`` are what its plan changes, and ``unplanned`` finds what has
-    changed that its plan does not ask for.
+    of an edit, ``declared`` says by what, ``targets`` are what its plan changes, ``old`` the objects that the file had,
+    and ``unplanned`` finds what has changed that its plan does not ask for.
     ``before`` is a still of the file as it was, at ``before_frame``, and ``goal`` a picture of what it is to look like.
     """
 
@@ -37,10 +41,22 @@ class RunTask:
     known: tuple[Finding, ...] = ()
     declared: tuple[EditedActor, ...] = ()
     targets: tuple[str, ...] = ()
+    old: tuple[str, ...] = ()
     unplanned: Callable[[Stage], list[Finding]] | None = None
     before: Picture | None = None
     before_frame: int | None = None
     goal: Picture | None = None
+
+    def readout(self) -> tuple[dict[str, Any], dict[str, Any]]:
+        """Arguments of the scene's readout, and those that follow from the run.
+
+        Of an edit, what it changes or adds is told in full, the rest counted; of a new scene, all is told.
+        """
+        if not self.edit:
+            return {}, {}
+        named = list(dict.fromkeys((*self.targets, *self.actors)))[:_MOST_NAMES]
+        known = {"old": list(self.old)} if len(self.old) <= _MOST_OLD else {}
+        return {"focus": named, "max_tokens": _READOUT_TOKENS}, known
 
     def verification(self, stage: Stage) -> dict[str, Any]:
         """What ``blender_verify`` is asked at the end of a stage."""

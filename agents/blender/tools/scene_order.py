@@ -6,12 +6,13 @@ import re
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Callable, Iterable, Mapping, Sequence
 
     from agents.blender.tools.scene_fold import Entry
 
 _WORD = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|[^\W\d_a-zA-Z]+")
 _LEAST = 3  # letters of a word that is looked for
+_MOST_IN_PARTS = 8  # objects that are told with their parts because they come first
 _COMMON = frozenset(
     """all and any are but for from has have her his into its let make not now off onto our out over same so than that
     the their them then they this those through under until upon was were what when where which while will with you
@@ -28,12 +29,11 @@ def asked_first(facts: dict[str, Any], names: Sequence[str], sections: Iterable[
     """Moves the entries of ``sections`` whose names hold all words of one of ``names`` before the others, and the
     materials of such objects.
     """
-    wanted = [set(_words(name)) for name in names]
-    wanted = [words for words in wanted if words]
+    bears = bears_words(names)
     worn = {
         _name(material)
         for entry in facts.get("objects", ())
-        if _is_wanted(entry, wanted)
+        if bears(str(entry.get("name", "")))
         for material in entry.get("materials", ())
     }
     for section in sections:
@@ -41,14 +41,32 @@ def asked_first(facts: dict[str, Any], names: Sequence[str], sections: Iterable[
         facts[section] = sorted(
             entries,
             key=lambda entry: (
-                not (_is_wanted(entry, wanted) or (section == "materials" and entry.get("name") in worn))
+                not (
+                    bears(str(entry.get("name", "")))
+                    or (section == "materials" and entry.get("name") in worn)
+                )
             ),
         )
 
 
-def _is_wanted(entry: Entry, wanted: list[set[str]]) -> bool:
-    own = set(_words(str(entry.get("name", ""))))
-    return any(words <= own for words in wanted)
+def keep_parts(facts: Mapping[str, Any], names: Sequence[str]) -> None:
+    """Leaves the parts of meshes to the first few objects that ``asked_first`` has moved."""
+    bears = bears_words(names)
+    for place, entry in enumerate(facts.get("objects", ())):
+        if place >= _MOST_IN_PARTS or not bears(str(entry.get("name", ""))):
+            entry.pop("parts", None)
+            entry.pop("more_parts", None)
+
+
+def bears_words(names: Iterable[str]) -> Callable[[str], bool]:
+    """Whether a name holds all words of one of ``names``."""
+    wanted = [words for name in names if (words := set(_words(name)))]
+
+    def bears(name: str) -> bool:
+        own = set(_words(name))
+        return any(words <= own for words in wanted)
+
+    return bears
 
 
 def _name(material: object) -> object:

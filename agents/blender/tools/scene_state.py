@@ -7,17 +7,20 @@ from collections import Counter
 from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 
 from pydantic import Field
+from pydantic.json_schema import SkipJsonSchema
 
 from agents.blender.tools import scene_dynamics as dynamics
 from agents.blender.tools import scene_words as words
 from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
 from agents.blender.tools.scene_fit import ReadoutItem, ReadoutSection, share_tokens, tokens
+from agents.blender.tools.scene_focus import counted, narrowed
 from agents.blender.tools.scene_fold import fold, fold_tree, series
-from agents.blender.tools.scene_order import asked_first
+from agents.blender.tools.scene_order import asked_first, keep_parts
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
+    from agents.blender.tools.scene_focus import FocusRest
     from agents.blender.tools.scene_fold import Entry
 
 TIMEOUT = 60.0
@@ -26,6 +29,7 @@ _FEW = 8  # channels, drivers or shape keys of a data-block in a readout that is
 _TOO_MANY = 60  # entries, above which similar ones are folded whatever their names
 _PART = 40  # of them in one entry of a full readout
 _FEW_NAMES = 24  # series of names in one collection
+_REST_CALL = "blender_scene_state(objects=[…])"
 
 SectionName = Literal["collections", "objects", "physics", "animation", "materials", "view", "data_blocks"]
 _TITLES: dict[SectionName, tuple[str, int]] = {
@@ -56,12 +60,19 @@ class SceneStateArguments(Arguments):
     first: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
         default=None,
         max_length=200,
-        description="What bears these names or words comes first.",
+        description="Names or words, first.",
     )
+    focus: list[Annotated[str, Field(min_length=1, max_length=255)]] | None = Field(
+        default=None,
+        max_length=200,
+        description="Names or words; the rest counted.",
+    )
+    # Not for models, which do not list a whole file: with a focus, objects that are not among these are in it too.
+    old: SkipJsonSchema[list[str] | None] = Field(default=None, max_length=5_000)
     sections: list[SectionName] | None = Field(
         default=None,
         min_length=1,
-        description="view: cameras, lights, world, render. data_blocks, digests: only if named.",
+        description="data_blocks, digests: only if named.",
     )
     start: int = Field(default=0, ge=0, description="Entries to skip.")
     max_tokens: int = Field(default=4000, ge=500, le=50_000, description="Of the reply.")
@@ -69,20 +80,25 @@ class SceneStateArguments(Arguments):
 
 DESCRIPTION = """\
 Read the scene: collections with protocol tags; objects with world transform, extent (world bounds at this \
-frame), materials, modifiers and constraints where they differ from defaults; physics and caches; animation; \
-cameras, lights, world; likely mistakes, marked with !. Series are folded (Brick.001 … Brick.400); what does not fit \
-is counted, with the call that shows it."""
+frame), materials, changed settings of modifiers and constraints; physics and caches; animation; cameras, lights, \
+world; likely mistakes, marked with !. Series are folded; what does not fit is counted, with the call that shows it."""
 
 
 def run(
     context: CallContext, arguments: SceneStateArguments, call: Call, more: Mapping[str, Any] | None = None
 ) -> Result:
     """Reads the scene; ``more`` are arguments for the Blender."""
-    usual = _OF_SUMMARY if arguments.detail == "summary" else tuple(_TITLES)
+    usual = _OF_SUMMARY if arguments.detail == "summary" and arguments.focus is None else tuple(_TITLES)
     names = [name for name in (*_TITLES, DATA_BLOCKS) if name in (arguments.sections or usual)]
     reply = context.blender.call(
         "scene_state",
-        {"detail": arguments.detail, "objects": arguments.objects, "sections": names, **(more or {})},
+        {
+            "detail": arguments.detail,
+            "objects": arguments.objects,
+            "sections": names,
+            "parts": arguments.detail == "full" or bool(arguments.first) or arguments.focus is not None,
+            **(more or {}),
+        },
         lambda facts: readout(facts, arguments),
         timeout=TIMEOUT,
         progress=call.progress,
@@ -95,6 +111,9 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
     """The facts as text and as data, both within ``max_tokens``."""
     if arguments.first:
         asked_first(facts, arguments.first, _ORDERED)
+        if arguments.detail != "full" and arguments.focus is None:
+            keep_parts(facts, arguments.first)
+    rest = narrowed(facts, arguments.focus, arguments.old) if arguments.focus is not None else None
     sections = [
         ReadoutSection(name, _items(name, facts[name], arguments), weight, facts["unread"].get(name, 0))
         for name, (_, weight) in _TITLES.items()
@@ -103,15 +122,18 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
     head = _clipped(words.scene(facts), arguments.max_tokens // 4)
     sections = [section for section in sections if section.items or arguments.sections]
     footer = max((tokens(_footer(section, arguments)) for section in sections), default=0) + 1
-    share_tokens(sections, arguments.max_tokens - tokens(head), footer)
+    last = _clipped(_rest_text(rest), arguments.max_tokens // 3) if rest and rest.lines else ""
+    share_tokens(sections, arguments.max_tokens - tokens(head) - tokens(last), footer)
     data: dict[str, Any] = {"scene": facts["scene"], "notes": facts["notes"], "left_out": {}}
     data |= {name: [] for name in _TITLES if name in facts}
     parts = [head]
     for section in sections:
-        parts.append(_section_text(section, facts, arguments))
+        parts.append(_section_text(section, facts, arguments, rest))
         data[section.name] = [item.data for item in section.shown]
         if section.left_out:
             data["left_out"][section.name] = {"count": section.left_out, "call": _next(section, arguments)}
+    if last:
+        parts.append(last)
     if (blocks := facts.get(DATA_BLOCKS)) is not None:
         parts.append(_block_counts(blocks["digests"]))
         data |= {
@@ -121,6 +143,13 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
             "tagged": blocks["tagged"],
         }
     return Result(_clipped("\n\n".join(parts), arguments.max_tokens), data)
+
+
+def _rest_text(rest: FocusRest) -> str:
+    """What a readout with a focus leaves out."""
+    return "\n".join(
+        [f"## The rest ({counted(rest.count, 'object')}): {_REST_CALL} shows more of it", *rest.lines]
+    )
 
 
 def _block_counts(blocks: dict[str, str]) -> str:
@@ -189,11 +218,14 @@ def _in_parts(entries: list[Entry]) -> list[Entry]:
     return parts
 
 
-def _section_text(section: ReadoutSection, facts: dict[str, Any], arguments: SceneStateArguments) -> str:
+def _section_text(
+    section: ReadoutSection, facts: dict[str, Any], arguments: SceneStateArguments, rest: FocusRest | None
+) -> str:
     """A section with its heading, and the call that shows what is left out."""
     title, _ = _TITLES[cast("SectionName", section.name)]
     total = facts["unread"].get(section.name, 0) + len(facts[section.name])
-    lines = [f"## {title} ({total:,})", *(item.text for item in section.shown)]
+    whole = f" of {rest.of[section.name]:,}" if rest and rest.of[section.name] > total else ""
+    lines = [f"## {title} ({total:,}{whole})", *(item.text for item in section.shown)]
     if section.left_out:
         lines.append(_footer(section, arguments))
     return "\n".join(lines)
@@ -206,6 +238,10 @@ def _footer(section: ReadoutSection, arguments: SceneStateArguments) -> str:
 
 def _next(section: ReadoutSection, arguments: SceneStateArguments) -> str:
     """The call that continues a section."""
+    if arguments.focus is not None:
+        names = [item.data["name"] for item in section.items[len(section.shown) :]]
+        listed = json.dumps(names, ensure_ascii=False)
+        return f"blender_scene_state(objects={listed})" if _may_be_listed(section, listed) else _REST_CALL
     options: list[str] = []
     for name, given in (("objects", arguments.objects), ("first", arguments.first)):
         if given is not None:
@@ -219,6 +255,10 @@ def _next(section: ReadoutSection, arguments: SceneStateArguments) -> str:
     if arguments.max_tokens != SceneStateArguments.model_fields["max_tokens"].default:
         options.append(f"max_tokens={arguments.max_tokens}")
     return f"blender_scene_state({', '.join(options)})"
+
+
+def _may_be_listed(section: ReadoutSection, names: str) -> bool:
+    return section.name == "objects" and len(names) <= _LONGEST_NAMES
 
 
 def _clipped(text: str, room: int) -> str:

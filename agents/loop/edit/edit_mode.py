@@ -92,5 +92,6 @@ def _task(run: Run, plan: EditPlan, before: Blocks) -> RunTask:
         known=known,
         declared=plan.actors,
         targets=tuple(dict.fromkeys(name for one in plan.tasks for name in one.targets)),
+        old=before.objects,
         unplanned=partial(unplanned, run, before, plan),
     )

@@ -39,6 +39,11 @@ class Blocks:
         """What they are called, with and without their kind."""
         return frozenset({*self.digests, *(name.partition(" ")[2] for name in self.digests)})
 
+    @property
+    def objects(self) -> tuple[str, ...]:
+        """What its objects are called."""
+        return tuple(name.removeprefix("Object ") for name in self.digests if name.startswith("Object "))
+
 
 def blocks(run: Run, stage: Stage) -> Blocks:
     """Those of the open scene. Raises RunError."""

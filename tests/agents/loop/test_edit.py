@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import subprocess
 import sys
 from typing import TYPE_CHECKING, Any
@@ -193,9 +194,19 @@ def test_an_edit_changes_what_is_asked_for_and_reports_every_data_block(
     assert {name for name in before if before[name] != after.get(name)} == set(report["changed"])
 
 
-def test_the_reviewer_is_shown_first_what_the_plan_changes(taller: Played) -> None:
+def test_once_there_is_a_plan_what_it_changes_is_read_in_full_and_the_rest_is_counted(taller: Played) -> None:
+    planner, coder, reviewer = (
+        [words_of(one) for one in taller.requests if whose(one)[0] == role]
+        for role in ("planner", "coder", "reviewer")
+    )
+    assert "## Objects (5)" in planner[0]
+    assert "- Spoon MESH in " in planner[0]
+    for told, count, named in ((coder[0], "1 of 5", ["Mug"]), (reviewer[0], "2 of 6", ["Mug", "Jug"])):
+        assert f"## Objects ({count})" in told
+        assert re.findall(r"^- (\w+) MESH in ", told, re.MULTILINE) == named
+        assert re.search(r"^- Scene Collection: 4 objects: .*Spoon", told, re.MULTILINE)
     states = taller.of("tool.called", role="runner", name="blender_scene_state", stage="modeling")
-    assert ["Mug", "Jug"] in [row["input"].get("first") for row in states]
+    assert [row["input"].get("focus") for row in states] == [None, *[["Mug", "Jug"]] * (len(states) - 1)]
 
 
 def test_what_an_edit_moves_beside_what_was_asked_for_keeps_the_stage_open(taller: Played) -> None:

@@ -7,6 +7,7 @@ from typing import Any
 import pytest
 
 from agents.loop.edit.untouched import Blocks, compared
+from agents.loop.task import RunTask
 from agents.plan.edit import EditPlan
 
 File = dict[str, dict[str, Any]]
@@ -193,3 +194,12 @@ def test_a_rigid_body_world_is_not_outside_where_something_is_to_move() -> None:
     actor = {"name": "Mug", "deformation_kind": "sim_rigid", "motion_kind": "bake"}
     assert outside(file, plan("Mug", stage="motion", actors=[actor])) == []
     assert outside(file, plan("Mug")) == ["Collection RigidBodyWorld", "Scene Scene"]
+
+
+def test_a_readout_of_an_edit_has_what_it_names_and_what_the_file_did_not_have() -> None:
+    had = blocks(kitchen()).objects
+    assert "Camera" in had
+    assert not any(name.startswith("Object") for name in had)
+    task = RunTask("", actors=("Ball",), edit=True, targets=("Table", "Ball"), old=had)
+    assert task.readout() == ({"focus": ["Table", "Ball"], "max_tokens": 2000}, {"old": list(had)})
+    assert RunTask("", actors=("Ball",)).readout() == ({}, {}), "a new scene is read whole"
