@@ -148,9 +148,17 @@ def scene_object(entry: Entry) -> str:
         return "; ".join([f"- {titled(entry)} root of {', '.join(entry['in'])}", *_placement(entry)])
     head = f"- {titled(entry, entry['type'])} in {', '.join(entry['in'])}"
     lines = [joined(head, [*_placement(entry), *_properties(entry), *_tags(entry)])]
+    if "parts" in entry:
+        lines.append(f"  parts (size @ middle of underside, own axes): {_parts(entry)}")
     lines += [f"  modifier {_modifier(modifier)}" for modifier in entry.get("modifiers", ())]
     lines += [f"  constraint {_constraint(constraint)}" for constraint in entry.get("constraints", ())]
     return "\n".join(lines)
+
+
+def _parts(entry: Entry) -> str:
+    shown = [f"{'×'.join(map(value, size))} @ {row(place)}" for size, place in entry["parts"]]
+    more = [f"{value(entry['more_parts'])} smaller ones"] if "more_parts" in entry else []
+    return ", ".join([*shown, *more])
 
 
 def _placement(entry: Entry) -> list[str]:

@@ -14,6 +14,7 @@ from .animation import animation_facts, unused_actions
 from .appearance import camera_facts, light_facts, material_facts, render_facts, world_facts
 from .fingerprint import data_blocks
 from .likely_mistakes import notes_of
+from .loose_parts import PartReader
 from .object_entries import SceneObjects, object_facts, tags_of, tree_of
 from .physics_entries import physics_of, rigid_body_world_facts
 from .rna_values import number, numbers, shortened, text
@@ -27,7 +28,8 @@ _OF_VIEW = ("CAMERA", "LIGHT")
 
 
 def scene_state(arguments, report):
-    """``detail`` (summary, normal, full), ``objects`` (names and patterns, or None), ``sections``.
+    """``detail`` (summary, normal, full), ``objects`` (names and patterns, or None), ``sections``, and ``parts``, if
+    meshes of several parts are to be measured part by part.
 
     Returns {section: entries} with ``scene``, ``notes``, ``chosen`` (how many objects) and ``unread``: of each
     section, how many entries were left out. ``data_blocks`` is as ``fingerprint.data_blocks`` returns it, and
@@ -58,7 +60,7 @@ class _Reading:
     """One readout: the request, and a method for each section."""
 
     def __init__(self, arguments, report):
-        self.detail = arguments["detail"]
+        self.detail, self.parts = arguments["detail"], arguments.get("parts", False)
         self.scene, self.layer = bpy.context.scene, bpy.context.view_layer
         self.scene_objects = SceneObjects(self.scene)
         self.everything = self.scene_objects.objects
@@ -72,7 +74,7 @@ class _Reading:
         return tree_of(self.scene, self.layer, None if self.whole else self.chosen)
 
     def objects(self):
-        extents = ExtentReader(self.graph)
+        extents, parts = ExtentReader(self.graph), PartReader() if self.parts else None
         visible = set()
         if self.layer is not None:
             visible_objects = (obj for obj in self.layer.objects if obj.visible_get(view_layer=self.layer))
@@ -80,9 +82,10 @@ class _Reading:
         for count, obj in enumerate(self.chosen[:MOST_OBJECTS]):
             if count % 500 == 499:
                 self._report(count, len(self.chosen), "reading objects")
-            yield object_facts(
+            facts = object_facts(
                 obj, self.scene_objects.collections[obj.name_full], extents, visible, self.detail
             )
+            yield {**facts, **parts.entry(extents.evaluated(obj))} if parts is not None else facts
         if extents.instances_cut:
             self.remarks.append(f"Extents include only the first {MOST_INSTANCES:,} instances.")
 

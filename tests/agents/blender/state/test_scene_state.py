@@ -1046,3 +1046,113 @@ for number in range(12):
     short = read(session, first=["sofa", "lamp"], max_tokens=500, sections=["objects"])
     assert 'first=["sofa", "lamp"], sections=["objects"], start=' in short.text
     assert "FloorLamp_Shade" in short.text
+
+
+# Parts
+
+CHAIR = """
+import bmesh
+mesh, made = bpy.data.meshes.new('Chair'), bmesh.new()
+legs = [((x, y, 0.2), (0.05, 0.05, 0.4)) for x in (-0.2, 0.2) for y in (-0.2, 0.2)]
+for place, size in [((0, 0, 0.425), (0.5, 0.5, 0.05)), ((0, 0.24, 0.7), (0.5, 0.02, 0.5)), *legs]:
+    new = bmesh.ops.create_cube(made, size=1)['verts']
+    bmesh.ops.scale(made, vec=size, verts=new)
+    bmesh.ops.translate(made, vec=place, verts=new)
+made.to_mesh(mesh)
+chair = bpy.data.objects.new('Chair', mesh)
+chair.location, chair.rotation_euler.z, chair.scale = (3, 1, 0), 0.6, (1, 1, 2)
+bpy.context.scene.collection.objects.link(chair)
+"""
+
+
+def test_the_parts_of_a_mesh_are_measured_along_its_own_axes(session: LiveSession) -> None:
+    found = read(session, CHAIR, detail="full")
+    told = entry(found, "objects", "Chair")
+    assert told["parts"][:2] == [[[0.5, 0.02, 1.0], [0, 0.24, 0.9]], [[0.5, 0.5, 0.1], [0, 0, 0.8]]]
+    assert (len(told["parts"]), told["more_parts"]) == (4, 2)
+    assert "parts (size @ middle of underside, own axes): 0.5×0.02×1 @ 0 0.24 0.9, " in found.text
+    assert "parts" not in entry(read(session), "objects", "Chair"), "told where a readout is full"
+    assert "parts" not in entry(read(session, first=["stool"]), "objects", "Chair")
+    assert entry(read(session, first=["chairs"]), "objects", "Chair")["parts"] == told["parts"]
+    many = read(session, "bpy.data.objects['Chair'].modifiers.new('Row', 'ARRAY').count = 3", detail="full")
+    assert entry(many, "objects", "Chair")["more_parts"] == 14
+    assert ", 14 smaller ones" in many.text
+
+
+def test_a_mesh_of_one_part_has_no_parts(session: LiveSession) -> None:
+    assert "parts" not in entry(read(session, CUBE.format(""), detail="full"), "objects", "Cube")
+
+
+# Focus
+
+ROOM = """
+def box(name, at, collection, parent=None):
+    made = bpy.data.objects.new(name, bpy.data.meshes.new_from_object(unit))
+    made.location, made.parent = at, parent
+    collection.objects.link(made)
+    paint = bpy.data.materials.new(name + ' surface')
+    made.data.materials.append(paint)
+    return made
+
+scene = bpy.context.scene
+bpy.ops.mesh.primitive_cube_add(size=0.1)
+unit = bpy.context.object
+kitchen, shelf = bpy.data.collections.new('Kitchen'), bpy.data.collections.new('Shelf')
+scene.collection.children.link(kitchen)
+kitchen.children.link(shelf)
+mug = box('Mug', (0, 0, 0), scene.collection)
+box('Handle', (0.1, 0, 0), scene.collection, mug)
+box('Mug rack', (1, 0, 0), kitchen)
+for n in range(30):
+    box(f'Spoon.{n:03}', (n, 1, 0), kitchen)
+    box(f'Plate {chr(65 + n)}', (n, 2, 0), shelf)
+box('Lamp', (5, 0, 0), scene.collection)
+bpy.data.objects.remove(unit)
+light = bpy.data.objects.new('Bulb', bpy.data.lights.new('Bulb', 'POINT'))
+scene.collection.objects.link(light)
+light.keyframe_insert('location')
+"""
+
+
+def test_a_readout_with_a_focus_has_it_in_full_and_counts_the_rest(session: LiveSession) -> None:
+    session.run(ROOM)
+    old = [name for name in session.run("[o.name for o in bpy.data.objects]") if name != "Lamp"]
+    found = read(session, focus=["Mug", "Jug"], old=old)
+    assert [one["name"] for one in found.data["objects"]] == ["Mug", "Handle", "Lamp"], (
+        "with children, and what is new"
+    )
+    assert {one["name"] for one in found.data["materials"]} == {
+        "Mug surface",
+        "Handle surface",
+        "Lamp surface",
+    }
+    assert "## Objects (3 of 65)" in found.text
+    assert "## The rest (62 objects): blender_scene_state(objects=[…]) shows more of it" in found.text
+    assert "- Kitchen: 61 objects: Mug rack, Spoon.000 … Spoon.029 (30), Shelf" in found.text
+    assert "- Scene Collection: 1 object: Bulb" in found.text
+    assert "- animation of Bulb" in found.text
+    assert "- 61 materials" in found.text
+    assert "- 1 light" in found.text
+    assert len(found.text.encode()) < 2_000
+
+
+def test_a_focus_may_be_a_collection_a_material_or_words(session: LiveSession) -> None:
+    session.run(ROOM)
+
+    def objects(*focus: str, **more: Any) -> list[str]:
+        return [one["name"] for one in read(session, focus=focus, **more).data["objects"]]
+
+    assert objects("Shelf") == [f"Plate {chr(65 + n)}" for n in range(30)]
+    assert objects("racks of mugs") == []
+    assert objects("mug racks") == ["Mug rack"]
+    named = read(session, focus=["Lamp surface", "Bulb"])
+    assert [one["name"] for one in named.data["materials"]] == ["Lamp surface"]
+    assert [one["kind"] for one in named.data["view"]][:1] == ["light"]
+    assert [one["name"] for one in named.data["animation"]] == ["Bulb"]
+
+
+def test_what_of_a_focus_does_not_fit_is_named_with_its_call(session: LiveSession) -> None:
+    session.run(ROOM)
+    found = read(session, focus=["Shelf", "Kitchen"], max_tokens=600)
+    assert found.data["left_out"]["objects"]["count"] > 0
+    assert found.data["left_out"]["objects"]["call"].startswith("blender_scene_state(objects=[")
