@@ -78,6 +78,22 @@ floor = box("Floor", (4, 4, 0.2), (0, 0, -0.1))
 cloth(sheet, [table, floor])
 over(60, lambda: (mean(heights(sheet)), min(heights(sheet)), max(heights(sheet))))
 """
+# The time of a sheet's frames with self collision, as a multiple of that without.
+FOLDING = """
+import time
+
+def spent(distance):
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=30, y_subdivisions=30, size=1, location=(0, 0, 0.75))
+    contact = cloth(bpy.context.object, [table]).collision_settings
+    contact.use_self_collision, contact.self_distance_min = distance is not None, distance or 0.001
+    began = time.process_time()
+    over(24, lambda: None)
+    bpy.data.objects.remove(bpy.context.object)
+    return time.process_time() - began
+
+table = box("Table", (0.3, 0.3, 0.3), (0, 0, 0.45))
+spent(DISTANCE) / min(spent(None), spent(None))
+"""
 PINNED = """
 bpy.ops.mesh.primitive_grid_add(x_subdivisions=8, y_subdivisions=8, size=1, location=(0, 0, 2))
 sheet = bpy.context.object
@@ -224,6 +240,22 @@ def test_a_cloth_falls_as_things_fall_and_comes_to_rest_on_what_is_below(blender
     assert 0.6 < seen[-1][2] < 0.65, "its middle lies on the table"
     assert seen[-1][1] < 0.5, "its sides hang"
     assert abs(middles[-1] - middles[-7]) < 0.02
+
+
+@pytest.mark.parametrize(
+    ("share", "words", "times"),
+    [
+        (0.2, "a fifth of an edge of the mesh, 2 times", 2),
+        (0.5, "half an edge, 9", 9),
+        pytest.param(0.8, "four fifths, 24", 24, marks=pytest.mark.whole),
+    ],
+)
+def test_self_collision_costs_what_the_sheet_says(
+    blender: LiveSession, share: float, words: str, times: int
+) -> None:
+    assert words in sheet("cloth")
+    spent = tried(blender, "cloth", FOLDING.replace("DISTANCE", str(share / 30)))
+    assert times / 1.7 < spent < times * 1.7
 
 
 def test_pins_hold_until_they_are_let_go(blender: LiveSession) -> None:
