@@ -105,8 +105,8 @@ def _subjects(task: RunTask) -> list[str]:
 def motion_sheets(actors: Sequence[str], phases: Iterable[MotionPhase]) -> list[dict[str, Any]]:
     """Arguments of motion sheets that show all actors, by the plan's phases.
 
-    One sheet's phases must not overlap: actors share a sheet as far as theirs do not. What would need too many sheets
-    is shown without phases.
+    A sheet reads best whose phases do not overlap: actors share one as far as theirs do not. What would need too many
+    sheets is shown without phases.
     """
     by_actor: dict[str, set[tuple[int, int, str]]] = {actor: set() for actor in actors}
     for phase in phases:

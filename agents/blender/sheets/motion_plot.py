@@ -48,6 +48,19 @@ class PhaseBand:
     summaries: tuple[str, ...]
 
 
+def lanes_of(spans: Iterable[tuple[int, int]]) -> list[int]:
+    """The lane of each of these ranges of frames, which are in the order of their starts: those of one lane follow one
+    another, and may have an end and a start in common.
+    """
+    ends: list[int] = []
+    lanes: list[int] = []
+    for start, end in spans:
+        lane = next((number for number, before in enumerate(ends) if before <= start), len(ends))
+        ends[lane : lane + 1] = [end]
+        lanes.append(lane)
+    return lanes
+
+
 @dataclass(frozen=True, slots=True)
 class BarRow:
     """Bars over ``spans`` of frames, with ``text`` beside them; ``dashed``: not certain."""
@@ -119,17 +132,19 @@ def _layered(picture: Image.Image, draw: Callable[[ImageDraw.ImageDraw, int], No
 def timeline(course: MotionCourse, width: int) -> Image.Image:
     """A timeline: phases, two curves, and below them bars and keyframes."""
     rows = len(course.rows) + bool(course.keyframes)
-    picture = Image.new("RGB", (width, _HEAD + _CURVES + _AXIS + _ROW * rows), PAPER)
-    _Timeline(picture, course).draw()
+    lanes = lanes_of((phase.start, phase.end) for phase in course.phases)
+    head = _HEAD * (max(lanes, default=0) + 1)
+    picture = Image.new("RGB", (width, head + _CURVES + _AXIS + _ROW * rows), PAPER)
+    _Timeline(picture, course, lanes, head).draw()
     return picture
 
 
 class _Timeline:
-    def __init__(self, picture: Image.Image, course: MotionCourse) -> None:
-        self._picture, self._course = picture, course
+    def __init__(self, picture: Image.Image, course: MotionCourse, lanes: list[int], head: int) -> None:
+        self._picture, self._course, self._lanes = picture, course, lanes
         self._draw = ImageDraw.Draw(picture)
         self._left, self._right = _LABELS, picture.width - _RIGHT
-        self._top, self._bottom = _HEAD, _HEAD + _CURVES
+        self._top, self._bottom = head, head + _CURVES
         self._first, self._last = course.frames[0], course.frames[-1]
 
     def _x(self, frame: float) -> float:
@@ -154,23 +169,28 @@ class _Timeline:
             self._draw_keyframes(y)
 
     def _draw_phases(self) -> None:
+        """Those at one time below each other: their names above the curves, and their tints behind them."""
         starts = {phase.start for phase in self._course.phases}
         ends = {phase.end for phase in self._course.phases}
-        for number, phase in enumerate(self._course.phases):
+        count = max(self._lanes, default=0) + 1
+        for number, (phase, lane) in enumerate(zip(self._course.phases, self._lanes, strict=True)):
+            head = _HEAD * lane
+            above, below = (self._top + _CURVES * part // count for part in (lane, lane + 1))
             # Phases that end and begin on neighbouring frames meet half-way between them.
             left = self._x(phase.start - (0.5 if phase.start - 1 in ends else 0))
             right = self._x(phase.end + (0.5 if phase.end + 1 in starts else 0))
             tint, edge = TINTS[number % len(TINTS)], EDGES[number % len(EDGES)]
-            self._draw.rectangle((left, self._top, right, self._bottom), fill=tint)
-            self._draw.rectangle((left, 0, right, 2), fill=edge)
+            self._draw.rectangle((left, above, right, below), fill=tint)
+            self._draw.rectangle((left, head, right, head + 2), fill=edge)
             for x in (left, right):
-                self._draw.line((x, 0, x, self._bottom), fill=edge)
+                self._draw.line((x, head, x, head + _HEAD), fill=edge)
+                self._draw.line((x, above, x, below), fill=edge)
             room = right - left - 8
             name = f"{phase.name}  {phase.start}–{phase.end}" if phase.name else f"{phase.start}–{phase.end}"
             if room > 24:
-                write(self._draw, (left + 5, 5), shortened(name, room, 14), Style(14))
+                write(self._draw, (left + 5, head + 5), shortened(name, room, 14), Style(14))
                 fitting = [words for words in phase.summaries if text_width(words, 13) <= room]
-                write(self._draw, (left + 5, 24), fitting[0] if fitting else "", _LABEL)
+                write(self._draw, (left + 5, head + 24), fitting[0] if fitting else "", _LABEL)
 
     def _draw_frames(self) -> None:
         draw, y = self._draw, self._bottom

@@ -27,6 +27,7 @@ from agents.blender.sheets.motion_plot import (
     MotionCourse,
     PhaseBand,
     draw_trail,
+    lanes_of,
     state_colour,
     timeline,
 )
@@ -131,10 +132,14 @@ def _panel(actor: ActorMotion, strip: Strip, shot: Shot, tile: Callable[[ShotVie
 
 
 def _phase_of(actor: ActorMotion, frame: int) -> tuple[str, tuple[int, int, int]]:
-    for number, phase in enumerate(actor.phases):
-        if phase.start <= frame <= phase.end:
-            return phase.phase, EDGES[number % len(EDGES)]
-    return "", FRAME
+    at_once: dict[int, int] = {}  # lane → the first phase in it
+    for number, lane in enumerate(lanes_of((phase.start, phase.end) for phase in actor.phases)):
+        if actor.phases[number].start <= frame <= actor.phases[number].end:
+            at_once.setdefault(lane, number)
+    if not at_once:
+        return "", FRAME
+    names = [actor.phases[number].phase for number in at_once.values()]
+    return ", ".join(names), EDGES[min(at_once.values()) % len(EDGES)]
 
 
 def _course(motion: MotionReply, actor: ActorMotion) -> MotionCourse:
@@ -196,7 +201,8 @@ def _rows(actor: ActorMotion) -> list[BarRow]:
             spans = touched.setdefault(touch.partner, [])
             for first, last in touch.frames:
                 goes_on = spans and first <= spans[-1][1] + 1  # from the phase before
-                spans.append((spans.pop()[0] if goes_on else first, last))
+                begun, ended = spans.pop() if goes_on else (first, last)
+                spans.append((begun, max(ended, last)))
     for name, spans in sorted(touched.items(), key=lambda item: item[1])[:_MOST_ROWS]:
         rows.append(BarRow("touches", spans, EDGES[3], f"{name}, from {spans[0][0]}"))
     return rows

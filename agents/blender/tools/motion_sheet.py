@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any
 from pydantic import BaseModel, ConfigDict, Field, model_validator
 
 from agents.blender.sheets.contact_sheet import GAP
+from agents.blender.sheets.motion_plot import lanes_of
 from agents.blender.sheets.motion_reply import ActorMotion, MotionReply, PhaseMotion
 from agents.blender.sheets.motion_sheet_image import WIDTH, draw_sheets
 from agents.blender.sheets.worker_pictures import taken_picture
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 MOST_ACTORS, MOST_PICTURES, MOST_PHASES = 8, 12, 24
+MOST_AT_ONCE = 3  # phases that overlap
 _MEASURED = {
     "vertices": "mean of its surface",
     "particles": "mean of its particles",
@@ -71,10 +73,12 @@ class MotionSheetArguments(Arguments):
         if len(set(self.actors)) != len(self.actors):
             raise ValueError("actors: a name is given twice")
         ordered = sorted(self.phases, key=lambda phase: phase.start)
-        for phase, following in itertools.pairwise(ordered):
-            if following.start < phase.end:
-                pair = " and ".join(f"{each.name!r} ({each.start}–{each.end})" for each in (phase, following))
-                raise ValueError(f"phases: {pair} overlap; ask for a sheet of each")
+        lanes = lanes_of((phase.start, phase.end) for phase in ordered)
+        if max(lanes, default=0) >= MOST_AT_ONCE:
+            crowded = ordered[lanes.index(MOST_AT_ONCE)]
+            raise ValueError(
+                f"phases: as {crowded.name!r} begins, more than {MOST_AT_ONCE} are at one time; ask for a second sheet"
+            )
         return self
 
 

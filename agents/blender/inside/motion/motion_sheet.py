@@ -34,7 +34,8 @@ def motion_sheet(arguments, report):
     scene = bpy.context.scene
     actors = resolve(arguments["actors"], scene)
     phases, sampled = _plan(arguments, scene)
-    first, last = min(phases[0]["start"], sampled[0]), max(phases[-1]["end"], sampled[-1])
+    first = min(phases[0]["start"], sampled[0])
+    last = max(sampled[-1], *(phase["end"] for phase in phases))
     stride = -(-(last - first + 1) // _MEASURED)
     ends = {frame for phase in phases for frame in (phase["start"], phase["end"])}
     measured = sorted({*range(first, last + 1, stride), *sampled, *ends})

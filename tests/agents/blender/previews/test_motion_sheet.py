@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 from PIL import Image
 
+from agents.blender.sheets.motion_plot import lanes_of
 from agents.blender.sheets.motion_reply import MotionReply
 from agents.blender.tools.base import Call
 from agents.blender.tools.motion_sheet import TOOL
@@ -285,6 +286,27 @@ def test_bones_and_instances_are_measured_where_they_are(session: LiveSession) -
     assert copy["start_position"][2] == pytest.approx(3, abs=0.01)
 
 
+def test_phases_at_one_time_are_measured_each_and_drawn_below_each_other(session: LiveSession) -> None:
+    session.run(SLIDE)
+    phases = [{"name": "all", "start": 1, "end": 49}, {"name": "early", "start": 7, "end": 13}]
+    both = session.use(TOOL, actors=["Sledge"], phases=phases, frames=[1, 25, 49])
+    path = 10 / 48
+    for phase in actor(both, "Sledge")["phases"]:
+        length = phase["end"] - phase["start"]
+        assert phase["displacement"] == pytest.approx(length * path, rel=1e-3), phase["phase"]
+    assert both.data["end"] == 49, "the first to begin ends last"
+    (one,) = session.use(TOOL, actors=["Sledge"], phases=phases[:1], frames=[1, 25, 49]).pictures
+    (sheet,) = both.pictures
+    with Image.open(io.BytesIO(one.png)) as single, Image.open(io.BytesIO(sheet.png)) as double:
+        assert double.height > single.height, "there is a line of names for each"
+
+
+def test_lanes_hold_phases_that_follow_one_another() -> None:
+    assert lanes_of([(1, 10), (10, 20), (20, 30)]) == [0, 0, 0]
+    assert lanes_of([(1, 10), (5, 15), (10, 20), (12, 14)]) == [0, 1, 0, 2]
+    assert lanes_of([]) == []
+
+
 def test_the_scene_is_left_as_it_was(session: LiveSession) -> None:
     session.run(FALL + "for f in range(1, 8): s.frame_set(f)\ns.frame_set(7, subframe=0.25)")
     before = session.run(STATE)
@@ -397,9 +419,9 @@ def test_progress_is_told_as_frames_go_by(session: LiveSession) -> None:
         (
             {
                 "actors": ["Crate"],
-                "phases": [{"name": "a", "start": 1, "end": 20}, {"name": "b", "start": 19, "end": 30}],
+                "phases": [{"name": name, "start": 1 + at, "end": 30} for at, name in enumerate("abcd")],
             },
-            "'a' (1–20) and 'b' (19–30) overlap; ask for a sheet of each",
+            "phases: as 'd' begins, more than 3 are at one time; ask for a second sheet",
         ),
     ],
 )
