@@ -6,10 +6,14 @@ from typing import TYPE_CHECKING
 
 import pytest
 from live_session import LiveSession
+from running import HttpServer
+from shared_docs import share_docs
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
     from pathlib import Path
+
+    from built_base import Built
 
 
 @pytest.fixture(scope="session")
@@ -46,3 +50,16 @@ def make_session(tmp_path: Path) -> Iterator[Callable[[str], LiveSession]]:
     yield make
     for session in made:
         session.blender.close()
+
+
+@pytest.fixture(scope="session")
+def docs_url(built_once: Built) -> Iterator[str]:
+    """Where the documentation of ``base`` is served."""
+    with HttpServer(built_once.home) as server:
+        yield server.url
+
+
+@pytest.fixture
+def shared_docs(docs_url: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Sessions of this process ask that server, and start none."""
+    share_docs(monkeypatch, docs_url)

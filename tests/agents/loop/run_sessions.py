@@ -11,10 +11,8 @@ from typing import TYPE_CHECKING, Any
 import pytest
 from fake_messages_api import FakeMessagesAPI, Reply
 from live_session import LiveSession
-from mcp.client.stdio import StdioServerParameters, stdio_client
-from mcp.client.streamable_http import streamable_http_client
+from shared_docs import share_docs
 
-from agents.blender import docs_client
 from agents.blender.tools import material_preview, previews, uv_preview
 from agents.blender.tools.files import LOAD
 from agents.blender.tools.scene_state import TOOL as SCENE_STATE
@@ -46,20 +44,6 @@ def make_small(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(answer_source, "connect", lambda *given, **_: connect(*given, pause=lambda seconds: None))
 
 
-def share_docs(patch: pytest.MonkeyPatch, home: Path) -> None:
-    """Sessions ask the home's server of documentation, instead of starting one each: that takes as long as a Blender.
-
-    Of another Blender's documentation, they start their own; so do all that are processes of their own.
-    """
-    if (home / DOCS).exists():
-        url = (home / DOCS).read_text()
-
-        def connected(server: StdioServerParameters, **more: Any) -> Any:
-            return streamable_http_client(url) if server.args[-1] == "serve" else stdio_client(server, **more)
-
-        patch.setattr(docs_client, "stdio_client", connected)
-
-
 @contextmanager
 def at_home(home: Path) -> Iterator[pytest.MonkeyPatch]:
     """A home, small pictures, nobody who answers."""
@@ -71,7 +55,8 @@ def at_home(home: Path) -> Iterator[pytest.MonkeyPatch]:
         ):
             patch.delenv(name, raising=False)
         make_small(patch)
-        share_docs(patch, home)
+        if (home / DOCS).exists():
+            share_docs(patch, (home / DOCS).read_text())
         yield patch
 
 

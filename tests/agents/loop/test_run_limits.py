@@ -145,7 +145,13 @@ def test_a_stop_that_is_asked_for_lets_the_call_under_way_end(api: FakeMessagesA
     assert not played.rows[-2]["failed"]
 
 
-HANG = "import time\ntime.sleep(600)"
+# It hangs until it is ended, but not when it is run again.
+HANG = """
+import os, time
+if not os.path.exists("hung"):
+    open("hung", "w").close()
+    time.sleep(600)
+"""
 
 
 @pytest.mark.timeout(600)
@@ -164,7 +170,7 @@ def test_signals_stop_a_run_gently_then_at_once_and_it_can_be_gone_on_with(
         return None
 
     team = Team(
-        coder={"modeling": (run(HANG, timeout=6), run(crates.STANDING), reply(DONE))},
+        coder={"modeling": (run(HANG, timeout=500), run(crates.STANDING), reply(DONE))},
         decisions={"modeling": (ABORT,)},
         first=first,
     )

@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, Any
 
 import anyio
 import pytest
+from live_session import LiveSession
 from mcp import Client
 from mcp_types import ImageContent
-from serving import ByHand, OverHttp, blenders, environment, have_ended, over_stdio
+from serving import ByHand, OverHttp, blenders, have_ended, over_stdio
 
 from agents.blender.blender_sessions import BlenderSessions, SessionSetup
 from agents.blender.docs_client import DocsClient
@@ -228,8 +229,9 @@ def test_a_client_that_leaves_takes_the_job_with_it_and_finds_the_scene(base: Pa
         server.hang_up()
         server.process.wait(60)
     assert have_ended(started)
-    with ByHand(home, "--run", folder) as server:
-        assert server.run(f"bpy.context.scene['stands'], {BAKED}") == "(1, False)"
+    session = LiveSession(tmp_path / "run")
+    with session.blender:
+        assert session.run(f"bpy.context.scene['stands'], {BAKED}") == (1, False)
 
 
 async def test_over_http_a_job_ends_with_its_session(base: Path) -> None:
@@ -245,9 +247,8 @@ async def test_over_http_a_job_ends_with_its_session(base: Path) -> None:
     assert "Traceback" not in err
 
 
-async def test_the_agent_loop_is_not_offered_jobs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    for name, value in environment(tmp_path).items():
-        monkeypatch.setenv(name, value)
+@pytest.mark.usefixtures("shared_docs")
+async def test_the_agent_loop_is_not_offered_jobs() -> None:
     sessions = BlenderSessions(SessionSetup(sandbox=best_sandbox()))
     async with Client(make_server(sessions, DocsClient())) as client:
         assert "blender_job" not in [tool.name for tool in (await client.list_tools()).tools]

@@ -101,16 +101,3 @@ async def test_code_that_is_too_long_is_refused_in_words(client: Client) -> None
         answer = await client.call_tool(tool, {"code": "#" * 10_000_000})
         assert answer.is_error
         assert len(said(answer)) < 1000
-
-
-async def test_without_a_base_code_runs_and_the_first_reply_says_why_it_was_not_checked(
-    tmp_path: Path,
-) -> None:
-    async with Client(over_stdio(tmp_path)) as connected:
-        first = await run(connected, "bpy.context.scene.name")
-        second = await run(connected, "bpy.context.scene.name")
-    assert "not checked before it runs: " in said(first)
-    assert "There is no knowledge base" in said(first)
-    assert "not checked" not in said(second)
-    assert first.structured_content is not None
-    assert first.structured_content["value"] == "'Scene'"

@@ -5,8 +5,9 @@ from __future__ import annotations
 import json
 import signal
 from ast import literal_eval
+from contextlib import asynccontextmanager
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import anyio
 import anyio.to_thread
@@ -18,7 +19,7 @@ from mcp.shared.exceptions import MCPError
 from serving import OverHttp, await_file, below, blenders, have_ended
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import AsyncIterator, Iterator
 
     from anyio.abc import TaskGroup
     from built_base import Built
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 pytestmark = [pytest.mark.blender, pytest.mark.anyio]
 
 TOKEN = "a-secret-of-this-test"
+WITH_TOKEN = {"Authorization": f"Bearer {TOKEN}"}
 ACCEPT = {"Accept": "application/json, text/event-stream", "Content-Type": "application/json"}
 HELLO = {
     "jsonrpc": "2.0",
@@ -56,6 +58,30 @@ def home(built_once: Built) -> Path:
 def server(home: Path) -> Iterator[OverHttp]:
     with OverHttp(home, "--sessions", "2") as running:
         yield running
+
+
+@pytest.fixture(scope="module")
+def guarded(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Iterator[Guarded]:
+    folder = tmp_path_factory.mktemp("guarded")
+    with OverHttp(home, "--run", str(folder), "--host", "0.0.0.0", SIMWORLDS_TOKEN=TOKEN) as running:
+        yield Guarded(running, running.url.replace("0.0.0.0", "127.0.0.1"), folder)
+
+
+class Guarded(NamedTuple):
+    """A server that asks for a token, and works in one folder."""
+
+    server: OverHttp
+    url: str
+    folder: Path
+
+    @asynccontextmanager
+    async def client(self) -> AsyncIterator[Client]:
+        """One that has the token."""
+        async with (
+            httpx2.AsyncClient(headers=WITH_TOKEN) as http,
+            Client(streamable_http_client(self.url, http_client=http)) as client,
+        ):
+            yield client
 
 
 async def run(client: Client, code: str) -> CallToolResult:
@@ -175,15 +201,14 @@ async def test_closes_an_idle_blender_and_continues_its_run_later(home: Path) ->
             assert blenders(server.process.pid) - first
 
 
-async def test_named_run_folder_serves_one_client(home: Path, tmp_path: Path) -> None:
-    with OverHttp(home, "--run", str(tmp_path / "run")) as server:
-        async with Client(server.url) as second:
-            async with Client(server.url) as first:
-                await run(first, "bpy.context.scene['by'] = 'first'")
-                refused = await run(second, "1")
-                assert refused.is_error
-                assert "--run" in said(refused)
-            assert await value(second, "bpy.context.scene['by']") == "'first'"
+async def test_named_run_folder_serves_one_client(guarded: Guarded) -> None:
+    async with guarded.client() as second:
+        async with guarded.client() as first:
+            await run(first, "bpy.context.scene['by'] = 'first'")
+            refused = await run(second, "1")
+            assert refused.is_error
+            assert "--run" in said(refused)
+        assert await value(second, "bpy.context.scene['by']") == "'first'"
 
 
 # Who is let in
@@ -229,29 +254,27 @@ async def test_unfinished_initialisations_do_not_shut_clients_out(server: OverHt
         assert len((await client.list_tools()).tools) > 1
 
 
-async def test_requires_the_token(home: Path) -> None:
-    with OverHttp(home, "--host", "0.0.0.0", SIMWORLDS_TOKEN=TOKEN) as server:
-        url = server.url.replace("0.0.0.0", "127.0.0.1")
-        for wrong in ({}, {"Authorization": f"Bearer {TOKEN}x"}):
-            assert httpx2.post(url, json=HELLO, headers={**ACCEPT, **wrong}).status_code == 401
-        async with (
-            httpx2.AsyncClient(headers={"Authorization": f"Bearer {TOKEN}"}) as http,
-            Client(streamable_http_client(url, http_client=http)) as client,
-        ):
-            assert len((await client.list_tools()).tools) > 1
+async def test_requires_the_token(guarded: Guarded) -> None:
+    for wrong in ({}, {"Authorization": f"Bearer {TOKEN}x"}):
+        assert httpx2.post(guarded.url, json=HELLO, headers={**ACCEPT, **wrong}).status_code == 401
+    async with guarded.client() as client:
+        assert len((await client.list_tools()).tools) > 1
 
 
 # The end
 
 
-async def test_signal_ends_the_server_and_a_busy_blender(home: Path, tmp_path: Path) -> None:
-    with OverHttp(home, "--run", str(tmp_path)) as server:
-        async with httpx2.AsyncClient(timeout=60) as http, anyio.create_task_group() as calls:
-            session = await Session.begin(http, server.url)
-            await session.occupy(calls, tmp_path / "workspace")
-            started = below(server.process.pid)
-            assert blenders(server.process.pid)
-            code, out, err = server.end(signal.SIGTERM)
+async def test_signal_ends_the_server_and_a_busy_blender(guarded: Guarded) -> None:
+    server = guarded.server
+    async with (
+        httpx2.AsyncClient(timeout=60, headers=WITH_TOKEN) as http,
+        anyio.create_task_group() as calls,
+    ):
+        session = await Session.begin(http, guarded.url)
+        await session.occupy(calls, guarded.folder / "workspace")
+        started = below(server.process.pid)
+        assert blenders(server.process.pid)
+        code, out, err = server.end(signal.SIGTERM)
     assert (code, out) == (0, "")
     assert "Traceback" not in err
     assert have_ended(started)

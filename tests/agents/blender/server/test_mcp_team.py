@@ -144,6 +144,7 @@ async def test_valid_plan_is_accepted_by_the_verifier(client: Client) -> None:
     assert {finding["rule"] for finding in answer.structured_content["findings"]} == {"R1"}
 
 
+@pytest.mark.usefixtures("shared_docs")
 async def test_server_without_team_offers_no_prompts_or_plan_check(tmp_path: Path) -> None:
     blender_sessions = BlenderSessions(SessionSetup(best_sandbox(), run=tmp_path / "run"))
     async with Client(served.make_server(blender_sessions, DocsClient())) as connected:

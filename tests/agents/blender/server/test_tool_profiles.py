@@ -12,10 +12,16 @@ from mcp import Client
 from mcp.shared.exceptions import MCPError
 from mcp_types import TextContent, TextResourceContents, Tool
 from serving import ByHand, blenders, over_stdio
+from shared_docs import share_docs
 from small_plan import small_plan
 
+from agents.blender.blender_sessions import BlenderSessions, SessionSetup
+from agents.blender.docs_client import DocsClient
+from agents.blender.server import make_server
+from agents.blender.team import Team
 from agents.blender.tool_catalogue import TOOLS
-from agents.blender.tool_profiles import PROFILES
+from agents.blender.tool_profiles import DEFAULT, PROFILES
+from simworlds.sandbox.confined_command import best_sandbox
 from simworlds.schemas.json_schema import lean_arguments
 
 if TYPE_CHECKING:
@@ -46,12 +52,23 @@ class Offered(NamedTuple):
 
 
 @pytest.fixture(scope="module")
-async def offers(home: Path) -> AsyncIterator[dict[str, Offered]]:
-    """Of each profile."""
+async def offers(
+    home: Path, docs_url: str, tmp_path_factory: pytest.TempPathFactory
+) -> AsyncIterator[dict[str, Offered]]:
+    """Of each profile; the default one's is a server of its own."""
     async with AsyncExitStack() as servers:
+        share_docs(servers.enter_context(pytest.MonkeyPatch.context()), docs_url)
         made: dict[str, Offered] = {}
         for profile in PROFILES:
-            client = await servers.enter_async_context(Client(over_stdio(home, "--tools", profile)))
+            setup = SessionSetup(best_sandbox(), run=tmp_path_factory.mktemp(profile))
+            sessions = BlenderSessions(setup)
+            servers.callback(sessions.close)
+            server = (
+                over_stdio(home)
+                if profile == DEFAULT
+                else make_server(sessions, DocsClient(), Team(), profile)
+            )
+            client = await servers.enter_async_context(Client(server))
             made[profile] = Offered(client, {tool.name: tool for tool in (await client.list_tools()).tools})
         yield made
 

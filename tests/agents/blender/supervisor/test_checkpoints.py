@@ -289,7 +289,7 @@ def test_reports_a_scene_too_large_to_write(tmp_path: Path) -> None:
     assert of_run(tmp_path / "run") == []
 
 
-def test_skips_checkpoints_that_cannot_be_opened(tmp_path: Path) -> None:
+def test_skips_checkpoints_that_cannot_be_opened_and_removes_half_written_ones(tmp_path: Path) -> None:
     session = LiveSession(tmp_path / "run")
     for name in ("One", "Two"):
         session.run(adding(name))
@@ -299,9 +299,15 @@ def test_skips_checkpoints_that_cannot_be_opened(tmp_path: Path) -> None:
     files = sorted((tmp_path / "run" / "checkpoints").iterdir())
     files[-1].write_bytes(files[-1].read_bytes()[:2000])
     files[-2].write_bytes(b"no blend at all")
+    (tmp_path / "run" / "checkpoints" / ".000009.blend.part").write_bytes(b"half")
+    (tmp_path / "run" / "workspace" / "scene.blend@").write_bytes(b"half")
+    (tmp_path / "run" / "checkpoints" / "notes.txt").write_text("mine")
     again = LiveSession(tmp_path / "run")
     try:
         assert again.run(NAMES) == ["One"]
+        assert not list((tmp_path / "run").rglob("*.part"))
+        assert not list((tmp_path / "run").rglob("*.blend@"))
+        assert (tmp_path / "run" / "checkpoints" / "notes.txt").exists()
         last = again.blender.checkpoints.last
         assert last is not None
         assert last.number > int(files[-1].stem)
@@ -309,23 +315,6 @@ def test_skips_checkpoints_that_cannot_be_opened(tmp_path: Path) -> None:
         with pytest.raises(Died, match="the scene as it was before"):
             again.use(TOOL, code=CRASH)
         assert again.run(NAMES) == ["One"]
-    finally:
-        again.blender.close()
-
-
-def test_removes_half_written_checkpoints(tmp_path: Path) -> None:
-    session = LiveSession(tmp_path / "run")
-    session.run(adding("Kept"))
-    session.blender.close()
-    (tmp_path / "run" / "checkpoints" / ".000009.blend.part").write_bytes(b"half")
-    (tmp_path / "run" / "workspace" / "scene.blend@").write_bytes(b"half")
-    (tmp_path / "run" / "checkpoints" / "notes.txt").write_text("mine")
-    again = LiveSession(tmp_path / "run")
-    try:
-        assert again.run(NAMES) == ["Kept"]
-        assert not list((tmp_path / "run").rglob("*.part"))
-        assert not list((tmp_path / "run").rglob("*.blend@"))
-        assert (tmp_path / "run" / "checkpoints" / "notes.txt").exists()
     finally:
         again.blender.close()
 

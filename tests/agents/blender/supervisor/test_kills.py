@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 import pytest
 from live_session import LiveSession
 from processes import becomes, of_run
-from whole import examples
+from whole import IS_WHOLE, examples
 
 from agents.blender.tools.execute import TOOL
 from simworlds.sandbox.errors import BlenderError, Lost
@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-KILLS = 2 * examples(4)  # of each of the five, half of them of the process around Blender
-SEED = 20251
+KILLS = 8 if IS_WHOLE else 2  # of each of the five, half of them of the process around Blender
+SEED = 20722
 
 # A scene that takes a moment to write, and has something to bake and to render.
 SCENE = """
 import numpy
 mesh = bpy.data.meshes.new('Large')
-mesh.vertices.add(150_000)
-mesh.vertices.foreach_set('co', numpy.random.default_rng(1).random(450_000, dtype=numpy.float32) * 0.1)
+mesh.vertices.add(60_000)
+mesh.vertices.foreach_set('co', numpy.random.default_rng(1).random(180_000, dtype=numpy.float32) * 0.1)
 scene = bpy.context.scene
 scene.collection.objects.link(bpy.data.objects.new('Large', mesh))
 bpy.ops.mesh.primitive_plane_add(size=10)
@@ -53,7 +53,7 @@ scene.render.filepath = '//still.png'
 scene['round'] = 0
 """
 CODE = {
-    "execute": "for i in range(40):\n    bpy.data.objects['Large'].location.x = i\n"
+    "execute": "for i in range(20):\n    bpy.data.objects['Large'].location.x = i\n"
     "    bpy.context.view_layer.update()\n    bpy.ops.mesh.primitive_monkey_add()",
     "bake": "bpy.ops.ptcache.bake_all(bake=True)",
     "render": "bpy.ops.render.render(write_still=True)",
@@ -95,7 +95,7 @@ def opens_elsewhere(paths: list[Path], key: str) -> list[int]:
     code = (
         f"import bpy, os, sys\nfor path in sys.argv[1:]:\n    bpy.ops.wm.open_mainfile(filepath=path)\n"
         f"    mark = bpy.context.scene.get({key!r}, -2)\n"
-        f"    assert mark == -2 or len(bpy.data.meshes['Large'].vertices) == 150_000\n"
+        f"    assert mark == -2 or len(bpy.data.meshes['Large'].vertices) == 60_000\n"
         f"    sys.stderr.write(f'{{mark}}\\n')\nos._exit(0)"
     )
     words = [sys.executable, "-c", code, *map(str, paths)]
