@@ -76,11 +76,14 @@ def test_nothing_is_done_when_nothing_has_changed(small: Built) -> None:
     assert stamp(small.path) == before
 
 
-def test_a_changed_page_makes_a_new_base_without_asking_blender_again(small: Built) -> None:
+def test_changed_pages_make_a_new_base_without_asking_blender_again(small: Built) -> None:
+    """Of two pages with one name, the manual's is kept, and the other named."""
     extract = next((small.home / "extracts").glob("*.jsonl"))
     before = stamp(extract)
     page = small.corpora / f"manual-{small.minor}-rst" / "physics" / "index.rst"
     page.write_text(page.read_text() + "\nWobbling jelly is simulated, too.\n")
+    guides = small.corpora / f"api-guides-{small.minor}-rst"
+    (guides / "index.rst").write_text("Guides\n======\n\n.. toctree::\n\n   info_overview\n   info_traps\n")
     report = build(None, options=small.options, home=small.home)
     assert report.built
     records = rows(small.path, "SELECT slug, record FROM pages")
@@ -88,6 +91,8 @@ def test_a_changed_page_makes_a_new_base_without_asking_blender_again(small: Bui
         "physics/index"
     ]
     assert stamp(extract) == before
+    assert rows(small.path, "SELECT source FROM pages WHERE slug = 'index'") == [("manual",)]
+    assert any("two pages are called index" in warning for warning in report.warnings)
 
 
 def test_pages_are_not_read_again_when_only_an_option_changes(small: Built) -> None:
@@ -121,31 +126,35 @@ def test_force_asks_blender_and_builds_again_what_has_not_changed(small: Built, 
     assert asked.read_text() == "\n\n"
 
 
-def test_a_damaged_base_is_built_again(small: Built) -> None:
-    data = small.path.read_bytes()
-    small.path.write_bytes(data[: len(data) // 2])
-    assert build(None, options=small.options, home=small.home).built
-    assert small.path.stat().st_size > len(data) // 2
-
-
-def test_damaged_pages_in_the_cache_are_read_again(small: Built) -> None:
+def test_a_damaged_base_is_built_again_and_damaged_pages_in_the_cache_are_read_again(small: Built) -> None:
     for path in (small.home / "cache" / "pages").iterdir():
         path.write_bytes(path.read_bytes()[:100])
-    small.path.unlink()
+    data = small.path.read_bytes()
+    small.path.write_bytes(data[: len(data) // 2])
     report = build(None, options=small.options, home=small.home)
+    assert report.built
+    assert small.path.stat().st_size > len(data) // 2
     assert json.loads(report.meta["counts"]) == json.loads(small.report.meta["counts"])
 
 
-def test_a_missing_source_is_named_in_the_report_and_in_the_base(small: Built) -> None:
+def test_a_missing_source_and_one_of_another_version_are_named_in_the_report_and_in_the_base(
+    small: Built,
+) -> None:
     guides = small.corpora / f"api-guides-{small.minor}-rst"
     guides.rename(small.corpora / "elsewhere")
-    report = build(None, options=small.options, home=small.home)
+    other = small.corpora / "manual-4.4-rst"
+    (small.corpora / f"manual-{small.minor}-rst").rename(other)
+    report = build(None, options=replace(small.options, manual=other), home=small.home)
     assert report.built
     assert [one.role for one in report.missing] == ["guides"]
     assert any("--guides PATH" in warning for warning in report.warnings)
     recorded = json.loads(report.meta["missing"])
     assert [one["role"] for one in recorded] == ["guides"]
     assert recorded[0]["reason"] == report.missing[0].reason
+    assert any("is of Blender 4.4" in warning for warning in report.warnings)
+    manual = next(one for one in json.loads(report.meta["sources"]) if one["role"] == "manual")
+    assert (manual["version"], manual["given"]) == ("4.4", True)
+    assert rows(small.path, "SELECT DISTINCT version FROM pages WHERE source = 'manual'") == [("4.4",)]
 
 
 def test_a_required_source_that_is_missing_is_an_error_and_the_old_base_stands(small: Built) -> None:
@@ -156,16 +165,6 @@ def test_a_required_source_that_is_missing_is_an_error_and_the_old_base_stands(s
     assert stamp(small.path) == before
 
 
-def test_a_manual_of_another_version_is_taken_by_path_and_said_so(small: Built) -> None:
-    other = small.corpora / "manual-4.4-rst"
-    (small.corpora / f"manual-{small.minor}-rst").rename(other)
-    report = build(None, options=replace(small.options, manual=other), home=small.home)
-    assert any("is of Blender 4.4" in warning for warning in report.warnings)
-    manual = next(one for one in json.loads(report.meta["sources"]) if one["role"] == "manual")
-    assert (manual["version"], manual["given"]) == ("4.4", True)
-    assert rows(small.path, "SELECT DISTINCT version FROM pages WHERE source = 'manual'") == [("4.4",)]
-
-
 def test_a_base_can_be_built_without_pages_into_any_file(small: Built, tmp_path: Path) -> None:
     output = tmp_path / "else" / "where.sqlite"
     options = BuildOptions(pages=False, output=output)
@@ -174,14 +173,6 @@ def test_a_base_can_be_built_without_pages_into_any_file(small: Built, tmp_path:
     assert rows(output, "SELECT DISTINCT source FROM pages") == [("template",)]
     assert json.loads(report.meta["missing"]) == []
     assert not build(small.minor, options=options, home=small.home).built
-
-
-def test_of_two_pages_with_one_name_the_manuals_is_kept_and_the_other_named(small: Built) -> None:
-    guides = small.corpora / f"api-guides-{small.minor}-rst"
-    (guides / "index.rst").write_text("Guides\n======\n\n.. toctree::\n\n   info_overview\n   info_traps\n")
-    report = build(None, options=small.options, home=small.home)
-    assert rows(small.path, "SELECT source FROM pages WHERE slug = 'index'") == [("manual",)]
-    assert any("two pages are called index" in warning for warning in report.warnings)
 
 
 @pytest.mark.corpora

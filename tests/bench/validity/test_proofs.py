@@ -17,6 +17,7 @@ from bench.audit.predicates.predicate import PredicateVerdict
 from bench.audit.untrusted_blend import Crashed
 from bench.validity import variant_builder
 from bench.validity.invariance.actor_names import actor_objects
+from bench.validity.mutations.planning import MUTATIONS
 from bench.validity.run import prove_property
 from bench.validity.variant_builder import VariantBuilder
 
@@ -133,19 +134,19 @@ def test_a_counterfeit_that_looks_different_proves_nothing(
 # Mutations
 
 
-def test_every_mutation_fails_its_check_and_no_other(
-    drape: VariantBuilder, pour: VariantBuilder, room: VariantBuilder
-) -> None:
-    for builder in (drape, pour, room):
-        proof = prove_property(builder, "mutations")
-        assert faults(proof) == {}
-        broken = {row.values.get("predicate") for row in proof.rows if row.holds}
-        asked = [
-            check.predicate
-            for actor in builder.spec.actors
-            for check in (*actor.must_have, *actor.must_not_have)
-        ]
-        assert {*asked, *(check.predicate for check in builder.spec.assertions)} <= broken
+# Of the drape, all mutations but two are seen to do so where one predicate always passes.
+@pytest.mark.parametrize("name", [pytest.param("drape", marks=pytest.mark.whole), "pour", "room"])
+def test_every_mutation_fails_its_check_and_no_other(name: str, request: pytest.FixtureRequest) -> None:
+    builder: VariantBuilder = request.getfixturevalue(name)
+    proof = prove_property(builder, "mutations")
+    assert faults(proof) == {}
+    broken = {row.values.get("predicate") for row in proof.rows if row.holds}
+    asked = [
+        check.predicate
+        for actor in builder.spec.actors
+        for check in (*actor.must_have, *actor.must_not_have)
+    ]
+    assert {*asked, *(check.predicate for check in builder.spec.assertions)} <= broken
 
 
 def always(unit: Unit, stage: AuditContext, params: PredicateParams) -> PredicateVerdict:
@@ -177,6 +178,8 @@ def test_detects_a_predicate_that_fails_without_a_reason(
     drape: VariantBuilder, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(PREDICATES, "renderable", replace(PREDICATES["renderable"], judge=if_baked))
+    few = {name: made if name == "cloth_cache_baked" else () for name, made in MUTATIONS.items()}
+    monkeypatch.setattr("bench.validity.mutations.planning.MUTATIONS", few)
     found = faults(prove_property(otherwise(drape), "mutations"))
     assert "lamp: renderable" in found["tablecloth: cloth_cache_baked by free bake CLOTH"]
 

@@ -192,7 +192,7 @@ async def test_a_cancelled_call_is_undone(server: OverHttp) -> None:
 
 
 async def test_closes_an_idle_blender_and_continues_its_run_later(home: Path) -> None:
-    with OverHttp(home, "--idle", "0.05") as server:
+    with OverHttp(home, "--idle", "0.02") as server:
         async with Client(server.url) as client:
             await run(client, "bpy.ops.mesh.primitive_cone_add()\nbpy.context.object.name = 'Left'")
             first = blenders(server.process.pid)
