@@ -16,13 +16,18 @@ HERE = Path(__file__).resolve().parent
 REPO = HERE.parent.parent.parent
 PATH = os.pathsep.join(map(str, (REPO, HERE, HERE.parent, HERE.parent.parent)))
 _SECONDS = 240.0
+# What begins a run starts the server of its documentation itself.
 _MAIN = """\
+import sys
 import pytest
-from run_sessions import make_small
+from run_sessions import make_small, share_docs_of
 from simworlds.cli import main
+from simworlds.settings import home_folder
 
 with pytest.MonkeyPatch.context() as patch:
     make_small(patch)
+    if sys.argv[1] == "resume":
+        share_docs_of(patch, home_folder())
     main(prog_name="simworlds")
 """
 

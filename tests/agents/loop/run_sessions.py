@@ -44,6 +44,12 @@ def make_small(patch: pytest.MonkeyPatch) -> None:
     patch.setattr(answer_source, "connect", lambda *given, **_: connect(*given, pause=lambda seconds: None))
 
 
+def share_docs_of(patch: pytest.MonkeyPatch, home: Path) -> None:
+    """Sessions ask the home's server of documentation, if it has one."""
+    if (home / DOCS).exists():
+        share_docs(patch, (home / DOCS).read_text())
+
+
 @contextmanager
 def at_home(home: Path) -> Iterator[pytest.MonkeyPatch]:
     """A home, small pictures, nobody who answers."""
@@ -55,8 +61,7 @@ def at_home(home: Path) -> Iterator[pytest.MonkeyPatch]:
         ):
             patch.delenv(name, raising=False)
         make_small(patch)
-        if (home / DOCS).exists():
-            share_docs(patch, (home / DOCS).read_text())
+        share_docs_of(patch, home)
         yield patch
 
 

@@ -60,7 +60,7 @@ def test_the_audit_refuses_it_and_says_why(name: str, refused: dict[str, str]) -
     assert "the limit is " in refused[name]
 
 
-@pytest.mark.parametrize("name", by_turns(HEAVY))
+@pytest.mark.parametrize("name", by_turns(HEAVY, 6))
 def test_loading_it_is_refused_and_leaves_the_scene(
     name: str, files: Path, live: LiveSession, refused: dict[str, str]
 ) -> None:

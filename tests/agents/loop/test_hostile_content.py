@@ -13,6 +13,7 @@ from hostile_text import HOSTILE, on_terminal, steering
 from places import REPO
 from running import run_here
 from sample_runs import Tape, write
+from whole import IS_WHOLE
 
 from simworlds.sandbox.runtime import clean_environment, installed_bpy
 
@@ -153,9 +154,36 @@ def test_what_a_command_prints_steers_nothing(name: str, place: Path) -> None:
     assert steering(printed) == []
 
 
+# All of them one after the other on one terminal: what takes long of a command is its start.
+_MARK = "=== The command: "
+_EACH = f"""
+import json, sys, traceback
+from simworlds.cli import main
+for name, words in json.loads(sys.argv[1]).items():
+    print({_MARK!r} + name, flush=True)
+    try:
+        main(words, prog_name="simworlds")
+    except SystemExit:
+        pass
+    except BaseException:
+        traceback.print_exc()
+"""
+
+
+@pytest.fixture(scope="module")
+def drawn(place: Path) -> dict[str, str]:
+    """What each command draws."""
+    names = [name for name in WORDS if name in ALIKE | DRAWN or (IS_WHOLE and name not in FOR_PROGRAMS)]
+    words = {name: words_of(place, name) for name in names}
+    printed = on_terminal([sys.executable, "-c", _EACH, json.dumps(words)], environment(place))
+    parts = printed.split(_MARK)[1:]
+    assert len(parts) == len(names), printed
+    return dict(zip(names, parts, strict=True))
+
+
 @pytest.mark.parametrize("name", ON_TERMINAL)
-def test_what_a_command_draws_on_a_terminal_steers_nothing(name: str, place: Path) -> None:
-    printed = on_terminal([*COMMAND, *words_of(place, name)], environment(place))
+def test_what_a_command_draws_on_a_terminal_steers_nothing(name: str, drawn: dict[str, str]) -> None:
+    printed = drawn[name]
     assert "evil" in printed, printed
     assert "Traceback" not in printed
     assert steering(printed, is_terminal=True) == []

@@ -71,6 +71,7 @@ def test_a_failure_to_save_is_tried_again_when_the_run_is_resumed(
         if (row["type"], row.get("stage")) == ("stage.began", "camera"):
             in_the_way.mkdir(parents=True)
 
+    api.answer = Team(decisions={"light": (ABORT,)})
     first = sit(root, seat(on_row=block))
     assert first.ended.how == "failed"
     assert "is a folder of this run" in first.ended.why
@@ -78,7 +79,8 @@ def test_a_failure_to_save_is_tried_again_when_the_run_is_resumed(
     in_the_way.rmdir()
     asked = len(api.requests)
     second = go_on(root)
-    assert second.ended.how == "done"
+    assert second.ended.how == "aborted"
+    assert [row["stage"] for row in second.of("stage.closed")] == ["modeling", "camera"]
     assert len(api.requests) == len(second.of("model.answered")) > asked
     saved = second.of("tool.answered", role="runner", stage="camera", name="blender_save")
     assert [row["failed"] for row in saved] == [True, True, True, False, False]

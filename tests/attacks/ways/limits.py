@@ -77,7 +77,7 @@ WAYS = (
         "take-shared-memory",
         "memory",
         "import mmap\nshared = mmap.mmap(-1, 3 << 30)\n"
-        "for at in range(0, 3 << 30, 4096): shared[at] = 1\ntime.sleep(2)\nTrue",
+        "for at in range(0, 3 << 30, 1 << 20): shared[at : at + (1 << 20)] = bytes(1 << 20)\ntime.sleep(2)\nTrue",
         timeout=40.0,
         once=True,
     ),
@@ -195,7 +195,7 @@ WAYS = (
         "one-large-file-of-blender",
         "import numpy\nmesh = bpy.data.meshes.new('large')\nmesh.use_fake_user = True\n"
         "mesh.vertices.add(14_000_000)\n"
-        "mesh.vertices.foreach_set('co', numpy.random.random(42_000_000).astype('float32'))\n"
+        "mesh.vertices.foreach_set('co', numpy.ones(42_000_000, 'float32'))\n"
         "try: bpy.ops.wm.save_as_mainfile(filepath=bpy.path.abspath('//large.blend'), copy=True)\n"
         "finally: bpy.data.meshes.remove(mesh)  # else it is kept as a checkpoint\nTrue",
         spoils=True,

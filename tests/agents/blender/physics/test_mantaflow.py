@@ -44,12 +44,8 @@ def test_executed_code_may_bake_a_fluid(own_session: LiveSession) -> None:
     assert own_session.run(POUR) > 100
 
 
-def test_code_that_speaks_of_manta_early_does_no_harm(own_session: LiveSession) -> None:
+def test_code_that_speaks_of_manta_early_or_drops_it_does_no_harm(own_session: LiveSession) -> None:
     own_session.run("compile('from manta import *', 'x', 'exec')\nfrom manta import *")
-    assert own_session.run(POUR) > 100
-
-
-def test_code_that_drops_manta_does_no_harm(own_session: LiveSession) -> None:
     assert own_session.run(POUR) > 100
     own_session.run("import sys\ndel sys.modules['manta']\nbpy.ops.wm.read_factory_settings(use_empty=True)")
     assert own_session.run(POUR) > 100
