@@ -11,6 +11,7 @@ import fcntl
 import hashlib
 import json
 import os
+import re
 import resource
 import secrets
 import shutil
@@ -33,6 +34,8 @@ if TYPE_CHECKING:
 
 HELPERS = Path(__file__).with_name("inside") / "helpers.py"
 MOST_MEMORY = 1 << 30  # bytes that a server may take for one call
+_BEGINS = b"sw-secret-"
+_SECRET = re.compile(_BEGINS + rb"[0-9a-f]{16}")
 _FLAGS = 0x80086601  # FS_IOC_GETFLAGS
 _WITNESS = """
 import ctypes, os, sys, tempfile, time
@@ -69,7 +72,7 @@ class Outside:
 
     def secret(self, of: str) -> str:
         """A word that is nowhere but where ``of`` says."""
-        return self.secrets.setdefault(of, f"sw-secret-{secrets.token_hex(8)}")
+        return self.secrets.setdefault(of, f"{_BEGINS.decode()}{secrets.token_hex(8)}")
 
     # Making it
 
@@ -225,10 +228,10 @@ class Outside:
         return found
 
     def _got_out(self, host: Host, answers: list[dict[str, Any]]) -> Iterator[str]:
-        text = json.dumps(answers)
-        kept = b"".join(_contents(host.root))
+        told = {*_SECRET.findall(json.dumps(answers).encode())}
+        kept = {secret for content in _contents(host.root) for secret in _secrets_in(content)}
         for of, secret in self.secrets.items():
-            if secret in text:
+            if secret.encode() in told:
                 yield f"{of} came back in a reply"
             if secret.encode() in kept:
                 yield f"{of} was copied into the run's folder"
@@ -381,6 +384,11 @@ def _file_state(path: Path) -> Any:
         return [*state, status.st_mtime_ns, status.st_size, content, attributes, flags]
     except FileNotFoundError:
         return None
+
+
+def _secrets_in(content: bytes) -> list[bytes]:
+    """All that is or may be a secret. What they begin with is looked for first: there is much to read."""
+    return _SECRET.findall(content) if _BEGINS in content else []
 
 
 def _contents(root: Path) -> Iterator[bytes]:

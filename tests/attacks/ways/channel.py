@@ -76,7 +76,7 @@ WAYS = (
     _send(
         "reply-with-half-a-frame",
         "os.write(wire._fd, wire._encode({'ticket': ticket, 'value': None})[:60])\ntime.sleep(10)",
-        timeout=1.5,
+        timeout=0.7,
     ),
     _send(
         "reply-with-a-frame-of-four-gigabytes",
@@ -100,7 +100,7 @@ WAYS = (
     _send(
         "reply-with-progress-without-end",
         "while True: wire.send({'ticket': ticket, 'progress': [0, None, 'x' * 9999]})",
-        timeout=1.5,
+        timeout=0.7,
     ),
     _send(
         "reply-with-progress-to-nowhere",
@@ -119,7 +119,7 @@ WAYS = (
         "channel deadline",
         f"{_WIRE}type(wire).send.__code__ = (lambda self, message: None).__code__\nNone",
         "None",
-        timeout=1.5,
+        timeout=0.7,
         spoils=True,
         once=True,
     ),
@@ -129,7 +129,7 @@ WAYS = (
         f"{_WIRE}send = wire.send\n"
         f"wire.send = lambda message: [time.sleep(0.01) or send({{'ticket': message['ticket'], "
         f"'progress': [0, 1, '']}}) for _ in iter(int, 1)]\nNone",
-        timeout=1.5,
+        timeout=0.7,
         spoils=True,
         once=True,
     ),
