@@ -26,9 +26,10 @@ if TYPE_CHECKING:
 Event = tuple[Any, ...]
 Kind = tuple[str, str | None, str | None]
 _SECONDS = 240.0
-# What a run goes on from by ways of its own: a question, an answer, a call of a tool and its outcome, a checkpoint, a
-# picture. Rows of all types are taken where the whole table is asked for.
-_TELLING = {"model.asked", "model.answered", "tool.called", "tool.answered", "stage.closed", "rendered"}
+# What a run goes on from by ways of its own: an answer that nothing came of yet, a call without its outcome, a
+# checkpoint, a picture that is not told of. Rows of all types are taken where the whole table is asked for. By turns
+# before and behind, a question's rows and its answer's are the same moment, and so are a call's and its outcome's.
+_TELLING = {"model.answered", "tool.answered", "stage.closed", "rendered"}
 
 
 def events(rows: Iterable[Mapping[str, Any]]) -> list[Event]:

@@ -142,9 +142,7 @@ def test_every_mutation_fails_its_check_and_no_other(name: str, request: pytest.
     assert faults(proof) == {}
     broken = {row.values.get("predicate") for row in proof.rows if row.holds}
     asked = [
-        check.predicate
-        for actor in builder.spec.actors
-        for check in (*actor.must_have, *actor.must_not_have)
+        check.predicate for actor in builder.spec.actors for check in (*actor.must_have, *actor.must_not_have)
     ]
     assert {*asked, *(check.predicate for check in builder.spec.assertions)} <= broken
 
