@@ -109,6 +109,7 @@ def test_shows_the_scene_at_frames_through_its_camera(session: LiveSession) -> N
     assert session.run("bpy.context.scene.frame_current") == 1
 
 
+@pytest.mark.whole
 def test_objects_come_as_they_were_named(session: LiveSession) -> None:
     build(session, CLOSED_ROOM)
     named = session.use(material_preview.TOOL, show="objects", objects=["The Shell", "The Chest 1"])

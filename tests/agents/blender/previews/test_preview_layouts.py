@@ -43,7 +43,7 @@ THIN = HOUSE + "box('Shell', (0, 0, 1.25), (4.4, 4.4, 2.5), (.6, .6, .6)).parent
     [
         pytest.param(THICK, marks=pytest.mark.whole),
         THICK + "house.rotation_euler.z = .6\n",
-        THIN,
+        pytest.param(THIN, marks=pytest.mark.whole),
     ],
     ids=["thick", "turned", "one box"],
 )

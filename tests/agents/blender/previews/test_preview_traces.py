@@ -75,7 +75,7 @@ def test_no_preview_leaves_a_trace(session: LiveSession, monkeypatch: pytest.Mon
     session.use(previews.SCENE_LAYOUT)
     session.use(previews.SINGLE_MESH, object="Table", frame=9)
     assert census(session) == before
-    session.use(material_preview.TOOL, frames=[9], width=64)
+    session.use(material_preview.TOOL, frames=[9], width=64, objects=["Table"])
     assert census(session) == before
     session.run("bpy.data.objects['Table'].location.x += 1e-3")
     assert census(session) != before, "the census sees nothing"

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from PIL import Image
 from preview_views import SIZE, Views, build, is_coloured
+from whole import by_turns
 
 from agents.blender.sheets import contact_sheet
 from agents.blender.tools import previews
@@ -301,7 +302,7 @@ def test_cycles_draws_where_there_is_no_graphics_driver(own_session: LiveSession
     assert is_coloured(views.middle("front"), "red")
 
 
-@pytest.mark.parametrize("turn", [0, pytest.param(90, marks=pytest.mark.whole), 150])
+@pytest.mark.parametrize("turn", by_turns([150, 0, 90], 3))
 def test_an_object_is_seen_along_its_own_axes(session: LiveSession, turn: float) -> None:
     build(
         session,

@@ -410,6 +410,7 @@ def test_nothing_can_be_mounted_or_made_root(confined: LiveSession) -> None:
 # Amounts
 
 
+@WHOLE
 def test_one_file_grows_to_its_limit_and_no_further(confined: LiveSession) -> None:
     assert tried(confined, "open('big', 'wb').write(bytes(40 << 20))")[0] == "OSError"
     assert (confined.blender.folder.workspace.mount / "big").stat().st_size <= LIMITS.file_size
@@ -468,6 +469,7 @@ def test_limits_hold_for_short_calls(confined: LiveSession) -> None:
     assert confined.run("import time; time.sleep(0.6); 1 + 1") == 2
 
 
+@WHOLE
 def test_memory_limit_holds(confined: LiveSession) -> None:
     assert tried(confined, "bytearray(4 << 30)")[0] == "MemoryError"
     assert tried(confined, "import mmap\nmmap.mmap(-1, 4 << 30, flags=mmap.MAP_PRIVATE)")[0] in {
