@@ -126,34 +126,34 @@ WAYS = (
         "one-large-file-by-reservation",
         "number = os.open('big', os.O_CREAT | os.O_WRONLY)\nos.posix_fallocate(number, 0, 1 << 30) or True",
     ),
-    _disk("many-files", "for number in range(15_000): open(f'f{number}', 'w').write('x')\nTrue"),
-    _disk("many-empty-files", "for number in range(15_000): open(f'f{number}', 'w').close()\nTrue"),
-    _disk("many-folders", "for number in range(15_000): os.mkdir(f'd{number}')\nTrue"),
-    _disk("many-links", "for number in range(15_000): os.symlink('x' * 200, f'l{number}')\nTrue"),
+    _disk("many-files", "for number in range(4_000): open(f'f{number}', 'w').write('x')\nTrue"),
+    _disk("many-empty-files", "for number in range(4_000): open(f'f{number}', 'w').close()\nTrue"),
+    _disk("many-folders", "for number in range(4_000): os.mkdir(f'd{number}')\nTrue"),
+    _disk("many-links", "for number in range(4_000): os.symlink('x' * 200, f'l{number}')\nTrue"),
     _disk(
         "many-names-of-one-file",
-        "write('f')\nfor number in range(15_000): os.link('f', f'{number:0200}')\nTrue",
+        "write('f')\nfor number in range(4_000): os.link('f', f'{number:0200}')\nTrue",
     ),
     _disk(
         "many-files-in-folders-in-folders",
         "os.makedirs('/'.join('d' * 60))\n"
-        "for number in range(15_000): open('/'.join('d' * 60) + f'/{number}', 'w').close()\nTrue",
+        "for number in range(4_000): open('/'.join('d' * 60) + f'/{number}', 'w').close()\nTrue",
     ),
-    _disk("folders-without-end", "for number in range(10_000): os.mkdir('d'); os.chdir('d')\nTrue"),
-    _disk("many-bytes", "for number in range(60): open(f'b{number}', 'wb').write(bytes(10 << 20))\nTrue"),
+    _disk("folders-without-end", "for number in range(3_000): os.mkdir('d'); os.chdir('d')\nTrue"),
+    _disk("many-bytes", "for number in range(30): open(f'b{number}', 'wb').write(bytes(10 << 20))\nTrue"),
     _disk(
         "many-bytes-in-the-temporary-folder",
-        "for number in range(60): open(os.environ['TMPDIR'] + f'/b{number}', "
+        "for number in range(30): open(os.environ['TMPDIR'] + f'/b{number}', "
         "'wb').write(bytes(10 << 20))\nTrue",
     ),
     _disk(
         "many-bytes-in-nameless-files",
-        "kept = []\nfor number in range(60):\n    kept.append(open('b', 'wb', 0))\n"
+        "kept = []\nfor number in range(30):\n    kept.append(open('b', 'wb', 0))\n"
         "    kept[-1].write(bytes(10 << 20))\n    os.unlink('b')\ntime.sleep(3)\nTrue",
     ),
     _disk(
         "many-bytes-in-files-without-any-name",
-        "kept = [os.open('.', os.O_TMPFILE | os.O_RDWR) for _ in range(60)]\n"
+        "kept = [os.open('.', os.O_TMPFILE | os.O_RDWR) for _ in range(30)]\n"
         "for number in kept: os.write(number, bytes(10 << 20))\ntime.sleep(3)\nTrue",
     ),
     _disk(
@@ -167,7 +167,7 @@ WAYS = (
     _disk(
         "many-bytes-behind-many-files",
         "for number in range(390): open(f'f{number}', 'w').close()\n"
-        "for number in range(60): open('f1' + str(number % 9), 'ab').write(bytes(10 << 20))\nTrue",
+        "for number in range(30): open('f1' + str(number % 9), 'ab').write(bytes(10 << 20))\nTrue",
     ),
     _disk(
         "many-bytes-by-reservation",
@@ -183,7 +183,7 @@ WAYS = (
     _disk(
         "bytes-after-a-change-of-mode",
         "os.mkdir('d')\n"
-        "for number in range(60): open(f'd/b{number}', 'wb').write(bytes(10 << 20)) if number "
+        "for number in range(30): open(f'd/b{number}', 'wb').write(bytes(10 << 20)) if number "
         "else os.chmod('d', 0o300)\nTrue",
     ),
     _disk(
