@@ -233,7 +233,7 @@ async def test_cancelling_a_waiting_call_affects_no_other_call(
             await run(client, f"bpy.context.scene['ran'] += {letter!r}\nimport time; time.sleep({seconds})")
 
     async with anyio.create_task_group() as calls:
-        for call in (("a", 60, 3), ("b", 0.2), ("c", 60)):
+        for call in (("a", 60, 1.5), ("b", 0.2), ("c", 60)):
             calls.start_soon(add, *call)
             await anyio.wait_all_tasks_blocked()
     assert await value(client, "bpy.context.scene['ran']") == "'ac'"

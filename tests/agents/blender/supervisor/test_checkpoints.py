@@ -89,7 +89,7 @@ def test_keeps_a_large_scene_less_often(kept: LiveSession, monkeypatch: pytest.M
     large = kept.blender.keep("a large scene")
     assert large.bytes > 3_000_000
     assert kept.blender.checkpoints._cost > 0
-    cost = kept.blender.checkpoints._cost = 0.5  # as long as the calls that follow cannot take
+    cost = kept.blender.checkpoints._cost = 0.25  # as long as the calls that follow cannot take
     kept.run(adding("Quick"))
     kept.run(adding("Quick, too"))
     assert numbers(kept)[0] == large.number
