@@ -52,9 +52,11 @@ _MACHINERY = {
 }
 
 
-def _range_text(low: float | None, high: float | None) -> str:
-    left = "−∞" if low is None else f"{low:g}"
-    right = "∞" if high is None else f"{high:g}"
+def _range_text(low: float | None, high: float | None, kind: str) -> str:
+    """The range of a number; ``kind`` is its type, as symbols have it: integers are written whole."""
+    digits = ".0f" if kind.startswith("int") else "g"
+    left = "−∞" if low is None else f"{low:{digits}}"
+    right = "∞" if high is None else f"{high:{digits}}"
     return f"{left} … {right}"
 
 
@@ -67,12 +69,12 @@ def facts(symbol: Symbol) -> Iterator[str]:
     if text := default_text(symbol):
         yield f"default: {text}"
     if symbol.hard_min is not None or symbol.hard_max is not None:
-        text = f"range: {_range_text(symbol.hard_min, symbol.hard_max)}"
+        text = f"range: {_range_text(symbol.hard_min, symbol.hard_max, symbol.type)}"
         if (symbol.soft_min, symbol.soft_max) != (symbol.hard_min, symbol.hard_max):
-            text += f" (slider {_range_text(symbol.soft_min, symbol.soft_max)})"
+            text += f" (slider {_range_text(symbol.soft_min, symbol.soft_max, symbol.type)})"
         yield text
     elif symbol.soft_min is not None or symbol.soft_max is not None:
-        yield f"slider: {_range_text(symbol.soft_min, symbol.soft_max)}"
+        yield f"slider: {_range_text(symbol.soft_min, symbol.soft_max, symbol.type)}"
     if symbol.unit:
         yield f"unit: {_UNITS.get(symbol.unit, symbol.unit.lower())}"
     if symbol.subtype and symbol.subtype not in {"UNSIGNED"}:
@@ -130,7 +132,7 @@ def _parameter_line(parameter: Parameter, written: str = "") -> str:
     elif default := _default_text(parameter, written):
         notes.append(f"default `{default}`")
     if parameter.hard_min is not None or parameter.hard_max is not None:
-        notes.append(f"range {_range_text(parameter.hard_min, parameter.hard_max)}")
+        notes.append(f"range {_range_text(parameter.hard_min, parameter.hard_max, parameter.type)}")
     if parameter.unit:
         notes.append(_UNITS.get(parameter.unit, parameter.unit.lower()))
     noted = ", ".join(note for note in notes if note)

@@ -43,6 +43,8 @@ def test_a_property_in_one_look(kb: KnowledgeBase) -> None:
          ["type: `float`", "range: 0 … ∞ (slider −∞ … ∞)", "unit: kg"]),
         (Symbol("a", "property", type="float", unit="ROTATION", hard_min=0, hard_max=1, soft_min=0, soft_max=1),
          ["type: `float`", "range: 0 … 1", "unit: radians"]),
+        (Symbol("a", "property", type="int[2]", hard_min=-16777216, hard_max=16777216, soft_min=0, soft_max=1048576),
+         ["type: `int[2]`", "range: -16777216 … 16777216 (slider 0 … 1048576)"]),
         (Symbol("a", "property", type="float", soft_min=0.5), ["type: `float`", "slider: 0.5 … ∞"]),
         (Symbol("a", "property", type="float", array=(3,), default=[1, 2, 3], subtype="XYZ"),
          ["type: `float[3]`", "default: `(1, 2, 3)`", "subtype: XYZ"]),
