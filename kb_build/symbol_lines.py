@@ -172,6 +172,8 @@ def member_line(symbol: Symbol) -> str:
         notes.append("|".join(values[:_SHOWN_VALUES]) + ("|…" if len(values) > _SHOWN_VALUES else ""))
     if "readonly" in symbol.flags:
         notes.append("read-only")
+    if symbol.deprecation:
+        notes.append("deprecated")
     if symbol.modes:
         notes.append("when " + " and ".join(symbol.modes))
     said = first_sentence(symbol.description) or (symbol.label if symbol.label != symbol.name else "")

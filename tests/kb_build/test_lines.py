@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.records import NOT_TAKEN, EnumItem, NewValue, Symbol
+from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, NewValue, Symbol
 from kb_build.symbol_lines import (
     default_text,
     first_sentence,
@@ -41,6 +41,7 @@ def line(kind: str = "property", **fields: object) -> str:
         ({"type": "collection", "target": "Modifier"}, "`x` collection of Modifier"),
         ({"type": "int", "flags": ("readonly",)}, "`x` int read-only"),
         ({"type": "enum", "flags": ("enum-flag",), "default": ["A"]}, "`x` set of enum items = ('A')"),
+        ({"type": "int", "deprecation": Deprecation("Unused.")}, "`x` int deprecated"),
         ({"type": "int", "description": "One. Two."}, "`x` int — One"),
         ({"type": "int", "label": "Ex"}, "`x` int — Ex"),
         ({"type": "int", "label": "x"}, "`x` int"),
