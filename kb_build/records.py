@@ -31,6 +31,9 @@ NOT_TAKEN = "by none that was tried"
 FILLED_BY = "filled-by:"
 FILLED_ON = "filled-on:"
 THEN = " then "  # between calls that fill it one after the other
+# How the names begin of what is there when Blender starts, among those of new things.
+STARTUP = "start-up "
+FACTORY = "factory "
 
 
 @dataclass(frozen=True, slots=True)
@@ -50,12 +53,24 @@ class EnumItem:
 class NewValue:
     """What newly made instances have: all of them, or those that ``made`` names, or those in the mode ``when``.
 
-    Of several without a mode the first is the usual one; ``made`` is then empty: all the others.
+    Of several without a mode the first is the usual one; ``made`` is then empty: all the others. ``by`` is the call
+    that made all that have it, if one call did. The last ones may be of what is there when Blender starts
+    (``is_startup``), which is the usual one only where nothing of the kind can be made.
     """
 
     value: Default
     made: tuple[str, ...] = ()
     when: str = ""
+    by: str = ""
+
+    @property
+    def is_startup(self) -> bool:
+        """Whether it is not of a new thing, but of one that Blender starts with."""
+        return (
+            bool(self.made)
+            and not self.when
+            and all(name.startswith((STARTUP, FACTORY)) for name in self.made)
+        )
 
 
 @dataclass(frozen=True, slots=True)
@@ -249,7 +264,10 @@ def _parameters(rows: list[dict[str, Any]]) -> tuple[Parameter, ...]:
 
 
 def _new_values(rows: list[dict[str, Any]]) -> tuple[NewValue, ...]:
-    return tuple(NewValue(row["value"], tuple(row.get("made", ())), row.get("when", "")) for row in rows)
+    return tuple(
+        NewValue(row["value"], tuple(row.get("made", ())), row.get("when", ""), row.get("by", ""))
+        for row in rows
+    )
 
 
 # How the fields that JSON has as lists or objects are read.

@@ -6,7 +6,7 @@ import textwrap
 from itertools import dropwhile, takewhile
 from typing import TYPE_CHECKING
 
-from kb_build.records import FILLED_BY, FILLED_ON, NOT_TAKEN, THEN
+from kb_build.records import FACTORY, FILLED_BY, FILLED_ON, NOT_TAKEN, THEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -46,14 +46,32 @@ def first_sentence(text: str) -> str:
 
 
 def usual_default(symbol: Symbol) -> Default:
-    """The value that a new instance usually has: what new ones had, else RNA's default."""
-    return next((new.value for new in symbol.new_values if not new.when), symbol.default)
+    """The value that a new instance usually has: what new ones had, else RNA's default; None where nobody knows."""
+    return next((new.value for new in symbol.new_values if not new.when), _own_default(symbol))
+
+
+def _own_default(symbol: Symbol) -> Default:
+    """RNA's default; None where it is none: of what Blender computes, and of what is not among a property's items."""
+    is_computed = "readonly" in symbol.flags or symbol.subtype == "MATRIX"
+    if (is_computed and _is_of_struct(symbol) and "compared" not in symbol.flags) or not _is_listed(symbol):
+        return None
+    return symbol.default
+
+
+def _is_of_struct(symbol: Symbol) -> bool:
+    return symbol.kind == "property" and symbol.path.startswith("bpy.types.")
+
+
+def _is_listed(symbol: Symbol) -> bool:
+    """Whether the property's items, if it has any, have RNA's default among them."""
+    items = {item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN}
+    given = symbol.default if isinstance(symbol.default, list) else [symbol.default]
+    return not items or symbol.default is None or items.issuperset(given)
 
 
 def is_uncompared(symbol: Symbol) -> bool:
     """Whether the default is RNA's alone, of a property whose new value may be another one."""
-    is_own = symbol.kind == "property" and symbol.path.startswith("bpy.types.")
-    return is_own and not {"compared", "readonly"} & set(symbol.flags)
+    return _is_of_struct(symbol) and not {"compared", "readonly"} & set(symbol.flags)
 
 
 def _flagged(symbol: Symbol, prefix: str) -> list[str]:
@@ -97,20 +115,24 @@ def default_text(symbol: Symbol) -> str:
     if is_uncompared(symbol):
         text += " (RNA's; no new one was compared)"
     if usual:
-        made = usual[0].made or (symbol.owner.rpartition(".")[2],)
-        text += f" (new {_labels(made)})"
-    for others, word in ((usual[1:], "{}"), (modal, "with {}")):
-        text += "".join(", " + _other(new, word) for new in others[:_SHOWN_OTHERS])
-        text += ", …" if len(others) > _SHOWN_OTHERS else ""
-    listed = {item.identifier for item in symbol.enum_items}
-    is_item = not listed or not isinstance(symbol.default, str) or symbol.default in listed
-    if usual and symbol.default not in (None, value) and is_item:
+        text += _whose(usual[0], usual[0].made or (symbol.owner.rpartition(".")[2],))
+    others = [new for new in usual[1:] if not new.is_startup]
+    for rows in (others, modal):
+        text += "".join(f", `{literal(new.value)}`{_whose(new, new.made)}" for new in rows[:_SHOWN_OTHERS])
+        text += ", …" if len(rows) > _SHOWN_OTHERS else ""
+    text += "".join(f"; `{literal(new.value)}`{_whose(new, new.made)}" for new in usual[1:] if new.is_startup)
+    if usual and symbol.default not in (None, value) and _is_listed(symbol):
         text += f"; RNA says `{literal(symbol.default)}`"
     return text
 
 
-def _other(new: NewValue, word: str) -> str:
-    return f"`{literal(new.value)}` ({word.format(new.when or _labels(new.made))})"
+def _whose(new: NewValue, made: Sequence[str]) -> str:
+    """What has a value: how it was made, or where it is, or its mode."""
+    if new.is_startup:
+        return " in the factory preferences" if made[0].startswith(FACTORY) else " in the startup file"
+    if new.when:
+        return f" (with {new.when})"
+    return f" (made by `{new.by}`)" if new.by else f" (new {_labels(made)})"
 
 
 def _labels(labels: Sequence[str]) -> str:
@@ -162,7 +184,7 @@ def member_line(symbol: Symbol) -> str:
     notes = [type_text(symbol)] if symbol.type else []
     default = usual_default(symbol)
     if default is not None and symbol.kind in {"property", "socket"}:
-        notes.append(f"= {literal(default)}")
+        notes.append(f"= {literal(default)}" + (" (RNA's)" if is_uncompared(symbol) else ""))
         notes += [f"({literal(new.value)} with {new.when})" for new in symbol.new_values if new.when][
             :_SHOWN_LABELS
         ]

@@ -31,16 +31,23 @@ def line(kind: str = "property", **fields: object) -> str:
     ("fields", "expected"),
     [
         ({}, "`x`"),
-        ({"type": "int", "default": 5}, "`x` int = 5"),
-        ({"type": "float", "default": 0}, "`x` float = 0"),
-        ({"type": "boolean", "default": False}, "`x` boolean = False"),
-        ({"type": "float", "array": (3,), "default": [0, 1, 0.5]}, "`x` float[3] = (0, 1, 0.5)"),
+        ({"type": "int", "default": 5}, "`x` int = 5 (RNA's)"),
+        ({"type": "int", "default": 5, "flags": ("compared",)}, "`x` int = 5"),
+        ({"type": "int", "default": 5, "flags": ("readonly",)}, "`x` int read-only"),
+        ({"type": "float", "array": (2,), "subtype": "MATRIX", "default": [0, 0]}, "`x` float[2]"),
+        ({"type": "enum", "default": "A", "enum_items": (EnumItem("B"),)}, "`x` enum B"),
+        ({"type": "float", "default": 0}, "`x` float = 0 (RNA's)"),
+        ({"type": "boolean", "default": False}, "`x` boolean = False (RNA's)"),
+        ({"type": "float", "array": (3,), "default": [0, 1, 0.5]}, "`x` float[3] = (0, 1, 0.5) (RNA's)"),
         ({"type": "float", "array": (4, 4)}, "`x` float[4][4]"),
-        ({"type": "string", "default": "a'b"}, '`x` string = "a\'b"'),
+        ({"type": "string", "default": "a'b"}, "`x` string = \"a'b\" (RNA's)"),
         ({"type": "pointer", "target": "Mesh"}, "`x` pointer → Mesh"),
         ({"type": "collection", "target": "Modifier"}, "`x` collection of Modifier"),
         ({"type": "int", "flags": ("readonly",)}, "`x` int read-only"),
-        ({"type": "enum", "flags": ("enum-flag",), "default": ["A"]}, "`x` set of enum items = ('A')"),
+        (
+            {"type": "enum", "flags": ("enum-flag",), "default": ["A"]},
+            "`x` set of enum items = ('A') (RNA's)",
+        ),
         ({"type": "int", "deprecation": Deprecation("Unused.")}, "`x` int deprecated"),
         ({"type": "int", "description": "One. Two."}, "`x` int — One"),
         ({"type": "int", "label": "Ex"}, "`x` int — Ex"),
@@ -87,7 +94,7 @@ def test_a_socket_that_a_new_node_shows_is_reached_by_its_name() -> None:
 
 def test_a_line_shows_what_a_new_one_has_and_what_a_mode_changes() -> None:
     values = (NewValue(False), NewValue(True, ("domain",), "domain_type='LIQUID'"))
-    assert line(type="boolean", default=True, new_values=values) == (
+    assert line(type="boolean", default=True, new_values=values, flags=("compared",)) == (
         "`x` boolean = False (True with domain_type='LIQUID')"
     )
 
@@ -108,15 +115,24 @@ def test_items_that_no_instance_takes_are_not_listed() -> None:
     ("fields", "expected"),
     [
         ({"default": 5}, "`5` (RNA's; no new one was compared)"),
-        ({"default": 5, "flags": ("readonly",)}, "`5`"),
+        ({"default": 5, "flags": ("readonly",)}, ""),
+        ({"default": 5, "flags": ("readonly", "compared")}, "`5`"),
+        ({"default": [0, 0], "subtype": "MATRIX"}, ""),
+        ({"default": "A", "enum_items": (EnumItem("A", where=NOT_TAKEN), EnumItem("B"))}, ""),
+        ({"default": ["A"], "enum_items": (EnumItem("B"),)}, ""),
         ({"default": 5, "flags": ("compared",)}, "`5`"),
         ({"default": 1, "new_values": (NewValue(0, ("cloth modifier",)),)},
          "`0` (new cloth modifier); RNA says `1`"),
         ({"default": 0, "new_values": (NewValue(250),)}, "`250` (new A); RNA says `0`"),
         ({"default": 10, "new_values": (NewValue(10), NewValue(1, ("sun", "star")))},
-         "`10` (new A), `1` (sun, star)"),
+         "`10` (new A), `1` (new sun, star)"),
         ({"default": 0, "new_values": (NewValue(0), NewValue(1, tuple("abcde")))},
-         "`0` (new A), `1` (a, b, c and 2 more)"),
+         "`0` (new A), `1` (new a, b, c and 2 more)"),
+        ({"default": 4, "new_values": (NewValue(4, by="bpy.data.as.new()"), NewValue(5, ("start-up a",)))},
+         "`4` (made by `bpy.data.as.new()`); `5` in the startup file"),
+        ({"default": 0, "new_values": (NewValue(5, ("start-up a",)),)}, "`5` in the startup file; RNA says `0`"),
+        ({"default": 5, "new_values": (NewValue(1, ("factory preferences",)),)},
+         "`1` in the factory preferences; RNA says `5`"),
         ({"default": 0, "new_values": (NewValue(1, ("a",), "m='X'"),)}, "`0`, `1` (with m='X')"),
         ({"default": "NONE", "enum_items": (EnumItem("None"),), "new_values": (NewValue("None"),)},
          "`'None'` (new A)"),
