@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import ast
 import builtins
+import re
 from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_build.flow.analysis import analyse
 from kb_build.flow.types import UNKNOWN, Instance, Operator
+from kb_build.usage.scripts import PRESETS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -37,6 +39,7 @@ _BUILTINS = frozenset(dir(builtins)) | {
 }
 
 _LAYOUT = Instance("bpy.types.UILayout")
+_OF_CONTEXT = re.compile(r"\bbpy\.context\.\w+")
 
 # How clearly a use shows its symbol: 0 is best. That a panel or a menu shows it does not tell how it is used.
 _COSTS = {
@@ -78,10 +81,14 @@ class Uses:
 
 @dataclass(frozen=True, slots=True)
 class SymbolUsage:
-    """What the uses of symbols tell: symbol → its uses, and class → the expression that leads to an instance."""
+    """What the uses of symbols tell: symbol → its uses, and class → the expression that leads to an instance.
+
+    ``names``: class, without its module → the name that Blender itself gives to a new one.
+    """
 
     uses: Mapping[str, Uses] = field(default_factory=dict[str, Uses])
     reached: Mapping[str, str] = field(default_factory=dict[str, str])
+    names: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 def clearest(examples: Iterable[Example]) -> list[Example]:
@@ -99,7 +106,7 @@ def uses_in(code: str, file: str, api: Api, version: tuple[int, ...], cost: floa
     analysis = analyse(code, api, version)
     if analysis.tree is None:
         return {}
-    script = _Script(code, file, analysis, cost)
+    script = _Script(code, file, analysis, cost, api)
     found: dict[str, Uses] = {}
     candidates: dict[str, list[tuple[float, ast.stmt]]] = defaultdict(list)
     for path, kind, share, resolution in _used(analysis):
@@ -135,8 +142,9 @@ def _used(analysis: Analysis) -> Iterator[tuple[str, str, int, Resolution]]:
 class _Script:
     """A script's lines and the places where it binds names."""
 
-    def __init__(self, code: str, file: str, analysis: Analysis, cost: float) -> None:
+    def __init__(self, code: str, file: str, analysis: Analysis, cost: float, api: Api) -> None:
         self._lines = code.splitlines()
+        self._api = api
         self._file = file
         self._analysis = analysis
         self._cost = cost
@@ -208,12 +216,20 @@ class _Script:
                 unknown += 1
             elif line is None:
                 unknown += 0.4
+        if self._file.startswith(PRESETS) and any(map(self._is_of_editors, _OF_CONTEXT.findall(code))):
+            return None
         cost = 1.2 * unknown + len(code) / 60 + 0.3 * code.count("\n")
         cost += 1.0 if "self." in code else 0.0
         cost += 1.5 if isinstance(statement, (ast.If, ast.While, ast.Return)) else 0.0
         if isinstance(statement, ast.Assign) and _is_literal(statement.value):
             cost -= 1.0
         return cost, first, code
+
+    def _is_of_editors(self, member: str) -> bool:
+        """Whether only some editors provide a member of ``bpy.context``: a preset is run from a panel of such a one."""
+        symbol = self._api.symbols.symbol(member)
+        origins = {flag for flag in symbol.flags if flag.startswith("from:")} if symbol else set[str]()
+        return bool(origins) and "from:screen" not in origins
 
     def _quoted(self, statement: ast.stmt) -> str | None:
         """A statement's own lines, or its first ones up to its body; one line where it is written in many."""

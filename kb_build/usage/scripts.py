@@ -9,14 +9,15 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
+PRESETS = "presets/"
 # Folder below Blender's scripts → what is added to the cost of its examples.
 _FOLDERS = {
     "templates_py": 0.0,
-    "presets": 0.5,
     "startup": 1.0,
     "modules": 1.0,
     "addons_core": 1.5,
     "addons": 1.5,
+    "presets": 100.0,  # lists of settings, shown where nothing else uses a symbol
 }
 # What says nothing of its own: tables, generated code, the tests and tools of Blender's developers, and what takes long
 # to read for what it shows.

@@ -115,3 +115,14 @@ def test_uses_in_several_files_are_added_up() -> None:
     uses = Uses(2, 1, [Example(2, "f", 1, "two")])
     uses.add(Uses(3, 1, [Example(1, "g", 1, "one")]))
     assert (uses.count, uses.files, [row.code for row in uses.examples]) == (5, 2, ["one", "two"])
+
+
+def test_presets_that_run_from_a_panel_show_nothing(base: Path) -> None:
+    preset = "import bpy\nbpy.context.cloth.settings.mass = 1\nbpy.context.scene.render.fps = 24\n"
+    with closing(BaseSymbols(base)) as symbols:
+        api = Api(symbols)
+        found = {name: uses_in(preset, name, api, (5, 1, 0)) for name in ("presets/a.py", "startup/a.py")}
+    mass, fps = "bpy.types.ClothSettings.mass", "bpy.types.RenderSettings.fps"
+    assert (found["presets/a.py"][mass].count, found["presets/a.py"][mass].examples) == (1, [])
+    assert found["presets/a.py"][fps].examples
+    assert found["startup/a.py"][mass].examples

@@ -34,7 +34,13 @@ SYMBOLS = [
 @pytest.fixture
 def scripts(tmp_path: Path) -> list[Script]:
     folder = tmp_path / "scripts"
-    for name in ("startup/bl_ui/a.py", "templates_py/b.py", "presets/keyconfig/c.py", "other/d.py"):
+    for name in (
+        "startup/bl_ui/a.py",
+        "templates_py/b.py",
+        "presets/keyconfig/c.py",
+        "presets/e.py",
+        "other/d.py",
+    ):
         path = folder / name
         path.parent.mkdir(parents=True)
         path.write_text("import bpy\nbpy.context.object.name = 'x'\n")
@@ -42,8 +48,8 @@ def scripts(tmp_path: Path) -> list[Script]:
 
 
 def test_scripts_that_show_how_things_are_done_are_read(scripts: list[Script]) -> None:
-    assert [script.name for script in scripts] == ["templates_py/b.py", "startup/bl_ui/a.py"]
-    assert scripts[0].cost < scripts[1].cost
+    assert [script.name for script in scripts] == ["templates_py/b.py", "startup/bl_ui/a.py", "presets/e.py"]
+    assert scripts[0].cost < scripts[1].cost < scripts[2].cost
 
 
 def test_uses_are_kept_for_the_next_build(
@@ -52,7 +58,7 @@ def test_uses_are_kept_for_the_next_build(
     file = usage_file(tmp_path, "5.1", scripts)
     with script_usage(SYMBOLS, scripts, "5.1.2", file=file, jobs=2) as result:
         first = result()
-    assert first[f"{T}Object.name"].count == 2
+    assert first[f"{T}Object.name"].count == 3
     assert first[f"{T}Object.name"].examples[0].file == "templates_py/b.py"
     monkeypatch.setattr(usage_index, "uses_in", None)
     with script_usage(SYMBOLS, scripts, "5.1.2", file=file, jobs=2) as result:
