@@ -280,8 +280,11 @@ def _usage(extract: Extract, pages: Sequence[Page], scripts: Callable[[], Usage]
     symbols = extract.symbols
     guides = page_usage(symbols, pages, extract.version)
     uses = with_aliases(merged([scripts(), guides]), symbols)
-    reached = reached_expressions(symbols, {path: found.count for path, found in uses.items()})
-    return SymbolUsage(uses, {f"bpy.types.{name}": expression for name, expression in reached.items()})
+    counts = {path: found.count for path, found in uses.items()}
+    reached = reached_expressions(symbols, counts, extract.names, extract.places)
+    return SymbolUsage(
+        uses, {f"bpy.types.{name}": expression for name, expression in reached.items()}, extract.names
+    )
 
 
 def _pages(work: _Build, read: Mapping[str, list[Page]], extract: Extract) -> list[Page]:

@@ -320,7 +320,7 @@ def _write(part: Path, contents: Contents) -> None:
             _insert(connection, "still_works", contents.still_works, 2)
             _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
             usage = contents.usage()
-            calls = creation_calls(contents.symbols, usage.reached)
+            calls = creation_calls(contents.symbols, usage.reached, usage.names)
             _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
             _write_symbols(connection, contents.symbols, contents.pages, usage.reached)
             _write_usage(connection, usage.uses)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import heapq
+import json
 from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -22,10 +23,13 @@ _DETOURS = frozenset(
     {
         "window_manager", "window", "screen", "workspace", "area", "region", "preferences", "space_data", "library",
         "original", "override_library", "asset_data", "asset", "rigidbody_world",
-        "blend_data", "node_groups", "nla_tracks", "material_override", "preview", "id_root", "parent", "tool_settings",
+        "blend_data", "nla_tracks", "material_override", "preview", "id_root", "parent", "tool_settings",
     }
 )  # fmt: skip
 _DETOUR_COST = 6
+_KIND_BY_CHANCE = (
+    5  # of a class that only some have which a pointer or collection leads to; a name tells which
+)
 _LAST_RESORT = {"drivers": 30.0}  # holds curves as animation does, but hardly anybody looks for them there
 # What a step costs in addition that Blender's own scripts take less often than this.
 _RARE = ((20, 0.0), (5, 0.5), (1, 1.5), (0, 4.0))
@@ -55,9 +59,8 @@ class _Graph:
     edges: dict[str, list[_Step]] = field(default_factory=lambda: defaultdict(list[_Step]))
     base: dict[str, str] = field(default_factory=dict)
     derived: dict[str, list[str]] = field(default_factory=lambda: defaultdict(list))
-    label: dict[str, str] = field(default_factory=dict)
+    names: Mapping[str, str] = field(default_factory=dict[str, str])
     trees: dict[str, tuple[str, ...]] = field(default_factory=dict)
-    named: set[str] = field(default_factory=set)
     descendants: dict[str, list[str]] = field(default_factory=dict)
     told: dict[str, str] = field(default_factory=dict)
 
@@ -70,21 +73,18 @@ class _Graph:
         return self.descendants[cls]
 
 
-def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int]) -> _Graph:
-    graph = _Graph()
+def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int], names: Mapping[str, str]) -> _Graph:
+    graph = _Graph(names=names)
     for symbol in symbols:
         if symbol.kind == "class" and symbol.owner == "bpy.types":
             name, base = symbol.path.removeprefix(TYPES), symbol.base.removeprefix(TYPES)
             graph.base[name] = base
-            graph.label[name] = symbol.label
             if symbol.reached:
                 graph.told[name] = symbol.reached
             if symbol.trees:
                 graph.trees[name] = symbol.trees
             if base != "bpy_struct":
                 graph.derived[base].append(name)
-        elif symbol.kind == "property" and symbol.name == "name":
-            graph.named.add(symbol.owner.removeprefix(TYPES))
         elif symbol.kind in {"property", "context"} and symbol.target:
             if symbol.kind == "context" and symbol.name not in _EVERYWHERE:
                 continue
@@ -105,13 +105,9 @@ def _rarity(path: str, uses: Mapping[str, int]) -> float:
 
 
 def _key(target: str, graph: _Graph) -> str:
-    """The subscript of a collection: the name Blender gives by default, or an index."""
-    lineage = list(_lineage(target, graph))
-    # A socket is called what its node calls it, not like its class.
-    if graph.named.isdisjoint(lineage) or "NodeSocket" in lineage:
-        return "[0]"
-    label = graph.label.get(target, "") or target
-    return f'["{label.removesuffix(" Modifier").removesuffix(" Constraint")}"]'
+    """The subscript of a collection: the name that Blender itself gives, or an index."""
+    name = graph.names.get(target, "")
+    return f"[{json.dumps(name, ensure_ascii=False)}]" if name else "[0]"
 
 
 def _lineage(cls: str, graph: _Graph) -> Iterable[str]:
@@ -137,14 +133,20 @@ def _active(step: _Step, graph: _Graph) -> _Step | None:
     return next((inner for inner in found if inner.target == step.target and not inner.many), None)
 
 
-def reached_expressions(symbols: Iterable[Symbol], uses: Mapping[str, int] | None = None) -> dict[str, str]:
+def reached_expressions(
+    symbols: Iterable[Symbol],
+    uses: Mapping[str, int] | None = None,
+    names: Mapping[str, str] | None = None,
+    places: Mapping[str, str] | None = None,
+) -> dict[str, str]:
     """class name → an expression that gives an instance, for every class that pointers lead to.
 
-    ``ClothSettings`` → ``bpy.context.object.modifiers["Cloth"].settings``: the names in brackets are the
-    default ones, to be replaced by the scene's own. ``uses`` tells how often Blender's own scripts use a property:
-    of several ways the one is taken that they take.
+    ``ClothSettings`` → ``bpy.context.object.modifiers["Cloth"].settings``: the names in brackets are those that
+    Blender itself gives (``names``, by class), to be replaced by the scene's own; where it gives none, there is an
+    index. ``uses`` tells how often Blender's own scripts use a property: of several ways the one is taken that they
+    take. ``places``: class of nodes → class of the data-block in whose tree such a node stands from the start.
     """
-    graph = _graph(symbols, uses or {})
+    graph = _graph(symbols, uses or {}, names or {})
     expressions: dict[str, str] = {}
     queue: list[tuple[float, int, str, str]] = []
     order = 0
@@ -175,8 +177,10 @@ def reached_expressions(symbols: Iterable[Symbol], uses: Mapping[str, int] | Non
             for child in graph.below(step.target) if step.target != "ID" else ():
                 # Every tree's ``nodes`` takes every node as far as RNA knows.
                 if cls in graph.trees.get(child, (cls,)):
-                    offer(reached + 1, child, here, many=step.many)
-    # A shader's nodes live in a material, where there are others like it.
+                    by_chance = 0 if step.many and child in graph.names else _KIND_BY_CHANCE
+                    offer(reached + 1 + by_chance, child, here, many=step.many)
+    # A shader's nodes live in a material, where there are others like it; some in the tree of another data-block.
     for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
-        expressions[cls] = f"{expressions.get('Material', 'material')}.node_tree.nodes{_key(cls, graph)}"
+        holder = (places or {}).get(cls, "Material")
+        expressions[cls] = f"{expressions.get(holder, holder.lower())}.node_tree.nodes{_key(cls, graph)}"
     return expressions

@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
 
+_TYPES = "bpy.types."
 _INDEXABLE = re.compile(r"[\[*?]")
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
@@ -55,6 +56,8 @@ class Extract:
 
     ``scripts`` is the folder of the Python files that it brings, empty for an unknown one.
     ``faults`` are the tracebacks of steps that failed inside Blender; what the other steps found is there.
+    ``names``: class → the name that Blender itself gives to a new one. ``places``: class of nodes → class of the
+    data-block that has such a node in its tree from the start.
     ``still_works``: (former path, the symbol that it gives now) of former names that this Blender still takes.
     """
 
@@ -67,6 +70,8 @@ class Extract:
     faults: tuple[str, ...] = ()
     still_works: tuple[tuple[str, str], ...] = ()
     scripts: str = ""
+    names: Mapping[str, str] = field(default_factory=dict[str, str])
+    places: Mapping[str, str] = field(default_factory=dict[str, str])
 
 
 @dataclass(slots=True)
@@ -78,6 +83,8 @@ class _Raw:
     templates: list[tuple[str, str]] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
     still_works: list[tuple[str, str]] = field(default_factory=list)
+    # record → class → what it says of it
+    by_class: dict[str, dict[str, str]] = field(default_factory=lambda: defaultdict(dict))
 
 
 def _add_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
@@ -88,8 +95,13 @@ def _add_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
 
 
 def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds what new instances have where it is not RNA's default, and that they were compared."""
-    if row is not None:
+    """Adds what new instances have where it is not RNA's default, and that they were compared.
+
+    What whoever makes a thing chooses, or Blender computes, has no default.
+    """
+    if row is not None and seen.get("chosen"):
+        row.pop("default", None)
+    elif row is not None:
         row["flags"] = [*row.get("flags", ()), "compared"]
         row["new_values"] = [*seen.get("values", ()), *seen.get("modes", ())]
 
@@ -124,6 +136,8 @@ def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
             _add_values(raw.symbols.get(row["path"]), row)
         case "new_pointer":
             _add_pointer(raw.symbols.get(row["path"]), row)
+        case "own_name" | "stands_in":
+            raw.by_class[record][row["path"].removeprefix(_TYPES)] = row["name"]
         case "still_works":
             raw.still_works.append((row["path"], row["taken_as"]))
         case "making":
@@ -367,4 +381,6 @@ def read_extract(path: Path) -> Extract:
         faults=tuple(raw.faults),
         still_works=tuple(raw.still_works),
         scripts=raw.header.get("scripts") or "",
+        names=raw.by_class["own_name"],
+        places=raw.by_class["stands_in"],
     )

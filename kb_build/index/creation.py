@@ -36,12 +36,15 @@ class Creation(NamedTuple):
     choice: str = ""
 
 
-def creation_calls(symbols: Iterable[Symbol], reached: Mapping[str, str]) -> dict[str, Creation]:
+def creation_calls(
+    symbols: Iterable[Symbol], reached: Mapping[str, str], names: Mapping[str, str] | None = None
+) -> dict[str, Creation]:
     """Path of a class → how an instance is made, for every class that has such a call.
 
-    ``reached``: path of a class → an expression that gives an instance.
+    ``reached``: path of a class → an expression that gives an instance; ``names``: class, without its module → the name
+    that Blender itself gives, by which such expressions find what was made.
     """
-    return dict(_Calls(symbols, reached).found())
+    return dict(_Calls(symbols, reached, names or {}).found())
 
 
 def held(reached: str) -> str:
@@ -53,7 +56,10 @@ def held(reached: str) -> str:
 
 
 class _Calls:
-    def __init__(self, symbols: Iterable[Symbol], reached: Mapping[str, str]) -> None:
+    def __init__(
+        self, symbols: Iterable[Symbol], reached: Mapping[str, str], names: Mapping[str, str]
+    ) -> None:
+        self._names = names
         self._symbols = {symbol.path: symbol for symbol in symbols}
         self._reached = reached
         self._below: dict[str, list[Symbol]] = defaultdict(list)
@@ -102,11 +108,29 @@ class _Calls:
         by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"})
         for cls in self._descendants(base.path):
             if choice := cls.name if by_name else _choice(cls, base, items):
-                yield cls.path, Creation(f"{head}({_arguments(maker, cls, choice)})", maker.path, choice)
+                yield cls.path, Creation(f"{head}({self._arguments(maker, cls, choice)})", maker.path, choice)
         # Where a type must be told, only data-blocks are also made of the base class.
         if not items or (not by_name and holder.owner == f"{TYPES}BlendData"):
             first = next(iter(items), "")
-            yield base.path, Creation(f"{head}({_arguments(maker, base, first)})", maker.path)
+            yield base.path, Creation(f"{head}({self._arguments(maker, base, first)})", maker.path)
+
+    def _arguments(self, maker: Symbol, cls: Symbol, choice: str) -> str:
+        return ", ".join(
+            self._argument(parameter, cls, choice)
+            for parameter in maker.parameters
+            if parameter.required or (choice and parameter.name == "type")
+        )
+
+    def _argument(self, parameter: Parameter, cls: Symbol, choice: str) -> str:
+        if parameter.name == "type" and choice:
+            return f"'{choice}'" if parameter.enum_items else f'"{choice}"'
+        if parameter.name == "name":
+            label = cls.label or cls.name
+            label = label.removesuffix(" Modifier").removesuffix(" Constraint")
+            return f'"{self._names.get(cls.name, label)}"'
+        if parameter.enum_items:
+            return f"'{parameter.enum_items[0].identifier}'"
+        return parameter.name
 
     def _descendants(self, path: str) -> Iterator[Symbol]:
         for cls in self._below.get(path, ()):
@@ -146,22 +170,3 @@ def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:
         if text and key(text) in {label, key(cls.label)} and key(identifier) in key(cls.name):
             return identifier
     return ""
-
-
-def _arguments(maker: Symbol, cls: Symbol, choice: str) -> str:
-    return ", ".join(
-        _argument(parameter, cls, choice)
-        for parameter in maker.parameters
-        if parameter.required or (choice and parameter.name == "type")
-    )
-
-
-def _argument(parameter: Parameter, cls: Symbol, choice: str) -> str:
-    if parameter.name == "type" and choice:
-        return f"'{choice}'" if parameter.enum_items else f'"{choice}"'
-    if parameter.name == "name":
-        label = cls.label or cls.name
-        return f'"{label.removesuffix(" Modifier").removesuffix(" Constraint")}"'
-    if parameter.enum_items:
-        return f"'{parameter.enum_items[0].identifier}'"
-    return parameter.name

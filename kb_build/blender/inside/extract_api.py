@@ -12,7 +12,7 @@ import traceback
 
 import bpy
 
-from . import context, modules, new_things, nodes, operators, pointer_fillers, rna
+from . import context, modules, new_things, nodes, operators, own_names, pointer_fillers, rna
 from .instances import Observer
 from .wire import Writer
 
@@ -57,11 +57,13 @@ def write_rna(write, found):
 STEPS = (
     ("classes", write_rna),
     ("operators", lambda write, _found: operators.write_all(write)),
+    ("names", lambda _write, found: own_names.look_at_start(found["observer"])),
     ("start", lambda _write, found: new_things.look_at_start(found["observer"])),
     (
         "nodes",
         lambda write, found: nodes.write_all(write, found["structs"], found["observer"], found["former"]),
     ),
+    ("places of nodes", lambda write, _found: own_names.write_places(write)),
     ("modules", lambda write, _found: modules.write_all(write)),
     ("enums", write_enum_sets),
     ("links", write_manual_links),
@@ -69,6 +71,7 @@ STEPS = (
     # Last, because they change the scene.
     ("context", lambda write, _found: context.write_all(write)),
     ("new things", lambda write, found: new_things.write_all(write, found["observer"], found["skipped"])),
+    ("own names", lambda write, found: own_names.find_all(write, found["observer"], found["skipped"])),
     ("pointers", lambda write, found: pointer_fillers.find_all(write, found["observer"], found["skipped"])),
     ("instances", lambda write, found: found["observer"].write(write)),
 )

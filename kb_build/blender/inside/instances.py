@@ -10,6 +10,7 @@ import re
 
 import bpy
 
+from .own_names import OwnNames
 from .rna import default_of, read_items
 from .wire import plain
 
@@ -29,16 +30,24 @@ AROUND = frozenset({"parent"})
 NOT_ASKED = frozenset({"rna_type", "paired_output"})
 # Names and places that whoever makes the thing chooses, and what depends on the machine.
 CHOSEN = frozenset({
-    "type", "socket_type", "co", "co_ui", "handle_left", "handle_right", "location", "dimensions", "matrix",
-    "matrix_local", "matrix_world", "matrix_basis", "matrix_parent_inverse", "texspace_location", "texspace_size",
-    "head", "tail", "length", "data_path", "name_display", "action_slot_handle", "last_slot_identifier",
-    "target_id_type", "generated_width", "generated_height", "child_number", "frame_number",
-    "rotation_estimate", "scale_estimate", "empty_image_offset", "material_slot", "threads",
+    "co", "co_ui", "handle_left", "handle_right", "matrix", "matrix_local", "matrix_world", "matrix_basis",
+    "matrix_parent_inverse", "view_matrix", "texspace_location", "texspace_size", "head", "tail", "data_path",
+    "name_display", "action_slot_handle", "last_slot_identifier", "target_id_type", "generated_width",
+    "generated_height", "child_number", "frame_number", "rotation_estimate", "scale_estimate", "empty_image_offset",
+    "material_slot", "threads",
 })  # fmt: skip
 CHOSEN_OF = frozenset({
     ("FieldSettings", "seed"), ("TimelineMarker", "frame"), ("ColorRampElement", "position"),
-    ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("Driver", "expression"),
+    ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("Driver", "expression"), ("Object", "dimensions"),
+    ("EditBone", "length"), ("NodeTreeInterfaceSocket", "socket_type"),
 })  # fmt: skip
+# Kinds that the makers of new things go through: (class, name) → the label of what was made without saying which.
+KIND_UNASKED = {
+    ("Light", "type"): "", ("Texture", "type"): "", ("Spline", "type"): "", ("ActionSlot", "target_id_type"): "",
+    ("MetaElement", "type"): "ball meta element", ("FieldSettings", "type"): "force field of a mesh object",
+    ("RigidBodyObject", "type"): "active rigid body", ("RigidBodyConstraint", "type"): "rigid body constraint",
+    ("ParticleSettings", "type"): "particle system's settings",
+}  # fmt: skip
 # When these begin and end is up to whoever makes them.
 TIMED = frozenset({"Strip", "Sequence", "NlaStrip"})
 MACHINES_OWN = frozenset({"FILE_PATH", "DIR_PATH", "FILE_NAME"})
@@ -106,11 +115,14 @@ class Field:
         self.is_flag = self.is_enum and prop.is_enum_flag
         self.is_many = self.is_flag or getattr(prop, "is_array", False)
         cls = self.path.split(".")[-2]
+        self.unasked = KIND_UNASKED.get((cls, self.name), "")
         self.is_chosen = (
             self.name in CHOSEN
+            or (cls, self.name) in KIND_UNASKED
             or (cls, self.name) in CHOSEN_OF
             or (
                 cls in TIMED
+                and not self.name.startswith("select")
                 and any(word in self.name for word in ("frame", "handle", "content", "channel", "duration"))
             )
         )
@@ -223,6 +235,10 @@ class Observer:
         self.fields = {}
         # path → [(value, labels of what was made)]
         self.values = {}
+        # path → the same of what is there when Blender starts
+        self.start_values = {}
+        # label → the call that made it, of those that one call makes
+        self.calls = {}
         # path → [(value, mode, labels)]
         self.in_modes = {}
         # path → {items: Contexts}
@@ -230,6 +246,7 @@ class Observer:
         # path → {identifier: (name, description)}
         self.texts = {}
         self.pointers = Pointers()
+        self.names = OwnNames()
         self._layouts = {}
         self._varied = {}
 
@@ -277,19 +294,21 @@ class Observer:
         ``vary``: in all modes, too. ``place``: where it is, if that decides which items enumerations take. What a
         pointer of it leads to counts only if it is new: no script has worked on it.
         """
+        self.names.add(root)
+        seen = self.values if is_new else self.start_values
         for struct in list(self.parts(root)):
             before = self.read(struct)
             if is_new:
                 for name, path in self.layout(struct).pointers.items():
                     self.pointers.add(path, label, getattr(struct, name, None) is not None)
             for field, value in before.items():
-                if not field.is_chosen:
-                    self.add(self.values.setdefault(field.path, []), plain(value), label)
+                if not field.is_chosen or label == field.unasked:
+                    self.add(seen.setdefault(field.path, []), plain(value), label)
             self.ask(struct, label + place, "")
             name = struct.bl_rna.identifier
             if vary and name not in UNVARIED and self._varied.get(name, 0) < VARIED:
                 self._varied[name] = self._varied.get(name, 0) + 1
-                self.vary(struct, label, place, before)
+                self.vary(struct, label, place, before, is_new)
 
     def read(self, struct):
         """field → value of each comparable property, arrays and sets as lists."""
@@ -340,7 +359,7 @@ class Observer:
         except Exception:
             return "", ""
 
-    def vary(self, struct, label, place, before):
+    def vary(self, struct, label, place, before, is_new):
         """Puts the instance into each mode and notes what else changed; then puts everything back."""
         known = {part.as_pointer() for part in self.belonging(struct)}
         empty = {path for path, is_empty in self.empty_pointers(struct).items() if is_empty}
@@ -369,7 +388,7 @@ class Observer:
                 self.ask(struct, label + place, mode, enums)
                 for part in self.belonging(struct):
                     if part.as_pointer() not in known:
-                        self.look(f"{label} with {mode}", part)
+                        self.look(f"{label} with {mode}", part, is_new=is_new)
             before = self.restored(struct, before)
 
     def note_filled(self, struct, paths, call):
@@ -414,25 +433,56 @@ class Observer:
         return self.read(struct) if changed else present
 
     def write(self, write):
-        """A ``new_values`` record for each property that was read, ``enum_items`` for each asked, and the pointers."""
-        for path in sorted(self.values):
+        """A ``new_values`` record for each property that was read, ``enum_items`` for each asked, and the pointers.
+
+        One that is ``chosen`` says nothing about what is new.
+        """
+        for path in sorted(self.values.keys() | self.start_values.keys()):
             write("new_values", path=path, values=self.usual(path), modes=self.modal(path))
+        for path in sorted(self.fields.keys() - self.values.keys() - self.start_values.keys()):
+            if self.fields[path].is_chosen:
+                write("new_values", path=path, chosen=True)
         for path in sorted(self.items):
             self.write_items(write, path)
         self.pointers.write(write)
+        self.names.write(write)
 
     def usual(self, path):
-        """The values of new instances, the most frequent first, which needs no labels; none if all have RNA's."""
-        rows = sorted(self.values[path], key=lambda row: -len(row[1]))
+        """The values of new instances, the usual one first, which needs no labels; none if all have RNA's.
+
+        Then those that no new one has, of what Blender starts with.
+        """
+        rows = sorted(self.values.get(path, ()), key=self.rank)
         if len(rows) > MOST_VALUES:
             return []
-        if len(rows) == 1:
-            value, labels = rows[0]
-            known = same(value, self.fields[path].default)
-            return [] if known else [{"value": value, "made": list(labels) if len(labels) == 1 else []}]
-        return [
-            {"value": value, "made": list(labels) if row else []} for row, (value, labels) in enumerate(rows)
+        start = [
+            {"value": value, "made": list(labels)}
+            for value, labels in self.start_values.get(path, ())
+            if not any(same(value, new) for new, _ in rows)
         ]
+        default = self.fields[path].default
+        if not start and all(same(value, default) for value, _ in rows):
+            return []
+        if not rows:
+            return [] if all(same(row["value"], default) for row in start) else start
+        new = [
+            {"value": value, "made": list(labels) if row or len(rows) == 1 == len(labels) else []}
+            for row, (value, labels) in enumerate(rows)
+        ]
+        for row, (_, labels) in zip(new, rows, strict=True):
+            if call := self.maker(labels):
+                row["by"] = call
+        return new + start
+
+    def rank(self, row):
+        """The most frequent values come first, before them those of data-blocks and of what they bring."""
+        _, labels = row
+        return not any(self.calls.get(label) for label in labels), -len(labels)
+
+    def maker(self, labels):
+        """The call that made everything with these labels; empty where it was not one call."""
+        calls = {self.calls.get(label, "") for label in labels}
+        return calls.pop() if len(calls) == 1 else ""
 
     def modal(self, path):
         """The values that a mode gives: those of every instance that was put into it."""

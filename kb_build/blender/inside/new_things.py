@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Makes one of everything, in the ways that scripts do, and has it read (see ``instances``).
 
-Each function below makes one kind of thing and yields (what it is, the thing). Labels are Blender's own names of the
-classes; where there are two ways of making a thing, that of the operator names the operator.
+Each function below makes one kind of thing and yields (what it is, the thing), and the call that made it where that
+says it all. Labels are Blender's own names of the classes; where there are two ways of making a thing, that of the
+operator names the operator.
 """
 
 import traceback
@@ -94,7 +95,7 @@ def data_blocks():
             block = collection.new("new", **given)
         except (TypeError, RuntimeError):
             continue
-        yield called(block), block
+        yield called(block), block, f"bpy.data.{name}.new()"
         if name == "cameras":
             yield "background image", block.background_images.new()
         if hasattr(collection, "create_gpencil_data"):
@@ -104,7 +105,7 @@ def data_blocks():
                 yield called(gpencil), gpencil
     yield "empty object", add_object(None)
     yield "mesh object", mesh_object()
-    yield "scene", bpy.data.scenes.new("new")
+    yield "scene", bpy.data.scenes.new("new"), "bpy.data.scenes.new()"
 
 
 def added_by_operators():
@@ -265,6 +266,9 @@ def rigid_bodies():
         obj = mesh_object()
         bpy.ops.rigidbody.object_add(type=kind)
         yield f"{kind.lower()} rigid body", obj.rigid_body
+    obj = add_object(None)
+    bpy.ops.rigidbody.constraint_add()
+    yield "rigid body constraint", obj.rigid_body_constraint
     for kind in choices("RigidBodyConstraint", "type"):
         obj = add_object(None)
         bpy.ops.rigidbody.constraint_add(type=kind)
@@ -448,7 +452,7 @@ def scenes():
         collection = getattr(style, f"{name}_modifiers")
         for kind in argument_choices(collection, "type"):
             modifier = collection.new("new", kind)
-            yield called(modifier), modifier
+            yield f"{called(modifier)} modifier of a line style", modifier
     aovs = getattr(layer, "aovs", None)
     if aovs is not None:
         yield "aov", aovs.add()
@@ -486,6 +490,11 @@ MAKERS = (
 )  # fmt: skip
 
 
+def startup_block(blocks):
+    """Of the data-blocks of a type that Blender starts with the one that is called like the type, else the first."""
+    return next((block for block in blocks if block.name == block.bl_rna.name), blocks[0] if blocks else None)
+
+
 def look_at_start(observer):
     """Reads what Blender starts with: the scene, and the data in it."""
     scene = bpy.context.scene
@@ -493,7 +502,7 @@ def look_at_start(observer):
         return
     observer.look("start-up scene", scene, is_new=False)
     observer.look("start-up view layer", bpy.context.view_layer, is_new=False)
-    for block in (scene.world, *bpy.data.materials[:1], *bpy.data.lights[:1], *bpy.data.cameras[:1]):
+    for block in (scene.world, *map(startup_block, (bpy.data.materials, bpy.data.lights, bpy.data.cameras))):
         if block is not None:
             observer.look(f"start-up {called(block)}", block, is_new=False)
     observer.look("factory preferences", bpy.context.preferences, vary=False, is_new=False)
@@ -532,8 +541,9 @@ def write_all(write, observer, skipped):
     scratch_scene()
     for make in attempts(write, MAKERS, skipped):
         try:
-            for label, thing in make():
+            for label, thing, *call in make():
                 if thing is not None:
+                    observer.calls[label] = "".join(call)
                     observer.look(label, thing)
         except Exception:
             write("fault", step="new things", traceback=traceback.format_exc())

@@ -48,6 +48,11 @@ def held(value):
     return None if None in items else items
 
 
+def asked_for(kind):
+    """How the label of a thing begins whose kind was asked for."""
+    return str(kind).lower().replace("_", " ") + " "
+
+
 def read(label, thing, rows):
     """Adds what a thing and its inner settings hold."""
     values, pointers = {}, {}
@@ -56,7 +61,9 @@ def read(label, thing, rows):
             pointers[prop.identifier] = getattr(thing, prop.identifier, None) is not None
         if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
             try:
-                values[prop.identifier] = held(getattr(thing, prop.identifier))
+                value = held(getattr(thing, prop.identifier))
+                if prop.identifier != "type" or not label.startswith(asked_for(value)):
+                    values[prop.identifier] = value
             except (AttributeError, RuntimeError):
                 continue
     rows.append({"label": label, "class": thing.bl_rna.identifier, "values": values, "pointers": pointers})
@@ -108,6 +115,9 @@ def things_by_operators():
         obj = triangle()
         ops.rigidbody.object_add(type=kind)
         yield f"{kind.lower()} rigid body", obj.rigid_body
+    obj = triangle()
+    ops.rigidbody.constraint_add()
+    yield "rigid body constraint", obj.rigid_body_constraint
     for kind in ("HINGE", "MOTOR", "FIXED"):
         obj = triangle()
         ops.rigidbody.constraint_add(type=kind)

@@ -29,10 +29,6 @@ def prop(path: str, target: str, kind: str = "pointer") -> Symbol:
     return Symbol(TYPES + path, "property", TYPES + owner, type=kind, target=target)
 
 
-def name_of(owner: str) -> Symbol:
-    return Symbol(f"{TYPES}{owner}.name", "property", TYPES + owner, type="string")
-
-
 def member(name: str, target: str) -> Symbol:
     return Symbol(f"bpy.context.{name}", "context", "bpy.context", type="pointer", target=target)
 
@@ -41,7 +37,6 @@ SMALL = [
     cls("Context"), cls("BlendData"), cls("ID"), cls("Object", "ID", label="Object"), cls("Mesh", "ID", label="Mesh"),
     cls("Modifier"), cls("ClothModifier", "Modifier", label="Cloth Modifier"), cls("ClothSettings"),
     cls("Vertex"), cls("Far"),
-    name_of("ID"), name_of("Modifier"),
     member("object", "Object"), member("active_nla_strip", "Far"),
     prop("BlendData.objects", "Object", "collection"), prop("BlendData.meshes", "Mesh", "collection"),
     prop("Object.modifiers", "Modifier", "collection"), prop("Object.data", "ID"),
@@ -62,12 +57,27 @@ SMALL = [
     ],
 )
 def test_takes_the_shortest_path(name: str, expression: str) -> None:
-    assert reached_expressions(SMALL)[name] == expression
+    assert reached_expressions(SMALL, names={"ClothModifier": "Cloth"})[name] == expression
+
+
+def test_a_key_is_the_name_that_blender_gives_or_an_index() -> None:
+    named = reached_expressions(SMALL, names={"Modifier": "Any", "ClothModifier": 'Drape "2"'})
+    assert named["ClothSettings"] == 'bpy.context.object.modifiers["Drape \\"2\\""].settings'
+    unnamed = reached_expressions(SMALL)
+    assert unnamed["ClothSettings"] == "bpy.context.object.modifiers[0].settings"
+
+
+def test_what_a_pointer_leads_to_only_by_chance_is_sought_elsewhere() -> None:
+    symbols = [
+        *SMALL, cls("NodeTree", "ID"), cls("TextureNodeTree", "NodeTree"), prop("Object.tree", "NodeTree"),
+        prop("Mesh.texture_tree", "TextureNodeTree"),
+    ]  # fmt: skip
+    assert reached_expressions(symbols)["TextureNodeTree"] == "bpy.context.object.data.texture_tree"
 
 
 def test_of_two_ways_the_one_is_taken_that_scripts_take() -> None:
     symbols = [
-        *SMALL, cls("Layer"), cls("Layers"), name_of("Layer"), prop("Mesh.clone", "Layer"),
+        *SMALL, cls("Layer"), cls("Layers"), prop("Mesh.clone", "Layer"),
         replace(prop("Mesh.layers", "Layer", "collection"), collection="Layers"),
         prop("Layers.active", "Layer"),
     ]  # fmt: skip
@@ -75,7 +85,7 @@ def test_of_two_ways_the_one_is_taken_that_scripts_take() -> None:
     used = {f"{TYPES}Object.data": 90, f"{TYPES}Mesh.clone": 60}
     assert reached_expressions(symbols, used)["Layer"] == "bpy.context.object.data.clone"
     used = {f"{TYPES}Object.data": 90, f"{TYPES}Mesh.layers": 60}
-    assert reached_expressions(symbols, used)["Layer"] == 'bpy.context.object.data.layers["Layer"]'
+    assert reached_expressions(symbols, used)["Layer"] == "bpy.context.object.data.layers[0]"
 
 
 def test_an_unreachable_class_has_no_expression() -> None:
@@ -93,18 +103,30 @@ def test_a_node_is_reached_through_a_tree_that_takes_it() -> None:
     symbols = [
         *SMALL,
         cls("Scene", "ID"), cls("NodesModifier", "Modifier", label="Nodes Modifier"), cls("NodeTree", "ID"),
-        cls("CompositorNodeTree", "NodeTree"), cls("GeometryNodeTree", "NodeTree"), cls("Node"), name_of("Node"),
+        cls("CompositorNodeTree", "NodeTree"), cls("GeometryNodeTree", "NodeTree"), cls("Node"),
         cls("GeometryNodeCube", "Node", label="Cube", trees=("GeometryNodeTree",)),
         cls("CompositorNodeBlur", "Node", label="Blur", trees=("CompositorNodeTree",)), cls("Items"),
         member("scene", "Scene"), prop("Scene.compositing_node_group", "CompositorNodeTree"),
         prop("NodesModifier.node_group", "GeometryNodeTree"), prop("NodeTree.nodes", "Node", "collection"),
         prop("GeometryNodeCube.items", "Items"),
     ]  # fmt: skip
-    found = reached_expressions(symbols)
-    cube = 'bpy.context.object.modifiers["Nodes"].node_group.nodes["Cube"]'
+    names = {"NodesModifier": "GeometryNodes", "GeometryNodeCube": "Cube", "CompositorNodeBlur": "Blur"}
+    found = reached_expressions(symbols, names=names)
+    cube = 'bpy.context.object.modifiers["GeometryNodes"].node_group.nodes["Cube"]'
     assert found["GeometryNodeCube"] == cube
     assert found["Items"] == f"{cube}.items"
     assert found["CompositorNodeBlur"] == 'bpy.context.scene.compositing_node_group.nodes["Blur"]'
+
+
+def test_a_shaders_node_is_reached_where_blender_puts_it() -> None:
+    symbols = [
+        *SMALL, cls("Scene", "ID"), cls("World", "ID"), cls("Material", "ID"), member("scene", "Scene"),
+        prop("Scene.world", "World"), prop("Object.active_material", "Material"),
+        cls("Background", trees=("ShaderNodeTree",)), cls("Glossy", trees=("ShaderNodeTree",)),
+    ]  # fmt: skip
+    found = reached_expressions(symbols, names={"Background": "Back"}, places={"Background": "World"})
+    assert found["Background"] == 'bpy.context.scene.world.node_tree.nodes["Back"]'
+    assert found["Glossy"] == "bpy.context.object.active_material.node_tree.nodes[0]"
 
 
 # Of Blender itself
@@ -132,12 +154,40 @@ def reached(base: Path) -> dict[str, str]:
         ("ViewLayer", "bpy.context.view_layer"),
         ("MeshUVLoopLayer", "bpy.context.object.data.uv_layers.active"),
         ("ShaderNodeBsdfPrincipled", 'bpy.context.object.active_material.node_tree.nodes["Principled BSDF"]'),
+        ("ShaderNodeBackground", 'bpy.context.scene.world.node_tree.nodes["Background"]'),
+        ("ShaderNodeEmission", 'bpy.context.object.active_material.node_tree.nodes["Emission"]'),
+        ("ActionLayer", 'bpy.context.object.animation_data.action.layers["Layer"]'),
+        ("ParticleSystem", 'bpy.context.object.particle_systems["ParticleSystem"]'),
+        ("SoftBodyModifier", 'bpy.context.object.modifiers["Softbody"]'),
+        ("GeometryNodeTree", 'bpy.context.object.modifiers["GeometryNodes"].node_group'),
+        ("NodeTree", "bpy.data.node_groups[0]"),
+        ("PoseBone", 'bpy.context.object.pose.bones["Bone"]'),
+        ("NlaStrip", 'bpy.context.object.animation_data.nla_tracks["NlaTrack"].strips[0]'),
     ],
 )
 def test_blenders_classes_are_reached_as_scripts_reach_them(
     reached: dict[str, str], name: str, expression: str
 ) -> None:
     assert reached[name] == expression
+
+
+@pytest.mark.blender
+def test_blender_itself_gives_the_names_in_the_ways_to_modifiers(reached: dict[str, str]) -> None:
+    bpy = pytest.importorskip("bpy")
+    bpy.ops.mesh.primitive_cube_add()
+    seen = 0
+    for item in bpy.types.Modifier.bl_rna.properties["type"].enum_items:
+        stack = bpy.context.object.modifiers
+        before = {modifier.name for modifier in stack}
+        try:
+            bpy.ops.object.modifier_add(type=item.identifier)
+        except (TypeError, RuntimeError):
+            continue
+        for modifier in [one for one in stack if one.name not in before]:
+            assert f'["{modifier.name}"]' in reached[modifier.bl_rna.identifier], item.identifier
+            seen += 1
+            stack.remove(modifier)
+    assert seen > 40
 
 
 def test_no_way_goes_by_what_scripts_do_not_take(reached: dict[str, str]) -> None:

@@ -100,6 +100,26 @@ def test_values_of_new_things_stand_beside_rnas_default(tmp_path: Path) -> None:
     assert (same.new_values, same.flags, unread.flags) == ((), ("compared",), ())
 
 
+def test_what_is_chosen_or_computed_has_no_default(tmp_path: Path) -> None:
+    extract = read(
+        tmp_path,
+        symbol("bpy.types.A.matrix", "property", default=[0, 0]),
+        {"record": "new_values", "path": "bpy.types.A.matrix", "chosen": True},
+        {"record": "new_values", "path": "bpy.types.Gone.matrix", "chosen": True},
+    )
+    assert (extract.symbols[0].default, extract.symbols[0].flags) == (None, ())
+
+
+def test_names_and_places_that_blender_gives_are_kept_by_class(tmp_path: Path) -> None:
+    extract = read(
+        tmp_path,
+        STRUCT,
+        {"record": "own_name", "path": "bpy.types.A", "name": "An A"},
+        {"record": "stands_in", "path": "bpy.types.A", "name": "World"},
+    )
+    assert (extract.names, extract.places) == ({"A": "An A"}, {"A": "World"})
+
+
 def test_pointers_of_new_things_say_whether_they_are_none(tmp_path: Path) -> None:
     empty = {"is_empty": True, "filled": ["lamp"], "filler": "a.b()"}
     extract = read(

@@ -420,6 +420,9 @@ def test_former_names_of_sockets_and_nodes_are_tried(extract: Extract) -> None:
         ("Keyframe.interpolation", "CONSTANT", "BEZIER"),
         ("RigidBodyObject.collision_shape", "BOX", "CONVEX_HULL"),
         ("Modifier.show_viewport", False, True),
+        ("RigidBodyConstraint.type", "POINT", "FIXED"),
+        ("Driver.type", "AVERAGE", "SCRIPTED"),
+        ("Material.roughness", 0.4, 0.4),
     ],
 )
 def test_new_things_tell_what_rna_does_not(
@@ -427,6 +430,21 @@ def test_new_things_tell_what_rna_does_not(
 ) -> None:
     symbol = symbols[f"bpy.types.{path}"]
     assert (symbol.default, usual_default(symbol)) == (default, new)
+
+
+def test_what_blender_starts_with_is_not_called_new(symbols: dict[str, Symbol]) -> None:
+    new, started = symbols["bpy.types.Material.roughness"].new_values
+    assert (new.value, new.by, new.is_startup) == (0.4, "bpy.data.materials.new()", False)
+    assert (started.value, started.is_startup) == (0.5, True)
+    settings = symbols["bpy.types.RenderSettings.use_stamp_memory"].new_values
+    assert [(one.value, one.by) for one in settings] == [(True, "bpy.data.scenes.new()"), (False, "")]
+
+
+@pytest.mark.parametrize(
+    "path", ["Object.matrix_world", "PoseBone.matrix", "EditBone.tail", "NlaStrip.frame_start"]
+)
+def test_what_blender_computes_has_no_default(symbols: dict[str, Symbol], path: str) -> None:
+    assert usual_default(symbols[f"bpy.types.{path}"]) is None
 
 
 def test_ways_and_modes_of_making_are_told_apart(symbols: dict[str, Symbol]) -> None:

@@ -18,9 +18,11 @@ if TYPE_CHECKING:
 
 @pytest.fixture(scope="module")
 def calls(extract: Extract) -> dict[str, Creation]:
-    reached = reached_expressions(extract.symbols)
+    reached = reached_expressions(extract.symbols, names=extract.names)
     return creation_calls(
-        extract.symbols, {f"bpy.types.{name}": expression for name, expression in reached.items()}
+        extract.symbols,
+        {f"bpy.types.{name}": expression for name, expression in reached.items()},
+        extract.names,
     )
 
 
@@ -28,7 +30,8 @@ def calls(extract: Extract) -> dict[str, Creation]:
     ("cls", "call"),
     [
         ("ClothModifier", "obj.modifiers.new(\"Cloth\", 'CLOTH')"),
-        ("SunLight", "bpy.data.lights.new(\"Sun Light\", 'SUN')"),
+        ("SunLight", "bpy.data.lights.new(\"Sun\", 'SUN')"),
+        ("NodesModifier", "obj.modifiers.new(\"GeometryNodes\", 'NODES')"),
         ("TrackToConstraint", "obj.constraints.new('TRACK_TO')"),
         ("Material", 'bpy.data.materials.new("Material")'),
         ("MeshUVLoopLayer", "mesh.uv_layers.new()"),

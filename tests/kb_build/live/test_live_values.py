@@ -85,8 +85,8 @@ def test_what_is_wrong_is_found(built: Built, tmp_path: Path) -> None:
             row[name] = new
             connection.execute("UPDATE symbols SET record = ? WHERE path = ?", (pack(row), path))
 
-        change(damping, "new_values", [{"value": 0, "made": ["cloth modifier"], "when": ""}], [])
-        change(body, "new_values", [{"value": None, "made": [], "when": ""}], [])
+        change(damping, "new_values", [{"value": 0, "made": ["cloth modifier"], "when": "", "by": ""}], [])
+        change(body, "new_values", [{"value": None, "made": [], "when": "", "by": ""}], [])
         flags = ["readonly", "compared", "filled-by:"]
         made = flags[2] + "bpy.ops.object.forcefield_toggle()"
         change(field, "flags", [*flags[:2], made], [*flags[:2], flags[2] + "bpy.ops.rigidbody.object_add()"])
