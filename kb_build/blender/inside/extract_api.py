@@ -71,8 +71,8 @@ STEPS = (
     # Last, because they change the scene.
     ("context", lambda write, _found: context.write_all(write)),
     ("new things", lambda write, found: new_things.write_all(write, found["observer"], found["skipped"])),
-    ("own names", lambda write, found: own_names.find_all(write, found["observer"], found["skipped"])),
     ("pointers", lambda write, found: pointer_fillers.find_all(write, found["observer"], found["skipped"])),
+    ("own names", lambda write, found: own_names.find_all(write, found["observer"], found["skipped"])),
     ("instances", lambda write, found: found["observer"].write(write)),
 )
 

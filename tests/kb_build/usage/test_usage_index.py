@@ -118,7 +118,8 @@ def test_blenders_own_scripts_are_in_the_base(reader: BaseReader) -> None:
     uses = reader.uses(f"{T}Object.location")
     assert len(uses) == 3
     assert all("location" in use.code and use.file.endswith(".py") and use.line > 0 for use in uses)
-    assert not reader.uses(f"{T}ClothSettings.quality")  # only presets set it, on a member of a panel's context
+    # Only presets set it, on a member of the context that a panel gives.
+    assert not reader.uses(f"{T}ClothSettings.quality")
 
 
 def test_most_symbols_that_scripts_use_have_an_example(reader: BaseReader) -> None:
