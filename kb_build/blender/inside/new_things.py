@@ -268,7 +268,7 @@ def rigid_bodies():
         yield f"{kind.lower()} rigid body", obj.rigid_body
     obj = add_object(None)
     bpy.ops.rigidbody.constraint_add()
-    yield "rigid body constraint", obj.rigid_body_constraint
+    yield "rigid body constraint", obj.rigid_body_constraint, "bpy.ops.rigidbody.constraint_add()"
     for kind in choices("RigidBodyConstraint", "type"):
         obj = add_object(None)
         bpy.ops.rigidbody.constraint_add(type=kind)
@@ -351,7 +351,7 @@ def animation():
             curve.modifiers.remove(modifier)
     driven = obj.driver_add("scale", 0)
     yield "f-curve of driver_add()", driven
-    yield "driver", driven.driver
+    yield "driver", driven.driver, "obj.driver_add()"
     variable = driven.driver.variables.new()
     yield "driver variable", variable
     yield "driver target", variable.targets[0]
