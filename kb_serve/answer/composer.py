@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from kb_build.records import PAGE_SOURCES
 from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
+from kb_serve.answer.practice import Practice
 from kb_serve.answer.render import MarkdownRenderer, first_sentence, said_of
 from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
@@ -88,6 +89,7 @@ class AnswerComposer:
         self._ranker = QueryRanker(reader)
         self._renderer = MarkdownRenderer(reader)
         self._topics = Topics(reader)
+        self._practice = Practice(reader)
         self._draft = lru_cache(maxsize=256)(self._make_draft)
 
     def answer(self, query: str, limit: int, max_tokens: int, part: int) -> DocsAnswer:
@@ -114,11 +116,12 @@ class AnswerComposer:
         if topic:
             return self._overview(topic, ranking, limit)
         hits = self._hits(ranking.ranked[:limit])
-        notes = (*ranking.notes, *self._source_notes(ranking, hits))
+        known = self._practice.of(hits[0].id) if hits else ()
+        notes = tuple(dict.fromkeys((*ranking.notes, *known, *self._source_notes(ranking, hits))))
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
-            known = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
-            return _draft("none", (), notes, (known,))
+            told = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
+            return _draft("none", (), notes, (told,))
         if ranking.named:
             blocks = tuple(self._whole(hits[0], ranking.ranked[0])) + self._others(hits[1:])
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)

@@ -11,6 +11,7 @@ from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
+from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import USUAL, usual_classes
 
 if TYPE_CHECKING:
@@ -49,6 +50,7 @@ class Expressions:
         self._resolver = resolver
         self._corrector = corrector
         self._old = old
+        self._custom = CustomProperties(reader)
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
@@ -95,6 +97,8 @@ class Expressions:
             return False
         if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and resolved.fit < 0.5:
             return False
+        if resolved.keyed and resolved.fit >= _CLEAR:
+            return True
         return resolved.fit >= 1.0 or len(chain.attributes) >= (1 if resolved.fit >= _OWN_CLASS else 2)
 
     def _misspelt(self, chain: Chain, resolved: ResolvedChain) -> bool:
@@ -123,7 +127,7 @@ class Expressions:
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
     ) -> None:
         """Adds the best readings of a chain, and the symbols on the way to the first."""
-        bare = not chain.attributes  # a class with a call or an index behind it
+        bare = not chain.attributes and not readings[0].keyed  # a class with a call or an index behind it
         likely = [
             resolved
             for resolved in readings[:4]
@@ -132,6 +136,9 @@ class Expressions:
         for rank, resolved in enumerate(likely):
             sure = 0.78 if bare and chain.steps else 0.97
             recognition.add(resolved.symbols[-1], sure - 0.04 * rank - later, "expression")
+        if readings[0].keyed:
+            name = next(step.text for step in reversed(chain.steps) if step.kind == "key")
+            recognition.notes.append(self._custom.note(readings[0].keyed, name))
         for step, symbol in enumerate(reversed(readings[0].symbols[:-1])):
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
 

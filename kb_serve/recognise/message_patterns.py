@@ -33,6 +33,9 @@ READ_ONLY = re.compile(
     r"|Context property \"(?P<context>\w+)\" is read-only"
 )
 FREED = re.compile(r"\b(?:StructRNA|(?P<module>BMesh) data) of type (?P<type>\w+) has been removed")
+PRODUCT = re.compile(
+    r"(?:Element-wise|Color) multiplication: not supported between '(?P<left>\w+)' and '(?P<right>\w+)'"
+)
 POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
 NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w+) undefined")

@@ -11,6 +11,7 @@ from kb_serve.reader import COLLECTION, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import NO_OVERRIDE, OVERRIDE, unknown_keywords
 from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.products import CLASSES, WITH_AT
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import socket_node
 
@@ -54,6 +55,7 @@ class Messages:
         self._operators(query, recognition)
         self._values(query, recognition)
         self._data(query, recognition)
+        self._products(query, recognition)
 
     def explain(self, query: str, recognition: Recognition) -> None:
         """Adds notes that need the query's names: the right argument, a removed socket."""
@@ -289,6 +291,15 @@ class Messages:
             else:
                 for removed in self._removed.spelled(match["type"]):
                     recognition.add_removed(removed)
+
+    @staticmethod
+    def _products(query: str, recognition: Recognition) -> None:
+        for match in _matches(forms.PRODUCT, query):
+            factors = [f"mathutils.{match[side]}" for side in ("left", "right")]
+            if all(factor in CLASSES for factor in factors):
+                recognition.notes.append(WITH_AT)
+                for rank, factor in enumerate(dict.fromkeys(factors)):
+                    recognition.add(factor, 0.95 - 0.02 * rank, "error message")
 
     def _page(self, slug: str, recognition: Recognition) -> None:
         if self._reader.page_entry(slug):

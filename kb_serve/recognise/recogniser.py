@@ -18,6 +18,7 @@ from kb_serve.recognise.message_patterns import without_callers_names, without_w
 from kb_serve.recognise.messages import Messages
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.old_code import OldCode
+from kb_serve.recognise.products import WITH_AT, Products
 from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
 from kb_serve.recognise.resolver import Resolver
@@ -55,6 +56,7 @@ class Recogniser:
         self._messages = Messages(reader, self._resolver, self._removed, self._enum_values)
         self._old = OldCode(reader, self._resolver, self._removed)
         self._expressions = Expressions(reader, self._resolver, self._corrector, self._old)
+        self._products = Products(self._resolver)
 
     def recognise(self, query: str) -> Recognition:
         """Everything that ``query`` names, surest first."""
@@ -79,6 +81,9 @@ class Recogniser:
 
     def _check_uses(self, query: str, chains: list[Chain], recognition: Recognition) -> None:
         """Adds removed values and arguments of what was recognised, and notes on wrong ones."""
+        for product, factor in self._products.wrong(query, chains):
+            recognition.notes += (f"Write `{product}`.", WITH_AT)
+            recognition.add(factor, _SURE, "wrong operator")
         for removed in (*self._old.in_imports(query), *self._old.in_strings(query)):
             recognition.add_removed(removed)
         for taken_as in self._old.still_taken_in_strings(query):

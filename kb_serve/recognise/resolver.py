@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_serve.reader import COLLECTION, TYPES, BaseReader, SymbolEntry
+from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import Variables, variable_fit
 
 if TYPE_CHECKING:
@@ -33,7 +34,6 @@ _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendDa
 _NUMBERED = re.compile(r"\.\d{3}$")
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
-_CUSTOMISABLE = frozenset({"ID", "Bone", "EditBone", "PoseBone", "PropertyGroup", "Strip", "ViewLayer"})
 _COLLECTION_FIT = 0.7  # of an indexed variable with the name of a collection property
 _USUAL = 0.05
 _MAX_BRANCHES = 60
@@ -45,7 +45,8 @@ _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "b
 class ChainValue:
     """What a chain stands for up to a step: an instance of ``cls``, a collection of it, a module or a function.
 
-    ``origin`` is the class that the last attribute was read from, which may inherit it.
+    ``origin`` is the class that the last attribute was read from, which may inherit it; ``keyed`` the class whose
+    custom property this is.
     """
 
     symbol: str
@@ -53,6 +54,7 @@ class ChainValue:
     many: bool = False
     container: str = ""
     origin: str = ""
+    keyed: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -61,7 +63,8 @@ class ResolvedChain:
 
     ``symbols`` are the ids of the resolved steps, in order; ``missing`` is the first name that the class ``owner``
     does not have (empty if the whole chain resolved); ``fit`` tells how well a variable's name suits the class
-    that was assumed for it, 0 to 1.
+    that was assumed for it, 0 to 1; ``keyed`` is the class whose custom property the chain reaches,
+    ``cls`` the class of what a complete one gives, where that is known.
     """
 
     symbols: tuple[str, ...]
@@ -69,6 +72,8 @@ class ResolvedChain:
     owner: str = ""
     fit: float = 1.0
     steps_left: int = 0
+    keyed: str = ""
+    cls: str = ""
 
     @property
     def complete(self) -> bool:
@@ -82,6 +87,7 @@ class Resolver:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
         self._variables = Variables(reader)
+        self._custom = CustomProperties(reader)
         self._returned = lru_cache(maxsize=500)(self._returned_class)
         self._named = lru_cache(maxsize=64)(self._named_classes)
 
@@ -237,13 +243,15 @@ class Resolver:
             values = following
             if step.kind == "attr" or values[0].symbol != symbols[-1]:
                 symbols.append(values[0].symbol)
-        return ResolvedChain(tuple(symbols))
+        return ResolvedChain(tuple(symbols), keyed=values[0].keyed, cls=values[0].cls)
 
     @staticmethod
     def _unresolved(value: ChainValue, step: ChainStep) -> tuple[str, str]:
         """(name, owner) of an unresolved step; a socket is missing on its node, not on its collection."""
         if step.kind == "key" and value.many:
             return f'{value.symbol.rpartition(".")[2]}["{step.text}"]', value.origin or value.cls
+        if step.kind == "key":
+            return f'["{step.text}"]', value.cls or value.symbol
         if value.many and step.kind == "attr":
             return step.text, value.container
         return step.text, value.cls or value.symbol
@@ -257,11 +265,11 @@ class Resolver:
             yield from self._item(value, step)
         elif step.kind == "index":
             yield replace(value, cls="")  # an element of a vector
-        elif not value.cls or self._takes_custom_properties(value.cls):
-            yield replace(value, cls="")
-
-    def _takes_custom_properties(self, cls: str) -> bool:
-        return any(entry.name in _CUSTOMISABLE for entry in self._reader.lineage(cls))
+        elif not value.cls:
+            yield value
+        else:
+            for cls in self._custom.taken_by(value.cls):
+                yield ChainValue(value.symbol if cls == value.cls else cls, keyed=cls)
 
     def _attribute(self, value: ChainValue, name: str) -> Iterator[ChainValue]:
         if value.many:

@@ -1,0 +1,65 @@
+"""Text in brackets behind what is no collection: custom properties, and the inputs of a geometry-nodes modifier."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+
+NODES_MODIFIER = f"{TYPES}NodesModifier"
+# The classes whose instances, and whose subclasses' instances, take custom properties.
+_TAKING = frozenset(
+    {
+        "AddonPreferences",
+        "AssetMetaData",
+        "Bone",
+        "BoneCollection",
+        "EditBone",
+        "ID",
+        "Node",
+        "NodesModifier",
+        "OperatorProperties",
+        "PoseBone",
+        "PropertyGroup",
+        "Strip",
+        "ViewLayer",
+    }
+)
+_PROPERTIES = f"{NODES_MODIFIER}.properties"  # since Blender 5.2
+_ITEMS = f"{TYPES}NodeTreeInterface.items_tree"
+
+
+class CustomProperties:
+    """Which classes of one base take custom properties, and what is said of one."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def taken_by(self, cls: str) -> list[str]:
+        """The class, if it takes them; else those below it that do."""
+        if any(entry.name in _TAKING for entry in self._reader.lineage(cls)):
+            return [cls]
+        return [entry.path for entry in self._reader.descendants(cls) if entry.name in _TAKING]
+
+    def note(self, cls: str, name: str) -> str:
+        """A sentence on ``x["name"]``, where ``x`` is of a class that takes custom properties."""
+        if cls == NODES_MODIFIER:
+            return self.on_inputs()
+        return (
+            f'`["{name}"]` is a custom property of `{cls}`, not one of its attributes: assigning makes it, reading '
+            f'raises KeyError until then; `.get("{name}")` returns None instead.'
+        )
+
+    def on_inputs(self) -> str:
+        """How the inputs of a geometry-nodes modifier are set."""
+        if self._reader.entry(_PROPERTIES):
+            return f"Inputs of a geometry-nodes modifier are values of `{_PROPERTIES}`, by the identifier of the input."
+        items = "interface.items_tree" if self._reader.entry(_ITEMS) else "inputs"
+        return (
+            "Inputs of a geometry-nodes modifier are set by the identifier of the group's input, not by its name: "
+            f'`modifier[modifier.node_group.{items}["Size"].identifier] = 5.0`, then `obj.update_tag()`. '
+            "Another key makes a custom property that changes nothing."
+        )

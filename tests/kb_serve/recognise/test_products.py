@@ -1,0 +1,39 @@
+"""Products that need ``@``, in code and in the message that ``*`` gives."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.recognise.products import WITH_AT
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+
+
+@pytest.mark.parametrize(
+    ("query", "right"),
+    [
+        ("obj.matrix_world * Vector((1, 2, 3))", "obj.matrix_world @ Vector((1, 2, 3))"),
+        ("mat * vec", "mat @ vec"),
+        ("rot = quat1 * quat2", "quat1 @ quat2"),
+        ("co = ob.matrix_world * v.co", "ob.matrix_world @ v.co"),
+    ],
+)
+def test_a_product_is_written_with_at(kb: KnowledgeBase, query: str, right: str) -> None:
+    answer = kb.query(query)
+    assert f"Write `{right}`." in answer.notes
+    assert WITH_AT in answer.text
+
+
+def test_the_message_of_a_wrong_product_leads_to_the_right_one(kb: KnowledgeBase) -> None:
+    message = "TypeError: Element-wise multiplication: not supported between 'Matrix' and 'Vector' types"
+    answer = kb.query(message)
+    assert answer.notes[0] == WITH_AT
+    assert answer.hits[0].id == "mathutils.Matrix"
+
+
+@pytest.mark.parametrize("query", ["vec * 2.0", "a * b", "obj.location * scale", "obj.scale * 3"])
+def test_other_products_are_left_alone(kb: KnowledgeBase, query: str) -> None:
+    assert not [note for note in kb.query(query).notes if "@" in note]
