@@ -12,7 +12,7 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
 from kb_serve.recognise.subscripts import CustomProperties
-from kb_serve.recognise.variables import USUAL, usual_classes
+from kb_serve.recognise.variables import USUAL, is_guess, usual_classes
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
@@ -170,6 +170,8 @@ class Expressions:
         owner = self._reader.entry(resolved.owner)
         if owner and owner.kind == "property" and hasattr(str, resolved.missing):
             return  # ``obj.name.startswith``
+        if resolved.fit < 1.0 and is_guess(chain.root):
+            return
         sure = self._is_sure(chain, resolved)
         recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure))
         for step, symbol in enumerate(reversed(resolved.symbols)):

@@ -70,6 +70,10 @@ _NAMES = {
     "MeshPolygon": "poly polygon face",
     "MeshEdge": "edge",
     "MeshLoop": "loop",
+    "MeshVertex bmesh.types.BMVert": "v",
+    "MeshPolygon bmesh.types.BMFace": "f",
+    "MeshEdge bmesh.types.BMEdge": "e",
+    "MeshLoop bmesh.types.BMLoop": "l",
     "SpaceView3D": "space space_data v3d view view3d",
     "SpaceImageEditor": "sima image_editor",
     "SpaceSequenceEditor": "sseq",
@@ -142,6 +146,11 @@ def usual_classes(variable: str) -> list[str]:
     while name not in _BY_NAME and (plain := _NUMBERED.sub("", name)) != name:
         name = plain
     return _BY_NAME.get(name, [])
+
+
+def is_guess(variable: str) -> bool:
+    """Whether a name is too short to tell what it holds: a letter, or two that scripts use for no one class."""
+    return len(variable) == 1 or (len(variable) == 2 and len(usual_classes(variable)) != 1)
 
 
 class Variables:

@@ -9,6 +9,7 @@ import pytest
 from kb_serve.recognise.variables import Variables, usual_classes, variable_fit
 
 if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
 
@@ -58,3 +59,18 @@ def test_classes_come_once_and_the_likeliest_first(reader: BaseReader) -> None:
         assert len({path for path, _ in rows}) == len(rows)
     assert variables.classes("cam")[0][0] == "bpy.types.Camera"
     assert variables.classes("qwertz") == []
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [("v.co", "bpy.types.MeshVertex.co"), ("f.normal", "bpy.types.MeshPolygon.normal")],
+)
+def test_a_letter_is_read_as_scripts_use_it(kb: KnowledgeBase, query: str, first: str) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id == first
+    assert not answer.notes
+
+
+@pytest.mark.parametrize("query", ["p.co", "m.foo_bar", "v.nothing_such", "cl.foo_bar"])
+def test_a_guess_from_one_or_two_letters_denies_nothing(kb: KnowledgeBase, query: str) -> None:
+    assert not [note for note in kb.query(query).notes if "has no" in note]
