@@ -343,6 +343,11 @@ class BaseReader:
         rows = self.rows_of("SELECT path, call, maker, choice FROM creation WHERE path", paths)
         return {row[0]: Creation(*row[1:]) for row in rows}
 
+    def operators_taking(self, argument: str) -> list[str]:
+        """Paths of the operators with an argument of that name."""
+        sql = "SELECT path FROM symbols WHERE kind = 'operator' AND line GLOB ? ORDER BY path"
+        return [row[0] for row in self.rows(sql, f"*[( ]{argument}=*")]
+
     def functions_named(self, prefix: str) -> list[str]:
         """Paths of the functions of data classes whose names begin with a key."""
         sql = """SELECT DISTINCT path FROM names JOIN symbols ON symbols.path = names.id

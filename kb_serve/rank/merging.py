@@ -67,6 +67,7 @@ class QueryRanker:
         hits = self.searcher.search(prose_of(query), max(limit, _LEAST_HITS), failed=is_message(query))
         ranked = self._merged(recognition, hits)
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
+        named = named and not recognition.is_open
         return Ranking(ranked, recognition, named, self._notes.on(recognition))
 
     @staticmethod

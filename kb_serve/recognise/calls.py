@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_serve.recognise.contexts import NO_OVERRIDE, with_context
 from kb_serve.recognise.corrections import nearest
 
 if TYPE_CHECKING:
@@ -13,11 +14,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_serve.recognise.chains import Chain
 
-OVERRIDE = "bpy.types.Context.temp_override"
-NO_OVERRIDE = (
-    "Operators take keyword arguments only, after an optional execution context. A context is not an argument: "
-    f"set it with `{OVERRIDE}`."
-)
 _FEW = 3
 _NESTED = re.compile(r"""\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}|'[^']*'|"[^"]*\"""")
 _KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
@@ -76,7 +72,8 @@ def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ())
         return
     text = last.text
     if symbol.kind == "operator" and _gives_context(text):
-        yield NO_OVERRIDE
+        line = with_context(chain)
+        yield f"{NO_OVERRIDE} Write `{line}`." if line else NO_OVERRIDE
     for _ in range(_DEPTH):
         text = _NESTED.sub("0", text)
     if symbol.kind == "operator" or symbol.path.startswith("bmesh.ops."):

@@ -36,6 +36,7 @@ FREED = re.compile(r"\b(?:StructRNA|(?P<module>BMesh) data) of type (?P<type>\w+
 PRODUCT = re.compile(
     r"(?:Element-wise|Color) multiplication: not supported between '(?P<left>\w+)' and '(?P<right>\w+)'"
 )
+NO_WRITING = re.compile(r"Writing to ID classes in this context is not allowed")
 POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
 NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w+) undefined")

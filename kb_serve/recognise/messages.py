@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, terms
 from kb_serve.reader import COLLECTION, TYPES
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.calls import NO_OVERRIDE, OVERRIDE, unknown_keywords
+from kb_serve.recognise.calls import unknown_keywords
+from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.products import CLASSES, WITH_AT
 from kb_serve.recognise.recognition import MissingName
@@ -25,12 +26,26 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
+_MOST_TAKING = 12  # operators with an argument of one name that are listed
 _MANY = 8  # where more properties may be None, none is likely enough to be named
 # Pages of the API's own guides that explain a kind of message; named where the base has them.
 _ON_OPERATORS = "info_gotchas_operators"
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
 _USUAL_NODE = f"{TYPES}ShaderNodeBsdfPrincipled."  # whose sockets scripts set most
 _ON_FREED = "info_gotchas_crashes"
+_FREED = (
+    "The variable's data was removed, freed, or moved by an undo or by adding another element: look it up again by "
+    "name."
+)
+_FREED_MESH = (
+    "`bm.free()`, a removal (`bm.verts.remove(v)`) or an operator deleted it; `v.is_valid` tells. Keep `bm` until the "
+    "work is done, and take elements anew: `bm.verts.ensure_lookup_table()`, then `bm.verts[index]`."
+)
+_READS_ONLY = (
+    "`draw()` and `poll()` of panels, menus, headers, lists and operators only read: nothing may be written there. "
+    "Write in an operator's `execute()` (a button calls it), in a handler of `bpy.app.handlers`, or later, by "
+    "`bpy.app.timers.register(function)`."
+)
 
 
 def _matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str]]:
@@ -174,10 +189,7 @@ class Messages:
         for match in _matches(forms.POLL, query):
             if self._reader.entry(match["path"]):
                 recognition.add(match["path"], 0.98, "error message")
-                recognition.notes.append(
-                    f"`{match['path']}.poll()` failed: the operator needs another mode, active object, selection "
-                    f"or editor than the context has. `{OVERRIDE}` can provide it."
-                )
+                recognition.notes.append(context_for(match["path"]))
                 self._page(_ON_OPERATORS, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")
         for match in _matches(forms.WRONG_TYPE, query):
@@ -185,6 +197,8 @@ class Messages:
                 module, _, name = match["operator"].partition("_OT_")
                 if entry := self._reader.entry(f"bpy.ops.{module.lower()}.{name}"):
                     recognition.add(entry.path, 0.98, "error message")
+        if forms.NO_WRITING.search(query):
+            recognition.notes.append(_READS_ONLY)
         if forms.POSITIONAL.search(query):
             recognition.notes.append(NO_OVERRIDE)
             recognition.add(OVERRIDE, 0.9, "error message")
@@ -210,10 +224,26 @@ class Messages:
                     recognition.notes += unknown_keywords(symbol, [name])
                 recognition.add(symbol.path, 0.9, "error message")
                 return
-        # The message alone: any function that took it once.
-        for path in [path for path in self._reader.removed_named(name) if path.endswith(f"({name})")][:_FEW]:
-            if removed := self._removed.of_path(path):
-                recognition.add_removed(removed)
+        self._keyword_alone(name, recognition)
+
+    def _keyword_alone(self, name: str, recognition: Recognition) -> None:
+        """An argument that some operator does not take: those that do, and what others have instead."""
+        taking = self._reader.operators_taking(name)
+        if taking and len(taking) <= _MOST_TAKING:
+            listed = ", ".join(f"`{path}`" for path in taking)
+            recognition.notes.append(f"`{name}` is an argument of {listed}.")
+        once = [path for path in self._reader.removed_named(name) if path.endswith(f"({name})")]
+        for removed in filter(None, map(self._removed.of_path, once[:_FEW])):
+            recognition.add_removed(removed)
+        recognition.is_open = len(recognition.removed) > 1
+        words = {
+            target.rpartition("(")[2].rstrip(")") for old in recognition.removed for target in old.targets
+        }
+        for word in sorted(words - {name}):
+            others = self._reader.operators_taking(word)
+            if len(others) <= _MOST_TAKING:
+                listed = ", ".join(f"`{path}`" for path in others)
+                recognition.notes.append(f"`{word}` is the argument of {listed}.")
 
     def _function(self, written: str) -> str:
         """The path of a function that a message names: ``Object.ray_cast``, ``from_pydata``."""
@@ -272,10 +302,7 @@ class Messages:
 
     def _data(self, query: str, recognition: Recognition) -> None:
         for match in _matches(forms.FREED, query):
-            recognition.notes.append(
-                "The variable's data was removed, freed, or moved by an undo or by adding another element: "
-                "look it up again by name."
-            )
+            recognition.notes.append(_FREED_MESH if match["module"] else _FREED)
             self._page(_ON_FREED, recognition)
             if match["module"]:
                 recognition.add("bmesh.types.BMesh.free", 0.84, "error message")

@@ -9,8 +9,9 @@ import re
 from kb_build.index.analysis import terms
 from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.addresses import ids_in_urls
-from kb_serve.recognise.calls import NO_OVERRIDE, OVERRIDE, wrong_arguments
+from kb_serve.recognise.calls import wrong_arguments
 from kb_serve.recognise.chains import Chain, find_chains
+from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.corrections import Corrector, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
@@ -102,7 +103,7 @@ class Recogniser:
                 recognition.add_removed(removed)
             notes = list(wrong_arguments(chain, symbol, {removed.path for removed in old}))
             recognition.notes += notes
-            if NO_OVERRIDE in notes:
+            if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.85, "error message")
 
     def _removed_values(self, text: str, recognition: Recognition) -> None:

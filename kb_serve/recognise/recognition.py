@@ -36,7 +36,8 @@ class MissingName:
 class Recognition:
     """What was recognised: ``matches``, and what was wrong with the names in the query.
 
-    ``notes`` are further sentences for the caller.
+    ``notes`` are further sentences for the caller. ``is_open`` tells that the query does not say which of several
+    operators it is about.
     """
 
     matches: list[RecognisedName] = field(default_factory=list)
@@ -44,6 +45,7 @@ class Recognition:
     corrections: list[Correction] = field(default_factory=list)
     removed: list[RemovedSymbol] = field(default_factory=list)
     notes: list[str] = field(default_factory=list)
+    is_open: bool = False
 
     def add(self, identifier: str, sure: float, why: str) -> None:
         """Adds a match, or raises the certainty of the one with the same id."""

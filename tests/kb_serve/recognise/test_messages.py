@@ -62,9 +62,18 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             f'keyword "segs" unrecognized {SPHERE}(segs=12)',
             f"`{SPHERE}` takes no `segs`; closest: `segments`.",
         ),
-        ("RuntimeError: Operator bpy.ops.uv.unwrap.poll() failed, context is incorrect", "temp_override"),
+        (
+            "RuntimeError: Operator bpy.ops.uv.unwrap.poll() failed, context is incorrect",
+            "mode_set(mode='EDIT')",
+        ),
         ("AttributeError: 'NoneType' object has no attribute 'mass'", "`.mass` is None"),
         ("ReferenceError: StructRNA of type Object has been removed", "data was removed, freed"),
+        ("ReferenceError: BMesh data of type BMVert has been removed", "`v.is_valid` tells"),
+        (
+            "AttributeError: Writing to ID classes in this context is not allowed: Scene, Scene data-block, error "
+            "setting Scene.frame_end",
+            "`draw()` and `poll()`",
+        ),
         ('AttributeError: bpy_struct: attribute "type" from "Object" is read-only', "cannot be assigned"),
         ("KeyError: 'bpy_prop_collection[key]: key \"Cub\" not found'", "no element `Cub`"),
     ],
@@ -158,3 +167,18 @@ def test_preferences_of_an_add_on_are_reached_through_it(kb: KnowledgeBase) -> N
     assert answer.hits[0].id == "bpy.types.CyclesPreferences.compute_device_type"
     assert f"`{reached}.compute_device_type`" in answer.text
     assert kb.query(f"{reached}.get_devices()").hits[0].id == "bpy.types.CyclesPreferences.get_devices"
+
+
+def test_an_unknown_keyword_alone_names_the_operators_that_know_it(kb: KnowledgeBase) -> None:
+    answer = kb.query(
+        'TypeError: Converting py args to operator properties: : keyword "use_selection" unrecognized'
+    )
+    notes = "\n".join(answer.notes)
+    assert (
+        "`use_selection` is an argument of `bpy.ops.export_scene.fbx`, `bpy.ops.export_scene.gltf`" in notes
+    )
+    assert (
+        "`export_selected_objects` is the argument of `bpy.ops.wm.obj_export`, `bpy.ops.wm.ply_export`, "
+        "`bpy.ops.wm.stl_export`." in notes
+    )
+    assert answer.kind == "candidates"

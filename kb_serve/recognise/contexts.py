@@ -1,0 +1,96 @@
+"""Which context operators need, as a line of Python that gives it to them."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from kb_serve.recognise.chains import Chain
+
+OVERRIDE = "bpy.types.Context.temp_override"
+NO_OVERRIDE = (
+    "Operators take keyword arguments only, after an optional execution context. A context is not an argument: "
+    f"set it with `{OVERRIDE}`."
+)
+_WITH = "with bpy.context.temp_override"
+_OBJECT = f"{_WITH}(object=ob, active_object=ob, selected_objects=[ob], selected_editable_objects=[ob])"
+_MODES = {
+    "mesh": "EDIT", "uv": "EDIT", "curve": "EDIT", "curves": "EDIT", "armature": "EDIT", "lattice": "EDIT",
+    "mball": "EDIT", "surface": "EDIT", "font": "EDIT", "pose": "POSE", "poselib": "POSE", "sculpt": "SCULPT",
+}  # fmt: skip
+_EDITORS = {
+    "view3d": "VIEW_3D", "node": "NODE_EDITOR", "image": "IMAGE_EDITOR", "graph": "GRAPH_EDITOR",
+    "action": "DOPESHEET_EDITOR", "nla": "NLA_EDITOR", "sequencer": "SEQUENCE_EDITOR", "clip": "CLIP_EDITOR",
+    "outliner": "OUTLINER", "file": "FILE_BROWSER", "text": "TEXT_EDITOR", "console": "CONSOLE", "info": "INFO",
+    "spreadsheet": "SPREADSHEET",
+}  # fmt: skip
+_OF_OBJECTS = frozenset(
+    {
+        "object",
+        "rigidbody",
+        "constraint",
+        "cloth",
+        "fluid",
+        "dpaint",
+        "particle",
+        "boid",
+        "ptcache",
+        "geometry",
+        "material",
+    }
+)
+
+
+def context_for(path: str) -> str:
+    """What lets an operator run whose ``poll()`` failed."""
+    _, _, module, name = path.split(".", 3)
+    failed = f"`{path}.poll()` failed: "
+    if module in _EDITORS:
+        return (
+            f"{failed}it runs in an area of type {_EDITORS[module]}. `area = next(a for a in "
+            f"bpy.context.window.screen.areas if a.type == '{_EDITORS[module]}')`; `region = next(r for r in "
+            f"area.regions if r.type == 'WINDOW')`; `{_WITH}(area=area, region=region): {path}()`."
+        )
+    if mode := "" if name.endswith("_add") else _MODES.get(module):
+        return (
+            f"{failed}it needs an active object of a fitting type in another mode: "
+            f"`bpy.context.view_layer.objects.active = ob`, then `bpy.ops.object.mode_set(mode='{mode}')`."
+        )
+    if module in _OF_OBJECTS or module in _MODES:
+        return (
+            f"{failed}it needs an active object of a fitting type (an Empty may not be one), or Object Mode: "
+            f"`bpy.ops.object.mode_set(mode='OBJECT')`. `{_OBJECT}: {path}()` gives it the object `ob`."
+        )
+    return (
+        f"{failed}it needs another mode, active object, selection or editor than the context has. "
+        f"`{OVERRIDE}` can provide it."
+    )
+
+
+def with_context(chain: Chain) -> str:
+    """The present form of an operator's call with a context as its first argument; empty where it has none."""
+    last = chain.steps[-1] if chain.steps else None
+    if last is None or last.kind != "call":
+        return ""
+    try:
+        call = ast.parse(f"f({last.text})", mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return ""
+    if not isinstance(call, ast.Call) or not call.args:
+        return ""
+    first, *rest = call.args
+    given = ", ".join(map(ast.unparse, (*rest, *call.keywords)))
+    return f"{_WITH}({_override(first)}): {chain.dotted}({given})"
+
+
+def _override(first: ast.expr) -> str:
+    """The arguments of ``temp_override`` that say the same as a dictionary."""
+    if not isinstance(first, ast.Dict):
+        return f"**{ast.unparse(first)}"
+    named = [
+        f"{key.value}={ast.unparse(value)}"
+        for key, value in zip(first.keys, first.values, strict=True)
+        if isinstance(key, ast.Constant) and isinstance(key.value, str) and key.value.isidentifier()
+    ]
+    return ", ".join(named) if len(named) == len(first.keys) else f"**{ast.unparse(first)}"

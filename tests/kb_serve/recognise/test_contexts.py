@@ -1,0 +1,54 @@
+"""What lets an operator run whose context does not fit: lines that work in Blender."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.recognise.chains import find_chains
+from kb_serve.recognise.contexts import context_for, with_context
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+
+
+@pytest.mark.parametrize(
+    ("path", "said"),
+    [
+        (
+            "rigidbody.object_add",
+            "with bpy.context.temp_override(object=ob, active_object=ob, selected_objects=[ob]",
+        ),
+        ("object.join", "selected_editable_objects=[ob]): bpy.ops.object.join()"),
+        ("mesh.subdivide", "mode_set(mode='EDIT')"),
+        ("mesh.primitive_cube_add", "mode_set(mode='OBJECT')"),
+        ("view3d.snap_cursor_to_center", "a.type == 'VIEW_3D'"),
+        ("wm.save_mainfile", "another mode, active object, selection or editor"),
+    ],
+)
+def test_a_failed_poll_says_what_helps(kb: KnowledgeBase, path: str, said: str) -> None:
+    message = f"RuntimeError: Operator bpy.ops.{path}.poll() failed, context is incorrect"
+    assert said in context_for(f"bpy.ops.{path}")
+    assert context_for(f"bpy.ops.{path}") in kb.query(message).notes
+
+
+@pytest.mark.parametrize(
+    ("old", "now"),
+    [
+        (
+            'bpy.ops.object.delete({"selected_objects": objs})',
+            "with bpy.context.temp_override(selected_objects=objs): bpy.ops.object.delete()",
+        ),
+        (
+            'bpy.ops.object.modifier_apply(override, modifier="Bevel")',
+            "with bpy.context.temp_override(**override): bpy.ops.object.modifier_apply(modifier='Bevel')",
+        ),
+        ("bpy.ops.object.join({", ""),
+        ("bpy.ops.object.join()", ""),
+    ],
+)
+def test_a_context_as_an_argument_becomes_a_with_line(kb: KnowledgeBase, old: str, now: str) -> None:
+    (chain,) = find_chains(old)
+    assert with_context(chain) == now
+    assert not now or f"Write `{now}`." in kb.query(old).text
