@@ -82,9 +82,28 @@ class RemovedSymbolLookup:
         span = self._reader.removed(path)
         if span is None or self._reader.still_works(path):
             return None
-        successors = tuple(self._reader.successors(path))
+        successors = tuple(self._reader.successors(path) or self._of_same_items(path, span))
         similar = () if successors else tuple(self._reader.similar_names(path))
         return RemovedSymbol(path, *span, successors, similar)
+
+    def _of_same_items(self, path: str, span: tuple[str, str, str]) -> Iterator[Successor]:
+        """What took the place of an item of an argument, where that is known of a property with the same items."""
+        call, mark, item = path.partition("):")
+        whole, _, argument = call.partition("(")
+        symbol = self._reader.symbol(whole) if mark else None
+        parameters = symbol.parameters if symbol else ()
+        items = {i.identifier for p in parameters if p.name == argument for i in p.enum_items}
+        if not items:
+            return
+        for other in self._reader.removed_named(item):
+            holder = other.removesuffix(f":{item}")
+            same = self._reader.symbol(holder) if other != path and "(" not in holder else None
+            if same is None or self._reader.removed(other) != span:
+                continue
+            for successor in self._reader.successors(other):
+                new = successor.target.removeprefix(f"{holder}:")
+                if new in items and items <= {i.identifier for i in same.enum_items}:
+                    yield replace(successor, target=f"{call}):{new}")
 
     def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
         """A removed member of a class, of its bases, of what they were called before, or of a module."""
@@ -148,7 +167,10 @@ class RemovedSymbolLookup:
 
     def spelled(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed symbols in any usual spelling; bare enum items only as code writes them."""
-        for path in self._reader.removed_by_key(key(text)):
+        items = [f":{text}"] if text.isupper() and "_" in text else []
+        named = [path for item in items for path in self._reader.removed_named(text) if path.endswith(item)]
+        known = [path for path in named if self._reader.successors(path)]
+        for path in (*self._reader.removed_by_key(key(text)), *known[:1]):
             if not self._is_meant(text, path):
                 continue
             if removed := self.of_path(path):

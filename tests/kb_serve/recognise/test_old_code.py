@@ -134,3 +134,17 @@ def test_the_rest_of_an_expression_is_followed_from_the_successor(
 def test_an_assignment_means_the_setter(kb: KnowledgeBase) -> None:
     assert kb.query("ob.select = True").hits[0].id == f"{T}Object.select_set"
     assert kb.query("print(ob.select)").hits[0].id == f"{T}Object.select_get"
+
+
+@pytest.mark.parametrize(
+    ("written", "instead"),
+    [
+        ("obj.modifiers.new('Smoke', 'SMOKE')", "bpy.types.ObjectModifiers.new(type):FLUID"),
+        ("bpy.ops.object.modifier_add(type='FLUID_SIMULATION')", "bpy.ops.object.modifier_add(type):FLUID"),
+        ("FLUID_SIMULATION", "bpy.types.Modifier.type:FLUID"),
+    ],
+)
+def test_an_item_of_an_argument_has_the_successor_of_the_property_with_these_items(
+    kb: KnowledgeBase, written: str, instead: str
+) -> None:
+    assert f"Use `{instead}`." in kb.query(written).notes[0]
