@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 
 _NOTHING_FOUND = 1
 _ERROR = 2
+_LIMIT = 8
 _PORT = 8765
 _TYPED = click.core.ParameterSource.COMMANDLINE
 _BLENDER = click.option("--blender", metavar="VERSION", help="Blender version. Default: the one in use.")
@@ -31,7 +32,7 @@ _BLENDER = click.option("--blender", metavar="VERSION", help="Blender version. D
 @click.command()
 @click.argument("query", nargs=-1, required=True)
 @_BLENDER
-@click.option("--limit", type=int, default=8, show_default=True, help="Maximum number of hits.")
+@click.option("--limit", type=int, default=_LIMIT, show_default=True, help="Maximum number of hits.")
 @click.option(
     "--max-tokens", type=int, default=1500, show_default=True, help="Maximum length of the answer, in tokens."
 )
@@ -63,12 +64,26 @@ def docs(  # noqa: PLR0913 - one for each option
 
         with closing(_bases(blender)) as bases:
             base = bases.pick()
-            answer = base.query(readable(" ".join(query)), limit=limit, max_tokens=max_tokens, part=part)
+            answer = base.query(
+                readable(" ".join(query)),
+                limit=limit,
+                max_tokens=max_tokens,
+                part=part,
+                command="" if as_json else _command(blender, limit),
+            )
             is_found = _print_raw(base, answer) if raw else _print_answer(answer, as_json=as_json)
     except UserError as error:
         click.echo(f"Error: {error}", err=True)
         sys.exit(_ERROR)
     sys.exit(0 if is_found else _NOTHING_FOUND)
+
+
+def _command(blender: str | None, limit: int) -> str:
+    """The command with the options that decide what an answer is."""
+    from simworlds.own_command import own_command  # noqa: PLC0415 - not for --help
+
+    options = (f" --blender {blender}" if blender else "", f" --limit {limit}" if limit != _LIMIT else "")
+    return f"{own_command()} docs{''.join(options)}"
 
 
 def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:

@@ -39,15 +39,22 @@ class KnowledgeBase:
         return cls(find_base(version, home))
 
     def query(
-        self, text: str, *, limit: int = LIMIT, max_tokens: int = MAX_TOKENS, part: int = 1
+        self,
+        text: str,
+        *,
+        limit: int = LIMIT,
+        max_tokens: int = MAX_TOKENS,
+        part: int = 1,
+        command: str = "",
     ) -> DocsAnswer:
         """Answers a query in any form: a name, an expression, an error message, a question, a topic.
 
         ``limit`` bounds the hits, ``max_tokens`` the text; what does not fit is in the further parts, counted
-        from 1. Raises BadQuery for an empty query, one that takes too much work, or a wrong limit or part.
+        from 1. ``command`` is what asks, if it is typed in a shell: the answer then says how to type the next call.
+        Raises BadQuery for an empty query, one that takes too much work, or a wrong limit or part.
         """
         with self._lock, self._reader.bounded(_MOST_WORK):
-            return self._composer.answer(text, limit, max_tokens, part)
+            return self._composer.answer(text, limit, max_tokens, part, command)
 
     def symbol(self, path: str) -> Symbol | None:
         """The raw record of an identifier, as the base spells it."""

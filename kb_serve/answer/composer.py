@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Literal
 
 from kb_build.records import PAGE_SOURCES
 from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
+from kb_serve.answer.next_call import next_call
 from kb_serve.answer.practice import Practice
 from kb_serve.answer.render import MarkdownRenderer, first_sentence, said_of
 from kb_serve.answer.topic_overview import Topics
@@ -28,7 +29,6 @@ MAX_TOKENS = 1_500
 LEAST_TOKENS = 150
 _FOOTER_TOKENS = 70
 _NOTES_TOKENS = 500
-_ASKED_TOKENS = 20
 _EXCERPT_TOKENS = 300  # of the best of several candidates
 _LEAST_SAID = 30
 _LINE_TOKENS = 60
@@ -92,8 +92,11 @@ class AnswerComposer:
         self._practice = Practice(reader)
         self._draft = lru_cache(maxsize=256)(self._make_draft)
 
-    def answer(self, query: str, limit: int, max_tokens: int, part: int) -> DocsAnswer:
-        """Answers a query. Raises BadQuery for an empty one, a wrong limit, or a part that does not exist."""
+    def answer(self, query: str, limit: int, max_tokens: int, part: int, command: str = "") -> DocsAnswer:
+        """Answers a query; ``command`` is what it was asked by, if in a shell.
+
+        Raises BadQuery for an empty one, a wrong limit, or a part that does not exist.
+        """
         # No base holds lone surrogates.
         text = " ".join(query.encode(errors="ignore").decode().replace("\0", " ").split())
         text = _LONG_WORD.sub(r"\1", text)
@@ -108,7 +111,7 @@ class AnswerComposer:
                 f"max_tokens={max_tokens} is too small for an answer. Set it to {LEAST_TOKENS} or more."
             )
         draft = self._draft(text, min(limit, MAX_LIMIT))
-        return _paged(text, draft, max_tokens, part)
+        return _paged(text, draft, max_tokens, part, command)
 
     def _make_draft(self, text: str, limit: int) -> _Draft:
         ranking = self._ranker.rank(text, limit)
@@ -216,7 +219,7 @@ def _is_page(hit: Hit) -> bool:
     return hit.kind in PAGE_SOURCES
 
 
-def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> DocsAnswer:
+def _paged(query: str, draft: _Draft, max_tokens: int, part: int, command: str) -> DocsAnswer:
     """As many parts of a draft as fit, from ``part`` on; what is left, and how to get it. Raises BadQuery."""
     parts = draft.parts
     if part > len(parts):
@@ -225,14 +228,15 @@ def _paged(query: str, draft: _Draft, max_tokens: int, part: int) -> DocsAnswer:
     if after == len(parts):
         return DocsAnswer(draft.kind, text, draft.hits, draft.notes, part, len(parts))
     text, after = shown(parts, part - 1, max_tokens - _FOOTER_TOKENS)
-    footer = _footer(query, range(part, after + 1), len(parts), names_of(parts[after:]))
+    call = next_call(query, after + 1, command)
+    footer = _footer(call, range(part, after + 1), len(parts), names_of(parts[after:]))
     return DocsAnswer(draft.kind, f"{text}\n\n{footer}", draft.hits, draft.notes, part, len(parts), after + 1)
 
 
-def _footer(query: str, seen: range, parts: int, left: Sequence[str]) -> str:
+def _footer(call: str, seen: range, parts: int, left: Sequence[str]) -> str:
     """What is left, and the call that gets it; with a blank line above it within ``_FOOTER_TOKENS``."""
     span = f"Part {seen[0]}" if len(seen) == 1 else f"Parts {seen[0]} to {seen[-1]}"
     head = f"_{span} of {parts}. Left: "
-    tail = f'. Next: blender_docs("{clip(query, _ASKED_TOKENS)}", part={seen[-1] + 1})_'
+    tail = f". Next: {call}_"
     names = clip(", ".join(left), _FOOTER_TOKENS - 1 - tokens(head + tail))
     return head + names + tail

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shlex
 import subprocess
 from dataclasses import asdict
 from typing import TYPE_CHECKING
@@ -63,7 +64,20 @@ def test_the_answer_is_printed_as_markdown(home: Path, expected: Callable[..., d
 
 def test_words_need_no_quotes(home: Path, expected: Callable[..., dict[str, object]]) -> None:
     done = run(home, "docs", "--max-tokens", "400", "--limit", "3", "rigid", "body", "mass")
-    assert done.stdout == f"{expected('rigid body mass', limit=3, max_tokens=400)['text']}\n"
+    answer = expected("rigid body mass", limit=3, max_tokens=400)
+    assert done.stdout.rstrip().partition(" Next: ")[0] == str(answer["text"]).partition(" Next: ")[0]
+
+
+@pytest.mark.parametrize("query", ["bpy.types.Object", 'obj.modifiers["GeometryNodes"]["Input_2"] = 5.0'])
+def test_the_next_call_can_be_typed_as_it_stands(home: Path, query: str) -> None:
+    first = run(home, "docs", query, "--max-tokens", "200").stdout
+    _, mark, call = first.rstrip("_\n`").partition(" Next: `")
+    assert mark
+    words = shlex.split(call)
+    assert words[1:3] == ["docs", query]
+    following = run(home, *words[1:])
+    assert following.returncode == 0
+    assert following.stdout not in first
 
 
 def test_json_is_exactly_the_answer(home: Path, expected: Callable[..., dict[str, object]]) -> None:

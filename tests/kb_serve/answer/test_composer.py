@@ -11,6 +11,7 @@ from asking import SEED, classes, of_data, paths
 
 from kb_serve.answer.budget import tokens
 from kb_serve.answer.composer import LEAST_TOKENS, MAX_LIMIT
+from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
 
 if TYPE_CHECKING:
@@ -26,7 +27,7 @@ QUERIES = (
     'mat.node_tree.nodes["Principled BSDF"].inputs["Specular"]', "rna_enum_icon_items", "xyzzy plugh",
     "AttributeError: 'Action' object has no attribute 'fcurves'", "bpy.types.UILayout.label", "EEVEE bloom",
 )  # fmt: skip
-FOOTER = re.compile(r"\n\n_Parts? \d+(?: to \d+)? of \d+\. Left: .*\. Next: blender_docs\(.*\)_$", re.DOTALL)
+FOOTER = re.compile(r"\n\n_Parts? \d+(?: to \d+)? of \d+\. Left: .*\. Next: .*_$", re.DOTALL)
 
 
 def body(answer: DocsAnswer) -> str:
@@ -83,14 +84,14 @@ def test_the_footer_names_what_is_left_and_the_call_that_fetches_it(kb: Knowledg
         assert "_Part" not in first.text
         return
     assert f" of {first.parts}. Left: " in first.text
-    assert re.search(rf"Next: blender_docs\(\".+\", part={first.next_part}\)_$", first.text)
+    assert first.text.endswith(f". Next: {next_call(query, first.next_part)}_")
     last = kb.query(query, max_tokens=LEAST_TOKENS, part=first.parts)
     assert "_Part" not in last.text
 
 
 def test_the_footers_call_repeats_a_short_query(kb: KnowledgeBase) -> None:
     first = kb.query("bpy.types.Object", max_tokens=300)
-    match = re.search(r'blender_docs\("(.+)", part=(\d+)\)', first.text)
+    match = re.search(r'Next: `blender_docs\("(.+)", part=(\d+)\)`_$', first.text)
     assert match is not None
     assert kb.query(match[1], max_tokens=300, part=int(match[2])).part == first.next_part
 
