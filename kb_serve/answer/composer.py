@@ -20,7 +20,7 @@ from kb_serve.rank.merging import QueryRanker, RankedId, Ranking
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_serve.reader import BaseReader
+    from kb_serve.reader import BaseReader, SymbolEntry
 
 AnswerKind = Literal["schema", "page", "candidates", "none"]
 LIMIT = 8
@@ -118,7 +118,7 @@ class AnswerComposer:
         topic = "" if self._reader.entry(text) else self._topics.find(text)
         if topic:
             return self._overview(topic, ranking, limit)
-        hits = self._hits(ranking.ranked[:limit])
+        hits = self._hits(ranking.listed(limit))
         known = self._practice.of(hits[0].id) if hits else ()
         notes = tuple(dict.fromkeys((*ranking.notes, *known, *self._source_notes(ranking, hits))))
         if not hits:
@@ -196,11 +196,19 @@ class AnswerComposer:
                 if entry.kind in {"operator", "function", "class"}
                 else entry.line
             )
-            text = text.removeprefix(f"`{entry.name}`").strip()
+            text = text.removeprefix(f"`{entry.name}`").strip() or self._instead_of_words(entry)
             return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS)
         page = self._reader.page_entry(hit.id)
         text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
+
+    def _instead_of_words(self, entry: SymbolEntry) -> str:
+        """What is said of a symbol without a description: its call, or how many members it has."""
+        if entry.kind != "class":
+            return entry.line if "(" in entry.line else ""
+        members = self._reader.members(entry.path).values()
+        label = f"{entry.label}, " if entry.label not in {"", entry.name} else ""
+        return f"{label}a class with {len(members)} members"
 
     def _overview(self, topic: str, ranking: Ranking, limit: int) -> _Draft:
         overview = self._topics.overview(topic)

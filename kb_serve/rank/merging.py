@@ -16,6 +16,8 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
 
 SURE = 0.8  # from here on, named ids come before search hits
+_FAR = 0.5  # share of the best hit's score below which another one is far from it
+_ALWAYS = 5  # hits for a description that are listed however far they are
 _LEAST_HITS = 12  # of the search, so that it also finds alternatives to a named class
 
 
@@ -37,6 +39,19 @@ class Ranking:
     recognition: Recognition
     named: bool
     notes: list[str] = field(default_factory=list)
+
+    def listed(self, limit: int) -> list[RankedId]:
+        """The first ``limit`` ids, without what the search found far below its best.
+
+        A description's first few are listed in any case, as the search may have misjudged it.
+        """
+        kept = 1 if self.ranked and self.ranked[0].why != "found" else _ALWAYS
+        rows = self.ranked[:limit]
+        return [
+            row
+            for place, row in enumerate(rows)
+            if place < kept or row.why != "found" or row.score >= _FAR * SURE
+        ]
 
 
 class QueryRanker:

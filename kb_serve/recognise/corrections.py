@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 LIKELY = 0.72  # similarity from which on a name is offered as a correction
 _CONTAINED = 0.8  # for a name whose words are all in the other one: ``select`` and ``select_set``
+_SEVERAL = 3  # words of a name that may be made of two others
 _ROUNDS = 3
 _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
@@ -50,7 +51,20 @@ def _alike(written: str, mine: set[str], name: str) -> float:
     # Only names that may contain all the words are split: that is slow for thousands of names.
     if mine and all(word in right for word in mine) and mine < (theirs := set(words(name))):
         alike = max(alike, _CONTAINED + 0.1 * len(mine) / len(theirs))
+    elif share := _share(mine, name):
+        alike = max(alike, _CONTAINED + 0.1 * share)
     return alike
+
+
+def _share(mine: set[str], name: str) -> float:
+    """Which share of a name's words another one is made of that has no others: ``hide_set`` of ``hide_set_viewport``.
+
+    0 where it lacks more than one of them, or is a single word.
+    """
+    if len(mine) < _SEVERAL or name.partition("_")[0].lower() not in mine:
+        return 0.0
+    theirs = set(words(name))
+    return len(theirs) / len(mine) if theirs < mine and len(theirs) >= len(mine) - 1 else 0.0
 
 
 def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[str, float]]:
@@ -133,6 +147,11 @@ class Corrector:
             return None
         closest = _closest(written, self._members, _CLOSE, self._words)
         return None if closest and written.removesuffix("s") == closest.meant.removesuffix("s") else closest
+
+    def parts(self, written: str) -> list[str]:
+        """The members whose words are all but one of a name's: ``hide_set`` and ``hide_viewport``."""
+        mine = set(words(written))
+        return sorted(name for name in self._members.values() if _share(mine, name))
 
     def corrected(
         self, chain: Chain, readings: list[ResolvedChain]

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
+from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
 from kb_serve.recognise.subscripts import CustomProperties
@@ -32,6 +33,8 @@ _OWN_CLASS = 0.2  # from this fit on, a variable's name supports the class at al
 
 # Classes whose members are defined by scripts and add-ons.
 _OPEN = frozenset({"OperatorProperties", "Operator", "PropertyGroup", "AddonPreferences", "Context"})
+
+_CALLED_OR_SET = frozenset({"property", "function", "operator"})
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
@@ -209,6 +212,8 @@ class Expressions:
         if not rows and lone and not name.isupper() and (correction := self._corrector.member(name)):
             recognition.corrections.append(correction)
             rows = [entry for entry in self._reader.by_name(correction.meant) if entry.group != "ui"]
+        if not rows and not prose and not chain.steps:
+            self._parts(name, recognition)
         if chain.attributes and len(rows) > _FEW:
             return  # a common name that its owner in the query does not have
         for rank, entry in enumerate(sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]):
@@ -218,6 +223,22 @@ class Expressions:
             elif entry.kind == "class" and chain.steps:
                 sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
             recognition.add(entry.path, sure - 0.03 * rank, "name")
+
+    def _parts(self, name: str, recognition: Recognition) -> None:
+        """Adds the names that one which never was is made of, each as the likeliest class has it."""
+        entries = [entry for part in self._corrector.parts(name) for entry in self._reader.by_name(part)]
+        entries = [entry for entry in entries if entry.group != "ui" and entry.kind in _CALLED_OR_SET]
+        weights = self._reader.weights([entry.path for entry in entries])
+        best: dict[str, str] = {}
+        about = set(terms(name))
+        # ``select_all_objects`` is hardly the one of bones.
+        entries.sort(key=lambda entry: (-len(about & set(terms(entry.owner))), -weights.get(entry.path, 0.0)))
+        for entry in entries:
+            best.setdefault(entry.name, entry.path)
+        for rank, path in enumerate(list(best.values())[:_FEW]):
+            recognition.add(path, 0.84 - 0.01 * rank, SIMILAR)
+        if best:
+            recognition.missing.append(MissingName(name))
 
     def _affinity(self, entry: SymbolEntry, prose: set[str]) -> float:
         """How many words around a name belong to its owner, and how usual the owner is."""

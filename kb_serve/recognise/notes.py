@@ -78,7 +78,9 @@ class Notes:
         for missing in recognition.missing:
             if recognition.removed and not missing.sure:
                 continue
-            if missing.owner and missing.name.startswith("["):
+            if not missing.owner and similar:
+                yield f"Nothing is called `{missing.name}` in Blender {self._version}.{closest}"
+            elif missing.owner and missing.name.startswith("["):
                 yield f"`{missing.owner}` takes no custom properties: `{missing.name}` fails.{closest}"
             elif missing.owner and missing.name not in removed_names:
                 yield f"`{missing.owner}` has no `{missing.name}`{self._never(missing)}.{closest}"

@@ -181,3 +181,12 @@ def test_a_long_note_does_not_crowd_out_the_answer(kb: KnowledgeBase) -> None:
 def test_classes_of_the_interface_are_answered_too(kb: KnowledgeBase, reader: BaseReader) -> None:
     for path in classes(reader, "ui", 30) + classes(reader, "operator", 30):
         assert kb.query(path).hits[0].id == path
+
+
+@pytest.mark.parametrize(
+    "query", ["cycles property group settings", "scale vectors of verts bmesh", "gpu devices"]
+)
+def test_every_further_hit_says_something(kb: KnowledgeBase, query: str) -> None:
+    lines = kb.query(query, limit=30, max_tokens=100_000).text.partition("**Also**\n")[2].split("\n")
+    assert lines
+    assert not [line for line in lines if line.startswith("- ") and line.endswith("`")]

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import paths
 
-from kb_serve.rank.merging import SURE, QueryRanker
+from kb_serve.rank.merging import SURE, QueryRanker, RankedId, Ranking
+from kb_serve.recognise.recognition import Recognition
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
@@ -68,3 +69,13 @@ def test_notes_are_not_repeated(ranker: QueryRanker) -> None:
     assert len(notes) == len(set(notes)) == 1
     assert "`bpy.types.Action.fcurves` does not exist in Blender" in notes[0]
     assert "removed in 5.0" in notes[0]
+
+
+def test_what_is_far_below_the_best_is_not_listed() -> None:
+    named = RankedId("a", 0.95, "expression")
+    found = [RankedId(str(number), 0.8 - 0.11 * number, "found") for number in range(8)]
+    listed = Ranking([named, *found], Recognition(), named=True).listed(9)
+    assert [row.id for row in listed] == ["a", "0", "1", "2", "3"]
+    described = Ranking(found, Recognition(), named=False).listed(8)
+    assert [row.id for row in described] == ["0", "1", "2", "3", "4"]
+    assert len(Ranking(found, Recognition(), named=False).listed(2)) == 2

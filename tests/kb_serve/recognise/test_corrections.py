@@ -14,6 +14,7 @@ from kb_serve.recognise.corrections import LIKELY, Corrector, is_misspelling, ne
 from kb_serve.recognise.resolver import Resolver
 
 if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.corrections import Correction
     from kb_serve.recognise.resolver import ResolvedChain
@@ -142,3 +143,14 @@ def test_a_right_member_needs_no_correction(reader: BaseReader, corrector: Corre
     for path in of_data(reader, "property", 40):
         owner, name = owner_and_name(path)
         assert corrected(corrector, reader, f"{owner}.{name}") is None
+
+
+@pytest.mark.parametrize("query", ["hide_set_viewport", "obj.hide_set_viewport(True)"])
+def test_a_name_that_is_made_of_two_leads_to_both(kb: KnowledgeBase, query: str) -> None:
+    answer = kb.query(query)
+    assert {hit.id for hit in answer.hits[:2]} == {
+        "bpy.types.Object.hide_set",
+        "bpy.types.Object.hide_viewport",
+    }
+    assert "`bpy.types.Object.hide_set`" in answer.notes[0]
+    assert "`bpy.types.Object.hide_viewport`" in answer.notes[0]
