@@ -45,7 +45,7 @@ class Ranking:
 
         A description's first few are listed in any case, as the search may have misjudged it.
         """
-        kept = 1 if self.ranked and self.ranked[0].why != "found" else _ALWAYS
+        kept = 1 if self.named else _ALWAYS
         rows = self.ranked[:limit]
         return [
             row
