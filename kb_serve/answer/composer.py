@@ -118,7 +118,8 @@ class AnswerComposer:
         topic = "" if self._reader.entry(text) else self._topics.find(text)
         if topic:
             return self._overview(topic, ranking, limit)
-        hits = self._hits(ranking.listed(limit))
+        # Whoever asks for more than usual wants what is far, too.
+        hits = self._hits(ranking.listed(limit) if limit <= LIMIT else ranking.ranked[:limit])
         known = self._practice.of(hits[0].id) if hits else ()
         notes = tuple(dict.fromkeys((*ranking.notes, *known, *self._source_notes(ranking, hits))))
         if not hits:
