@@ -14,7 +14,6 @@ from .animation import animation_facts, unused_actions
 from .appearance import camera_facts, light_facts, material_facts, render_facts, world_facts
 from .fingerprint import data_blocks
 from .likely_mistakes import notes_of
-from .loose_parts import PartReader
 from .object_entries import SceneObjects, object_facts, tags_of, tree_of
 from .physics_entries import physics_of, rigid_body_world_facts
 from .rna_values import number, numbers, shortened, text
@@ -25,6 +24,15 @@ MOST_ENTRIES = 5_000  # of any other section
 SECTIONS = ("collections", "objects", "physics", "animation", "materials", "view")
 DATA_BLOCKS = "data_blocks"
 _OF_VIEW = ("CAMERA", "LIGHT")
+
+
+def _part_reader():
+    """None in a Blender without numpy, as some systems' packages of it are."""
+    try:
+        from .loose_parts import PartReader
+    except ImportError:
+        return None
+    return PartReader()
 
 
 def scene_state(arguments, report):
@@ -74,7 +82,7 @@ class _Reading:
         return tree_of(self.scene, self.layer, None if self.whole else self.chosen)
 
     def objects(self):
-        extents, parts = ExtentReader(self.graph), PartReader() if self.parts else None
+        extents, parts = ExtentReader(self.graph), _part_reader() if self.parts else None
         visible = set()
         if self.layer is not None:
             visible_objects = (obj for obj in self.layer.objects if obj.visible_get(view_layer=self.layer))

@@ -5,10 +5,13 @@ from __future__ import annotations
 import json
 import math
 import re
+import subprocess
+import sys
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import pytest
+from places import REPO
 
 from agents.blender.tools.base import Result, parse
 from agents.blender.tools.scene_fit import tokens
@@ -1081,6 +1084,23 @@ def test_the_parts_of_a_mesh_are_measured_along_its_own_axes(session: LiveSessio
 
 def test_a_mesh_of_one_part_has_no_parts(session: LiveSession) -> None:
     assert "parts" not in entry(read(session, CUBE.format(""), detail="full"), "objects", "Cube")
+
+
+WITHOUT_NUMPY = """
+import sys
+sys.modules["numpy"] = None
+import bpy
+from agents.blender.inside.state.readout import SECTIONS, scene_state
+wanted = {"detail": "full", "objects": None, "sections": SECTIONS, "parts": True}
+print(sum(1 for _ in scene_state(wanted, print)["objects"]))
+"""
+
+
+def test_a_blender_without_numpy_reads_all_but_parts() -> None:
+    ran = subprocess.run(
+        [sys.executable, "-c", WITHOUT_NUMPY], cwd=REPO, capture_output=True, text=True, check=True
+    )
+    assert ran.stdout.split()[-1] == "3"
 
 
 # Focus
