@@ -71,7 +71,7 @@ def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ())
     if last is None or last.kind != "call" or symbol.kind not in {"operator", "function"}:
         return
     text = last.text
-    if symbol.kind == "operator" and _gives_context(text):
+    if symbol.kind == "operator" and _gives_context(text, {one.name for one in symbol.parameters}):
         line = with_context(chain)
         yield f"{NO_OVERRIDE} Write `{line}`." if line else NO_OVERRIDE
     for _ in range(_DEPTH):
@@ -81,7 +81,8 @@ def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ())
         yield from unknown_keywords(symbol, names)
 
 
-def _gives_context(arguments: str) -> bool:
-    """Whether the first argument is a dictionary, or a variable named like a context override."""
+def _gives_context(arguments: str, parameters: Collection[str]) -> bool:
+    """Whether the first argument is a dictionary, or a variable that is not just the name of a parameter."""
     first = arguments.strip()
-    return bool(re.match(r"\{|dict\(|\w*(?:override|context|ctx)\w*(?:\.copy\(\))?\s*(?:,|$)", first))
+    variable = re.match(r"([a-z_]\w*)(?:\.\w+)*(?:\.copy\(\))?\s*(?:,|$)", first)
+    return bool(re.match(r"\{|dict\(", first)) or (variable is not None and variable[1] not in parameters)

@@ -35,7 +35,6 @@ _OF_OBJECTS = frozenset(
         "dpaint",
         "particle",
         "boid",
-        "ptcache",
         "geometry",
         "material",
     }
@@ -57,9 +56,19 @@ def context_for(path: str) -> str:
             f"{failed}it needs an active object of a fitting type in another mode: "
             f"`bpy.context.view_layer.objects.active = ob`, then `bpy.ops.object.mode_set(mode='{mode}')`."
         )
-    if module in _OF_OBJECTS or module in _MODES:
+    if module == "ptcache":
         return (
-            f"{failed}it needs an active object of a fitting type (an Empty may not be one), or Object Mode: "
+            f"{failed}it needs the cache in the context: `{_WITH}(point_cache=modifier.point_cache): {path}()`. "
+            "`bpy.ops.ptcache.bake_all(bake=True)` needs none, and bakes all of the scene."
+        )
+    if module in _OF_OBJECTS or module in _MODES:
+        fitting = (
+            "a mesh for `object_add`, a rigid body for most others"
+            if module == "rigidbody"
+            else "of a fitting type"
+        )
+        return (
+            f"{failed}it needs an active object ({fitting}; an Empty mostly is none), some in Object Mode alone: "
             f"`bpy.ops.object.mode_set(mode='OBJECT')`. `{_OBJECT}: {path}()` gives it the object `ob`."
         )
     return (

@@ -170,6 +170,8 @@ class Expressions:
         assigned = chain.assigned and resolved.steps_left == 1
         if assigned and chain.dotted.startswith(("bpy.types.", "types.")) and len(resolved.symbols) == 1:
             return  # ``bpy.types.Scene.my_property = …`` defines it
+        if resolved.missing.startswith("[") and len(resolved.symbols) == 1 and chain.root != "bpy":
+            return  # a variable called ``context`` may hold a dictionary
         owner = self._reader.entry(resolved.owner)
         if owner and owner.kind == "property" and hasattr(str, resolved.missing):
             return  # ``obj.name.startswith``

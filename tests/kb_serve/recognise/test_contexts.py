@@ -24,6 +24,11 @@ if TYPE_CHECKING:
         ("mesh.subdivide", "mode_set(mode='EDIT')"),
         ("mesh.primitive_cube_add", "mode_set(mode='OBJECT')"),
         ("view3d.snap_cursor_to_center", "a.type == 'VIEW_3D'"),
+        (
+            "ptcache.bake",
+            "with bpy.context.temp_override(point_cache=modifier.point_cache): bpy.ops.ptcache.bake()",
+        ),
+        ("rigidbody.connect", "a rigid body for most others"),
         ("wm.save_mainfile", "another mode, active object, selection or editor"),
     ],
 )
@@ -44,6 +49,10 @@ def test_a_failed_poll_says_what_helps(kb: KnowledgeBase, path: str, said: str) 
             'bpy.ops.object.modifier_apply(override, modifier="Bevel")',
             "with bpy.context.temp_override(**override): bpy.ops.object.modifier_apply(modifier='Bevel')",
         ),
+        (
+            'bpy.ops.object.modifier_apply(c, modifier="Bevel")',
+            "with bpy.context.temp_override(**c): bpy.ops.object.modifier_apply(modifier='Bevel')",
+        ),
         ("bpy.ops.object.join({", ""),
         ("bpy.ops.object.join()", ""),
     ],
@@ -52,3 +61,7 @@ def test_a_context_as_an_argument_becomes_a_with_line(kb: KnowledgeBase, old: st
     (chain,) = find_chains(old)
     assert with_context(chain) == now
     assert not now or f"Write `{now}`." in kb.query(old).text
+
+
+def test_a_parameters_name_is_no_context(kb: KnowledgeBase) -> None:
+    assert "Write `" not in kb.query("bpy.ops.mesh.primitive_cube_add(size, location)").text

@@ -42,3 +42,8 @@ def test_what_takes_no_custom_properties_says_so(kb: KnowledgeBase) -> None:
     answer = kb.query('obj.constraints["Copy Location"]["influence"] = 0.5')
     assert answer.hits[0].id == "bpy.types.Constraint.influence"
     assert "takes no custom properties" in answer.notes[0]
+
+
+def test_a_variable_called_context_may_be_a_dictionary(kb: KnowledgeBase) -> None:
+    answer = kb.query("context = bpy.context.copy(); context['object'] = ob")
+    assert not any("custom properties" in note for note in answer.notes)
