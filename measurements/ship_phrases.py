@@ -10,10 +10,12 @@ from __future__ import annotations
 
 import json
 import sys
+from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
+from kb_build.summaries.shipped import ShippedSummary
 from kb_serve.knowledge_base import KnowledgeBase
 from simworlds.files import write_whole
 
@@ -52,10 +54,10 @@ def keep(base: str, *files: str) -> None:
 
         def kept(ref: str, phrases: Sequence[str]) -> list[str]:
             finding = {
-                phrase: _finds(knowledge, phrase, ref) for phrase in phrases if phrase in written.get(ref, ())
+                phrase: finds(knowledge, phrase, ref) for phrase in phrases if phrase in written.get(ref, ())
             }
-            for finds in finding.values():
-                counts[finds] += 1
+            for is_found in finding.values():
+                counts[is_found] += 1
             return [phrase for phrase in phrases if finding.get(phrase, True)]
 
         _change_pages(kept)
@@ -81,16 +83,16 @@ def _said(phrase: str) -> frozenset[str]:
     return frozenset(terms(phrase))
 
 
-def _finds(knowledge: KnowledgeBase, phrase: str, ref: str) -> bool:
+def finds(knowledge: KnowledgeBase, phrase: str, ref: str) -> bool:
+    """Whether a phrase finds its symbol, that one's class, or its page among the first ten."""
     return any(hit.id in {ref, ref.rpartition(".")[0]} for hit in knowledge.query(phrase, limit=_FIRST).hits)
 
 
 def _change_pages(change: _Change) -> None:
     for file in _PAGES.glob("*.jsonl"):
-        rows = (json.loads(line) for line in file.read_text("utf-8").splitlines())
-        changed = ([slug, *told, change(slug, phrases)] for slug, *told, phrases in rows)
-        lines = [json.dumps(row, ensure_ascii=False, separators=(",", ":")) for row in changed]
-        write_whole(file, "".join(f"{line}\n" for line in lines))
+        rows = map(ShippedSummary.from_line, file.read_text("utf-8").splitlines())
+        changed = [replace(row, phrases=tuple(change(row.slug, row.phrases))) for row in rows]
+        write_whole(file, "".join(f"{row.to_line()}\n" for row in changed))
 
 
 def _change_symbols(change: _Change) -> None:

@@ -18,6 +18,7 @@ from kb_build.summaries.shipped import ShippedSummary, file_name, shipped_summar
 from kb_build.summaries.store import SummaryStore
 from kb_build.summaries.types import summary_key
 from kb_serve.knowledge_base import KnowledgeBase
+from measurements.ship_phrases import finds
 from simworlds.files import write_whole
 
 if TYPE_CHECKING:
@@ -26,7 +27,6 @@ if TYPE_CHECKING:
     from kb_build.records import Page
     from kb_build.summaries.types import PageSummary
 
-_FIRST = 10
 _FOLDER = Path(__file__).parents[1] / "corpora" / "summaries"
 
 
@@ -41,7 +41,7 @@ def main(base: str, store: str = "", model: str = "") -> None:
         for page in pages:
             if (summary := written.get(page.slug)) is None:
                 continue
-            found = tuple(text for text in summary.phrases if _finds(knowledge, text, page.slug))
+            found = tuple(text for text in summary.phrases if finds(knowledge, text, page.slug))
             row = ShippedSummary(page.slug, page.content_hash, summary.model, summary.text, found)
             files.setdefault(file_name(version, page.slug), []).append(row)
             phrases += len(summary.phrases)
@@ -61,10 +61,6 @@ def _bought(pages: Sequence[Page], store: Path, model: str) -> Mapping[str, Page
 def _slugs(base: Path) -> list[str]:
     with closing(sqlite3.connect(f"{base.resolve().as_uri()}?mode=ro", uri=True)) as connection:
         return [slug for (slug,) in connection.execute("SELECT slug FROM pages ORDER BY slug")]
-
-
-def _finds(knowledge: KnowledgeBase, phrase: str, slug: str) -> bool:
-    return slug in (hit.id for hit in knowledge.query(phrase, limit=_FIRST).hits)
 
 
 if __name__ == "__main__":

@@ -207,7 +207,7 @@ class AnswerComposer:
         """What is said of a symbol without a description: its call, or how many members it has."""
         if entry.kind != "class":
             return entry.line if "(" in entry.line else ""
-        members = self._reader.members(entry.path).values()
+        members = self._reader.members(entry.path)
         label = f"{entry.label}, " if entry.label not in {"", entry.name} else ""
         return f"{label}a class with {len(members)} members"
 

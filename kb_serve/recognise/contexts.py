@@ -39,6 +39,8 @@ _OF_OBJECTS = frozenset(
         "material",
     }
 )
+# Which objects a module's operators take, where it is not any of a fitting type.
+_FITTING = {"rigidbody": "a mesh for `object_add`, a rigid body for most others"}
 
 
 def context_for(path: str) -> str:
@@ -62,11 +64,7 @@ def context_for(path: str) -> str:
             "`bpy.ops.ptcache.bake_all(bake=True)` needs none, and bakes all of the scene."
         )
     if module in _OF_OBJECTS or module in _MODES:
-        fitting = (
-            "a mesh for `object_add`, a rigid body for most others"
-            if module == "rigidbody"
-            else "of a fitting type"
-        )
+        fitting = _FITTING.get(module, "of a fitting type")
         return (
             f"{failed}it needs an active object ({fitting}; an Empty mostly is none), some in Object Mode alone: "
             f"`bpy.ops.object.mode_set(mode='OBJECT')`. `{_OBJECT}: {path}()` gives it the object `ob`."

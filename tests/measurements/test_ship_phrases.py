@@ -53,7 +53,7 @@ def test_what_does_not_find_its_symbol_goes_again(
     written = corpora / "written.txt"
     written.write_text(f"{QUALITY}: finer solver steps; something else entirely\n")
     ship_phrases.add(str(written))
-    monkeypatch.setattr(ship_phrases, "_finds", lambda _base, phrase, _ref: phrase.startswith("finer"))
+    monkeypatch.setattr(ship_phrases, "finds", lambda _base, phrase, _ref: phrase.startswith("finer"))
     monkeypatch.setattr(ship_phrases, "KnowledgeBase", lambda _path: nullcontext())
     ship_phrases.keep("no.sqlite", str(written))
     table = (corpora / "words" / "query_expansions.txt").read_text()

@@ -6,8 +6,9 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
+from agents.blender.formatting import format_count
 from agents.blender.tools.scene_fold import series
-from agents.blender.tools.scene_order import bears_words
+from agents.blender.tools.scene_order import bears_words, materials_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
@@ -46,31 +47,26 @@ def narrowed(facts: dict[str, Any], focus: Sequence[str], old: Collection[str] |
     objects: list[Entry] = facts.get("objects", [])
     is_named = _named(facts, focus)
     wanted = _objects_in_focus(facts, is_named, old)
-    worn = {
-        _material_name(one)
-        for entry in objects
-        if entry["name"] in wanted
-        for one in entry.get("materials", ())
-    }
+    worn = materials_of(entry for entry in objects if entry["name"] in wanted)
 
-    def in_focus(entry: Entry) -> bool:
+    def in_focus(entry: Entry, section: str) -> bool:
         name = str(entry["name"])
-        return name in wanted or is_named(name) or entry.get("kind") in _ALWAYS or bool(entry.get("active"))
+        is_worn = section == "materials" and name in worn
+        return (
+            name in wanted
+            or is_named(name)
+            or is_worn
+            or entry.get("kind") in _ALWAYS
+            or bool(entry.get("active"))
+        )
 
     rest = _rest_of_objects(facts, wanted)
-    others = {
-        "materials": [
-            one for one in facts.get("materials", ()) if not (in_focus(one) or one["name"] in worn)
-        ],
-        **{
-            name: [one for one in facts.get(name, ()) if not in_focus(one)]
-            for name in ("physics", "animation", "view")
-        },
-    }
-    for name, left in others.items():
+    others: dict[str, list[Entry]] = {}
+    for name in ("materials", "physics", "animation", "view"):
+        entries = facts.get(name, ())
+        others[name] = [one for one in entries if not in_focus(one, name)]
         if name in facts:
-            gone = {id(one) for one in left}
-            facts[name] = [one for one in facts[name] if id(one) not in gone]
+            facts[name] = [one for one in entries if in_focus(one, name)]
     if "objects" in facts:
         facts["objects"] = [one for one in objects if one["name"] in wanted]
     if "collections" in facts:
@@ -134,7 +130,7 @@ def _rest_of_objects(facts: Mapping[str, Any], wanted: Collection[str]) -> list[
         ]
         if count := len(own) + sum(left for _, left in below):
             named = _as_far_as_room([*own, *(name for name, _ in below)])
-            lines.append(f"- {branch[0]['name']}: {counted(count, 'object')}: {named}")
+            lines.append(f"- {branch[0]['name']}: {format_count(count, 'object')}: {named}")
     if len(lines) > _MOST_LINES:
         left = len(lines) - _MOST_LINES
         lines[_MOST_LINES:] = [f"- … and {left} collections more"]
@@ -148,7 +144,7 @@ def _other_lines(others: Mapping[str, Sequence[Entry]]) -> list[str]:
         if not entries:
             continue
         if name == "materials":
-            lines.append(f"- {counted(len(entries), 'material')}")
+            lines.append(f"- {format_count(len(entries), 'material')}")
         elif name == "physics":
             lines.append(
                 f"- physics: {_as_far_as_room([' '.join((one['kind'], one['name'])) for one in entries])}"
@@ -159,7 +155,7 @@ def _other_lines(others: Mapping[str, Sequence[Entry]]) -> list[str]:
             )
         else:
             kinds = Counter(one["kind"] for one in entries)
-            lines.append("- " + ", ".join(counted(count, kind) for kind, count in kinds.items()))
+            lines.append("- " + ", ".join(format_count(count, kind) for kind, count in kinds.items()))
     return lines
 
 
@@ -172,12 +168,3 @@ def _as_far_as_room(names: Sequence[str]) -> str:
             return f"{', '.join(shown)} and {len(listed) - len(shown)} more"
         shown.append(name)
     return ", ".join(shown)
-
-
-def counted(count: int, noun: str) -> str:
-    """``1 object``, ``1,200 objects``."""
-    return f"{count:,} {noun}{'' if count == 1 else 's'}"
-
-
-def _material_name(material: object) -> object:
-    return material["name"] if isinstance(material, dict) else material

@@ -30,12 +30,7 @@ def asked_first(facts: dict[str, Any], names: Sequence[str], sections: Iterable[
     materials of such objects.
     """
     bears = bears_words(names)
-    worn = {
-        _name(material)
-        for entry in facts.get("objects", ())
-        if bears(str(entry.get("name", "")))
-        for material in entry.get("materials", ())
-    }
+    worn = materials_of(entry for entry in facts.get("objects", ()) if bears(str(entry.get("name", ""))))
     for section in sections:
         entries: list[Entry] = facts.get(section, [])
         facts[section] = sorted(
@@ -69,8 +64,10 @@ def bears_words(names: Iterable[str]) -> Callable[[str], bool]:
     return bears
 
 
-def _name(material: object) -> object:
-    return material.get("name") if isinstance(material, dict) else material
+def materials_of(objects: Iterable[Entry]) -> set[object]:
+    """The names of the materials that objects have."""
+    worn = (material for entry in objects for material in entry.get("materials", ()))
+    return {material.get("name") if isinstance(material, dict) else material for material in worn}
 
 
 def _words(text: str) -> list[str]:

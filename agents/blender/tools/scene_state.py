@@ -9,11 +9,12 @@ from typing import TYPE_CHECKING, Annotated, Any, Literal, cast
 from pydantic import Field
 from pydantic.json_schema import SkipJsonSchema
 
+from agents.blender.formatting import format_count
 from agents.blender.tools import scene_dynamics as dynamics
 from agents.blender.tools import scene_words as words
 from agents.blender.tools.base import Arguments, BlenderTool, Call, CallContext, Result
 from agents.blender.tools.scene_fit import ReadoutItem, ReadoutSection, share_tokens, tokens
-from agents.blender.tools.scene_focus import counted, narrowed
+from agents.blender.tools.scene_focus import narrowed
 from agents.blender.tools.scene_fold import fold, fold_tree, series
 from agents.blender.tools.scene_order import asked_first, keep_parts
 
@@ -148,7 +149,7 @@ def readout(facts: dict[str, Any], arguments: SceneStateArguments) -> Result:
 def _rest_text(rest: FocusRest) -> str:
     """What a readout with a focus leaves out."""
     return "\n".join(
-        [f"## The rest ({counted(rest.count, 'object')}): {_REST_CALL} shows more of it", *rest.lines]
+        [f"## The rest ({format_count(rest.count, 'object')}): {_REST_CALL} shows more of it", *rest.lines]
     )
 
 
