@@ -15,7 +15,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -78,6 +78,12 @@ CREATE TABLE links (source TEXT NOT NULL, target TEXT NOT NULL, kind TEXT NOT NU
 -- The place in the manual that is about a symbol: a section's number and a line of its text, -1 for the heading.
 CREATE TABLE passages (
     path TEXT PRIMARY KEY, slug TEXT NOT NULL, section INTEGER NOT NULL, line INTEGER NOT NULL
+) WITHOUT ROWID;
+
+-- What a script writes for a label in the manual, in Markdown: for a term in a line of a section, -1 for the heading.
+CREATE TABLE label_names (
+    slug TEXT NOT NULL, section INTEGER NOT NULL, line INTEGER NOT NULL, names TEXT NOT NULL,
+    PRIMARY KEY (slug, section, line)
 ) WITHOUT ROWID;
 
 -- The call that makes an instance of a class, the function or operator that it calls, and the type that it names.

@@ -18,6 +18,7 @@ from kb_build.index.analysis import content_words, key, short_path, topic_key
 from kb_build.index.creation import creation_calls
 from kb_build.index.documents import Document, kind_of, make_units, topic_documents
 from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
+from kb_build.index.label_names import find_label_names
 from kb_build.index.passages import find_passages
 from kb_build.index.postings import (
     TOPIC_B,
@@ -319,6 +320,8 @@ def _write(part: Path, contents: Contents) -> None:
             _write_removed_symbols(connection, contents.removed_symbols())
             _insert(connection, "still_works", contents.still_works, 2)
             _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
+            names = find_label_names(contents.symbols, contents.pages, passages)
+            _insert(connection, "label_names", names, 4)
             usage = contents.usage()
             calls = creation_calls(contents.symbols, usage.reached, usage.names)
             _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)

@@ -123,6 +123,8 @@ class BaseReader:
         self.page_children = KeptRows(self._page_children, (), 100)
         self.manual_links = KeptRows(self._manual_links, (), 500)
         self.by_key = KeptRows(self._by_key, (), 200)
+        # What scripts write for a page's labels: (section, line) → the names in Markdown; line -1 is the heading.
+        self.label_names = KeptRows(self._label_names, {}, 100)
         # The members of a class or module by name; the classes right below one; the symbols whose last part is a name.
         self.members = lru_cache(maxsize=64)(self._members)
         self.subclasses = lru_cache(maxsize=64)(self._subclasses)
@@ -197,6 +199,13 @@ class BaseReader:
     def _manual_links(self, sources: Sequence[str]) -> dict[str, tuple[str, ...]]:
         sql = "SELECT source, target FROM links WHERE kind = 'manual' AND source"
         return _grouped(self.rows_of(sql, sources, "rowid"))
+
+    def _label_names(self, slugs: Sequence[str]) -> dict[str, dict[tuple[int, int], str]]:
+        rows = self.rows_of("SELECT slug, section, line, names FROM label_names WHERE slug", slugs)
+        names: dict[str, dict[tuple[int, int], str]] = {}
+        for slug, section, line, text in rows:
+            names.setdefault(slug, {})[section, line] = text
+        return names
 
     def _by_key(self, keys: Sequence[str]) -> dict[str, tuple[tuple[int, str], ...]]:
         rows = self.rows_of("SELECT key, form, id FROM names WHERE key", keys, "key, form, id")

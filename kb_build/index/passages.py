@@ -74,8 +74,8 @@ class _Place:
     )
 
 
-def _keys(term: str) -> frozenset[str]:
-    """``Size / Size X`` and ``Distance (m)`` are found by each of their names."""
+def keys_of_term(term: str) -> frozenset[str]:
+    """The keys of a term: ``Size / Size X`` and ``Distance (m)`` are found by each of their names."""
     plain = _BRACKETS.sub("", term)
     return frozenset(filter(None, (key(plain), key(term), *map(key, _PARTS.split(plain)))))
 
@@ -91,7 +91,7 @@ def _read(page: Page) -> _Place:
             place.marks.setdefault(name, (number, line))
             place.taken.add((number, line))
         for line, term in term_lines(section.text):
-            keys = _keys(term)
+            keys = keys_of_term(term)
             entry = _Term(number, line, key(_BRACKETS.sub("", term)))
             for each in keys:
                 place.terms[each].append(entry)

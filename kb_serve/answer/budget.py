@@ -38,10 +38,14 @@ def clip(text: str, budget: int) -> str:
 
 @dataclass(frozen=True, slots=True)
 class AnswerBlock:
-    """A piece of an answer that belongs together; ``name`` is its name in the list of what is left."""
+    """A piece of an answer that belongs together; ``name`` is its name in the list of what is left.
+
+    ``plain`` is the documentation's own text, where something was added to it.
+    """
 
     text: str
     name: str = ""
+    plain: str = ""
 
 
 @dataclass(frozen=True, slots=True)

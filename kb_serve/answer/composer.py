@@ -172,11 +172,12 @@ class AnswerComposer:
 
     def _excerpt(self, ranking: Ranking, hit: Hit) -> Iterator[AnswerBlock]:
         """The beginning of the best hit: its description, or the heading and the section that matches, and as much
-        more as is short. Sections that only say in which panel something is are not counted.
+        more as is short. Sections that only say in which panel something is are not counted, nor are the names
+        that stand with labels: they must not take the place of what was asked for.
         """
         said = 0
         for number, block in enumerate(self._whole(hit, ranking.ranked[0])):
-            size = tokens(block.text)
+            size = tokens(block.plain or block.text)
             if number > 1 and said + size > _EXCERPT_TOKENS and said > _LEAST_SAID:
                 return
             said += size if number and not _is_box(block.text) else 0

@@ -21,7 +21,7 @@ from kb_serve.answer.budget import AnswerBlock
 from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import EnumItem, Parameter, Section, Symbol
 
@@ -210,16 +210,22 @@ class MarkdownRenderer:
         page, entry = self.reader.page(slug), self.reader.page_entry(slug)
         if page is None or entry is None:
             return
+        names = self.reader.label_names(slug)
         above = " › ".join((*page.breadcrumbs, page.title))
-        head = f"## {above}\n\n{page.url or slug}"
+        head = f"## {above}{_beside(names, 0, -1)}\n\n{page.url or slug}"
         others = [section.title for section in page.sections[1:]]
         if len(others) > 1:
             head += "\n\nSections: " + ", ".join(others)
         yield AnswerBlock(head, "heading")
-        for section in sorted(page.sections, key=lambda section: not _leads_to(anchor, section)):
-            mark = "#" * min(6, section.level + 2)
+        sections = sorted(enumerate(page.sections), key=lambda item: not _leads_to(anchor, item[1]))
+        for number, section in sections:
             if section.text:
-                yield AnswerBlock(f"{mark} {section.title}\n\n{section.text}", section.title)
+                heading = f"{'#' * min(6, section.level + 2)} {section.title}"
+                plain = f"{heading}\n\n{section.text}"
+                if number:  # the page's own name stands in its head
+                    heading += _beside(names, number, -1)
+                text = f"{heading}\n\n{_with_names(section.text, number, names)}"
+                yield AnswerBlock(text, section.title, plain)
         below = self.reader.page_children(slug)
         if below:
             yield AnswerBlock("**Pages below**\n" + "\n".join(map(self.page_line, below)), "pages below")
@@ -316,7 +322,8 @@ class MarkdownRenderer:
             return
         section = page.sections[found[1]]
         where = page.title if found[1] == 0 else f"{page.title} › {section.title}"
-        if text := passage_text(section.text, found[2]):
+        named = _with_names(section.text, found[1], self.reader.label_names(page.slug))
+        if text := passage_text(named, found[2]):
             yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")
 
     def used(self, path: str) -> str:
@@ -354,6 +361,20 @@ class MarkdownRenderer:
         lines = ["- " + entry.line for entry in members]
         if lines:
             yield AnswerBlock("**Contents**\n" + "\n".join(lines), "contents")
+
+
+def _beside(names: Mapping[tuple[int, int], str], section: int, line: int) -> str:
+    """What is added to a label: the names that scripts have for it."""
+    name = names.get((section, line))
+    return f" · {name}" if name else ""
+
+
+def _with_names(text: str, section: int, names: Mapping[tuple[int, int], str]) -> str:
+    """A section's text, the names that scripts have for its labels beside them."""
+    if not names:
+        return text
+    lines = text.split("\n")
+    return "\n".join(line + _beside(names, section, number) for number, line in enumerate(lines))
 
 
 def _leads_to(anchor: str, section: Section) -> bool:

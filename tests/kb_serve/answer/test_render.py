@@ -188,6 +188,20 @@ def test_a_page_shows_where_it_stands_and_every_section(kb: KnowledgeBase) -> No
         assert section.text in text
 
 
+def test_a_label_of_the_manual_has_its_python_name_beside_it(kb: KnowledgeBase) -> None:
+    text = kb.query("physics/cloth/settings/index", max_tokens=ALL).text
+    assert "**Quality Steps** · `ClothSettings.quality`\n  How many times" in text
+    assert [line for line in text.split("\n") if line.startswith("**") and " · `" in line] == [
+        "**Quality Steps** · `ClothSettings.quality`"
+    ]
+
+
+def test_names_beside_labels_do_not_count_for_what_is_shown(renderer: MarkdownRenderer) -> None:
+    block = next(block for block in renderer.page("physics/cloth/settings/index") if block.plain)
+    assert "`ClothSettings.quality`" in block.text
+    assert block.plain == block.text.replace(" · `ClothSettings.quality`", "")
+
+
 def test_the_section_asked_for_comes_first(renderer: MarkdownRenderer, kb: KnowledgeBase) -> None:
     page = kb.page("physics/cloth/settings/collisions")
     assert page is not None

@@ -1,0 +1,115 @@
+"""The Python names of what the manual calls by its labels: beside **Frame Start** belongs what a script writes.
+
+The passage that is about a symbol (:mod:`kb_build.index.passages`) begins with a term or stands below a heading. Of
+the symbols of one such label, those count that are called just so; of a class and its subclasses, the class. Where
+more than two different names are left, or where it is not sure that the label means them, it has none.
+"""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_build.index.analysis import key
+from kb_build.index.analysis import terms as terms_of
+from kb_build.index.passages import Passage, keys_of_term
+from kb_build.symbol_lines import new_subscript, term_lines
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from kb_build.records import Page, Symbol
+
+_TYPES = "bpy.types."
+_MOST = 2
+_LISTED = re.compile(r"\s*(?:/|,|&| and | or )\s*")
+
+
+class LabelName(NamedTuple):
+    """What a script writes for a label: of the heading of a page's section (line -1), or of a term in its text."""
+
+    slug: str
+    section: int
+    line: int
+    names: str
+
+
+def find_label_names(
+    symbols: Sequence[Symbol], pages: Sequence[Page], passages: Mapping[str, Passage]
+) -> list[LabelName]:
+    """The names of all labels that surely have one, in the order of the pages."""
+    by_path = {symbol.path: symbol for symbol in symbols}
+    at: dict[str, dict[tuple[int, int], list[Symbol]]] = defaultdict(lambda: defaultdict(list))
+    for path, (slug, section, line) in passages.items():
+        at[slug][section, line].append(by_path[path])
+    return [name for page in pages if page.slug in at for name in _of_page(page, at[page.slug], by_path)]
+
+
+def _of_page(
+    page: Page, at: Mapping[tuple[int, int], Sequence[Symbol]], by_path: Mapping[str, Symbol]
+) -> Iterator[LabelName]:
+    labels = {(number, -1): section.title for number, section in enumerate(page.sections)}
+    for number, section in enumerate(page.sections):
+        labels.update({(number, line): term for line, term in term_lines(section.text)})
+    # The class that the page as a whole is about: its sockets need not repeat it.
+    subject = [symbol.path for symbol in at.get((0, -1), ()) if symbol.kind == "class"]
+    for place, symbols in sorted(at.items()):
+        if (label := labels.get(place)) is None:
+            continue
+        meant = _bases_of(_called(label, symbols, is_heading=place[1] < 0), by_path)
+        names = dict.fromkeys(filter(None, (_name(symbol, subject) for symbol in _in_order(label, meant))))
+        if 0 < len(names) <= _MOST:
+            yield LabelName(page.slug, *place, ", ".join(f"`{name}`" for name in names))
+
+
+def _called(label: str, symbols: Sequence[Symbol], *, is_heading: bool) -> Sequence[Symbol]:
+    """The symbols that are called as the label says, or that it surely means nevertheless."""
+    keys = keys_of_term(label)
+    if exactly := [symbol for symbol in symbols if key(symbol.label) in keys]:
+        return exactly
+    words = set(terms_of(label))
+    related = [symbol for symbol in symbols if words.intersection(terms_of(symbol.label))]
+    if len(symbols) == 1:
+        return related if is_heading and symbols[0].kind == "class" else symbols
+    lists_them = len(_LISTED.split(label)) > 1
+    return symbols if lists_them or len(related) == len(symbols) else ()
+
+
+def _bases_of(symbols: Sequence[Symbol], by_path: Mapping[str, Symbol]) -> list[Symbol]:
+    """Without members that a base class of their own has, too, under that name."""
+    owners = {(symbol.owner, symbol.name) for symbol in symbols}
+    return [
+        symbol
+        for symbol in symbols
+        if not any((base, symbol.name) in owners for base in _above(symbol.owner, by_path))
+    ]
+
+
+def _above(cls: str, by_path: Mapping[str, Symbol]) -> Iterator[str]:
+    while (symbol := by_path.get(cls)) is not None and symbol.base:
+        yield symbol.base
+        cls = symbol.base
+
+
+def _in_order(label: str, symbols: Sequence[Symbol]) -> list[Symbol]:
+    """In the order in which a label lists them: End and Start of "Start, End" change places."""
+    parts = [set(terms_of(part)) for part in _LISTED.split(label)]
+
+    def place(symbol: Symbol) -> int:
+        own = {*terms_of(symbol.label), *terms_of(symbol.name)}
+        return max(range(len(parts)), key=lambda number: (len(parts[number] & own), -number))
+
+    return sorted(symbols, key=place)
+
+
+def _name(symbol: Symbol, subject: Sequence[str]) -> str:
+    """What a script writes for a symbol, without what every reader knows."""
+    if symbol.kind == "operator":
+        return f"{symbol.path}()"
+    if symbol.kind != "socket":
+        return symbol.path.removeprefix(_TYPES)
+    subscript = new_subscript(symbol)
+    if not subscript or symbol.owner in subject:
+        return subscript
+    return f"{symbol.owner.removeprefix(_TYPES)}.{subscript}"
