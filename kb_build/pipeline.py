@@ -361,6 +361,7 @@ def _write(  # noqa: PLR0913, PLR0917 - all that a base is made of
     by_slug = run.by_slug if run else {}
     with beside(partial(_removed_symbols, extract)) as removed_symbols:
         # Loaded now: a process is not forked safely from one that has NumPy's threads.
+        from kb_build.blender.buttons import operator_buttons  # noqa: PLC0415 - not when nothing changed
         from kb_build.store import Contents, write_base  # noqa: PLC0415
 
         contents: Contents = Contents(
@@ -372,6 +373,7 @@ def _write(  # noqa: PLR0913, PLR0917 - all that a base is made of
             still_works=extract.still_works,
             removed_symbols=removed_symbols,
             usage=usage,
+            buttons=operator_buttons(Path(extract.scripts)) if extract.scripts else {},
         )
         write_base(work.path, contents)
 

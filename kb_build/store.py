@@ -19,6 +19,7 @@ from kb_build.index.creation import creation_calls
 from kb_build.index.documents import Document, kind_of, make_units, topic_documents
 from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
 from kb_build.index.label_names import find_label_names
+from kb_build.index.operator_labels import find_labelled_operators, passages_of
 from kb_build.index.passages import find_passages
 from kb_build.index.postings import (
     TOPIC_B,
@@ -57,6 +58,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from kb_build.blender.buttons import Button
     from kb_build.summaries.types import PageSummary
 
 
@@ -67,7 +69,8 @@ _MEMBERS = frozenset({"property", "function", "socket"})
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are by slug. ``removed_symbols`` and ``usage`` are called last: they may still be computed meanwhile.
+    ``summaries`` are by slug, ``buttons`` by operator. ``removed_symbols`` and ``usage`` are called last: they may
+    still be computed meanwhile.
     """
 
     symbols: Sequence[Symbol]
@@ -78,6 +81,7 @@ class Contents:
     removed_symbols: Callable[[], RemovedSymbols] = RemovedSymbols
     still_works: Sequence[tuple[str, str]] = ()
     usage: Callable[[], SymbolUsage] = SymbolUsage
+    buttons: Mapping[str, Sequence[Button]] = field(default_factory=dict[str, "Sequence[Button]"])
 
 
 def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
@@ -310,17 +314,17 @@ def _write(part: Path, contents: Contents) -> None:
             f"PRAGMA user_version={SCHEMA_VERSION};{DDL}"
         )
         expansions = query_expansions(contents.summaries)
-        passages = find_passages(contents.symbols, contents.pages, contents.links)
-        units = make_units(
-            contents.symbols, contents.pages, contents.links, contents.summaries, expansions, passages
-        )
+        symbols, pages = contents.symbols, contents.pages
+        labelled = find_labelled_operators(symbols, pages, contents.links, contents.buttons)
+        passages = passages_of(labelled, pages) | find_passages(symbols, pages, contents.links)
+        units = make_units(symbols, pages, contents.links, contents.summaries, expansions, passages)
         with connection:
             _write_pages(connection, contents.pages, contents.summaries)
             write_index(connection, units, expansions)
             _write_removed_symbols(connection, contents.removed_symbols())
             _insert(connection, "still_works", contents.still_works, 2)
             _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
-            names = find_label_names(contents.symbols, contents.pages, passages)
+            names = find_label_names(symbols, pages, passages, labelled)
             _insert(connection, "label_names", names, 4)
             usage = contents.usage()
             calls = creation_calls(contents.symbols, usage.reached, usage.names)

@@ -2,7 +2,8 @@
 
 The passage that is about a symbol (:mod:`kb_build.index.passages`) begins with a term or stands below a heading. Of
 the symbols of one such label, those count that are called just so; of a class and its subclasses, the class. Where
-more than two different names are left, or where it is not sure that the label means them, it has none.
+more than two different names are left, or where it is not sure that the label means them, it has none. Operators are
+added that have no passage, or several (:mod:`kb_build.index.operator_labels`).
 """
 
 from __future__ import annotations
@@ -17,8 +18,9 @@ from kb_build.index.passages import Passage, keys_of_term
 from kb_build.symbol_lines import new_subscript, term_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+    from kb_build.index.operator_labels import LabelledOperator
     from kb_build.records import Page, Symbol
 
 _TYPES = "bpy.types."
@@ -36,18 +38,33 @@ class LabelName(NamedTuple):
 
 
 def find_label_names(
-    symbols: Sequence[Symbol], pages: Sequence[Page], passages: Mapping[str, Passage]
+    symbols: Sequence[Symbol],
+    pages: Sequence[Page],
+    passages: Mapping[str, Passage],
+    labelled: Iterable[LabelledOperator] = (),
 ) -> list[LabelName]:
-    """The names of all labels that surely have one, in the order of the pages."""
+    """The names of all labels that surely have one, in the order of the pages.
+
+    ``labelled`` are operators that are surely meant by a label, whether or not it has their passage.
+    """
     by_path = {symbol.path: symbol for symbol in symbols}
     at: dict[str, dict[tuple[int, int], list[Symbol]]] = defaultdict(lambda: defaultdict(list))
     for path, (slug, section, line) in passages.items():
         at[slug][section, line].append(by_path[path])
-    return [name for page in pages if page.slug in at for name in _of_page(page, at[page.slug], by_path)]
+    calls: dict[Passage, dict[str, str]] = defaultdict(dict)
+    for place, path, arguments, _ in labelled:
+        calls[place][path] = f"{path}({arguments})"
+        at[place.slug].setdefault((place.section, place.line), [])
+    return [
+        name for page in pages if page.slug in at for name in _of_page(page, at[page.slug], by_path, calls)
+    ]
 
 
 def _of_page(
-    page: Page, at: Mapping[tuple[int, int], Sequence[Symbol]], by_path: Mapping[str, Symbol]
+    page: Page,
+    at: Mapping[tuple[int, int], Sequence[Symbol]],
+    by_path: Mapping[str, Symbol],
+    calls: Mapping[Passage, Mapping[str, str]],
 ) -> Iterator[LabelName]:
     labels = {(number, -1): section.title for number, section in enumerate(page.sections)}
     for number, section in enumerate(page.sections):
@@ -58,7 +75,13 @@ def _of_page(
         if (label := labels.get(place)) is None:
             continue
         meant = _bases_of(_called(label, symbols, is_heading=place[1] < 0), by_path)
-        names = dict.fromkeys(filter(None, (_name(symbol, subject) for symbol in _in_order(label, meant))))
+        called = calls.get(Passage(page.slug, *place), {})
+        if called.keys() >= {symbol.path for symbol in meant}:
+            names = dict.fromkeys(called.values())
+        else:
+            names = dict.fromkeys(
+                filter(None, (_name(symbol, subject) for symbol in _in_order(label, meant)))
+            )
         if 0 < len(names) <= _MOST:
             yield LabelName(page.slug, *place, ", ".join(f"`{name}`" for name in names))
 

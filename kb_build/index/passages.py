@@ -105,6 +105,11 @@ def find_passages(
     return dict(_Finder(symbols, pages, links).found())
 
 
+def says_something(page: Page, place: Passage) -> bool:
+    """Whether the text of a place does more than to refer to another one."""
+    return not _REFERS.fullmatch(passage_text(page.sections[place.section].text, place.line))
+
+
 class _Finder:
     def __init__(self, symbols: Sequence[Symbol], pages: Sequence[Page], links: Iterable[Link]) -> None:
         self._symbols = {symbol.path: symbol for symbol in symbols}
@@ -127,8 +132,8 @@ class _Finder:
                 continue
             place = self._place(slug)
             at = self._marked(symbol, place) or self._defined(symbol, place, address)
-            if at and not _REFERS.fullmatch(passage_text(place.page.sections[at[0]].text, at[1])):
-                yield symbol.path, Passage(slug, *at)
+            if at and says_something(place.page, found := Passage(slug, *at)):
+                yield symbol.path, found
 
     def _place(self, slug: str) -> _Place:
         if slug not in self._places:
@@ -153,7 +158,7 @@ class _Finder:
         """Where the page surely defines the symbol's label."""
         if symbol.kind not in {"property", "socket"} or not symbol.label:
             return None
-        scope = _scope(place.page, place.marks.get(address))
+        scope = scope_of(place.page, place.marks.get(address))
         wanted = key(symbol.label)
         terms = [term for term in place.terms.get(wanted, ()) if self._may_be(symbol, term, place, scope)]
         # A term of its own goes before one that it shares with others, as Target before Target/Owner.
@@ -225,7 +230,7 @@ def _about(symbol: Symbol) -> set[str]:
     return set(_stems(symbol.name, symbol.description)) - set(_stems(symbol.label))
 
 
-def _scope(page: Page, mark: tuple[int, int] | None) -> range:
+def scope_of(page: Page, mark: tuple[int, int] | None) -> range:
     """The sections at or below the one that a heading's address leads to; all where there is none."""
     sections = page.sections
     if mark is None or mark[1] >= 0:
