@@ -128,6 +128,8 @@ class BaseReader:
         # The members of a class or module by name; the classes right below one; the symbols whose last part is a name.
         self.members = lru_cache(maxsize=64)(self._members)
         self.subclasses = lru_cache(maxsize=64)(self._subclasses)
+        # A page with its sections, or None. It is looked at several times while it is answered with.
+        self.page = lru_cache(maxsize=8)(self._page)
         # A thousand symbols share a name, and resolving asks for the same few again and again.
         self.by_name = lru_cache(maxsize=8)(self._by_name)
 
@@ -377,8 +379,7 @@ class BaseReader:
         sql = "SELECT path FROM symbols WHERE kind = 'operator' AND owner = ? ORDER BY path"
         return [row[0] for row in self.rows(sql, f"bpy.ops.{module}")]
 
-    def page(self, slug: str) -> Page | None:
-        """A page with its sections, or None."""
+    def _page(self, slug: str) -> Page | None:
         rows = self.rows("SELECT record FROM pages WHERE slug = ?", slug)
         return self._record(page_from_json, rows[0][0]) if rows else None
 

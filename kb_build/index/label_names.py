@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
-from kb_build.index.passages import Passage, keys_of_term
+from kb_build.index.passages import KIND_WORDS, Passage, keys_of_term
 from kb_build.symbol_lines import new_subscript, term_lines
 
 if TYPE_CHECKING:
@@ -74,7 +74,14 @@ def _of_page(
     for place, symbols in sorted(at.items()):
         if (label := labels.get(place)) is None:
             continue
-        meant = _bases_of(_called(label, symbols, is_heading=place[1] < 0), by_path)
+        is_heading, is_title = place[1] < 0, place == (0, -1)
+        # Headings have the marks of classes, too, that are only mentioned below.
+        there = [
+            symbol
+            for symbol in symbols
+            if not is_heading or symbol.kind != "class" or _heads(label, symbol, is_title=is_title)
+        ]
+        meant = _bases_of(_called(label, there), by_path)
         called = calls.get(Passage(page.slug, *place), {})
         if called.keys() >= {symbol.path for symbol in meant}:
             names = dict.fromkeys(called.values())
@@ -86,7 +93,7 @@ def _of_page(
             yield LabelName(page.slug, *place, ", ".join(f"`{name}`" for name in names))
 
 
-def _called(label: str, symbols: Sequence[Symbol], *, is_heading: bool) -> Sequence[Symbol]:
+def _called(label: str, symbols: Sequence[Symbol]) -> Sequence[Symbol]:
     """The symbols that are called as the label says, or that it surely means nevertheless."""
     keys = keys_of_term(label)
     if exactly := [symbol for symbol in symbols if key(symbol.label) in keys]:
@@ -94,9 +101,18 @@ def _called(label: str, symbols: Sequence[Symbol], *, is_heading: bool) -> Seque
     words = set(terms_of(label))
     related = [symbol for symbol in symbols if words.intersection(terms_of(symbol.label))]
     if len(symbols) == 1:
-        return related if is_heading and symbols[0].kind == "class" else symbols
+        return symbols
     lists_them = len(_LISTED.split(label)) > 1
     return symbols if lists_them or len(related) == len(symbols) else ()
+
+
+def _heads(heading: str, cls: Symbol, *, is_title: bool) -> bool:
+    """Whether what stands below a heading is about a class: a page's title may say it in other words, too."""
+    words, own = set(terms_of(heading)), set(terms_of(cls.label))
+    if is_title:
+        return bool(words & own)
+    words, own = words - KIND_WORDS, own - KIND_WORDS
+    return bool(words & own) and (own <= words or words <= own)
 
 
 def _bases_of(symbols: Sequence[Symbol], by_path: Mapping[str, Symbol]) -> list[Symbol]:

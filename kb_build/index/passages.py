@@ -30,7 +30,7 @@ _BEGINNING = 400  # letters of a definition that say what it is about
 _PLAIN_HEADINGS = frozenset(
     terms_of("options option properties property settings setting panel advanced general common")
 )
-_KIND_WORDS = frozenset(terms_of("f-modifier constraint node settings rule texture strip type types"))
+KIND_WORDS = frozenset(terms_of("f-modifier constraint node settings rule texture strip type types"))
 _ADDRESS = re.compile(r"[^a-z0-9]+")
 _PARTS = re.compile(r"\s*(?:/|,| and )\s*")
 _REFERS = re.compile(r"(?:See .{,40})?")  # to what is not there
@@ -188,7 +188,7 @@ class _Finder:
         words = set(_stems(title))
         about = set(_stems(symbol.owner.removeprefix(_TYPES), symbol.name, symbol.description))
         return any(
-            (name := set(_stems(cls.label)) - _KIND_WORDS) and name <= words and not name <= about
+            (name := set(_stems(cls.label)) - KIND_WORDS) and name <= words and not name <= about
             for cls in self._explained[place.page.slug]
             if cls.path != symbol.owner
         )

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recogniser import Recogniser
@@ -79,11 +80,20 @@ class QueryRanker:
         if recognition.dead_end:  # what the words find would pass for the successor
             ranked = [RankedId(m.id, m.sure, m.why) for m in recognition.matches if m.sure >= SURE]
             return Ranking(ranked, recognition, named=False, notes=self._notes.on(recognition))
-        hits = self.searcher.search(prose_of(query), max(limit, _LEAST_HITS), failed=is_message(query))
+        prose = prose_of(query)
+        hits = self.searcher.search(prose, max(limit, _LEAST_HITS), failed=is_message(query))
         ranked = self._merged(recognition, hits)
+        ranked[:1] = [self._at_its_section(row, prose) for row in ranked[:1]]
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         named = named and not recognition.is_open
         return Ranking(ranked, recognition, named, self._notes.on(recognition))
+
+    def _at_its_section(self, row: RankedId, prose: str) -> RankedId:
+        """A page that was found as a whole, with the section that is asked for."""
+        page = self._reader.page(row.id) if row.why == "found" and not row.anchor else None
+        if page is None or len(page.sections) == 1:
+            return row
+        return replace(row, anchor=asked_section(page, self.searcher.concepts(prose)))
 
     @staticmethod
     def _merged(recognition: Recognition, hits: list[SearchHit]) -> list[RankedId]:

@@ -100,3 +100,20 @@ def test_where_the_page_is_of_one_class_its_sockets_do_not_repeat_it() -> None:
 
 def test_a_line_that_is_no_label_has_no_name() -> None:
     assert names("The **Angle** of the sun.", member(SUN, "angle", "Angle")) == {}
+
+
+@pytest.mark.parametrize(
+    ("title", "heading", "expected"),
+    [
+        ("Sun Settings", "Else", {(0, -1): "`SunLight`"}),  # a title may say it in other words
+        ("Lights", "Sun Settings", {(1, -1): "`SunLight`"}),
+        ("Lights", "Sun Shadows", {}),  # which the class is only one of
+    ],
+)
+def test_a_class_has_its_name_beside_its_own_heading(
+    title: str, heading: str, expected: dict[tuple[int, int], str]
+) -> None:
+    sections = Section("top", title, 1, "It shines."), Section("more", heading, 2, "It shines.")
+    passage = Passage(SLUG, 0 if "Sun" in title else 1, -1)
+    rows = find_label_names([SUN], [Page(SLUG, "manual", "5.1", title, sections)], {SUN.path: passage})
+    assert {(row.section, row.line): row.names for row in rows} == expected

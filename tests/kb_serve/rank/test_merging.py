@@ -8,6 +8,7 @@ import pytest
 from asking import paths
 
 from kb_serve.rank.merging import SURE, QueryRanker, RankedId, Ranking
+from kb_serve.rank.search import SearchHit
 from kb_serve.recognise.recognition import Recognition
 
 if TYPE_CHECKING:
@@ -79,3 +80,20 @@ def test_what_is_far_below_the_best_is_not_listed() -> None:
     described = Ranking(found, Recognition(), named=False).listed(8)
     assert [row.id for row in described] == ["0", "1", "2", "3", "4"]
     assert len(Ranking(found, Recognition(), named=False).listed(2)) == 2
+
+
+@pytest.mark.parametrize(
+    ("found", "query", "opened"),
+    [
+        ("", "printed to the log from a script: self collisions", "self-collisions"),
+        ("", "collisions of cloth", ""),
+        ("object-collisions", "printed to the log from a script: self collisions", "object-collisions"),
+    ],
+)
+def test_a_page_that_was_found_as_a_whole_is_opened_at_the_section_that_is_asked_for(
+    ranker: QueryRanker, monkeypatch: pytest.MonkeyPatch, found: str, query: str, opened: str
+) -> None:
+    page = SearchHit("physics/cloth/settings/collisions", found, 1.0)
+    monkeypatch.setattr(ranker.searcher, "search", lambda *_args, **_options: [page])
+    (top, *_) = ranker.rank(query).ranked
+    assert (top.id, top.anchor) == (page.ref, opened)
