@@ -205,9 +205,15 @@ def member_line(symbol: Symbol) -> str:
 def term_lines(text: str) -> Iterator[tuple[int, str]]:
     """(line, term) of every definition in a section's Markdown."""
     for number, line in enumerate(text.split("\n")):
-        term = line.strip()
-        if term.startswith("**") and term.rstrip(":").endswith("**"):
-            yield number, term.strip("*: ")
+        if "**" in line and (term := term_of(line)):
+            yield number, term
+
+
+def term_of(line: str) -> str:
+    """The term that a line of a section's Markdown defines; empty for none."""
+    term = line.strip()
+    is_one = term.startswith("**") and term.rstrip(":").endswith("**")
+    return term.strip("*: ") if is_one else ""
 
 
 def passage_text(text: str, line: int) -> str:

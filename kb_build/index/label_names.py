@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.index.passages import KIND_WORDS, Passage, keys_of_term
-from kb_build.symbol_lines import new_subscript, term_lines
+from kb_build.symbol_lines import new_subscript, term_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -66,50 +66,55 @@ def _of_page(
     by_path: Mapping[str, Symbol],
     calls: Mapping[Passage, Mapping[str, str]],
 ) -> Iterator[LabelName]:
-    labels = {(number, -1): section.title for number, section in enumerate(page.sections)}
-    for number, section in enumerate(page.sections):
-        labels.update({(number, line): term for line, term in term_lines(section.text)})
-    # The class that the page as a whole is about: its sockets need not repeat it.
-    subject = [symbol.path for symbol in at.get((0, -1), ()) if symbol.kind == "class"]
+    lines = {number: page.sections[number].text.split("\n") for number, _ in at}
+    # The class that the page's head names: its sockets need not repeat it.
+    classes = [symbol for symbol in _headed(page, 0, at.get((0, -1), ())) if symbol.kind == "class"]
+    subject = classes[0].path if len(classes) == 1 else ""
     for place, symbols in sorted(at.items()):
-        if (label := labels.get(place)) is None:
+        is_heading = place[1] < 0
+        label = page.sections[place[0]].title if is_heading else term_of(lines[place[0]][place[1]])
+        if not label:
             continue
-        is_heading, is_title = place[1] < 0, place == (0, -1)
-        # Headings have the marks of classes, too, that are only mentioned below.
-        there = [
-            symbol
-            for symbol in symbols
-            if not is_heading or symbol.kind != "class" or _heads(label, symbol, is_title=is_title)
-        ]
-        meant = _bases_of(_called(label, there), by_path)
+        there = _headed(page, place[0], symbols) if is_heading else symbols
+        meant = _called(label, there)
+        if len(meant) > 1:
+            meant = _in_order(label, _bases_of(meant, by_path))
         called = calls.get(Passage(page.slug, *place), {})
-        if called.keys() >= {symbol.path for symbol in meant}:
+        if called.keys() >= {symbol.path for symbol in meant or there}:
             names = dict.fromkeys(called.values())
         else:
-            names = dict.fromkeys(
-                filter(None, (_name(symbol, subject) for symbol in _in_order(label, meant)))
-            )
+            names = dict.fromkeys(filter(None, (_name(symbol, subject) for symbol in meant)))
         if 0 < len(names) <= _MOST:
             yield LabelName(page.slug, *place, ", ".join(f"`{name}`" for name in names))
 
 
 def _called(label: str, symbols: Sequence[Symbol]) -> Sequence[Symbol]:
-    """The symbols that are called as the label says, or that it surely means nevertheless."""
+    """The symbols that are called as the label says, or that it surely means nevertheless: as the only one there."""
+    if len(symbols) == 1:
+        return symbols
     keys = keys_of_term(label)
     if exactly := [symbol for symbol in symbols if key(symbol.label) in keys]:
         return exactly
     words = set(terms_of(label))
     related = [symbol for symbol in symbols if words.intersection(terms_of(symbol.label))]
-    if len(symbols) == 1:
-        return symbols
     lists_them = len(_LISTED.split(label)) > 1
     return symbols if lists_them or len(related) == len(symbols) else ()
 
 
-def _heads(heading: str, cls: Symbol, *, is_title: bool) -> bool:
-    """Whether what stands below a heading is about a class: a page's title may say it in other words, too."""
-    words, own = set(terms_of(heading)), set(terms_of(cls.label))
-    if is_title:
+def _headed(page: Page, section: int, symbols: Sequence[Symbol]) -> list[Symbol]:
+    """Without the classes that a section only mentions, of which a heading has the marks, too.
+
+    The only one that a page's title has may be said in other words.
+    """
+    words = set(terms_of(page.sections[section].title))
+    is_free = section == 0 and len(symbols) == 1
+    return [
+        each for each in symbols if each.kind != "class" or _heads(words, set(terms_of(each.label)), is_free)
+    ]
+
+
+def _heads(words: set[str], own: set[str], is_free: bool) -> bool:
+    if is_free:
         return bool(words & own)
     words, own = words - KIND_WORDS, own - KIND_WORDS
     return bool(words & own) and (own <= words or words <= own)
@@ -142,13 +147,13 @@ def _in_order(label: str, symbols: Sequence[Symbol]) -> list[Symbol]:
     return sorted(symbols, key=place)
 
 
-def _name(symbol: Symbol, subject: Sequence[str]) -> str:
+def _name(symbol: Symbol, subject: str) -> str:
     """What a script writes for a symbol, without what every reader knows."""
     if symbol.kind == "operator":
         return f"{symbol.path}()"
     if symbol.kind != "socket":
         return symbol.path.removeprefix(_TYPES)
     subscript = new_subscript(symbol)
-    if not subscript or symbol.owner in subject:
+    if not subscript or symbol.owner == subject:
         return subscript
     return f"{symbol.owner.removeprefix(_TYPES)}.{subscript}"
