@@ -5,17 +5,15 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cache
-from operator import itemgetter
 from typing import TYPE_CHECKING
 
 import numpy as np
 import sqlite_utils
 
 from kb_build.errors import StoreError
-from kb_build.index.analysis import content_words, key, short_path, topic_key
-from kb_build.index.creation import creation_calls
+from kb_build.index.analysis import content_words
 from kb_build.index.documents import Document, kind_of, make_units, topic_documents
 from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
 from kb_build.index.passages import find_passages
@@ -36,19 +34,13 @@ from kb_build.schema import (
     APPLICATION_ID,
     DDL,
     DOCUMENT_KINDS,
-    FORM_LABEL,
-    FORM_NAME,
-    FORM_PATH,
-    FORM_SHORT,
-    FORM_TOPIC,
     INDEXES,
     SCHEMA_VERSION,
     TOPICS,
     UNITS,
     pack,
 )
-from kb_build.symbol_lines import member_line
-from kb_build.usage.examples import SymbolUsage, Uses
+from kb_build.symbol_tables import SymbolTables, symbol_tables
 from kb_build.versions.removed_symbols import RemovedSymbols
 from simworlds.files import staged_file
 
@@ -57,6 +49,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.summaries.types import PageSummary
+    from kb_build.usage.examples import Uses
 
 
 _MEMBERS = frozenset({"property", "function", "socket"})
@@ -66,7 +59,8 @@ _MEMBERS = frozenset({"property", "function", "socket"})
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are by slug. ``removed_symbols`` and ``usage`` are called last: they may still be computed meanwhile.
+    ``summaries`` are by slug. ``removed_symbols`` and ``tables`` are called last: they may still be computed meanwhile.
+    Without ``tables``, they are made of symbols and pages, as if no script used the symbols.
     """
 
     symbols: Sequence[Symbol]
@@ -76,44 +70,7 @@ class Contents:
     summaries: Mapping[str, PageSummary] = field(default_factory=dict[str, "PageSummary"])
     removed_symbols: Callable[[], RemovedSymbols] = RemovedSymbols
     still_works: Sequence[tuple[str, str]] = ()
-    usage: Callable[[], SymbolUsage] = SymbolUsage
-
-
-def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
-    """(key, form, path) for every spelling under which a symbol is asked for."""
-    short = short_path(symbol.path)
-    yield key(symbol.path), FORM_PATH, symbol.path
-    yield key(short), FORM_SHORT, symbol.path
-    if symbol.kind == "operator":
-        yield key(symbol.target), FORM_SHORT, symbol.path
-        yield key(f"bpy.types.{symbol.target}"), FORM_SHORT, symbol.path
-    if symbol.group in {"ui", "operator"} or symbol.name.startswith("bl_rna_get_subclass"):
-        return
-    yield key(symbol.name), FORM_NAME, symbol.path
-    if symbol.kind == "class" and symbol.owner == "bpy.types":
-        yield key(f"types.{symbol.name}"), FORM_SHORT, symbol.path
-    if symbol.label and symbol.kind != "socket":
-        yield key(symbol.label), FORM_LABEL, symbol.path
-
-
-def page_names(page: Page) -> Iterator[tuple[str, int, str]]:
-    """(key, form, slug) for a page: its slug, the slug's last part, its title."""
-    yield key(page.slug), FORM_PATH, page.slug
-    yield key(page.slug.removesuffix("/index")), FORM_SHORT, page.slug
-    yield key(page.slug.removesuffix("/index").rpartition("/")[2]), FORM_NAME, page.slug
-    yield key(page.title), FORM_LABEL, page.slug
-    yield topic_key(page.title), FORM_TOPIC, page.slug
-
-
-def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:
-    """(key, owner, identifier, name) of a symbol's own enum items and of its parameters'."""
-    if symbol.kind == "enum":
-        return
-    for item in symbol.enum_items:
-        yield key(item.identifier), symbol.path, item.identifier, item.name
-    for parameter in symbol.parameters:
-        for item in parameter.enum_items:
-            yield key(item.identifier), f"{symbol.path}({parameter.name})", item.identifier, item.name
+    tables: Callable[[], SymbolTables] | None = None
 
 
 def _insert(
@@ -123,37 +80,11 @@ def _insert(
     connection.executemany(f"INSERT OR IGNORE INTO {table} VALUES ({marks})", rows)  # noqa: S608
 
 
-def _write_symbols(
-    connection: sqlite3.Connection,
-    symbols: Sequence[Symbol],
-    pages: Sequence[Page],
-    reached: Mapping[str, str],
-) -> None:
-    """Writes the symbols, and the names of symbols and pages."""
-    _insert(
-        connection,
-        "symbols",
-        (
-            (
-                number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
-                symbol.collection, symbol.base, symbol.group, symbol.label,
-                member_line(symbol), pack(to_json(_with_path(symbol, reached))),
-            )
-            for number, symbol in enumerate(symbols)
-        ),
-        13,
-    )  # fmt: skip
-    # In the order of their keys: SQLite then fills page after page, and splits none.
-    names = (row for symbol in symbols for row in symbol_names(symbol))
-    _insert(connection, "names", sorted({*names, *(row for page in pages for row in page_names(page))}), 3)
-    items = (row for symbol in symbols for row in enum_rows(symbol))
-    _insert(connection, "enum_items", sorted(items, key=itemgetter(0, 1, 2)), 4)
-
-
-def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
-    """A class with the expression that leads to an instance."""
-    path = reached.get(symbol.path) if symbol.kind == "class" else None
-    return replace(symbol, reached=path) if path else symbol
+def _write_symbols(connection: sqlite3.Connection, tables: SymbolTables) -> None:
+    _insert(connection, "symbols", tables.symbols, 13)
+    _insert(connection, "names", tables.names, 3)
+    _insert(connection, "enum_items", tables.enum_items, 4)
+    _insert(connection, "creation", tables.creation, 4)
 
 
 def _places(pages: Sequence[Page]) -> dict[str, tuple[str, int]]:
@@ -319,12 +250,10 @@ def _write(part: Path, contents: Contents) -> None:
             _write_removed_symbols(connection, contents.removed_symbols())
             _insert(connection, "still_works", contents.still_works, 2)
             _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
-            usage = contents.usage()
-            calls = creation_calls(contents.symbols, usage.reached, usage.names)
-            _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
-            _write_symbols(connection, contents.symbols, contents.pages, usage.reached)
-            _write_usage(connection, usage.uses)
-            weights = symbol_weights(contents.symbols, passages, expansions, usage.uses)
+            tables = contents.tables() if contents.tables else symbol_tables(contents.symbols, contents.pages)
+            _write_symbols(connection, tables)
+            _write_usage(connection, tables.uses)
+            weights = symbol_weights(contents.symbols, passages, expansions, tables.uses)
             _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(

@@ -147,10 +147,11 @@ class PagesBuilder(Builder):
             self.env.clear_doc(docname)  # which also makes the tables that are merged later
         names = [name for name in docnames if name not in self.unread]
         gathered: list[tuple[Sequence[str], BuildEnvironment]] = []
-        parsed = self._apart(
-            names,
-            PageWork(self._parse, self._gather, lambda *found: gathered.append(found), self.step),
-        )
+
+        def merge(read: Sequence[str], environment: BuildEnvironment) -> None:
+            gathered.append((read, environment))
+
+        parsed = self._apart(names, PageWork(self._parse, self._gather, merge, self.step))
         # Not before: each process sends back what was here when it started, too.
         for read, environment in sorted(gathered, key=itemgetter(0)):
             self.env.merge_info_from(read, environment, self._app)
