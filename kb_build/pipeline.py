@@ -135,8 +135,7 @@ def build(
             run = _summaries(work, pages)
             meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
             with beside(partial(_symbol_tables, extract, pages, scripts)) as tables:
-                # Loaded now: a process is not forked safely from one that has NumPy's threads.
-                from kb_build.store import Contents, write_base  # noqa: PLC0415
+                from kb_build.store import Contents, write_base  # noqa: PLC0415 - not when nothing changed
 
                 work.progress(f"Writing {work.path.name}", 0, None)
                 contents: Contents = Contents(

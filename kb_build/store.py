@@ -5,15 +5,15 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
+from array import array
 from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING
 
-import numpy as np
 import sqlite_utils
 
 from kb_build.errors import StoreError
-from kb_build.index.analysis import content_words
+from kb_build.index.analysis import content_words, stem
 from kb_build.index.documents import Document, kind_of, make_units, topic_documents
 from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
 from kb_build.index.passages import find_passages
@@ -146,25 +146,23 @@ def _write_level(
     level: int,
     documents: Sequence[Document],
     topics: Mapping[str, int],
-    tokenize: Tokenize,
+    stems_of: Tokenize,
 ) -> PostingLists:
     """Writes the documents of one level; returns their posting lists. ``topics``: ref → number."""
     chapters: dict[str, int] = {}
     explained: dict[str, int] = {"": -1}
     columns = (
-        np.array([topics.get(document.topic, -1) for document in documents], np.int32),
-        np.array([chapters.setdefault(document.chapter, len(chapters)) for document in documents], np.int32),
-        np.array(
-            [explained.setdefault(document.explained, len(explained)) for document in documents], np.int32
-        ),
-        np.array([DOCUMENT_KINDS.index(kind_of(document)) for document in documents], np.uint8),
-        np.array([document.kind in _MEMBERS for document in documents], np.bool_),
+        array("i", [topics.get(document.topic, -1) for document in documents]),
+        array("i", [chapters.setdefault(document.chapter, len(chapters)) for document in documents]),
+        array("i", [explained.setdefault(document.explained, len(explained)) for document in documents]),
+        array("B", [DOCUMENT_KINDS.index(kind_of(document)) for document in documents]),
+        array("B", [document.kind in _MEMBERS for document in documents]),
     )
     refs = "\n".join(document.ref for document in documents)
     anchors = "\n".join(document.anchor for document in documents)
     row = (level, len(documents), refs, anchors, *(column.tobytes() for column in columns))
     _insert(connection, "levels", (row,), len(row))
-    return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, tokenize)
+    return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, stems_of)
 
 
 def _phrases(
@@ -194,23 +192,28 @@ def write_index(
     """Writes what retrieval reads: the units, the topics around them, and the phrases that lead to either."""
     topics = [*topic_documents(units)]
     numbers = {topic.ref: number for number, topic in enumerate(topics)}
-    tokenize = cache(content_words)
-    of_units = _write_level(connection, UNITS, units, numbers, tokenize)
-    of_topics = _write_level(connection, TOPICS, topics, numbers, tokenize)
+    words_of = cache(content_words)
+
+    @cache
+    def stems_of(text: str) -> list[str]:
+        return [stem(word) for word in words_of(text)]
+
+    of_units = _write_level(connection, UNITS, units, numbers, stems_of)
+    of_topics = _write_level(connection, TOPICS, topics, numbers, stems_of)
     # Phrases lead to a symbol's unit, but to a page as a whole.
     targets = {
         unit.ref: len(units) + numbers[unit.ref] if unit.kind in PAGE_SOURCES else number
         for number, unit in enumerate(units)
     }
     phrases = _phrases(units, topics, targets, expansions)
-    leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, tokenize)
-    connection.execute("INSERT INTO phrases VALUES (?)", (np.array(leads_to, np.int32).tobytes(),))
+    leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, stems_of)
+    connection.execute("INSERT INTO phrases VALUES (?)", (array("i", leads_to).tobytes(),))
     words = unknown_of(load_everyday_words(), of_units)
     for postings in (of_units, of_topics):
         lend(postings, words)
     levels = (0, of_units), (len(units), of_topics), (len(units) + len(topics), of_phrases)
     _insert(connection, "postings", pack_postings(*levels), 3)
-    _insert(connection, "vocabulary", vocabulary(units, tokenize), 2)
+    _insert(connection, "vocabulary", vocabulary(units, words_of), 2)
 
 
 def write_base(path: Path, contents: Contents) -> None:
