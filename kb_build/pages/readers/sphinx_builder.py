@@ -32,9 +32,10 @@ if TYPE_CHECKING:
 
 _HEADING = re.compile(r"^[ ]{0,4}(\S[^\n]*)\n([^\w\s])\2{2,}[ \t]*$", re.MULTILINE)
 
-# Passes over every tree that only translations, printed forms, colouring or picture files need.
+# Passes over every tree that only translations, printed forms, colouring, styles, picture files or old extensions need.
 _NEEDLESS = {
     "AddTranslationClasses",
+    "AutoIndexUpgrader",
     "ApplySourceWorkaround",
     "DataURIExtractor",
     "DefaultSubstitutions",
@@ -44,6 +45,7 @@ _NEEDLESS = {
     "ImageDownloader",
     "Locale",
     "PreserveTranslatableMessages",
+    "PropagateDescDomain",
     "RemoveTranslatableInline",
     "TranslationProgressTotaliser",
     "TrimDoctestFlagsTransform",
