@@ -21,6 +21,7 @@ from kb_build.index.postings import (
     TOPIC_B,
     UNIT_B,
     PostingLists,
+    Tokenize,
     document_postings,
     pack_postings,
     phrase_postings,
@@ -42,7 +43,6 @@ from kb_build.schema import (
 from kb_build.symbol_tables import SymbolTables, symbol_tables
 from kb_build.versions.removed_symbols import RemovedSymbols
 from simworlds.files import staged_file
-from simworlds.forked import beside
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -142,9 +142,13 @@ def _write_pages(
 
 
 def _write_level(
-    connection: sqlite3.Connection, level: int, documents: Sequence[Document], topics: Mapping[str, int]
-) -> None:
-    """Writes the documents of one level. ``topics``: ref → number."""
+    connection: sqlite3.Connection,
+    level: int,
+    documents: Sequence[Document],
+    topics: Mapping[str, int],
+    stems_of: Tokenize,
+) -> PostingLists:
+    """Writes the documents of one level; returns their posting lists. ``topics``: ref → number."""
     chapters: dict[str, int] = {}
     explained: dict[str, int] = {"": -1}
     columns = (
@@ -158,6 +162,7 @@ def _write_level(
     anchors = "\n".join(document.anchor for document in documents)
     row = (level, len(documents), refs, anchors, *(column.tobytes() for column in columns))
     _insert(connection, "levels", (row,), len(row))
+    return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, stems_of)
 
 
 def _phrases(
@@ -193,30 +198,22 @@ def write_index(
     def stems_of(text: str) -> list[str]:
         return [stem(word) for word in words_of(text)]
 
-    of_units = document_postings(units, UNIT_B, stems_of)
-    lenders = unknown_of(load_everyday_words(), of_units)
-
-    def rest() -> tuple[PostingLists, list[tuple[str, str]]]:
-        of_topics = document_postings(topics, TOPIC_B, stems_of)
-        lend(of_topics, lenders)
-        return of_topics, list(vocabulary(units, words_of))
-
-    with beside(rest) as topics_and_words:
-        _write_level(connection, UNITS, units, numbers)
-        _write_level(connection, TOPICS, topics, numbers)
-        # Phrases lead to a symbol's unit, but to a page as a whole.
-        targets = {
-            unit.ref: len(units) + numbers[unit.ref] if unit.kind in PAGE_SOURCES else number
-            for number, unit in enumerate(units)
-        }
-        phrases = _phrases(units, topics, targets, expansions)
-        leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, stems_of)
-        connection.execute("INSERT INTO phrases VALUES (?)", (array("i", leads_to).tobytes(),))
-        lend(of_units, lenders)
-        of_topics, spelled = topics_and_words()
+    of_units = _write_level(connection, UNITS, units, numbers, stems_of)
+    of_topics = _write_level(connection, TOPICS, topics, numbers, stems_of)
+    # Phrases lead to a symbol's unit, but to a page as a whole.
+    targets = {
+        unit.ref: len(units) + numbers[unit.ref] if unit.kind in PAGE_SOURCES else number
+        for number, unit in enumerate(units)
+    }
+    phrases = _phrases(units, topics, targets, expansions)
+    leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, stems_of)
+    connection.execute("INSERT INTO phrases VALUES (?)", (array("i", leads_to).tobytes(),))
+    words = unknown_of(load_everyday_words(), of_units)
+    for postings in (of_units, of_topics):
+        lend(postings, words)
     levels = (0, of_units), (len(units), of_topics), (len(units) + len(topics), of_phrases)
     _insert(connection, "postings", pack_postings(*levels), 3)
-    _insert(connection, "vocabulary", spelled, 2)
+    _insert(connection, "vocabulary", vocabulary(units, words_of), 2)
 
 
 def write_base(path: Path, contents: Contents) -> None:
