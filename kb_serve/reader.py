@@ -343,6 +343,10 @@ class BaseReader:
         rows = self.rows_of("SELECT path, call, maker, choice FROM creation WHERE path", paths)
         return {row[0]: Creation(*row[1:]) for row in rows}
 
+    def made_as(self, name: str) -> list[str]:
+        """The classes of whose calls one gives a new instance this name."""
+        return [row[0] for row in self.rows("SELECT path FROM creation WHERE instr(call, ?)", f'"{name}"')]
+
     def operators_taking(self, argument: str) -> list[str]:
         """Paths of the operators with an argument of that name."""
         sql = "SELECT path FROM symbols WHERE kind = 'operator' AND line GLOB ? ORDER BY path"
