@@ -77,7 +77,7 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ('AttributeError: bpy_struct: attribute "type" from "Object" is read-only', "cannot be assigned"),
         ("KeyError: 'bpy_prop_collection[key]: key \"Cub\" not found'", "no element `Cub`"),
         (
-            "obj.material_slots[0].material = mat\nIndexError: bpy_prop_collection[index]: index 0 out of range, size 0",
+            "obj.material_slots[0].link\nIndexError: bpy_prop_collection[index]: index 0 out of range, size 0",
             "has no elements: there is no `[0]` yet. `bpy.ops.object.material_slot_add()` adds one.",
         ),
         (
