@@ -324,6 +324,7 @@ def _write(part: Path, contents: Contents) -> None:
             _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
             _write_symbols(connection, contents.symbols, contents.pages, usage.reached)
             _write_usage(connection, usage.uses)
+            _insert(connection, "panel_conditions", usage.conditions, 5)
             weights = symbol_weights(contents.symbols, passages, expansions, usage.uses)
             _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)

@@ -18,6 +18,7 @@ from kb_build.symbol_lines import (
     type_text,
 )
 from kb_serve.answer.budget import AnswerBlock
+from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 
 if TYPE_CHECKING:
@@ -274,6 +275,8 @@ class MarkdownRenderer:
             lines.append(text)
         if line := " · ".join(facts(symbol)):
             lines.append(line)
+        if line := "; ".join(panel_lines(symbol, self.reader)):
+            lines.append(line[0].upper() + line[1:] + ".")
         if symbol.deprecation:
             removal = (
                 f", removal planned for {symbol.deprecation.removal}" if symbol.deprecation.removal else ""
