@@ -19,8 +19,18 @@ _TYPES = "bpy.types."
 # What only hides a part of a panel, or keeps the interface from changing what has an effect all the same, and what
 # Blender sets itself.
 _NO_SETTINGS = frozenset({"show_expanded", "expanded", "lock", "mute", "muted", "hide", "show_developer_ui"})
-_STATUS = ("is_", "has_")
-_OF_THE_INTERFACE = ("Space", "Preferences", "Screen", "Window", "Area", "Region", "FileSelect", "Theme")
+_STATUS = ("is_cache_", "has_cache_", "bl_")
+_OF_THE_INTERFACE = (
+    "UILayout",
+    "Space",
+    "Preferences",
+    "Screen",
+    "Window",
+    "Area",
+    "Region",
+    "FileSelect",
+    "Theme",
+)
 
 
 _NEVER: Clauses = frozenset({frozenset()})  # a clause that nothing satisfies
@@ -34,6 +44,9 @@ class Gating:
     active: Clauses
 
 
+_UNASKED = Gating(frozenset(), frozenset())
+
+
 def gatings_in(places: Iterable[Place], symbols: Symbols) -> dict[str, Gating]:
     """Property → what one script's panels ask of others; ``.name`` for a property of an unknown class."""
     found: dict[str, Gating] = {}
@@ -41,6 +54,9 @@ def gatings_in(places: Iterable[Place], symbols: Symbols) -> dict[str, Gating]:
         if not place.symbols and place.owner == "self":
             continue  # the script's own property
         for path in place.symbols or (f".{place.name}",):
+            if len(place.symbols) > 1 and path.startswith(f"{_TYPES}Space"):
+                found[path] = _UNASKED  # a panel is of one editor, and which one is not known
+                continue
             gates = _Gates(place, path, symbols)
             shown = consequences(place.shown, gates.of)
             if shown is None:
@@ -122,6 +138,8 @@ class _Gates:
         if not question.symbols:
             return self._of_unknown(question)
         found = [path for path in question.symbols if self._fits(path, question)]
+        if len(question.symbols) > 1:  # which of several other things it is, is not known
+            found = [path for path in found if path.rpartition(".")[0] in self._lineage]
         return found[0] if len(found) == 1 else ""
 
     def _of_unknown(self, question: Question) -> str:

@@ -348,6 +348,27 @@ def test_what_an_unknown_object_shows_counts_for_every_class_with_that_name(symb
     assert asked(symbols, greyed, own + "        self.layout.prop(self, 'focus_distance')\n") == [GREYED]
 
 
+def test_what_may_be_another_class_is_not_told_of_each(symbols: BaseSymbols) -> None:
+    # A panel of one editor: the other editors that have such a setting show it elsewhere, or not at all.
+    code = panel(
+        "view = context.space_data\nlayout.active = view.show_gizmo\nlayout.prop(view, 'show_gizmo_context')"
+    )
+    for space in ("SpaceView3D", "SpaceSequenceEditor"):
+        assert asked(symbols, code, of=f"{space}.show_gizmo_context") == []
+    # An edited bone is asked for its own segments, not for those of what may be a bone.
+    bones = """
+        bone = context.bone or context.edit_bone
+        other = context.edit_bone
+        layout.active = bone.bbone_segments > 1
+        layout.prop(other, "bbone_easein")
+    """
+    assert asked(symbols, panel(bones), of="EditBone.bbone_easein") == []
+    own = (
+        "bone = context.edit_bone\nlayout.active = bone.bbone_segments > 1\nlayout.prop(bone, 'bbone_easein')"
+    )
+    assert asked(symbols, panel(own), of="EditBone.bbone_easein") == ["greyed unless bbone_segments > 1"]
+
+
 def test_what_is_kept_between_builds_is_read_back(symbols: BaseSymbols) -> None:
     code = panel("layout.active = dof.use_dof or dof.aperture_ratio > 1\nlayout.prop(dof, 'focus_distance')")
     found = gatings_in(places_in(analyse(code, Api(symbols), (5, 1, 0)), symbols), symbols)
