@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
+from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from functools import cache
 from operator import itemgetter
@@ -43,6 +44,7 @@ from kb_build.schema import (
     FORM_TOPIC,
     INDEXES,
     SCHEMA_VERSION,
+    TEST_ON,
     TOPICS,
     UNITS,
     pack,
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
     from pathlib import Path
 
+    from kb_build.panels.conditions import PanelCondition
     from kb_build.summaries.types import PageSummary
 
 
@@ -127,9 +130,10 @@ def _write_symbols(
     connection: sqlite3.Connection,
     symbols: Sequence[Symbol],
     pages: Sequence[Page],
-    reached: Mapping[str, str],
+    usage: SymbolUsage,
 ) -> None:
     """Writes the symbols, and the names of symbols and pages."""
+    switches = _switches(usage.conditions)
     _insert(
         connection,
         "symbols",
@@ -137,7 +141,7 @@ def _write_symbols(
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label,
-                member_line(symbol), pack(to_json(_with_path(symbol, reached))),
+                member_line(symbol, switches.get(symbol.path, "")), pack(to_json(_with_path(symbol, usage.reached))),
             )
             for number, symbol in enumerate(symbols)
         ),
@@ -148,6 +152,24 @@ def _write_symbols(
     _insert(connection, "names", sorted({*names, *(row for page in pages for row in page_names(page))}), 3)
     items = (row for symbol in symbols for row in enum_rows(symbol))
     _insert(connection, "enum_items", sorted(items, key=itemgetter(0, 1, 2)), 4)
+
+
+def _switches(conditions: Sequence[PanelCondition]) -> dict[str, str]:
+    """Property → the setting of its own class without which panels grey it out, where that alone is asked."""
+    asked: dict[tuple[str, int], list[PanelCondition]] = defaultdict(list)
+    for row in conditions:
+        asked[row.path, row.clause].append(row)
+    found: dict[str, str] = {}
+    for (path, _), rows in asked.items():
+        owner, _, gate = rows[0].gate.rpartition(".")
+        if (
+            len(rows) == 1
+            and not rows[0].hides
+            and rows[0].test == TEST_ON
+            and owner == path.rpartition(".")[0]
+        ):
+            found.setdefault(path, gate)
+    return found
 
 
 def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
@@ -322,7 +344,7 @@ def _write(part: Path, contents: Contents) -> None:
             usage = contents.usage()
             calls = creation_calls(contents.symbols, usage.reached, usage.names)
             _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
-            _write_symbols(connection, contents.symbols, contents.pages, usage.reached)
+            _write_symbols(connection, contents.symbols, contents.pages, usage)
             _write_usage(connection, usage.uses)
             _insert(connection, "panel_conditions", usage.conditions, 5)
             weights = symbol_weights(contents.symbols, passages, expansions, usage.uses)

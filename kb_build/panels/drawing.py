@@ -84,6 +84,11 @@ class _Shown:
     path: Formula
 
 
+def shows_properties(code: str) -> bool:
+    """Whether a script's text calls what shows a property: most do not, and need not be read."""
+    return any(f".{name}(" in code for name in _SHOWS)
+
+
 def places_in(analysis: Analysis, symbols: Symbols) -> list[Place]:
     """Where a script shows properties."""
     tree = analysis.tree

@@ -72,6 +72,16 @@ def test_every_condition_names_symbols_of_the_base(reader: BaseReader) -> None:
         assert entry.kind == "property", path
 
 
+def test_a_class_lists_its_settings_with_their_switch(reader: BaseReader) -> None:
+    members = reader.members("bpy.types.CameraDOFSettings")
+    assert "(if use_dof) — " in members["aperture_fstop"].line
+    assert "(if " not in members["use_dof"].line
+    # Only if it is of the same class, greyed out and not hidden, and one alone.
+    assert "(if " not in reader.members("bpy.types.CyclesRenderSettings")["rolling_shutter_type"].line
+    assert "(if " not in reader.members("bpy.types.AreaLight")["size_y"].line
+    assert "(if " not in reader.members("bpy.types.SplineIKConstraint")["bulge_smooth"].line
+
+
 def test_it_stands_in_the_answer(kb: KnowledgeBase) -> None:
     text = kb.query("bpy.types.RigidBodyConstraint.breaking_threshold").text
     assert (
