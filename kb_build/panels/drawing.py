@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import UNKNOWN, Instance, literal_texts
 from kb_build.panels.expressions import Conditions, Held, Script, is_unknown
-from kb_build.panels.formulas import FALSE, TRUE, Formula, all_of, chosen, either_of, negated
+from kb_build.panels.formulas import FALSE, TRUE, Formula, all_of, chosen, either_of, is_large, negated
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
@@ -108,7 +108,10 @@ def places_in(analysis: Analysis, symbols: Symbols) -> list[Place]:
         # A class that others derive from may be drawn under their polls.
         is_panel = name and function.name.startswith("draw") and name not in inherited
         polls = _polls(name, script, classes) if is_panel else ()
-        places += Drawing(script, name).read(function, all_of(*polls))
+        try:
+            places += Drawing(script, name).read(function, all_of(*polls))
+        except RecursionError:
+            continue  # nobody writes panels like that by hand
     return places
 
 
@@ -185,7 +188,7 @@ class Drawing(Conditions):
         """When a function returns something true; ``given`` are its arguments."""
         self.names.update(given)
         self._finish(function.body)
-        return either_of(*(all_of(end.state.path, end.value) for end in self._exits))
+        return self._bounded(either_of(*(all_of(end.state.path, end.value) for end in self._exits)))
 
     def called(self, function: ast.FunctionDef, arguments: list[ast.expr], *, is_bound: bool) -> Formula:
         """See :class:`Conditions`."""
@@ -201,6 +204,9 @@ class Drawing(Conditions):
             name: Held(self.script.unknown_text(), self.script.unknown()) for name in names[len(arguments) :]
         }
         return Drawing(self.script, self.cls, self._depth + 1).returned(function, given)
+
+    def _bounded(self, formula: Formula) -> Formula:
+        return self.script.unknown() if is_large(formula) else formula
 
     def _finish(self, body: list[ast.stmt]) -> None:
         if self._body(body):
@@ -255,7 +261,9 @@ class Drawing(Conditions):
         """Sets ``active`` or ``enabled``; None is for a value that is not known."""
         layout = self._layout(target.value)
         if layout is not None:
-            self._state.set_to[layout, target.attr] = self.script.unknown() if value is None else value
+            self._state.set_to[layout, target.attr] = (
+                self.script.unknown() if value is None else self._bounded(value)
+            )
             self._forget(self._others(layout), target.attr)
         elif self._is_layout(target.value) or self.type_of(target.value) in {None, UNKNOWN}:
             self._forget(range(len(self._parents)), target.attr)  # it may be any of them
@@ -400,7 +408,7 @@ class Drawing(Conditions):
                 if value is None or len(text) > _LONGEST_TEXT:
                     self._bind_unknown(target.id)
                 else:
-                    self.names[target.id] = Held(text, self.truth(value), self._layout(value))
+                    self.names[target.id] = Held(text, self._bounded(self.truth(value)), self._layout(value))
             case ast.Attribute(attr="active" | "enabled"):
                 self._set(target, None if value is None else self.truth(value))
             case ast.Tuple() | ast.List():
@@ -439,6 +447,8 @@ class Drawing(Conditions):
         (first, first_whole), (second, second_whole) = ends
         whole = first_whole and second_whole
         path = before.path if whole else either_of(first.path, second.path)
+        if is_large(path):
+            path = before.path  # holds as well
         self._enter(self._met(test, first, second, path))
         return True
 
@@ -488,7 +498,7 @@ class Drawing(Conditions):
             for name in dict.fromkeys((*first.names, *second.names))
         }
         set_to = {
-            key: chosen(test, first.set_to.get(key, TRUE), second.set_to.get(key, TRUE))
+            key: self._bounded(chosen(test, first.set_to.get(key, TRUE), second.set_to.get(key, TRUE)))
             for key in dict.fromkeys((*first.set_to, *second.set_to))
         }
         return _State(path, names, set_to)
@@ -504,7 +514,7 @@ class Drawing(Conditions):
             both = first.layout, second.layout
             layout = None if None in both else self._stand_in(first.layout or 0, second.layout or 0)
         text = first.text if first.text == second.text else self.script.unknown_text()
-        return Held(text, chosen(test, first.truth, second.truth), layout)
+        return Held(text, self._bounded(chosen(test, first.truth, second.truth)), layout)
 
 
 def _arguments(function: ast.FunctionDef) -> list[str]:

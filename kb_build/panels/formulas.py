@@ -12,6 +12,7 @@ if TYPE_CHECKING:
 
 TRUE_VALUE = "True"
 _MOST_ANSWERS = 1 << 12  # combinations of answers that are looked at together
+_MOST_PARTS = 300  # of a formula
 _MOST_NEEDS = 2  # of one clause
 _MOST_CLAUSES = 12
 
@@ -95,6 +96,17 @@ def chosen(condition: Formula, first: Formula, second: Formula) -> Formula:
     if first == second:
         return first
     return either_of(all_of(condition, first), all_of(negated(condition), second))
+
+
+def is_large(formula: Formula) -> bool:
+    """Whether a formula has more parts than are worth reading: branches can double it each time."""
+    queue, left = [formula], _MOST_PARTS
+    while queue and left:
+        part = queue.pop()
+        left -= 1
+        if not isinstance(part, Answer):
+            queue += part.parts
+    return bool(queue)
 
 
 @dataclass(frozen=True, slots=True)

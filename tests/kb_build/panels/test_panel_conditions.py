@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from contextlib import closing
 from textwrap import dedent, indent
 from typing import TYPE_CHECKING
@@ -374,6 +375,27 @@ def test_what_is_kept_between_builds_is_read_back(symbols: BaseSymbols) -> None:
     found = gatings_in(places_in(analyse(code, Api(symbols), (5, 1, 0)), symbols), symbols)
     assert found
     assert {path: from_rows(to_rows(gating)) for path, gating in found.items()} == found
+
+
+def test_branches_without_end_take_no_time(symbols: BaseSymbols) -> None:
+    body = ["is_on = dof.use_dof"]
+    for number in range(60):
+        body += [
+            f"if context.scene.get('{number}'):",
+            f"    if context.scene.get('x{number}'):",
+            "        return",
+        ]
+        body += [
+            f"if context.scene.get('y{number}'):",
+            f"    is_on = is_on and context.scene.get('z{number}')",
+        ]
+        body += [f"if context.scene.get('y{number}'):", "    layout.active = is_on"]
+    body += ["row = layout.row()", "row.active = dof.use_dof", "row.prop(dof, 'focus_distance')"]
+    began = time.process_time()
+    assert asked(symbols, panel("\n".join(body))) == [GREYED]
+    assert time.process_time() - began < 5
+    deep = "layout.active = " + "(" * 80 + "dof.use_dof" + ")" * 80 + " and not" * 900 + " dof.use_dof"
+    assert isinstance(asked(symbols, panel(f"{deep}\nlayout.prop(dof, 'focus_distance')")), list)
 
 
 def test_a_script_that_cannot_be_read_has_no_panels(symbols: BaseSymbols) -> None:
