@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from kb_build.records import Page
     from kb_build.summaries.types import SummaryReport, SummaryRun
     from kb_build.symbol_tables import SymbolTables
-    from kb_build.usage.usage_index import Usage
+    from kb_build.usage.usage_index import ScriptUsage
     from kb_build.versions.removed_symbols import RemovedSymbols
     from simworlds.sandbox.runtime import Runtime
     from simworlds.terminal.progress import Progress
@@ -274,7 +274,7 @@ def _extract(work: _Build) -> Extract:
 
 
 @contextmanager
-def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], Usage]]:
+def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], ScriptUsage]]:
     """Reads Blender's own scripts while pages are read; gives a function that waits for the uses of symbols there."""
     from kb_build.usage.scripts import blender_scripts  # noqa: PLC0415 - not when nothing changed
     from kb_build.usage.usage_index import script_usage, usage_file  # noqa: PLC0415 - loaded ahead
@@ -288,22 +288,34 @@ def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], Usag
         yield result
 
 
-def _symbol_tables(extract: Extract, pages: Sequence[Page], scripts: Callable[[], Usage]) -> SymbolTables:
-    """What a base has of its symbols, with their uses in Blender's scripts and in the guides, and the ways to
-    instances that follow from these.
+def _symbol_tables(
+    extract: Extract, pages: Sequence[Page], scripts: Callable[[], ScriptUsage]
+) -> SymbolTables:
+    """What a base has of its symbols, with their uses in Blender's scripts and in the guides, the ways to instances
+    that follow from these, and what panels ask.
     """
     from kb_build.blender.access_paths import reached_expressions  # noqa: PLC0415 - not when nothing changed
+    from kb_build.flow.symbols import SymbolList  # noqa: PLC0415 - loaded ahead
+    from kb_build.panels.conditions import panel_conditions  # noqa: PLC0415 - not when nothing changed
+    from kb_build.panels.gating import settled  # noqa: PLC0415 - loaded ahead
     from kb_build.symbol_tables import symbol_tables  # noqa: PLC0415 - likewise
     from kb_build.usage.examples import SymbolUsage  # noqa: PLC0415 - loaded ahead
     from kb_build.usage.usage_index import merged, page_usage, with_aliases  # noqa: PLC0415 - loaded ahead
 
     symbols = extract.symbols
     guides = page_usage(symbols, pages, extract.version)
-    uses = with_aliases(merged([scripts(), guides]), symbols)
+    found = scripts()
+    uses = with_aliases(merged([found.uses, guides]), symbols)
     counts = {path: found.count for path, found in uses.items()}
     reached = reached_expressions(symbols, counts, extract.names, extract.places)
-    by_path = {f"bpy.types.{name}": expression for name, expression in reached.items()}
-    return symbol_tables(symbols, pages, SymbolUsage(uses, by_path, extract.names))
+    listed = SymbolList(symbols)
+    usage = SymbolUsage(
+        uses,
+        {f"bpy.types.{name}": expression for name, expression in reached.items()},
+        extract.names,
+        [*panel_conditions(settled(found.gatings, listed), listed)],
+    )
+    return symbol_tables(symbols, pages, usage)
 
 
 def _pages(work: _Build, read: Mapping[str, list[Page]], extract: Extract) -> list[Page]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from operator import itemgetter
 from typing import TYPE_CHECKING
@@ -9,13 +10,14 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, short_path, topic_key
 from kb_build.index.creation import creation_calls
 from kb_build.records import to_json
-from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, pack
+from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, TEST_ON, pack
 from kb_build.symbol_lines import member_line
 from kb_build.usage.examples import SymbolUsage
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
+    from kb_build.panels.conditions import PanelCondition
     from kb_build.records import Page, Symbol
     from kb_build.usage.examples import Uses
 
@@ -24,12 +26,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, slots=True)
 class SymbolTables:
-    """Rows of the tables symbols, names, enum_items and creation (see schema.DDL), and where scripts use symbols."""
+    """Rows of the tables symbols, names, enum_items, creation and panel_conditions (see schema.DDL), and where scripts
+    use symbols.
+    """
 
     symbols: Sequence[Row]
     names: Sequence[Row]
     enum_items: Sequence[Row]
     creation: Sequence[Row]
+    conditions: Sequence[PanelCondition] = ()
     uses: Mapping[str, Uses] = field(default_factory=dict[str, "Uses"])
 
 
@@ -41,12 +46,13 @@ def symbol_tables(
     names = {row for symbol in symbols for row in symbol_names(symbol)}
     items = (row for symbol in symbols for row in enum_rows(symbol))
     calls = creation_calls(symbols, usage.reached, usage.names)
+    switches = _switches(usage.conditions)
     return SymbolTables(
         symbols=[
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label,
-                member_line(symbol), pack(to_json(_with_path(symbol, usage.reached))),
+                member_line(symbol, switches.get(symbol.path, "")), pack(to_json(_with_path(symbol, usage.reached))),
             )
             for number, symbol in enumerate(symbols)
         ],
@@ -54,6 +60,7 @@ def symbol_tables(
         names=sorted(names.union(row for page in pages for row in page_names(page))),
         enum_items=sorted(items, key=itemgetter(0, 1, 2)),
         creation=[(path, *creation) for path, creation in calls.items()],
+        conditions=usage.conditions,
         uses=usage.uses,
     )  # fmt: skip
 
@@ -99,3 +106,21 @@ def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
     """A class with the expression that leads to an instance."""
     path = reached.get(symbol.path) if symbol.kind == "class" else None
     return replace(symbol, reached=path) if path else symbol
+
+
+def _switches(conditions: Sequence[PanelCondition]) -> dict[str, str]:
+    """Property → the setting of its own class without which panels grey it out, where that alone is asked."""
+    asked: dict[tuple[str, int], list[PanelCondition]] = defaultdict(list)
+    for row in conditions:
+        asked[row.path, row.clause].append(row)
+    found: dict[str, str] = {}
+    for (path, _), rows in asked.items():
+        owner, _, gate = rows[0].gate.rpartition(".")
+        if (
+            len(rows) == 1
+            and not rows[0].hides
+            and rows[0].test == TEST_ON
+            and owner == path.rpartition(".")[0]
+        ):
+            found.setdefault(path, gate)
+    return found
