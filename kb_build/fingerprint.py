@@ -96,7 +96,9 @@ def reader_digest() -> str:
 @cache
 def usage_digest() -> str:
     """Digest of the code that finds the uses of symbols in scripts, and of what reads the symbols."""
-    files = [path for part in ("flow", "usage", "blender") for path in (_PACKAGE / part).glob("*.py")]
+    files = [
+        path for part in ("flow", "panels", "usage", "blender") for path in (_PACKAGE / part).glob("*.py")
+    ]
     return _code([*files, _PACKAGE / "records.py"])
 
 

@@ -34,10 +34,9 @@ if TYPE_CHECKING:
     from kb_build.pages.reading import PageReader
     from kb_build.pages.sources import DocumentationSource, MissingSource
     from kb_build.records import Page
-    from kb_build.store import Contents
     from kb_build.summaries.types import SummaryReport, SummaryRun
-    from kb_build.usage.examples import SymbolUsage
-    from kb_build.usage.usage_index import Usage
+    from kb_build.symbol_tables import SymbolTables
+    from kb_build.usage.usage_index import ScriptUsage
     from kb_build.versions.removed_symbols import RemovedSymbols
     from simworlds.sandbox.runtime import Runtime
     from simworlds.terminal.progress import Progress
@@ -46,6 +45,7 @@ SummaryMethod = Literal["shipped", "extractive", "claude", "none"]
 _LOADED_AHEAD = (
     "kb_build.blender.extract_reader",
     "kb_build.summaries.methods",
+    "kb_build.symbol_tables",
     "kb_build.usage.usage_index",
 )
 
@@ -127,11 +127,30 @@ def build(
         ahead.start()
         extract = _extract(work)
         ahead.join()
-        with _script_usage(work, extract) as scripts:
+        with (
+            _script_usage(work, extract) as scripts,
+            beside(partial(_removed_symbols, extract)) as removed_symbols,
+        ):
             pages = _pages(work, reader.result(), extract)
             run = _summaries(work, pages)
             meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
-            _write(work, extract, pages, run, meta, partial(_usage, extract, pages, scripts))
+            with beside(partial(_symbol_tables, extract, pages, scripts)) as tables:
+                from kb_build.blender.buttons import operator_buttons  # noqa: PLC0415 - not when nothing changed
+                from kb_build.store import Contents, write_base  # noqa: PLC0415 - likewise
+
+                work.progress(f"Writing {work.path.name}", 0, None)
+                contents: Contents = Contents(
+                    symbols=extract.symbols,
+                    pages=pages,
+                    links=extract.links,
+                    meta=meta,
+                    summaries=run.by_slug if run else {},
+                    still_works=extract.still_works,
+                    removed_symbols=removed_symbols,
+                    tables=tables,
+                    buttons=operator_buttons(Path(extract.scripts)) if extract.scripts else {},
+                )
+                write_base(work.path, contents)
     return _report(work, began, meta, built=True, run=run)
 
 
@@ -257,7 +276,7 @@ def _extract(work: _Build) -> Extract:
 
 
 @contextmanager
-def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], Usage]]:
+def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], ScriptUsage]]:
     """Reads Blender's own scripts while pages are read; gives a function that waits for the uses of symbols there."""
     from kb_build.usage.scripts import blender_scripts  # noqa: PLC0415 - not when nothing changed
     from kb_build.usage.usage_index import script_usage, usage_file  # noqa: PLC0415 - loaded ahead
@@ -271,20 +290,34 @@ def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], Usag
         yield result
 
 
-def _usage(extract: Extract, pages: Sequence[Page], scripts: Callable[[], Usage]) -> SymbolUsage:
-    """The uses of symbols in Blender's scripts and in the guides, and the ways to instances that follow from them."""
+def _symbol_tables(
+    extract: Extract, pages: Sequence[Page], scripts: Callable[[], ScriptUsage]
+) -> SymbolTables:
+    """What a base has of its symbols, with their uses in Blender's scripts and in the guides, the ways to instances
+    that follow from these, and what panels ask.
+    """
     from kb_build.blender.access_paths import reached_expressions  # noqa: PLC0415 - not when nothing changed
+    from kb_build.flow.symbols import SymbolList  # noqa: PLC0415 - loaded ahead
+    from kb_build.panels.conditions import panel_conditions  # noqa: PLC0415 - not when nothing changed
+    from kb_build.panels.gating import settled  # noqa: PLC0415 - loaded ahead
+    from kb_build.symbol_tables import symbol_tables  # noqa: PLC0415 - likewise
     from kb_build.usage.examples import SymbolUsage  # noqa: PLC0415 - loaded ahead
     from kb_build.usage.usage_index import merged, page_usage, with_aliases  # noqa: PLC0415 - loaded ahead
 
     symbols = extract.symbols
     guides = page_usage(symbols, pages, extract.version)
-    uses = with_aliases(merged([scripts(), guides]), symbols)
+    found = scripts()
+    uses = with_aliases(merged([found.uses, guides]), symbols)
     counts = {path: found.count for path, found in uses.items()}
     reached = reached_expressions(symbols, counts, extract.names, extract.places)
-    return SymbolUsage(
-        uses, {f"bpy.types.{name}": expression for name, expression in reached.items()}, extract.names
+    listed = SymbolList(symbols)
+    usage = SymbolUsage(
+        uses,
+        {f"bpy.types.{name}": expression for name, expression in reached.items()},
+        extract.names,
+        [*panel_conditions(settled(found.gatings, listed), listed)],
     )
+    return symbol_tables(symbols, pages, usage)
 
 
 def _pages(work: _Build, read: Mapping[str, list[Page]], extract: Extract) -> list[Page]:
@@ -347,35 +380,6 @@ def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun
         "simworlds": own_version(),
         **{name: json.dumps(value, ensure_ascii=False) for name, value in structured.items()},
     }
-
-
-def _write(  # noqa: PLR0913, PLR0917 - all that a base is made of
-    work: _Build,
-    extract: Extract,
-    pages: Sequence[Page],
-    run: SummaryRun | None,
-    meta: dict[str, str],
-    usage: Callable[[], SymbolUsage],
-) -> None:
-    work.progress(f"Writing {work.path.name}", 0, None)
-    by_slug = run.by_slug if run else {}
-    with beside(partial(_removed_symbols, extract)) as removed_symbols:
-        # Loaded now: a process is not forked safely from one that has NumPy's threads.
-        from kb_build.blender.buttons import operator_buttons  # noqa: PLC0415 - not when nothing changed
-        from kb_build.store import Contents, write_base  # noqa: PLC0415
-
-        contents: Contents = Contents(
-            symbols=extract.symbols,
-            pages=pages,
-            links=extract.links,
-            meta=meta,
-            summaries=by_slug,
-            still_works=extract.still_works,
-            removed_symbols=removed_symbols,
-            usage=usage,
-            buttons=operator_buttons(Path(extract.scripts)) if extract.scripts else {},
-        )
-        write_base(work.path, contents)
 
 
 def _removed_symbols(extract: Extract) -> RemovedSymbols:

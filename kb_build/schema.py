@@ -21,6 +21,9 @@ APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file
 # How a key came about, in the order in which an answer prefers them.
 FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
 
+# What panels ask of a truth value.
+TEST_ON, TEST_OFF = "on", "off"
+
 # The levels of the documents.
 UNITS, TOPICS = range(2)
 # What a document is to the search; index: of a page that only lists others.
@@ -126,6 +129,14 @@ CREATE TABLE uses (
 ) WITHOUT ROWID;
 CREATE TABLE use_counts (path TEXT PRIMARY KEY, uses INTEGER NOT NULL, files INTEGER NOT NULL) WITHOUT ROWID;
 
+-- What panels in Blender's own scripts ask of a setting (gate) wherever they let a property be set, as text: on,
+-- 'SUN' or 'SPOT'. Of the rows of one clause any is enough, all clauses must hold. hides: otherwise they do not show
+-- it; else they grey it out.
+CREATE TABLE panel_conditions (
+    path TEXT NOT NULL, clause INTEGER NOT NULL, gate TEXT NOT NULL, test TEXT NOT NULL, hides INTEGER NOT NULL,
+    PRIMARY KEY (path, clause, gate, test)
+) WITHOUT ROWID;
+
 -- Page → symbols whose manual link leads there: classes and operators only.
 CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;
 
@@ -154,6 +165,7 @@ CREATE INDEX symbols_owner ON symbols (owner, name);
 CREATE INDEX symbols_name ON symbols (name, kind);
 CREATE INDEX symbols_target ON symbols (target) WHERE target != '';
 CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
+CREATE INDEX panel_conditions_gate ON panel_conditions (gate);
 CREATE INDEX removed_name ON removed (name);
 CREATE INDEX sections_slug ON sections (slug, position);
 CREATE INDEX links_source ON links (source, kind, target);

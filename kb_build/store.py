@@ -5,17 +5,15 @@ from __future__ import annotations
 import json
 import os
 import sqlite3
-from dataclasses import dataclass, field, replace
+from array import array
+from dataclasses import dataclass, field
 from functools import cache
-from operator import itemgetter
 from typing import TYPE_CHECKING
 
-import numpy as np
 import sqlite_utils
 
 from kb_build.errors import StoreError
-from kb_build.index.analysis import content_words, key, short_path, topic_key
-from kb_build.index.creation import creation_calls
+from kb_build.index.analysis import content_words, stem
 from kb_build.index.documents import Document, kind_of, make_units, topic_documents
 from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
 from kb_build.index.label_names import find_label_names
@@ -38,19 +36,13 @@ from kb_build.schema import (
     APPLICATION_ID,
     DDL,
     DOCUMENT_KINDS,
-    FORM_LABEL,
-    FORM_NAME,
-    FORM_PATH,
-    FORM_SHORT,
-    FORM_TOPIC,
     INDEXES,
     SCHEMA_VERSION,
     TOPICS,
     UNITS,
     pack,
 )
-from kb_build.symbol_lines import member_line
-from kb_build.usage.examples import SymbolUsage, Uses
+from kb_build.symbol_tables import SymbolTables, symbol_tables
 from kb_build.versions.removed_symbols import RemovedSymbols
 from simworlds.files import staged_file
 
@@ -60,6 +52,7 @@ if TYPE_CHECKING:
 
     from kb_build.blender.buttons import Button
     from kb_build.summaries.types import PageSummary
+    from kb_build.usage.examples import Uses
 
 
 _MEMBERS = frozenset({"property", "function", "socket"})
@@ -69,8 +62,9 @@ _MEMBERS = frozenset({"property", "function", "socket"})
 class Contents:
     """Everything that goes into one base.
 
-    ``summaries`` are by slug, ``buttons`` by operator. ``removed_symbols`` and ``usage`` are called last: they may
-    still be computed meanwhile.
+    ``summaries`` are by slug, ``buttons`` by operator. ``removed_symbols`` and ``tables`` are called last: they may
+    still be computed meanwhile. Without ``tables``, they are made of symbols and pages, as if no script used the
+    symbols.
     """
 
     symbols: Sequence[Symbol]
@@ -80,45 +74,8 @@ class Contents:
     summaries: Mapping[str, PageSummary] = field(default_factory=dict[str, "PageSummary"])
     removed_symbols: Callable[[], RemovedSymbols] = RemovedSymbols
     still_works: Sequence[tuple[str, str]] = ()
-    usage: Callable[[], SymbolUsage] = SymbolUsage
+    tables: Callable[[], SymbolTables] | None = None
     buttons: Mapping[str, Sequence[Button]] = field(default_factory=dict[str, "Sequence[Button]"])
-
-
-def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
-    """(key, form, path) for every spelling under which a symbol is asked for."""
-    short = short_path(symbol.path)
-    yield key(symbol.path), FORM_PATH, symbol.path
-    yield key(short), FORM_SHORT, symbol.path
-    if symbol.kind == "operator":
-        yield key(symbol.target), FORM_SHORT, symbol.path
-        yield key(f"bpy.types.{symbol.target}"), FORM_SHORT, symbol.path
-    if symbol.group in {"ui", "operator"} or symbol.name.startswith("bl_rna_get_subclass"):
-        return
-    yield key(symbol.name), FORM_NAME, symbol.path
-    if symbol.kind == "class" and symbol.owner == "bpy.types":
-        yield key(f"types.{symbol.name}"), FORM_SHORT, symbol.path
-    if symbol.label and symbol.kind != "socket":
-        yield key(symbol.label), FORM_LABEL, symbol.path
-
-
-def page_names(page: Page) -> Iterator[tuple[str, int, str]]:
-    """(key, form, slug) for a page: its slug, the slug's last part, its title."""
-    yield key(page.slug), FORM_PATH, page.slug
-    yield key(page.slug.removesuffix("/index")), FORM_SHORT, page.slug
-    yield key(page.slug.removesuffix("/index").rpartition("/")[2]), FORM_NAME, page.slug
-    yield key(page.title), FORM_LABEL, page.slug
-    yield topic_key(page.title), FORM_TOPIC, page.slug
-
-
-def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:
-    """(key, owner, identifier, name) of a symbol's own enum items and of its parameters'."""
-    if symbol.kind == "enum":
-        return
-    for item in symbol.enum_items:
-        yield key(item.identifier), symbol.path, item.identifier, item.name
-    for parameter in symbol.parameters:
-        for item in parameter.enum_items:
-            yield key(item.identifier), f"{symbol.path}({parameter.name})", item.identifier, item.name
 
 
 def _insert(
@@ -128,37 +85,12 @@ def _insert(
     connection.executemany(f"INSERT OR IGNORE INTO {table} VALUES ({marks})", rows)  # noqa: S608
 
 
-def _write_symbols(
-    connection: sqlite3.Connection,
-    symbols: Sequence[Symbol],
-    pages: Sequence[Page],
-    reached: Mapping[str, str],
-) -> None:
-    """Writes the symbols, and the names of symbols and pages."""
-    _insert(
-        connection,
-        "symbols",
-        (
-            (
-                number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
-                symbol.collection, symbol.base, symbol.group, symbol.label,
-                member_line(symbol), pack(to_json(_with_path(symbol, reached))),
-            )
-            for number, symbol in enumerate(symbols)
-        ),
-        13,
-    )  # fmt: skip
-    # In the order of their keys: SQLite then fills page after page, and splits none.
-    names = (row for symbol in symbols for row in symbol_names(symbol))
-    _insert(connection, "names", sorted({*names, *(row for page in pages for row in page_names(page))}), 3)
-    items = (row for symbol in symbols for row in enum_rows(symbol))
-    _insert(connection, "enum_items", sorted(items, key=itemgetter(0, 1, 2)), 4)
-
-
-def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
-    """A class with the expression that leads to an instance."""
-    path = reached.get(symbol.path) if symbol.kind == "class" else None
-    return replace(symbol, reached=path) if path else symbol
+def _write_symbols(connection: sqlite3.Connection, tables: SymbolTables) -> None:
+    _insert(connection, "symbols", tables.symbols, 13)
+    _insert(connection, "names", tables.names, 3)
+    _insert(connection, "enum_items", tables.enum_items, 4)
+    _insert(connection, "creation", tables.creation, 4)
+    _insert(connection, "panel_conditions", tables.conditions, 5)
 
 
 def _places(pages: Sequence[Page]) -> dict[str, tuple[str, int]]:
@@ -220,25 +152,23 @@ def _write_level(
     level: int,
     documents: Sequence[Document],
     topics: Mapping[str, int],
-    tokenize: Tokenize,
+    stems_of: Tokenize,
 ) -> PostingLists:
     """Writes the documents of one level; returns their posting lists. ``topics``: ref → number."""
     chapters: dict[str, int] = {}
     explained: dict[str, int] = {"": -1}
     columns = (
-        np.array([topics.get(document.topic, -1) for document in documents], np.int32),
-        np.array([chapters.setdefault(document.chapter, len(chapters)) for document in documents], np.int32),
-        np.array(
-            [explained.setdefault(document.explained, len(explained)) for document in documents], np.int32
-        ),
-        np.array([DOCUMENT_KINDS.index(kind_of(document)) for document in documents], np.uint8),
-        np.array([document.kind in _MEMBERS for document in documents], np.bool_),
+        array("i", [topics.get(document.topic, -1) for document in documents]),
+        array("i", [chapters.setdefault(document.chapter, len(chapters)) for document in documents]),
+        array("i", [explained.setdefault(document.explained, len(explained)) for document in documents]),
+        array("B", [DOCUMENT_KINDS.index(kind_of(document)) for document in documents]),
+        array("B", [document.kind in _MEMBERS for document in documents]),
     )
     refs = "\n".join(document.ref for document in documents)
     anchors = "\n".join(document.anchor for document in documents)
     row = (level, len(documents), refs, anchors, *(column.tobytes() for column in columns))
     _insert(connection, "levels", (row,), len(row))
-    return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, tokenize)
+    return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, stems_of)
 
 
 def _phrases(
@@ -268,23 +198,28 @@ def write_index(
     """Writes what retrieval reads: the units, the topics around them, and the phrases that lead to either."""
     topics = [*topic_documents(units)]
     numbers = {topic.ref: number for number, topic in enumerate(topics)}
-    tokenize = cache(content_words)
-    of_units = _write_level(connection, UNITS, units, numbers, tokenize)
-    of_topics = _write_level(connection, TOPICS, topics, numbers, tokenize)
+    words_of = cache(content_words)
+
+    @cache
+    def stems_of(text: str) -> list[str]:
+        return [stem(word) for word in words_of(text)]
+
+    of_units = _write_level(connection, UNITS, units, numbers, stems_of)
+    of_topics = _write_level(connection, TOPICS, topics, numbers, stems_of)
     # Phrases lead to a symbol's unit, but to a page as a whole.
     targets = {
         unit.ref: len(units) + numbers[unit.ref] if unit.kind in PAGE_SOURCES else number
         for number, unit in enumerate(units)
     }
     phrases = _phrases(units, topics, targets, expansions)
-    leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, tokenize)
-    connection.execute("INSERT INTO phrases VALUES (?)", (np.array(leads_to, np.int32).tobytes(),))
+    leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, stems_of)
+    connection.execute("INSERT INTO phrases VALUES (?)", (array("i", leads_to).tobytes(),))
     words = unknown_of(load_everyday_words(), of_units)
     for postings in (of_units, of_topics):
         lend(postings, words)
     levels = (0, of_units), (len(units), of_topics), (len(units) + len(topics), of_phrases)
     _insert(connection, "postings", pack_postings(*levels), 3)
-    _insert(connection, "vocabulary", vocabulary(units, tokenize), 2)
+    _insert(connection, "vocabulary", vocabulary(units, words_of), 2)
 
 
 def write_base(path: Path, contents: Contents) -> None:
@@ -326,12 +261,10 @@ def _write(part: Path, contents: Contents) -> None:
             _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
             names = find_label_names(symbols, pages, passages, labelled)
             _insert(connection, "label_names", names, 4)
-            usage = contents.usage()
-            calls = creation_calls(contents.symbols, usage.reached, usage.names)
-            _insert(connection, "creation", ((path, *creation) for path, creation in calls.items()), 4)
-            _write_symbols(connection, contents.symbols, contents.pages, usage.reached)
-            _write_usage(connection, usage.uses)
-            weights = symbol_weights(contents.symbols, passages, expansions, usage.uses)
+            tables = contents.tables() if contents.tables else symbol_tables(contents.symbols, contents.pages)
+            _write_symbols(connection, tables)
+            _write_usage(connection, tables.uses)
+            weights = symbol_weights(contents.symbols, passages, expansions, tables.uses)
             _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(

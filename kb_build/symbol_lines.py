@@ -179,8 +179,11 @@ def _head(symbol: Symbol) -> str:
     return f"`{name}`"
 
 
-def member_line(symbol: Symbol) -> str:
-    """Name, type, default, first values and first sentence of a member, as its owner lists it."""
+def member_line(symbol: Symbol, switch: str = "") -> str:
+    """Name, type, default, first values and first sentence of a member, as its owner lists it.
+
+    ``switch`` is the setting of the same owner that must be on before Blender's panels let it be set.
+    """
     notes = [type_text(symbol)] if symbol.type else []
     default = usual_default(symbol)
     if default is not None and symbol.kind in {"property", "socket"}:
@@ -194,6 +197,8 @@ def member_line(symbol: Symbol) -> str:
         notes.append("|".join(values[:_SHOWN_VALUES]) + ("|…" if len(values) > _SHOWN_VALUES else ""))
     if "readonly" in symbol.flags:
         notes.append("read-only")
+    if switch:
+        notes.append(f"(if {switch})")
     if symbol.deprecation:
         notes.append("deprecated")
     if symbol.modes:

@@ -92,6 +92,19 @@ class Use:
     code: str
 
 
+class PanelTest(NamedTuple):
+    """What Blender's panels ask of a setting before they let a property be set: ``gate`` must be ``test``.
+
+    Of those with one ``clause`` any is enough. ``hides``: the property is not shown otherwise, instead of greyed out.
+    """
+
+    path: str
+    clause: int
+    gate: str
+    test: str
+    hides: bool
+
+
 _ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, line"
 _PAGE = "slug, source, version, title, parent, url, summary, summary_method"
 
@@ -331,6 +344,21 @@ class BaseReader:
         """How often Blender's own scripts use each of some symbols; those that they do not use are left out."""
         return dict(self.rows_of("SELECT path, uses FROM use_counts WHERE path", paths))
 
+    def panel_tests(self, path: str) -> list[PanelTest]:
+        """What Blender's panels ask before they let a property be set, by clause."""
+        sql = "SELECT path, clause, gate, test, hides FROM panel_conditions WHERE path = ? ORDER BY clause"
+        return [
+            PanelTest(path, clause, gate, test, bool(hides))
+            for path, clause, gate, test, hides in self.rows(sql, path)
+        ]
+
+    def panels_let_set(self, gate: str, test: str) -> list[str]:
+        """The properties that Blender's panels let be set only if ``gate`` is ``test``, by path."""
+        sql = """SELECT path FROM panel_conditions AS own WHERE gate = ? AND test = ? AND NOT EXISTS (
+            SELECT 1 FROM panel_conditions WHERE path = own.path AND clause = own.clause AND gate != own.gate
+            ) ORDER BY path"""
+        return [row[0] for row in self.rows(sql, gate, test)]
+
     def passage(self, path: str) -> tuple[str, int, int] | None:
         """(slug, number of the section, line of its text) of the place in the manual that is about a symbol."""
         rows = self.rows("SELECT slug, section, line FROM passages WHERE path = ?", path)
@@ -353,6 +381,10 @@ class BaseReader:
         """Class → how an instance is made, for those that have a call."""
         rows = self.rows_of("SELECT path, call, maker, choice FROM creation WHERE path", paths)
         return {row[0]: Creation(*row[1:]) for row in rows}
+
+    def made_as(self, name: str) -> list[str]:
+        """The classes of whose calls one gives a new instance this name."""
+        return [row[0] for row in self.rows("SELECT path FROM creation WHERE instr(call, ?)", f'"{name}"')]
 
     def operators_taking(self, argument: str) -> list[str]:
         """Paths of the operators with an argument of that name."""

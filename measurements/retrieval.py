@@ -46,6 +46,7 @@ KINDS = (
     "manual",
     "guide",
     "task",
+    "names",
 )
 _SAMPLE = 400
 _SOCKET = re.compile(r"\.(?:inputs|outputs)\[")

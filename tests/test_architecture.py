@@ -68,7 +68,13 @@ RULES = (
     Rule(
         "kb_check",
         ("kb_build",),
-        ("kb_build.flow", "kb_build.records", "kb_build.schema", "kb_build.index.analysis"),
+        (
+            "kb_build.flow",
+            "kb_build.records",
+            "kb_build.schema",
+            "kb_build.symbol_lines",
+            "kb_build.index.analysis",
+        ),
     ),
     Rule("kb_build.records", ("kb_build", "kb_check")),
     Rule("kb_build.schema", ("kb_build", "kb_check")),

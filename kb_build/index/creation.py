@@ -1,7 +1,8 @@
 """The call that makes an instance of a class: ``obj.modifiers.new("Cloth", 'CLOTH')``.
 
 Found in RNA alone. A collection whose own class has ``new`` makes its items; an enumeration or a type's name among the
-call's arguments decides which subclass. What no collection makes is made by the operator of that name.
+call's arguments decides which subclass. What no collection makes is made by the operator of that name, or by a method
+that all things have.
 """
 
 from __future__ import annotations
@@ -26,6 +27,9 @@ _HELD = (
     ("bpy.context.view_layer", "view_layer"),
 )
 _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTree": "tree", "Curve": "curve"}
+
+# Class → the method that makes it, and a call.
+_METHODS = {"Driver": (f"{TYPES}bpy_struct.driver_add", 'obj.driver_add("location", 2).driver')}
 
 
 class Creation(NamedTuple):
@@ -74,6 +78,9 @@ class _Calls:
                 known = calls.get(cls)
                 if known is None or known.maker.startswith("bpy.ops."):
                     calls[cls] = creation
+        for name, (maker, call) in _METHODS.items():
+            if {maker, f"{TYPES}{name}"} <= self._symbols.keys():
+                calls.setdefault(f"{TYPES}{name}", Creation(call, maker))
         yield from calls.items()
 
     def _collections(self) -> Iterator[Symbol]:

@@ -69,7 +69,8 @@ def _lent(its_terms: Iterable[tuple[str, ...]], said_most: _SaidMost) -> dict[in
     share = _SHARE
     for stems in its_terms:
         for number, weight in said_most(stems).items():
-            weights[number] = max(weights.get(number, 0.0), share * weight)
+            if share * weight > weights.get(number, 0.0):
+                weights[number] = share * weight
         share *= _LESS_LIKELY
     return weights
 

@@ -7,14 +7,17 @@ tf / (1 - b + b · length / average length) (Robertson & Zaragoza 2009, "The Pro
 
 from __future__ import annotations
 
+import struct
+from array import array
 from collections import Counter, defaultdict
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import cache
+from itertools import chain
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from kb_build.index.analysis import content_words, idf, stem
+from kb_build.index.analysis import content_words, idf, stem, terms
 from kb_build.index.documents import FIELDS
 
 if TYPE_CHECKING:
@@ -22,7 +25,7 @@ if TYPE_CHECKING:
 
     from kb_build.index.documents import Document
 
-# A text → its content words. Texts come several times, in units, topics and the vocabulary: a cache pays.
+# A text → its content words, or their stems. Texts come several times, in units, topics and phrases: a cache pays.
 Tokenize = Callable[[str], Sequence[str]]
 
 FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.25, "expansions": 1.5}
@@ -38,29 +41,26 @@ class PostingLists:
     weights: dict[str, list[float]] = field(default_factory=lambda: defaultdict(list))
 
 
-def document_postings(
-    documents: Sequence[Document], b: float, tokenize: Tokenize = content_words
-) -> PostingLists:
+def document_postings(documents: Sequence[Document], b: float, stems_of: Tokenize = terms) -> PostingLists:
     """The posting lists of units or of topics; documents are numbered from 0."""
-    counts: list[dict[str, Counter[str]]] = []
-    lengths: dict[str, list[int]] = {name: [] for name in FIELDS}
-    for document in documents:
-        row: dict[str, Counter[str]] = {}
-        for name in FIELDS:
-            texts = getattr(document, name)
-            stems = [stem(word) for text in texts if text for word in tokenize(text)] if texts else ()
-            lengths[name].append(len(stems))
-            if stems:
-                row[name] = Counter(stems)
-        counts.append(row)
-    average = {name: sum(row) / max(1, sum(1 for n in row if n)) for name, row in lengths.items()}
+
+    @cache  # what is around them, the members of a class have in common
+    def counted(texts: tuple[str, ...]) -> tuple[Counter[str], int]:
+        counter = Counter(chain.from_iterable(map(stems_of, texts)))
+        return counter, counter.total()
+
+    fields_of = attrgetter(*FIELDS)
+    rows = [list(map(counted, fields_of(document))) for document in documents]
+    lengths = [[length for _, length in column if length] for column in zip(*rows, strict=True)]
+    average = [sum(column) / max(1, len(column)) for column in lengths]
     postings = PostingLists()
-    for number, row in enumerate(counts):
-        weights: dict[str, float] = defaultdict(float)
-        for name, counter in row.items():
-            scale = FIELD_WEIGHTS[name] / (1 - b + b * lengths[name][number] / average[name])
-            for term, frequency in counter.items():
-                weights[term] += scale * frequency
+    for number, row in enumerate(rows):
+        weights: dict[str, float] = {}
+        for name, (counter, length), usual in zip(FIELDS, row, average, strict=True):
+            if length:
+                scale = FIELD_WEIGHTS[name] / (1 - b + b * length / usual)
+                for term, frequency in counter.items():
+                    weights[term] = weights.get(term, 0.0) + scale * frequency
         for term, weight in weights.items():
             postings.numbers[term].append(number)
             postings.weights[term].append(weight)
@@ -71,7 +71,7 @@ def phrase_postings(
     phrases: Iterable[tuple[str, int]],
     units: int,
     unit_postings: PostingLists,
-    tokenize: Tokenize = content_words,
+    stems_of: Tokenize = terms,
 ) -> tuple[list[int], PostingLists]:
     """The documents that phrases lead to, one a phrase, and the phrases' posting lists.
 
@@ -82,8 +82,8 @@ def phrase_postings(
     postings = PostingLists()
     idfs = {term: idf(units, len(numbers)) for term, numbers in unit_postings.numbers.items()}
     for phrase, document in phrases:
-        stems = dict.fromkeys(stem(word) for word in tokenize(phrase))
-        whole = sum(idfs.get(term, 0.0) for term in stems)
+        stems = dict.fromkeys(stems_of(phrase))
+        whole = sum([idfs.get(term, 0.0) for term in stems])
         if not whole:
             continue
         for term in stems:
@@ -99,22 +99,18 @@ def pack_postings(*levels: tuple[int, PostingLists]) -> Iterator[tuple[str, int,
     Each level comes with the number that its first document gets; the units' comes first.
     """
     for term in dict.fromkeys(term for _, postings in levels for term in postings.numbers):
-        having = [(start, postings) for start, postings in levels if term in postings.numbers]
-        numbers = [
-            np.asarray(postings.numbers[term], np.uint32) + np.uint32(start) for start, postings in having
-        ]
-        weights = [np.asarray(postings.weights[term], np.float16) for _, postings in having]
+        numbers, weights = array("I"), list[float]()
+        for start, postings in levels:
+            numbers.extend([start + number for number in postings.numbers.get(term, ())])
+            weights += postings.weights.get(term, ())
         units = len(levels[0][1].numbers.get(term, ()))
-        yield term, units, np.concatenate(numbers).tobytes() + np.concatenate(weights).tobytes()
+        yield term, units, numbers.tobytes() + struct.pack(f"{len(weights)}e", *weights)
 
 
 def vocabulary(units: Iterable[Document], tokenize: Tokenize = content_words) -> Iterator[tuple[str, str]]:
     """(stem, most used spelling) for every word of the corpus."""
-    counts: Counter[str] = Counter()
-    for unit in units:
-        for name in FIELDS:
-            for text in getattr(unit, name):
-                counts.update(tokenize(text))
+    texts = (text for unit in units for name in FIELDS for text in getattr(unit, name))
+    counts = Counter(chain.from_iterable(map(tokenize, texts)))
     usual: dict[str, str] = {}
     for word, count in counts.items():
         known = usual.setdefault(stem(word), word)

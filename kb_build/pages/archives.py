@@ -106,7 +106,7 @@ def safe_path(name: str, archive: Path) -> PurePosixPath:
         slashed = form.replace("\\", "/")
         if slashed.startswith("/") or ":" in slashed or ".." in slashed.split("/"):
             raise _refused(archive, name, "leads out of its folder")
-    if any(unicodedata.category(character) in {"Cc", "Cf", "Cs"} for character in name):
+    if not name.isprintable() and any(unicodedata.category(sign) in {"Cc", "Cf", "Cs"} for sign in name):
         raise _refused(archive, name, "has invisible characters")
     path = PurePosixPath(name.replace("\\", "/"))
     too_long = len(name.encode()) > 1024 or any(len(part.encode()) > 255 for part in path.parts)

@@ -14,11 +14,12 @@ from kb_build.flow.types import UNKNOWN, Instance, Operator
 from kb_build.usage.scripts import PRESETS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.api import Api
     from kb_build.flow.types import Resolution
+    from kb_build.panels.conditions import PanelCondition
 
 MOST_EXAMPLES = 3  # of one symbol
 _MOST_LINES = 3
@@ -83,12 +84,14 @@ class Uses:
 class SymbolUsage:
     """What the uses of symbols tell: symbol → its uses, and class → the expression that leads to an instance.
 
-    ``names``: class, without its module → the name that Blender itself gives to a new one.
+    ``names``: class, without its module → the name that Blender itself gives to a new one. ``conditions`` are what
+    panels ask before they let a property be set.
     """
 
     uses: Mapping[str, Uses] = field(default_factory=dict[str, Uses])
     reached: Mapping[str, str] = field(default_factory=dict[str, str])
     names: Mapping[str, str] = field(default_factory=dict[str, str])
+    conditions: Sequence[PanelCondition] = ()
 
 
 def clearest(examples: Iterable[Example]) -> list[Example]:
@@ -103,7 +106,11 @@ def clearest(examples: Iterable[Example]) -> list[Example]:
 
 def uses_in(code: str, file: str, api: Api, version: tuple[int, ...], cost: float = 0.0) -> dict[str, Uses]:
     """Symbol → its uses in a script; none where the script cannot be read. ``cost`` is added to every example's."""
-    analysis = analyse(code, api, version)
+    return analysed_uses(analyse(code, api, version), code, file, api, cost)
+
+
+def analysed_uses(analysis: Analysis, code: str, file: str, api: Api, cost: float = 0.0) -> dict[str, Uses]:
+    """The same of a script that was analysed."""
     if analysis.tree is None:
         return {}
     script = _Script(code, file, analysis, cost, api)

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 PRESETS = "presets/"
+TEMPLATES = "templates_py/"
 # Folder below Blender's scripts → what is added to the cost of its examples.
 _FOLDERS = {
     "templates_py": 0.0,

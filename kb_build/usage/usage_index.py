@@ -1,4 +1,7 @@
-"""The uses of all symbols in the scripts that a Blender brings and in the guides; kept for the next build."""
+"""The uses of all symbols in the scripts that a Blender brings and in the guides; kept for the next build.
+
+What the panels in these scripts ask is read with them: both need to know what the expressions are.
+"""
 
 from __future__ import annotations
 
@@ -8,14 +11,18 @@ import hashlib
 import json
 import re
 import zlib
+from dataclasses import dataclass, field
 from functools import partial
 from typing import TYPE_CHECKING
 
 from kb_build.fingerprint import usage_digest
+from kb_build.flow.analysis import analyse
 from kb_build.flow.api import Api
 from kb_build.flow.symbols import SymbolList
-from kb_build.usage.examples import Example, Uses, uses_in
-from kb_build.usage.scripts import read_script
+from kb_build.panels import gating
+from kb_build.panels.drawing import places_in, shows_properties
+from kb_build.usage.examples import Example, Uses, analysed_uses, uses_in
+from kb_build.usage.scripts import TEMPLATES, read_script
 from simworlds.files import remove_unfinished_files, staged_file
 from simworlds.forked import beside
 from simworlds.releases import version_key
@@ -35,6 +42,14 @@ _SAME = "same-as:"
 Usage = dict[str, Uses]
 
 
+@dataclass(frozen=True, slots=True)
+class ScriptUsage:
+    """What scripts tell: the uses of symbols, and by property what the panels in them ask (see panels.gating)."""
+
+    uses: Usage = field(default_factory=dict[str, Uses])
+    gatings: dict[str, gating.Gating] = field(default_factory=dict[str, gating.Gating])
+
+
 def usage_file(cache: Path, extract: str, scripts: Sequence[Script]) -> Path:
     """Where the uses in these scripts are kept; the name depends on the scripts, the API and the code that reads them.
 
@@ -50,10 +65,10 @@ def usage_file(cache: Path, extract: str, scripts: Sequence[Script]) -> Path:
 @contextlib.contextmanager
 def script_usage(
     symbols: Sequence[Symbol], scripts: Sequence[Script], version: str, *, file: Path, jobs: int
-) -> Generator[Callable[[], Usage]]:
-    """Reads scripts in other processes meanwhile; gives a function that waits for the uses of symbols in them.
+) -> Generator[Callable[[], ScriptUsage]]:
+    """Reads scripts in other processes meanwhile; gives a function that waits for what they tell.
 
-    The uses are kept in ``file`` (see usage_file). Where that is not possible, the next build reads them again.
+    It is kept in ``file`` (see usage_file). Where that is not possible, the next build reads them again.
     """
     kept = _kept(file)
     if kept is not None:
@@ -67,18 +82,29 @@ def script_usage(
             stack.enter_context(beside(partial(_read, symbols, share, version))) for share in shares if share
         ]
 
-        def result() -> Usage:
-            usage = merged([share() for share in waiting])
+        def result() -> ScriptUsage:
+            parts = [share() for share in waiting]
+            usage = ScriptUsage(
+                merged(part.uses for part in parts), gating.merged(part.gatings for part in parts)
+            )
             _keep(usage, file)
             return usage
 
         yield result
 
 
-def _read(symbols: Sequence[Symbol], scripts: Iterable[Script], version: str) -> Usage:
+def _read(symbols: Sequence[Symbol], scripts: Iterable[Script], version: str) -> ScriptUsage:
     api = Api(SymbolList(symbols))
     numbers = version_key(version)
-    return merged(uses_in(read_script(s.path), s.name, api, numbers, s.cost) for s in scripts)
+    uses: list[Usage] = []
+    gatings: list[dict[str, gating.Gating]] = []
+    for script in scripts:
+        code = read_script(script.path)
+        analysis = analyse(code, api, numbers)
+        uses.append(analysed_uses(analysis, code, script.name, api, script.cost))
+        if shows_properties(code) and not script.name.startswith(TEMPLATES):
+            gatings.append(gating.gatings_in(places_in(analysis, api.symbols), api.symbols))
+    return ScriptUsage(merged(uses), gating.merged(gatings))
 
 
 def page_usage(symbols: Sequence[Symbol], pages: Iterable[Page], version: str) -> Usage:
@@ -118,23 +144,25 @@ def with_aliases(usage: Usage, symbols: Iterable[Symbol]) -> Usage:
     return {**usage, **{path: usage[other] for path, other in aliases.items() if other in usage}}
 
 
-def _kept(path: Path) -> Usage | None:
+def _kept(path: Path) -> ScriptUsage | None:
     try:
         with gzip.open(path, "rt", encoding="utf-8") as file:
-            rows = json.load(file)
-        return {
+            kept = json.load(file)
+        uses = {
             name: Uses(count, files, [Example(*example) for example in examples])
-            for name, (count, files, examples) in rows.items()
+            for name, (count, files, examples) in kept["uses"].items()
         }
-    except (OSError, EOFError, zlib.error, ValueError, TypeError):
+        return ScriptUsage(uses, {name: gating.from_rows(rows) for name, rows in kept["gatings"].items()})
+    except (OSError, EOFError, zlib.error, ValueError, TypeError, KeyError):
         return None
 
 
-def _keep(usage: Usage, path: Path) -> None:
-    rows = {
+def _keep(usage: ScriptUsage, path: Path) -> None:
+    uses = {
         name: (uses.count, uses.files, [(e.cost, e.file, e.line, e.code) for e in uses.examples])
-        for name, uses in usage.items()
+        for name, uses in usage.uses.items()
     }
+    rows = {"uses": uses, "gatings": {name: gating.to_rows(found) for name, found in usage.gatings.items()}}
     with contextlib.suppress(OSError):
         path.parent.mkdir(parents=True, exist_ok=True)
         remove_unfinished_files(path.parent)

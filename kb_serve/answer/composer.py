@@ -118,8 +118,8 @@ class AnswerComposer:
         topic = "" if self._reader.entry(text) else self._topics.find(text)
         if topic:
             return self._overview(topic, ranking, limit)
-        # Whoever asks for more than usual wants what is far, too.
-        hits = self._hits(ranking.listed(limit) if limit <= LIMIT else ranking.ranked[:limit])
+        rows = self._listed(ranking, limit)
+        hits = self._hits(rows)
         known = self._practice.of(hits[0].id) if hits else ()
         notes = tuple(dict.fromkeys((*ranking.notes, *known, *self._source_notes(ranking, hits))))
         if not hits:
@@ -127,10 +127,17 @@ class AnswerComposer:
             told = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
             return _draft("none", (), notes, (told,))
         if ranking.named:
-            blocks = tuple(self._whole(hits[0], ranking.ranked[0])) + self._others(hits[1:])
+            blocks = (*self._whole(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
-        blocks = (*self._excerpt(ranking, hits[0]), *self._others(hits[1:]))
+        blocks = (*self._excerpt(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
         return _draft("candidates", hits, notes, blocks)
+
+    def _listed(self, ranking: Ranking, limit: int) -> list[RankedId]:
+        """The ids that the answer lists. Whoever asks for more than usual wants what is far, too."""
+        if limit > LIMIT:
+            return ranking.ranked[:limit]
+        self._reader.page_entry.load(row.id for row in ranking.ranked)
+        return ranking.listed(limit, lambda ref: self._reader.page_entry(ref) is not None)
 
     def _source_notes(self, ranking: Ranking, hits: Sequence[Hit]) -> Iterator[str]:
         """Notes on the documentation behind the answer: pages of other versions, missing sources."""
@@ -170,26 +177,41 @@ class AnswerComposer:
         else:
             yield from self._renderer.page(hit.id, row.anchor)
 
-    def _excerpt(self, ranking: Ranking, hit: Hit) -> Iterator[AnswerBlock]:
-        """The beginning of the best hit: its description, or the heading and the section that matches, and as much
-        more as is short. Sections that only say in which panel something is are not counted, nor are the names
-        that stand with labels: they must not take the place of what was asked for.
+    def _excerpt(self, hit: Hit, row: RankedId) -> Iterator[AnswerBlock]:
+        """The beginning of the best hit: its description, or the heading and the section that matches, the members
+        that do, and as much more as is short. Sections that only say in which panel something is are not counted, nor
+        are the names that stand with labels: they must not take the place of what was asked for.
         """
         said = 0
-        for number, block in enumerate(self._whole(hit, ranking.ranked[0])):
+        for number, block in enumerate(self._whole(hit, row)):
             size = tokens(block.plain or block.text)
             if number > 1 and said + size > _EXCERPT_TOKENS and said > _LEAST_SAID:
                 return
             said += size if number and not _is_box(block.text) else 0
             yield block
+            if number == 0 and row.members:
+                yield AnswerBlock("**Nearest**\n" + "\n".join(self._members(row)), "nearest members")
 
-    def _others(self, hits: Sequence[Hit]) -> tuple[AnswerBlock, ...]:
-        if not hits:
-            return ()
-        lines = [f"- {self._line(hit)}" for hit in hits]
-        return (AnswerBlock("**Also**\n" + "\n".join(lines), "further candidates"),)
+    def _members(self, row: RankedId) -> Iterator[str]:
+        """A line for each of the members that were found with their class."""
+        self._reader.entry.load(f"{row.id}.{name}" for name in row.members)
+        for name in row.members:
+            entry = self._reader.entry(f"{row.id}.{name}")
+            yield f"- {entry.line if entry else f'`{name}`'}"
 
-    def _line(self, hit: Hit) -> str:
+    def _others(self, hits: Sequence[Hit], rows: Sequence[RankedId]) -> Iterator[AnswerBlock]:
+        """A line for each further hit: symbols, then pages."""
+        symbols = [
+            f"- {self._line(hit, row)}" for hit, row in zip(hits, rows, strict=True) if not _is_page(hit)
+        ]
+        pages = [f"- {self._line(hit, row)}" for hit, row in zip(hits, rows, strict=True) if _is_page(hit)]
+        for title, lines in (("In Python", symbols), ("Pages", pages)):
+            if lines:
+                yield AnswerBlock(
+                    f"**{title}**\n" + "\n".join(lines), f"further {'names' if lines is symbols else 'pages'}"
+                )
+
+    def _line(self, hit: Hit, row: RankedId) -> str:
         entry = None if _is_page(hit) else self._reader.entry(hit.id)
         if entry is not None:
             owner = f"{entry.owner}." if entry.kind != "socket" else ""
@@ -199,7 +221,8 @@ class AnswerComposer:
                 else entry.line
             )
             text = text.removeprefix(f"`{entry.name}`").strip() or self._instead_of_words(entry)
-            return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS)
+            nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
+            return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS) + nearest
         page = self._reader.page_entry(hit.id)
         text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)

@@ -18,10 +18,11 @@ from kb_build.symbol_lines import (
     type_text,
 )
 from kb_serve.answer.budget import AnswerBlock
+from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import EnumItem, Parameter, Section, Symbol
 
@@ -42,6 +43,8 @@ _SHOWN_FLAGS = (
     "classmethod",
     "hidden-by-default",
 )
+_BROWSER_ALWAYS = "filter_folder"  # every operator that opens the file browser has it
+_BROWSER = frozenset({"filemode", "display_type", "sort_method", "hide_props_region"})
 _MACHINERY = {
     "bl_rna_get_subclass",
     "bl_rna_get_subclass_py",
@@ -154,16 +157,47 @@ def _listed(title: str, entries: Iterable[SymbolEntry]) -> Iterator[AnswerBlock]
         yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), title.lower())
 
 
+def _of_file_browser(symbol: Symbol) -> list[str]:
+    """The arguments of an operator on files that say which of them its browser shows, and how."""
+    names = [parameter.name for parameter in symbol.parameters]
+    if symbol.kind != "operator" or _BROWSER_ALWAYS not in names:
+        return []
+    return [name for name in names if name.startswith("filter_") or name in _BROWSER]
+
+
+def _names(names: Iterable[str]) -> str:
+    return ", ".join(f"`{name}`" for name in names)
+
+
+def _call_without(signature: str, names: Collection[str]) -> str:
+    """An operator's call without some of its arguments."""
+    try:
+        call = ast.parse(signature, mode="eval").body
+    except SyntaxError:
+        return signature
+    if not names or not isinstance(call, ast.Call):
+        return signature
+    call.keywords = [keyword for keyword in call.keywords if keyword.arg not in names]
+    return ast.unparse(call)
+
+
 def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
     if symbol.parameters:
         defaults = _written_defaults(symbol.signature) if symbol.kind == "function" else {}
-        lines = "\n".join(_parameter_line(item, defaults.get(item.name, "")) for item in symbol.parameters)
-        yield AnswerBlock(f"**Parameters**\n{lines}", "parameters")
+        aside = _of_file_browser(symbol)
+        lines = [
+            _parameter_line(item, defaults.get(item.name, ""))
+            for item in symbol.parameters
+            if item.name not in aside
+        ]
+        if aside:
+            lines.append(f"- of the file browser; a script leaves them out: {_names(aside)}")
+        yield AnswerBlock("**Parameters**\n" + "\n".join(lines), "parameters")
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))
         yield AnswerBlock(f"**Returns**\n{lines}", "returns")
     for parameter in symbol.parameters:
-        items = parameter.enum_items
+        items = () if parameter.name in _of_file_browser(symbol) else parameter.enum_items
         if len(items) > _NAMED_ITEMS or (len(items) > 3 and any(item.description for item in items)):
             yield AnswerBlock(
                 f"**Values of `{parameter.name}`**\n{_items(items)}",
@@ -247,6 +281,8 @@ class MarkdownRenderer:
             lines.append(text)
         if line := " · ".join(facts(symbol)):
             lines.append(line)
+        if line := "; ".join(panel_lines(symbol, self.reader)):
+            lines.append(line[0].upper() + line[1:] + ".")
         if symbol.deprecation:
             removal = (
                 f", removal planned for {symbol.deprecation.removal}" if symbol.deprecation.removal else ""
@@ -259,7 +295,7 @@ class MarkdownRenderer:
     @staticmethod
     def _call(symbol: Symbol) -> str:
         if symbol.kind == "operator":
-            return symbol.signature
+            return _call_without(symbol.signature, _of_file_browser(symbol))
         owner = symbol.owner
         if symbol.kind == "function" and owner.startswith(TYPES) and "static" not in symbol.flags:
             owner = owner.removeprefix(TYPES)

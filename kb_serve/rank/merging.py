@@ -12,6 +12,8 @@ from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recogniser import Recogniser
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from kb_serve.rank.search import Searcher, SearchHit
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
@@ -19,17 +21,20 @@ if TYPE_CHECKING:
 SURE = 0.8  # from here on, named ids come before search hits
 _FAR = 0.5  # share of the best hit's score below which another one is far from it
 _ALWAYS = 5  # hits for a description that are listed however far they are
-_LEAST_HITS = 12  # of the search, so that it also finds alternatives to a named class
+_NAMES = 4  # so many of those listed are symbols, if the search finds some that are not
+_TOO_FAR = 0.25  # share of the best hit's score below which a symbol does not help either
+_LEAST_HITS = 20  # of the search, so that it also finds alternatives to a named class, and names beside pages
 
 
 @dataclass(frozen=True, slots=True)
 class RankedId:
-    """An id and why it is in the list; ``score`` falls from 1 down the list."""
+    """An id and why it is in the list; ``score`` falls from 1 down the list. ``members`` as of the search's hits."""
 
     id: str
     score: float
     why: str
     anchor: str = ""
+    members: tuple[str, ...] = ()
 
 
 @dataclass(slots=True)
@@ -41,18 +46,21 @@ class Ranking:
     named: bool
     notes: list[str] = field(default_factory=list)
 
-    def listed(self, limit: int) -> list[RankedId]:
+    def listed(self, limit: int, is_page: Callable[[str], bool]) -> list[RankedId]:
         """The first ``limit`` ids, without what the search found far below its best.
 
-        A description's first few are listed in any case, as the search may have misjudged it.
+        A description's first few are listed in any case, as the search may have misjudged it. What follows makes up
+        for symbols that they lack: a page tells how, but code needs names.
         """
         kept = 1 if self.named else _ALWAYS
-        rows = self.ranked[:limit]
-        return [
-            row
-            for place, row in enumerate(rows)
-            if place < kept or row.why != "found" or row.score >= _FAR * SURE
-        ]
+        first, rest = self.ranked[: min(kept, limit)], self.ranked[kept:]
+        room = max(0, limit - kept)
+        lacking = 0 if self.named else _NAMES - sum(not is_page(row.id) for row in first)
+        names = [row for row in rest if row.score >= _TOO_FAR * SURE and not is_page(row.id)]
+        names = names[: min(room, max(0, lacking))]
+        near = [row for row in rest if row not in names and (row.why != "found" or row.score >= _FAR * SURE)]
+        chosen = {row.id for row in (*names, *near[: room - len(names)])}
+        return [*first, *(row for row in rest if row.id in chosen)]
 
 
 class QueryRanker:
@@ -105,7 +113,7 @@ class QueryRanker:
             RankedId(match.id, match.sure, match.why) for match in recognition.matches if match.sure < SURE
         ]
         top = hits[0].score if hits else 1.0
-        prose = [RankedId(hit.ref, SURE * hit.score / top, "found", hit.anchor) for hit in hits]
+        prose = [RankedId(hit.ref, SURE * hit.score / top, "found", hit.anchor, hit.members) for hit in hits]
         merged: dict[str, RankedId] = {}
         for row in (*sure, *prose[:3], *maybe, *prose[3:]):
             merged.setdefault(row.id, row)

@@ -41,16 +41,30 @@ _MAX_WORDS = 40
 _CANDIDATES = 400
 _DIFFERENT = 5
 _OF_A_CHAPTER = 3
+_MEMBERS = 3  # of a class that are told with it
+_NEAR = 0.35  # share of the best member's score below which another one is not told
 _INDEX = DOCUMENT_KINDS.index("index")
 
 
 @dataclass(frozen=True, slots=True)
 class SearchHit:
-    """One ranked unit: a symbol path or a page's slug, and the anchor of the section that was found."""
+    """One ranked unit: a symbol path or a page's slug, and the anchor of the section that was found; of a class or
+    module the names of those members that speak most of the query.
+    """
 
     ref: str
     anchor: str
     score: float
+    members: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True, slots=True)
+class _Ranked:
+    """Units, best first: their numbers, scores and topics."""
+
+    numbers: NDArray[np.intp]
+    scores: Scores
+    topics: NDArray[np.int32]
 
 
 class Searcher:
@@ -106,10 +120,27 @@ class Searcher:
             return []
         numbers, evidence = found
         scores = scores_of(evidence)
-        topics: list[int] = self.index.levels[0].topics[numbers].tolist()
-        best = _spread(np.argsort(-scores, kind="stable").tolist(), topics)
-        best = _with_text_first(best, evidence.kinds.tolist())
-        return self._varied(((int(numbers[place]), float(scores[place])) for place in best), limit)
+        order = np.argsort(-scores, kind="stable")
+        ranked = _Ranked(numbers[order], scores[order], self.index.levels[0].topics[numbers[order]])
+        best = _spread(ranked.topics.tolist())
+        best = _with_text_first(best, evidence.kinds[order].tolist())
+        return [self._hit(place, ranked) for place in self._varied(best, ranked, limit)]
+
+    def _hit(self, place: int, ranked: _Ranked) -> SearchHit:
+        """The hit at a place, with the members of it that rank best."""
+        units, topics = self.index.levels
+        number, topic = ranked.numbers[place], ranked.topics[place]
+        ref = units.refs[number]
+        members: list[str] = []
+        if topic >= 0 and topics.refs[topic] == ref and not units.anchors[number]:
+            below = np.flatnonzero(ranked.topics == topic)
+            near = [
+                units.refs[ranked.numbers[other]]
+                for other in below[: _MEMBERS + 1]
+                if ranked.scores[other] >= _NEAR * ranked.scores[below[0]]
+            ]
+            members = [other.removeprefix(f"{ref}.") for other in near if other.startswith(f"{ref}.")]
+        return SearchHit(ref, units.anchors[number], float(ranked.scores[place]), tuple(members[:_MEMBERS]))
 
     def find(self, text: str, *, failed: bool = False) -> tuple[NDArray[np.intp], Evidence] | None:
         """The units that speak most of a text: their numbers, and what is known of them. None if there are none."""
@@ -144,32 +175,33 @@ class Searcher:
         np.maximum.at(best, self.index.asked[phrases], np.sqrt(np.minimum(shares, 1) * coverage))
         return np.maximum(best[numbers], best[np.where(topic >= 0, units + topic, documents)])
 
-    def _varied(self, order: Iterable[tuple[int, float]], limit: int) -> list[SearchHit]:
-        """Of the ranked units, (number, score), each ref once, and the first member of a name before other members of
-        that name.
+    def _varied(self, order: Iterable[int], ranked: _Ranked, limit: int) -> list[int]:
+        """Of the places of ranked units each ref's first, and the first member of a name before other members of that
+        name.
 
         A class or operator and the page that explains it say the same: the second of them waits until the first
         few different things have been named. So does the fourth of a chapter, as the query may mean another one.
         """
         units = self.index.levels[0]
-        first: list[SearchHit] = []
-        waiting: list[SearchHit] = []
-        later: list[SearchHit] = []
+        numbers: list[int] = ranked.numbers.tolist()
+        first: list[int] = []
+        waiting: list[int] = []
+        later: list[int] = []
         seen: set[str | int] = set()
         chapters: Counter[int] = Counter()
-        for number, score in order:
+        for place in order:
+            number = numbers[place]
             ref = units.refs[number]
             if ref in seen:
                 continue
-            hit = SearchHit(ref, units.anchors[number], score)
             name = f".{ref.rpartition('.')[2]}" if units.members[number] else ref
             explained, chapter = int(units.explained[number]), int(units.chapters[number])
             if name in seen:
-                later.append(hit)
+                later.append(place)
             elif len(first) < _DIFFERENT and (explained in seen or chapters[chapter] == _OF_A_CHAPTER):
-                waiting.append(hit)
+                waiting.append(place)
             else:
-                first.append(hit)
+                first.append(place)
                 chapters[chapter] += 1
                 if len(first) == _DIFFERENT:
                     first += waiting
@@ -191,12 +223,11 @@ def _float32(values: NDArray[Any]) -> Scores:
     return values.astype(np.float32, copy=False)
 
 
-def _spread(places: Sequence[int], topics: Sequence[int]) -> Iterator[int]:
-    """Every topic's first, and all that have no topic, before any topic's second."""
+def _spread(topics: Iterable[int]) -> Iterator[int]:
+    """The places of every topic's first, and of all that have no topic, before any topic's second."""
     seen: set[int] = set()
     second: list[int] = []
-    for place in places:
-        topic = topics[place]
+    for place, topic in enumerate(topics):
         if topic in seen:
             second.append(place)
         else:

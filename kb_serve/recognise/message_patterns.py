@@ -12,7 +12,8 @@ _QUOTED = re.compile(r"(?<!\w)(['\"])[^'\"\n]{0,60}\1")
 HAS_NO = re.compile(r"['\"](?P<owner>[\w.]+)['\"] object has no attribute ['\"](?P<name>\w+)['\"]")
 MODULE_HAS_NO = re.compile(r"module ['\"](?P<owner>[\w.]+)['\"] has no attribute ['\"](?P<name>\w+)['\"]")
 NO_KEY = re.compile(r"\b(?P<on>bpy_\w+)\[key\]: key \"(?P<name>[^\"]+)\" not found")
-NO_INDEX = re.compile(r"\w+\[index\]: index (?P<index>-?\d+) out of range, size (?P<size>\d+)")
+NO_INDEX = re.compile(r"\w+\[index\](?: = value)?: index (?P<index>-?\d+) out of range, size (?P<size>\d+)")
+SUBSCRIPTED = re.compile(r"\b([a-z]\w*)\[-?\d+\]")
 BAD_ENUM = re.compile(r"enum \"(?P<name>[^\"]*)\" not found in \((?P<items>[^)]*)\)?")
 BAD_KEYWORD = re.compile(
     r"keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)"

@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 _FEW = 3
 _MOST_TAKING = 12  # operators with an argument of one name that are listed
+_ADD = ("new", "append", "add", "link")  # functions of collections
 _MANY = 8  # where more properties may be None, none is likely enough to be named
 # Pages of the API's own guides that explain a kind of message; named where the base has them.
 _ON_OPERATORS = "info_gotchas_operators"
@@ -79,6 +80,8 @@ class Messages:
             several = re.findall(r"\w+", match["several"] or "")
             for name in several or [match["name"] or match["unexpected"] or match["invalid"]]:
                 self._keyword(name, function, recognition)
+        for match in _matches(forms.NO_INDEX, query):
+            recognition.notes.append(self._index(match["index"], int(match["size"]), query, recognition))
         for match in _matches(forms.NO_KEY, query):
             self._key(match["on"], match["name"], query, recognition)
 
@@ -277,6 +280,22 @@ class Messages:
                 recognition.notes.append(
                     f"`{match['name']}` is not an item of this enum; closest: {', '.join(similar)}."
                 )
+
+    def _index(self, index: str, size: int, query: str, recognition: Recognition) -> str:
+        """How many elements a collection has that lacks one, and, where the query names it, what adds one."""
+        held = f"only {size}, counted from 0" if size else "no elements"
+        note = f"The collection has {held}: there is no `[{index}]` yet."
+        found = {match.id for match in recognition.matches}
+        for name in forms.SUBSCRIPTED.findall(query):
+            entries = [entry for entry in self._reader.by_name(name) if entry.type == "collection"]
+            entries = [entry for entry in entries if entry.path in found] or entries
+            if len({(entry.collection, entry.target) for entry in entries}) == 1:
+                functions = self._reader.members(f"{TYPES}{entries[0].collection}")
+                made = self._reader.creations([f"{TYPES}{entries[0].target}"]).values()
+                calls = [f".{name}.{function}()" for function in _ADD if function in functions]
+                if calls := calls or [creation.call for creation in made]:
+                    return f"{note} `{calls[0]}` adds one."
+        return note
 
     def _key(self, collection: str, name: str, query: str, recognition: Recognition) -> None:
         """A collection without such an element; it may be a socket's name in another version."""

@@ -320,15 +320,18 @@ class Resolver:
         return sorted(trees, key=lambda path: len(trees[path])) or nodes
 
     def _named_classes(self, cls: str, text: str) -> tuple[str, ...]:
-        """Descendants of ``cls`` (or itself) whose elements are called ``text`` by default, the shortest first."""
-        wanted = key(_NUMBERED.sub("", text))
-        named = {
-            identifier
-            for suffix in ("", *_ELEMENT_SUFFIXES)
-            for _, identifier in self._reader.by_key(wanted + suffix)
-            if identifier.startswith(TYPES) and self._reader.descends(identifier, cls)
-        }
-        return tuple(sorted(named, key=lambda path: (len(path), path)))
+        """Descendants of ``cls`` (or itself) whose elements are called ``text`` by default: by the name that they are
+        made with, then by a label or class name; of each the shortest first.
+        """
+        name = _NUMBERED.sub("", text)
+        labelled = (
+            path for suffix in ("", *_ELEMENT_SUFFIXES) for _, path in self._reader.by_key(key(name) + suffix)
+        )
+        found: dict[str, None] = {}
+        for paths in (self._reader.made_as(name), labelled):
+            named = {path for path in paths if path.startswith(TYPES) and self._reader.descends(path, cls)}
+            found |= dict.fromkeys(sorted(named, key=lambda path: (len(path), path)))
+        return tuple(found)
 
     def _socket(self, owner: str, side: str, name: str) -> Iterator[ChainValue]:
         """The sockets of that name: of the node's own class, or of every node where only ``Node`` is known."""

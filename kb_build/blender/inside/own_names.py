@@ -54,6 +54,7 @@ def look_at_start(observer):
 def stacked_by_operators():
     """Modifiers, shader effects and particle systems as the buttons that add them do."""
     ops = bpy.ops.object
+    bpy.data.batch_remove(bpy.data.objects)  # Blender computes all that a scene has after each operator
     objects = [obj for obj in map(object_of, (*MODIFIED, "GPENCIL")) if obj is not None]
     for operator, cls, stack in (
         ("modifier_add", "Modifier", "modifiers"),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
+from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -11,6 +12,7 @@ from docutils import nodes
 from sphinx import addnodes
 from sphinx.builders import Builder
 from sphinx.environment.collectors.asset import ImageCollector
+from sphinx.project import Project
 from sphinx.transforms import SphinxTransform
 from sphinx.transforms.post_transforms.code import HighlightLanguageTransform
 
@@ -30,9 +32,10 @@ if TYPE_CHECKING:
 
 _HEADING = re.compile(r"^[ ]{0,4}(\S[^\n]*)\n([^\w\s])\2{2,}[ \t]*$", re.MULTILINE)
 
-# Passes over every tree that only translations, printed forms, colouring or picture files need.
+# Passes over every tree that only translations, printed forms, colouring, styles, picture files or old extensions need.
 _NEEDLESS = {
     "AddTranslationClasses",
+    "AutoIndexUpgrader",
     "ApplySourceWorkaround",
     "DataURIExtractor",
     "DefaultSubstitutions",
@@ -42,6 +45,7 @@ _NEEDLESS = {
     "ImageDownloader",
     "Locale",
     "PreserveTranslatableMessages",
+    "PropagateDescDomain",
     "RemoveTranslatableInline",
     "TranslationProgressTotaliser",
     "TrimDoctestFlagsTransform",
@@ -144,9 +148,17 @@ class PagesBuilder(Builder):
         for docname in docnames:
             self.env.clear_doc(docname)  # which also makes the tables that are merged later
         names = [name for name in docnames if name not in self.unread]
-        parsed = self._apart(names, PageWork(self._parse, lambda: self.env, self._merge, self.step))
-        for found in parsed.answers.values():
-            self._warned(found)
+        gathered: list[tuple[Sequence[str], BuildEnvironment]] = []
+
+        def merge(read: Sequence[str], environment: BuildEnvironment) -> None:
+            gathered.append((read, environment))
+
+        parsed = self._apart(names, PageWork(self._parse, self._gather, merge, self.step))
+        # Not before: each process sends back what was here when it started, too.
+        for read, environment in sorted(gathered, key=itemgetter(0)):
+            self.env.merge_info_from(read, environment, self._app)
+        for texts in parsed.answers.values():
+            self._warned(texts)
         for docname, reason in {**self.unread, **parsed.failed}.items():
             page = self._plain(docname, reason)
             # As Sphinx knows pages that it has read, so that others can refer to this one.
@@ -165,8 +177,10 @@ class PagesBuilder(Builder):
             raise
         return self.take_warnings()
 
-    def _merge(self, docnames: Sequence[str], environment: BuildEnvironment) -> None:
-        self.env.merge_info_from(docnames, environment, self._app)
+    def _gather(self) -> BuildEnvironment:
+        """What a process that is done with its pages has of them; the list of all pages is known without it."""
+        self.env.project = Project("", ())
+        return self.env
 
     def write_documents(self, docnames: Set[str]) -> None:
         """Resolve all pages. Sphinx would do so in the main process and hand each tree to another; here the others do

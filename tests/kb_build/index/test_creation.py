@@ -36,6 +36,7 @@ def calls(extract: Extract) -> dict[str, Creation]:
         ("Material", 'bpy.data.materials.new("Material")'),
         ("MeshUVLoopLayer", "mesh.uv_layers.new()"),
         ("ShaderNodeMath", 'tree.nodes.new("ShaderNodeMath")'),
+        ("Driver", 'obj.driver_add("location", 2).driver'),
         ("RigidBodyWorld", "bpy.ops.rigidbody.world_add()"),
     ],
 )

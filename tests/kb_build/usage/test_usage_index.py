@@ -58,9 +58,9 @@ def test_uses_are_kept_for_the_next_build(
     file = usage_file(tmp_path, "5.1", scripts)
     with script_usage(SYMBOLS, scripts, "5.1.2", file=file, jobs=2) as result:
         first = result()
-    assert first[f"{T}Object.name"].count == 3
-    assert first[f"{T}Object.name"].examples[0].file == "templates_py/b.py"
-    monkeypatch.setattr(usage_index, "uses_in", None)
+    assert first.uses[f"{T}Object.name"].count == 3
+    assert first.uses[f"{T}Object.name"].examples[0].file == "templates_py/b.py"
+    monkeypatch.setattr(usage_index, "analyse", None)
     with script_usage(SYMBOLS, scripts, "5.1.2", file=file, jobs=2) as result:
         assert result() == first
 
@@ -71,7 +71,7 @@ def test_a_damaged_file_is_written_again(scripts: list[Script], tmp_path: Path) 
     file.write_bytes(gzip.compress(b"[")[:9])
     with script_usage(SYMBOLS, scripts, "5.1.2", file=file, jobs=1) as result:
         first = result()
-    assert first
+    assert first.uses
     with script_usage(SYMBOLS, scripts, "5.1.2", file=file, jobs=1) as result:
         assert result() == first
 
@@ -81,7 +81,7 @@ def test_where_nothing_can_be_kept_the_uses_are_found_all_the_same(
 ) -> None:
     (tmp_path / "file").write_text("in the way")
     with script_usage(SYMBOLS, scripts, "5.1.2", file=tmp_path / "file" / "x.json.gz", jobs=1) as result:
-        assert f"{T}Object.name" in result()
+        assert f"{T}Object.name" in result().uses
 
 
 def test_the_name_of_the_file_follows_from_all_that_shapes_it(scripts: list[Script], tmp_path: Path) -> None:

@@ -120,6 +120,65 @@ def test_what_does_nothing_in_blender_is_found(
     assert lines_of(rule_checker, "no-effect", lines) == idle
 
 
+MADE = """\
+import bpy
+camera = bpy.data.cameras.new("camera")
+ob = bpy.data.objects.new("camera", camera)
+bpy.context.scene.collection.objects.link(ob)
+light = bpy.data.lights.new("light", 'SPOT')
+bpy.ops.mesh.primitive_cube_add()
+cube = bpy.context.object
+bpy.ops.rigidbody.object_add()
+cloth = bpy.data.objects.new("cloth", bpy.data.meshes.new("cloth")).modifiers.new("Cloth", 'CLOTH')
+""".splitlines()
+# What is set → the switch that is off.
+SWITCHED_OFF = {
+    "camera.dof.focus_distance = 3": "camera.dof.use_dof",
+    "ob.data.dof.aperture_fstop = 1.2": "camera.dof.use_dof",
+    "light.cutoff_distance = 2": "light.use_custom_distance",
+    "cube.rigid_body.use_start_deactivated = True": "cube.rigid_body.use_deactivation",
+    "cloth.settings.uniform_pressure_force = 5": "cloth.settings.use_pressure",
+}
+
+
+def test_settings_whose_switch_is_off_are_found(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = list(SWITCHED_OFF)
+    watched = {place + len(MADE): switch for place, switch in enumerate(SWITCHED_OFF.values())}
+    answers = run_statements(tmp_path, [*MADE, *lines], watched)[len(MADE) :]
+    assert [(error, after) for error, _, after in answers] == [("", "False")] * len(lines)
+    found = rule_checker.check("\n".join([*MADE, *lines]), rules=["switched-off"])
+    assert [finding.span.line - 1 - len(MADE) for finding in found] == list(range(len(lines)))
+    for finding, switch in zip(found, SWITCHED_OFF.values(), strict=True):
+        assert f"unless `{switch.rpartition('.')[2]}` is on" in finding.message
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        # Turned on, somewhere or in some other way.
+        "camera.dof.use_dof = True\ncamera.dof.focus_distance = 3",
+        "camera.dof.focus_distance = 3\nfor c in bpy.data.cameras:\n    c.dof.use_dof = True",
+        "camera.dof.focus_distance = 3\ncamera.dof.keyframe_insert('use_dof')",
+        "camera.dof.focus_distance = 3\nsetattr(camera.dof, 'use' + '_dof', True)",
+        "camera.dof.focus_distance = 3\nfrom .setup import finish",
+        "from studio import finish\ncamera.dof.focus_distance = 3\nfinish(camera)",
+        # Not made here, or perhaps not.
+        "bpy.data.cameras['Camera'].dof.focus_distance = 3",
+        "bpy.context.scene.camera.data.dof.focus_distance = 3",
+        "other = bpy.data.objects.new('x', bpy.data.cameras[0])\nother.data.dof.focus_distance = 3",
+        "camera = bpy.data.cameras[0]\ncamera.dof.focus_distance = 3",
+        "for camera in bpy.data.cameras:\n    camera.dof.focus_distance = 3",
+        "def f(camera):\n    camera.dof.focus_distance = 3",
+        # What a new one has; no switch; one that is on.
+        "camera.dof.focus_distance = 10.0",
+        "camera.lens = 35",
+        "light = bpy.data.lights.new('x', 'SPOT')\nlight.shadow_filter_radius = 3",
+    ],
+)
+def test_settings_that_may_be_switched_on_are_no_finding(check: Check, code: str) -> None:
+    assert check("switched-off", f"import bpy\ncamera = bpy.data.cameras.new('x')\n{code}\n") == []
+
+
 def test_in_place_twin_is_offered(check: Check) -> None:
     [finding] = check("no-effect", "import mathutils\nv = mathutils.Vector()\nv.normalized()\n")
     assert finding.instead == ("mathutils.Vector.normalize",)

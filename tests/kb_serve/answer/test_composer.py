@@ -155,9 +155,23 @@ def test_the_kind_tells_what_sort_of_answer_it_is(kb: KnowledgeBase, query: str,
 def test_candidates_show_the_best_and_list_the_others(kb: KnowledgeBase) -> None:
     answer = kb.query("how do I make the cloth simulation finer", max_tokens=3_000)
     assert answer.kind == "candidates"
-    assert "**Also**" in answer.text
+    assert answer.text.index("**In Python**") < answer.text.index("**Pages**")
     for hit in answer.hits[1:]:
         assert f"`{hit.id}`" in answer.text
+
+
+@pytest.mark.parametrize(
+    ("query", "name"),
+    [
+        ("check if two meshes overlap", "**Nearest**\n- `overlap("),
+        ("keep the foot above the ground", "**Nearest**\n- `offset` float"),
+        ("higher detail voxels in the water sim", "Fluid simulation modifier — nearest: `.fluid_type`"),
+    ],
+)
+def test_a_class_that_was_found_is_told_with_the_members_that_were(
+    kb: KnowledgeBase, query: str, name: str
+) -> None:
+    assert name in kb.query(query).text
 
 
 def test_corrections_come_before_the_answer(kb: KnowledgeBase) -> None:
@@ -187,7 +201,7 @@ def test_classes_of_the_interface_are_answered_too(kb: KnowledgeBase, reader: Ba
     "query", ["cycles property group settings", "scale vectors of verts bmesh", "gpu devices"]
 )
 def test_every_further_hit_says_something(kb: KnowledgeBase, query: str) -> None:
-    lines = kb.query(query, limit=30, max_tokens=100_000).text.partition("**Also**\n")[2].split("\n")
+    lines = kb.query(query, limit=30, max_tokens=100_000).text.partition("**In Python**\n")[2].split("\n")
     assert lines
     assert not [
         line for line in lines if line.startswith("- ") and line.endswith("`") and line.count("`") == 2

@@ -82,11 +82,26 @@ def test_an_operator_shows_its_call_with_defaults_and_every_argument(
         symbol = reader.symbol(path)
         assert symbol is not None
         text = kb.query(path, max_tokens=ALL).text
+        if any(parameter.name == "filter_folder" for parameter in symbol.parameters):
+            assert all(f"`{parameter.name}`" in text for parameter in symbol.parameters)
+            continue
         assert f"```python\n{symbol.signature}\n```" in text
         for parameter in symbol.parameters:
             assert f"- `{parameter.name}` (" in text
             assert parameter.description in text
             assert all(repr(item.identifier) in text for item in parameter.enum_items), parameter.name
+
+
+def test_what_an_operator_only_asks_of_the_file_browser_stands_last(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.ops.wm.obj_export", max_tokens=10_000).text
+    call = text.partition("```python\n")[2].partition("\n")[0]
+    assert call.startswith(
+        "bpy.ops.wm.obj_export(filepath=None, check_existing=True, export_animation=False,"
+    )
+    assert "filter_" not in call
+    browsers = text.partition("- of the file browser; a script leaves them out: ")[2].partition("\n")[0]
+    assert browsers.startswith("`filter_blender`, `filter_backup`, ")
+    assert "`sort_method`" in browsers
 
 
 def test_a_function_shows_parameters_and_returns(kb: KnowledgeBase) -> None:

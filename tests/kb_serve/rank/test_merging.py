@@ -72,14 +72,36 @@ def test_notes_are_not_repeated(ranker: QueryRanker) -> None:
     assert "removed in 5.0" in notes[0]
 
 
+def _found(*scores: float, name: str = "{}") -> list[RankedId]:
+    return [RankedId(name.format(number), score, "found") for number, score in enumerate(scores)]
+
+
+def _no_page(_ref: str) -> bool:
+    return False
+
+
 def test_what_is_far_below_the_best_is_not_listed() -> None:
     named = RankedId("a", 0.95, "expression")
-    found = [RankedId(str(number), 0.8 - 0.11 * number, "found") for number in range(8)]
-    listed = Ranking([named, *found], Recognition(), named=True).listed(9)
+    found = _found(*(0.8 - 0.11 * number for number in range(8)))
+    listed = Ranking([named, *found], Recognition(), named=True).listed(9, _no_page)
     assert [row.id for row in listed] == ["a", "0", "1", "2", "3"]
-    described = Ranking(found, Recognition(), named=False).listed(8)
+    described = Ranking(found, Recognition(), named=False).listed(8, _no_page)
     assert [row.id for row in described] == ["0", "1", "2", "3", "4"]
-    assert len(Ranking(found, Recognition(), named=False).listed(2)) == 2
+    assert len(Ranking(found, Recognition(), named=False).listed(2, _no_page)) == 2
+
+
+def test_symbols_come_before_further_pages_if_the_first_are_pages() -> None:
+    pages = _found(*(0.8 - 0.01 * number for number in range(8)), name="page/{}")
+    symbols = _found(0.4, 0.3, 0.25, 0.19, name="bpy.types.{}")
+    ranking = Ranking([*pages, *symbols], Recognition(), named=False)
+    listed = [row.id for row in ranking.listed(8, lambda ref: ref.startswith("page/"))]
+    assert listed == [*(f"page/{n}" for n in range(5)), *(f"bpy.types.{n}" for n in range(3))]
+    few = [row.id for row in ranking.listed(6, lambda ref: ref.startswith("page/"))]
+    assert few == [*(f"page/{n}" for n in range(5)), "bpy.types.0"]
+    near = Ranking([*pages, symbols[-1]], Recognition(), named=False)
+    assert [row.id for row in near.listed(8, lambda ref: ref.startswith("page/"))] == [
+        row.id for row in pages
+    ]
 
 
 @pytest.mark.parametrize(

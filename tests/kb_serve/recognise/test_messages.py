@@ -76,6 +76,15 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ),
         ('AttributeError: bpy_struct: attribute "type" from "Object" is read-only', "cannot be assigned"),
         ("KeyError: 'bpy_prop_collection[key]: key \"Cub\" not found'", "no element `Cub`"),
+        (
+            "obj.material_slots[0].link\nIndexError: bpy_prop_collection[index]: index 0 out of range, size 0",
+            "has no elements: there is no `[0]` yet. `bpy.ops.object.material_slot_add()` adds one.",
+        ),
+        (
+            "mesh.materials[1] = mat\nIndexError: bpy_prop_collection[index] = value: index 1 out of range, size 1",
+            "has only 1, counted from 0: there is no `[1]` yet. `.materials.append()` adds one.",
+        ),
+        ("IndexError: bpy_prop_collection[index]: index 0 out of range, size 0", "there is no `[0]` yet."),
     ],
 )
 def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str) -> None:

@@ -1,0 +1,128 @@
+"""What is kept of the conditions of Blender's panels: those on settings, as text."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_build.panels.formulas import TRUE_VALUE, Clause, Need, follows
+from kb_build.schema import TEST_OFF, TEST_ON
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from kb_build.flow.symbols import Symbols
+    from kb_build.panels.gating import Gating
+    from kb_build.records import Symbol
+
+_MOST_CLAUSES = 3
+_YES = frozenset({TRUE_VALUE})
+_MOST_VALUES = 6
+# Classes whose settings Blender also shows by templates and panels that are not written in Python.
+_SHOWN_BY_TEMPLATES = frozenset(
+    {
+        "ImageFormatSettings", "Image", "ImageUser", "ColorManagedDisplaySettings", "ColorManagedViewSettings",
+        "ColorManagedInputColorspaceSettings", "ColorManagedSequencerColorspaceSettings", "ColorRamp", "CurveMapping",
+        "CurveProfile", "MovieTrackingMarker", "MovieTrackingTrack", "CacheFile",
+    }
+)  # fmt: skip
+_PANELS_IN_C = frozenset({"Modifier", "StripModifier", "ShaderFx", "Node", "NodeSocket"})
+_OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">", "==": "!=", "!=": "=="}
+
+
+class PanelCondition(NamedTuple):
+    """What Blender's panels ask of a setting (``gate``) before they let ``path`` be set, as text: ``on``, ``'SUN'``.
+
+    Of those with one ``clause`` any is enough; all clauses must hold. ``hides``: they do not show it otherwise,
+    instead of greying it out.
+    """
+
+    path: str
+    clause: int
+    gate: str
+    test: str
+    hides: bool
+
+
+def panel_conditions(found: Mapping[str, Gating], symbols: Symbols) -> Iterator[PanelCondition]:
+    """The conditions that are worth telling, by property."""
+    for path, gating in found.items():
+        symbol = symbols.symbol(path)
+        if symbol is None or not _is_shown_by_scripts_alone(symbol, symbols):
+            continue
+        clauses = [
+            (clause, any(follows(clause, other) for other in gating.shown))
+            for clause in gating.active
+            if clause and all(_says_something(need, symbols) for need in clause)
+        ]
+        own = {*_lineage(symbol.owner, symbols)}
+        # Where another class's setting hides a property, other places may show it that are not read.
+        told = [row for row in clauses if not row[1] or all(_owner(need) in own for need in row[0])]
+        told.sort(key=_rank)
+        for number, (clause, hides) in enumerate(told[:_MOST_CLAUSES]):
+            for need in sorted(clause, key=lambda one: (_owner(one) not in own, one.gate)):
+                yield PanelCondition(path, number, need.gate, _test(need, symbols), hides)
+
+
+def _rank(row: tuple[Clause, bool]) -> tuple[int, bool, bool, list[str]]:
+    """Switches that grey a setting out come first."""
+    clause, hides = row
+    is_switch = all(need.values == _YES and not need.relation and need.is_in for need in clause)
+    return len(clause), hides, not is_switch, sorted(need.gate for need in clause)
+
+
+def _owner(need: Need) -> str:
+    return need.gate.rpartition(".")[0]
+
+
+def _lineage(cls: str, symbols: Symbols) -> Iterator[str]:
+    while symbol := symbols.symbol(cls):
+        yield cls
+        cls = symbol.base
+
+
+def _is_shown_by_scripts_alone(symbol: Symbol, symbols: Symbols) -> bool:
+    names = [cls.rpartition(".")[2] for cls in _lineage(symbol.owner, symbols)]
+    cls = symbols.symbol(symbol.owner)
+    return (
+        symbol.kind == "property"
+        and "readonly" not in symbol.flags
+        and cls is not None
+        and cls.group == "data"
+        and names[0] not in _SHOWN_BY_TEMPLATES
+        and not _PANELS_IN_C.intersection(names)
+    )
+
+
+def _items(need: Need, symbols: Symbols) -> set[str]:
+    """The values that an enumeration's gate can have; none where they are not known."""
+    gate = symbols.symbol(need.gate)
+    return {item.identifier for item in gate.enum_items} if gate and not gate.enum_computed else set()
+
+
+def _says_something(need: Need, symbols: Symbols) -> bool:
+    items = _items(need, symbols)
+    if need.relation or need.values == _YES or not items:
+        return bool(need.values) and len(need.values) <= _MOST_VALUES
+    values = need.values & items
+    return bool(values) and len(values) < len(items) and len(values) <= _MOST_VALUES
+
+
+def _test(need: Need, symbols: Symbols) -> str:
+    """What must hold of a gate."""
+    if need.relation.startswith("is "):
+        return need.relation.removeprefix("is ") if need.is_in else _not(need.relation.removeprefix("is "))
+    if need.relation:
+        operator, _, number = need.relation.partition(" ")
+        return f"{operator if need.is_in else _OPPOSITE[operator]} {number}"
+    if need.values == _YES:
+        return TEST_ON if need.is_in else TEST_OFF
+    items = _items(need, symbols)
+    values = sorted(map(repr, need.values & items if items else need.values))
+    listed = " or ".join(filter(None, (", ".join(values[:-1]), values[-1])))
+    if need.is_in:
+        return listed
+    return f"not {listed}" if len(values) == 1 else f"none of {', '.join(values)}"
+
+
+def _not(test: str) -> str:
+    return test.removeprefix("not ") if test.startswith("not ") else f"not {test}"

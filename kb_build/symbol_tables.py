@@ -1,0 +1,126 @@
+"""The rows that a base has of its symbols, and of the names of symbols and pages."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from dataclasses import dataclass, field, replace
+from operator import itemgetter
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, short_path, topic_key
+from kb_build.index.creation import creation_calls
+from kb_build.records import to_json
+from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, TEST_ON, pack
+from kb_build.symbol_lines import member_line
+from kb_build.usage.examples import SymbolUsage
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    from kb_build.panels.conditions import PanelCondition
+    from kb_build.records import Page, Symbol
+    from kb_build.usage.examples import Uses
+
+    Row = tuple[object, ...]
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolTables:
+    """Rows of the tables symbols, names, enum_items, creation and panel_conditions (see schema.DDL), and where scripts
+    use symbols.
+    """
+
+    symbols: Sequence[Row]
+    names: Sequence[Row]
+    enum_items: Sequence[Row]
+    creation: Sequence[Row]
+    conditions: Sequence[PanelCondition] = ()
+    uses: Mapping[str, Uses] = field(default_factory=dict[str, "Uses"])
+
+
+def symbol_tables(
+    symbols: Sequence[Symbol], pages: Sequence[Page], usage: SymbolUsage | None = None
+) -> SymbolTables:
+    """The rows of all symbols, and of the names of ``pages``. ``usage``: of the symbols in scripts."""
+    usage = usage or SymbolUsage()
+    names = {row for symbol in symbols for row in symbol_names(symbol)}
+    items = (row for symbol in symbols for row in enum_rows(symbol))
+    calls = creation_calls(symbols, usage.reached, usage.names)
+    switches = _switches(usage.conditions)
+    return SymbolTables(
+        symbols=[
+            (
+                number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
+                symbol.collection, symbol.base, symbol.group, symbol.label,
+                member_line(symbol, switches.get(symbol.path, "")), pack(to_json(_with_path(symbol, usage.reached))),
+            )
+            for number, symbol in enumerate(symbols)
+        ],
+        # In the order of their keys: SQLite then fills page after page, and splits none.
+        names=sorted(names.union(row for page in pages for row in page_names(page))),
+        enum_items=sorted(items, key=itemgetter(0, 1, 2)),
+        creation=[(path, *creation) for path, creation in calls.items()],
+        conditions=usage.conditions,
+        uses=usage.uses,
+    )  # fmt: skip
+
+
+def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
+    """(key, form, path) for every spelling under which a symbol is asked for."""
+    short = short_path(symbol.path)
+    yield key(symbol.path), FORM_PATH, symbol.path
+    yield key(short), FORM_SHORT, symbol.path
+    if symbol.kind == "operator":
+        yield key(symbol.target), FORM_SHORT, symbol.path
+        yield key(f"bpy.types.{symbol.target}"), FORM_SHORT, symbol.path
+    if symbol.group in {"ui", "operator"} or symbol.name.startswith("bl_rna_get_subclass"):
+        return
+    yield key(symbol.name), FORM_NAME, symbol.path
+    if symbol.kind == "class" and symbol.owner == "bpy.types":
+        yield key(f"types.{symbol.name}"), FORM_SHORT, symbol.path
+    if symbol.label and symbol.kind != "socket":
+        yield key(symbol.label), FORM_LABEL, symbol.path
+
+
+def page_names(page: Page) -> Iterator[tuple[str, int, str]]:
+    """(key, form, slug) for a page: its slug, the slug's last part, its title."""
+    yield key(page.slug), FORM_PATH, page.slug
+    yield key(page.slug.removesuffix("/index")), FORM_SHORT, page.slug
+    yield key(page.slug.removesuffix("/index").rpartition("/")[2]), FORM_NAME, page.slug
+    yield key(page.title), FORM_LABEL, page.slug
+    yield topic_key(page.title), FORM_TOPIC, page.slug
+
+
+def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:
+    """(key, owner, identifier, name) of a symbol's own enum items and of its parameters'."""
+    if symbol.kind == "enum":
+        return
+    for item in symbol.enum_items:
+        yield key(item.identifier), symbol.path, item.identifier, item.name
+    for parameter in symbol.parameters:
+        for item in parameter.enum_items:
+            yield key(item.identifier), f"{symbol.path}({parameter.name})", item.identifier, item.name
+
+
+def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
+    """A class with the expression that leads to an instance."""
+    path = reached.get(symbol.path) if symbol.kind == "class" else None
+    return replace(symbol, reached=path) if path else symbol
+
+
+def _switches(conditions: Sequence[PanelCondition]) -> dict[str, str]:
+    """Property → the setting of its own class without which panels grey it out, where that alone is asked."""
+    asked: dict[tuple[str, int], list[PanelCondition]] = defaultdict(list)
+    for row in conditions:
+        asked[row.path, row.clause].append(row)
+    found: dict[str, str] = {}
+    for (path, _), rows in asked.items():
+        owner, _, gate = rows[0].gate.rpartition(".")
+        if (
+            len(rows) == 1
+            and not rows[0].hides
+            and rows[0].test == TEST_ON
+            and owner == path.rpartition(".")[0]
+        ):
+            found.setdefault(path, gate)
+    return found

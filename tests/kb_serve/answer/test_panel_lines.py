@@ -1,0 +1,90 @@
+"""What an answer says of settings that do nothing unless another is on, as Blender's panels have it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.answer.panel_lines import panel_lines
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import BaseReader
+
+GREYED = "greyed out in Blender's panels unless "
+SHOWN = "shown in Blender's panels only if "
+SWITCHES = "Blender's panels let these be set only while it is on: "
+
+
+def lines(reader: BaseReader, path: str) -> list[str]:
+    symbol = reader.symbol(f"bpy.types.{path}")
+    assert symbol is not None
+    return list(panel_lines(symbol, reader))
+
+
+@pytest.mark.parametrize(
+    ("path", "expected"),
+    [
+        ("RigidBodyObject.use_start_deactivated",
+         [f"{GREYED}`use_deactivation` is on (a new one has it off)", f"{SHOWN}`type` is 'ACTIVE'"]),
+        ("CameraDOFSettings.focus_distance",
+         [f"{GREYED}`use_dof` is on (a new one has it off) and `focus_object` is not set"]),
+        ("FieldSettings.distance_max",
+         [f"{GREYED}`use_max_distance` is on (a new one has it off)", f"{SHOWN}`type` is not 'NONE'"]),
+        ("Light.cutoff_distance",
+         [f"{GREYED}`use_custom_distance` is on (a new one has it off)", f"{SHOWN}`type` is not 'SUN'"]),
+        ("RigidBodyConstraint.breaking_threshold",
+         [f"{GREYED}`use_breaking` is on (a new one has it off)", f"{SHOWN}`type` is not 'MOTOR'"]),
+        ("AreaLight.size_y", [f"{SHOWN}`shape` is 'ELLIPSE' or 'RECTANGLE'"]),
+        ("CyclesRenderSettings.rolling_shutter_type",
+         [f"{GREYED}`RenderSettings.use_motion_blur` is on (a new one has it off)"]),
+        ("CameraDOFSettings.use_dof",
+         [f"{SWITCHES}`aperture_blades`, `aperture_fstop`, `aperture_ratio`, `aperture_rotation`, "
+          "`focus_distance`, `focus_object`, `focus_subtarget`"]),
+        # Drawn in C, or by a template; without conditions; no setting.
+        ("BevelModifier.width", []), ("ImageFormatSettings.color_depth", []), ("RenderSettings.fps", []),
+        ("Object.users_collection", []),
+    ],
+)  # fmt: skip
+def test_a_setting_says_what_it_depends_on(reader: BaseReader, path: str, expected: list[str]) -> None:
+    assert lines(reader, path) == expected
+
+
+def test_a_switch_for_several_kinds_names_each_setting_once(reader: BaseReader) -> None:
+    (line,) = [line for line in lines(reader, "Light.use_shadow") if line.startswith(SWITCHES)]
+    assert line.count("`shadow_filter_radius`") == 1
+    assert "AreaLight" not in line
+
+
+def test_a_long_list_is_cut(reader: BaseReader) -> None:
+    (line,) = lines(reader, "View3DOverlay.show_overlays")
+    assert line.count("`, `") == 7
+    assert line.endswith(" more")
+
+
+def test_every_condition_names_symbols_of_the_base(reader: BaseReader) -> None:
+    rows = reader.rows("SELECT path, gate FROM panel_conditions")
+    assert len(rows) > 1_500
+    for path in {path for row in rows for path in row}:
+        entry = reader.entry(path)
+        assert entry is not None, path
+        assert entry.kind == "property", path
+
+
+def test_a_class_lists_its_settings_with_their_switch(reader: BaseReader) -> None:
+    members = reader.members("bpy.types.CameraDOFSettings")
+    assert "(if use_dof) — " in members["aperture_fstop"].line
+    assert "(if " not in members["use_dof"].line
+    # Only if it is of the same class, greyed out and not hidden, and one alone.
+    assert "(if " not in reader.members("bpy.types.CyclesRenderSettings")["rolling_shutter_type"].line
+    assert "(if " not in reader.members("bpy.types.AreaLight")["size_y"].line
+    assert "(if " not in reader.members("bpy.types.SplineIKConstraint")["bulge_smooth"].line
+
+
+def test_it_stands_in_the_answer(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.RigidBodyConstraint.breaking_threshold").text
+    assert (
+        f"\n\nG{GREYED[1:]}`use_breaking` is on (a new one has it off); {SHOWN}`type` is not 'MOTOR'.\n"
+        in text
+    )
