@@ -77,13 +77,10 @@ class Searcher:
     # The query
 
     @cached_property
-    def vocabulary(self) -> dict[str, str]:
-        """stem → most used spelling."""
-        return dict(self._reader.rows("SELECT stem, word FROM vocabulary"))
-
-    @cached_property
     def _spellings(self) -> list[str]:
-        return list(dict.fromkeys(word for word in self.vocabulary.values() if len(word) > 3))
+        """The most used spelling of each stem that is long enough to be misspelt."""
+        sql = "SELECT word FROM vocabulary WHERE length(word) > 3 GROUP BY word ORDER BY min(stem)"
+        return [word for (word,) in self._reader.rows(sql)]
 
     def correction(self, word: str) -> str:
         """The corpus' word that an unknown one was probably meant to be; empty when none is near."""
