@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 TYPES = "bpy.types."
 
 # Where scripts start. Other context members depend on the editor under the mouse.
-_ROOTS = (("bpy.context", "Context", 0), ("bpy.data", "BlendData", 2))
+_ROOTS = (("bpy.context", "Context", 0), ("bpy.context.object", "ID", 1), ("bpy.data", "BlendData", 2))
 _EVERYWHERE = frozenset({"object", "scene", "view_layer", "collection"})
 # What leads through the interface or the undo of a library is rarely the way a script goes.
 _DETOURS = frozenset(

@@ -31,7 +31,7 @@ def panel_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
     if symbol.type == "boolean" and (switched := reader.panels_let_set(symbol.path, TEST_ON)):
         names = [f"`{name}`" for name in _names(switched, symbol.owner, reader)]
         more = f" and {len(names) - _MOST_SWITCHED} more" if len(names) > _MOST_SWITCHED else ""
-        yield f"Blender's panels let these be set only while it is on: {', '.join(names[:_MOST_SWITCHED])}{more}"
+        yield f"while it is off, Blender's panels grey out or hide {', '.join(names[:_MOST_SWITCHED])}{more}"
 
 
 def _joined(clauses: Sequence[Sequence[PanelTest]], owners: set[str], reader: BaseReader) -> str:

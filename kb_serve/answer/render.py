@@ -10,6 +10,7 @@ from kb_build.records import NOT_TAKEN
 from kb_build.symbol_lines import (
     default_text,
     empty_when_new,
+    fillers,
     first_sentence,
     literal,
     new_subscript,
@@ -310,7 +311,7 @@ class MarkdownRenderer:
             if symbol.kind == "socket" and (subscript := new_subscript(symbol)):
                 last = f".{subscript}"
             tail = "(…)" if symbol.kind == "function" else ""
-            yield f"reached as `{reached}{last}{tail}`"
+            yield f"reached as `{reached}{last}{tail}`" + (self._empty_before(cls) if cls else "")
         elif symbol.kind == "context":
             origin = [flag[5:] for flag in symbol.flags if flag.startswith("from:")]
             yield f"provided by: {', '.join(origin)}"
@@ -324,6 +325,21 @@ class MarkdownRenderer:
             yield f"since Blender {version}"
         if page := self.manual_page(symbol.path):
             yield f"manual: {page}"
+
+    def _empty_before(self, cls: Symbol) -> str:
+        """Where a pointer that leads to instances of a class is None on new things: that, and what fills it."""
+        name = cls.reached.rpartition(".")[2]
+        if not name.isidentifier():
+            return ""
+        holders = (
+            self.reader.symbol(entry.path)
+            for entry in self.reader.pointing_at(cls.name)
+            if entry.name == name
+        )
+        empty = next(
+            (holder for holder in holders if holder and empty_when_new(holder) and fillers(holder)), None
+        )
+        return f"; `{name}` is {default_text(empty)}" if empty else ""
 
     def _assigned(self, symbol: Symbol) -> str:
         """The call that makes the one kind of node tree that a pointer takes which is None on a new thing."""

@@ -13,7 +13,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
-from kb_serve.answer.budget import AnswerBlock
+from kb_build.symbol_lines import empty_when_new, fillers
+from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.reader import STRUCT, TYPES
 
 if TYPE_CHECKING:
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
 
     from kb_serve.reader import BaseReader, SymbolEntry
 
+_MOST_TOKENS = 1_150  # of all steps
 _MAKERS = 3
 _CHOICES = 12  # types that one maker is shown with
 _SETTINGS = 10
@@ -46,9 +48,13 @@ _REMOVES = (
 _LEAST_SHARE = 0.25  # of the heaviest class's weight
 _USED_ELSEWHERE = 3  # weight of an operator that has not the topic's module
 _INTERFACE = ("tool_settings", "space_data", "preferences", "window", "studio_light")
+_OF_OWNER = re.compile(r"^(?!bpy\b|obj\b|scene\b)[a-z_]+\.(?=\w+ = )")  # what fills a pointer, from its owner
 _PLAIN = ("name", "index")  # every thing has them
 _CACHE = f"{TYPES}PointCache"
 _NODE = f"{TYPES}Node"
+_NEW_NAME = re.compile(r'\bnew\("[^"]*"')
+# Trees that cannot be assigned: what has one of its own.
+_EMBEDDED = {f"{TYPES}ShaderNodeTree": (f"{TYPES}Material", "node_tree")}
 _HUMP = re.compile(r"[A-Z]+[a-z0-9]*$")
 
 
@@ -73,6 +79,7 @@ class Steps:
         self._reader = reader
         self._names = names
         self._shown: set[str] = set()
+        self._chosen: set[str] = set()
         self._creations = reader.creations(list(names.classes))
         # Where classes have the topic's name, the others of its pages are other topics' matter.
         named = [path for path in names.classes if names.names(path)]
@@ -82,8 +89,10 @@ class Steps:
         """One block, a numbered list; none where nothing is made, set or run."""
         work = (self._make(), self._there()) if self._is_made() else (self._there(), self._make())
         steps = [*self._functions(), *(step for part in work for step in part), *self._run()]
-        if steps:
-            lines = (f"{number}. {step}" for number, step in enumerate(steps, 1))
+        lines = [f"{number}. {step}" for number, step in enumerate(steps, 1)]
+        while sum(tokens(line) + 1 for line in lines) > _MOST_TOKENS:
+            lines.pop()
+        if lines:
             yield AnswerBlock("**How it is done**\n" + "\n".join(lines), "how it is done")
 
     # What is made
@@ -182,7 +191,16 @@ class Steps:
         symbol = self._reader.symbol(node)
         trees = [f"{TYPES}{tree}" for tree in (symbol.trees if symbol else ())][:1]
         for tree, creation in self._reader.creations(trees).items():
-            if tree not in self._shown:
+            if tree in self._shown:
+                continue
+            holder, name = _EMBEDDED.get(tree, ("", ""))
+            if made := self._reader.creations([holder]).get(holder):
+                self._shown.add(tree)
+                yield self._made(holder, made.call)
+                if pointer := self._reader.entry(f"{holder}.{name}"):
+                    yield from self._filled(pointer, self._variable(holder))
+                yield f"`tree = {self._variable(holder)}.{name}`"
+            else:
                 yield self._made(tree, creation.call)
                 yield from self._goes(tree)
                 yield from self._parts(tree, self._variable(tree))
@@ -194,7 +212,7 @@ class Steps:
         if variable == "object_data":
             name = path.removeprefix(TYPES)
             for creation in self._reader.creations([f"{TYPES}Object"]).values():
-                call = creation.call.replace('"Object"', f'"{name}"')
+                call = _NEW_NAME.sub(f'new("{name}"', creation.call)
                 yield f"`obj = {call}`; `bpy.context.collection.objects.link(obj)`"
             variable = "obj"
             places = [place for place in self._named_pointers() if place.target == "Object"]
@@ -266,7 +284,21 @@ class Steps:
                 waiting.append((target, f"{above}.{entry.name}"))
                 if left and (settings := self._settings(target)):
                     left -= 1
+                    yield from self._filled(entry, above)
                     yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
+
+    def _filled(self, pointer: SymbolEntry, above: str) -> Iterator[str]:
+        """What fills a pointer of ``above`` that is None on new things."""
+        symbol = self._reader.symbol(pointer.path)
+        if symbol is None or not empty_when_new(symbol):
+            return
+        calls = [_OF_OWNER.sub(f"{above}.", call) for call in fillers(symbol)]
+        # One value of a setting makes one thing, another value the next, in place of the first.
+        choices = {call.partition(" = ")[0] for call in calls if " = " in call}
+        elsewhere = "on another object: " if choices & self._chosen else ""
+        self._chosen |= choices
+        if calls:
+            yield f"{elsewhere}{', then '.join(f'`{call}`' for call in calls)} makes `{above}.{pointer.name}`"
 
     def _parts(self, path: str, variable: str) -> Iterator[str]:
         """Calls that make parts of a thing through what it points to: ``tree.interface.new_socket(…)``."""
@@ -302,7 +334,8 @@ class Steps:
                 continue
             symbol = self._reader.symbol(path)
             reached = symbol.reached if symbol else ""
-            if not reached or any(part in reached for part in _INTERFACE):
+            # An element of a collection is there only if somebody has made it.
+            if not reached or "[" in reached or any(part in reached for part in _INTERFACE):
                 continue
             if settings := self._settings(path):
                 left -= 1

@@ -62,4 +62,9 @@ class CustomProperties:
             "Inputs of a geometry-nodes modifier are set by the identifier of the group's input, not by its name: "
             f'`modifier[modifier.node_group.{items}["Size"].identifier] = 5.0`, then `obj.update_tag()`. '
             "Another key makes a custom property that changes nothing."
+            + (
+                " Where an output has the same name, take the item whose `in_out` is 'INPUT'."
+                if items.startswith("interface")
+                else ""
+            )
         )

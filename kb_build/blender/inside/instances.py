@@ -296,8 +296,9 @@ class Observer:
         """
         self.names.add(root)
         seen = self.values if is_new else self.start_values
-        for struct in list(self.parts(root)):
-            before = self.read(struct)
+        # All are read before any is put into a mode, which may change another one's settings.
+        parts = [(struct, self.read(struct)) for struct in self.parts(root)]
+        for struct, before in parts:
             if is_new:
                 for name, path in self.layout(struct).pointers.items():
                     self.pointers.add(path, label, getattr(struct, name, None) is not None)
@@ -305,10 +306,11 @@ class Observer:
                 if not field.is_chosen or label == field.unasked:
                     self.add(seen.setdefault(field.path, []), plain(value), label)
             self.ask(struct, label + place, "")
+        for struct, before in parts if vary else ():
             name = struct.bl_rna.identifier
-            if vary and name not in UNVARIED and self._varied.get(name, 0) < VARIED:
+            if name not in UNVARIED and self._varied.get(name, 0) < VARIED:
                 self._varied[name] = self._varied.get(name, 0) + 1
-                self.vary(struct, label, place, before, is_new)
+                self.vary(struct, label, place, self.restored(struct, before), is_new)
 
     def read(self, struct):
         """field → value of each comparable property, arrays and sets as lists."""
@@ -389,7 +391,7 @@ class Observer:
                 for part in self.belonging(struct):
                     if part.as_pointer() not in known:
                         self.look(f"{label} with {mode}", part, is_new=is_new)
-            before = self.restored(struct, before)
+                before = self.restored(struct, before)
 
     def note_filled(self, struct, paths, call):
         """Notes that a call filled pointers which were None.
@@ -419,18 +421,23 @@ class Observer:
     def restored(self, struct, before):
         """Gives an instance its first values back. Returns those that it has: some cannot be given."""
         present = self.read(struct)
-        changed = [
-            field
-            for field, value in present.items()
-            if value != before.get(field) and not same(value, before.get(field))
-        ]
-        for field in changed:
-            try:
-                value = before[field]
-                setattr(struct, field.name, set(value) if field.is_flag else value)
-            except Exception:
-                continue
-        return self.read(struct) if changed else present
+        # What one setting refuses it may take once another has its first value back.
+        for _ in range(2):
+            changed = [
+                field
+                for field, value in present.items()
+                if value != before.get(field) and not same(value, before.get(field))
+            ]
+            if not changed:
+                break
+            for field in changed:
+                try:
+                    value = before[field]
+                    setattr(struct, field.name, set(value) if field.is_flag else value)
+                except Exception:
+                    continue
+            present = self.read(struct)
+        return present
 
     def write(self, write):
         """A ``new_values`` record for each property that was read, ``enum_items`` for each asked, and the pointers.
@@ -455,10 +462,16 @@ class Observer:
         rows = sorted(self.values.get(path, ()), key=self.rank)
         if len(rows) > MOST_VALUES:
             return []
-        start = [
-            {"value": value, "made": list(labels)}
+        others = [
+            (value, labels, any(same(value, new) for new, _ in rows))
             for value, labels in self.start_values.get(path, ())
-            if not any(same(value, new) for new, _ in rows)
+        ]
+        # Of several in one thing, those that have what a new one has are the ones that people mean.
+        usual = {label for _, labels, is_usual in others if is_usual for label in labels}
+        start = [
+            {"value": value, "made": made}
+            for value, labels, is_usual in others
+            if not is_usual and (made := [label for label in labels if label not in usual])
         ]
         default = self.fields[path].default
         if not start and all(same(value, default) for value, _ in rows):

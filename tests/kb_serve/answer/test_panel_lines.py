@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
 GREYED = "greyed out in Blender's panels unless "
 SHOWN = "shown in Blender's panels only if "
-SWITCHES = "Blender's panels let these be set only while it is on: "
+SWITCHES = "while it is off, Blender's panels grey out or hide "
 
 
 def lines(reader: BaseReader, path: str) -> list[str]:

@@ -1,0 +1,56 @@
+"""The steps of a topic can be done in their order: nothing is set before it is there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.answer.topic_steps import Steps, TopicNames
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+
+
+def steps(reader: BaseReader, topic: str, *classes: str) -> list[str]:
+    """The steps for classes, the heaviest first."""
+    weights = {f"bpy.types.{name}": 10.0 - place for place, name in enumerate(classes)}
+    words = (frozenset(topic.split()),)
+    names = TopicNames(frozenset({topic.replace(" ", "")}), words, weights)
+    return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+
+
+def test_settings_that_a_new_thing_lacks_are_made_first_each_on_an_object_of_its_own(
+    reader: BaseReader,
+) -> None:
+    found = steps(reader, "fluid", "FluidModifier", "FluidDomainSettings", "FluidFlowSettings")
+    made = [line for line in found if "makes" in line]
+    assert made[0].endswith("`modifier.fluid_type = 'DOMAIN'` makes `modifier.domain_settings`")
+    assert made[1].endswith(
+        "on another object: `modifier.fluid_type = 'FLOW'` makes `modifier.flow_settings`"
+    )
+    assert "set on `modifier.domain_settings`" in found[found.index(made[0]) + 1]
+
+
+def test_a_brush_that_paints_is_toggled_before_it_is_set(reader: BaseReader) -> None:
+    found = steps(reader, "dynamic paint", "DynamicPaintModifier", "DynamicPaintBrushSettings")
+    (made,) = [line for line in found if "makes" in line]
+    assert "`bpy.ops.dpaint.type_toggle(type='BRUSH')` makes `modifier.brush_settings`" in made
+    assert "set on `modifier.brush_settings`" in found[found.index(made) + 1]
+
+
+def test_shader_nodes_are_made_in_the_tree_that_a_material_has(reader: BaseReader) -> None:
+    found = " ".join(steps(reader, "volume scatter", "ShaderNodeVolumeScatter"))
+    assert "`tree = material.node_tree`" in found
+    assert "node_groups.new" not in found
+
+
+@pytest.mark.parametrize(("cls", "name"), [("Light", "Light"), ("Camera", "Camera")])
+def test_an_object_is_called_as_what_it_holds(reader: BaseReader, cls: str, name: str) -> None:
+    found = " ".join(steps(reader, cls.lower(), cls))
+    assert f'bpy.data.objects.new("{name}", object_data)' in found
+
+
+def test_what_somebody_must_have_made_is_not_set_as_if_it_were_there(reader: BaseReader) -> None:
+    found = " ".join(steps(reader, "collision", "CollisionModifier", "ClothCollisionSettings"))
+    assert 'modifiers["Cloth"]' not in found
