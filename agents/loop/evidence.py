@@ -24,6 +24,7 @@ WIDTH, SAMPLES = 960, 16  # of stills, at most
 _SECONDS = 60  # for each
 _MOST_ACTORS, _MOST_PHASES, _MOST_SHEETS = 8, 24, 6  # of a motion sheet; sheets of a stage
 _MOST_SUBJECTS = 40
+_MOST_TARGETS = 200
 _LOOKS = 3  # frames of a film that the camera's and the light's reviewers see
 _LAYOUT, _MATERIALS, _UV = "blender_scene_layout_preview", "blender_material_preview", "blender_uv_preview"
 _MOTION, _STATE = "blender_motion_sheet_preview", "blender_scene_state"
@@ -49,7 +50,7 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     if stage == "uv":
         shown.take(_UV, {})
     if stage == "texture" or not run.options.stages:
-        shown.take(_MATERIALS, {"width": WIDTH} | ({"first": first} if first else {}))
+        _show_materials(shown, task, first)
     if task.actors and (stage == "motion" or (moves(stage) and (task.edit or not run.options.stages))):
         phases = task.plan.motion.phases if task.plan is not None and stage == "motion" else ()
         sheets = motion_sheets(task.actors, phases)
@@ -83,6 +84,19 @@ class _Shown:
         outcome = self._run.use(RUNNER, self._stage, name, arguments, known)
         self.blocks += [Text(f"{name}:"), *outcome.content]
         return outcome.data
+
+
+def _show_materials(shown: _Shown, task: RunTask, first: Sequence[str]) -> None:
+    """All in its materials; of an edit, alone only what its plan names and what it has added."""
+    asked: dict[str, Any] = {"width": WIDTH} | ({"first": list(first)} if first else {})
+    if task.edit:
+        shown.take(
+            _MATERIALS,
+            {**asked, "first": list(task.targets)[:_MOST_TARGETS], "only_first": True},
+            task.old_objects,
+        )
+    else:
+        shown.take(_MATERIALS, asked)
 
 
 def _width(task: RunTask) -> int:

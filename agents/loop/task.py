@@ -55,8 +55,12 @@ class RunTask:
         if not self.edit:
             return {}, {}
         named = list(dict.fromkeys((*self.targets, *self.actors)))[:_MOST_NAMES]
-        known = {"old": list(self.old)} if len(self.old) <= _MOST_OLD else {}
-        return {"focus": named, "max_tokens": _READOUT_TOKENS}, known
+        return {"focus": named, "max_tokens": _READOUT_TOKENS}, self.old_objects
+
+    @property
+    def old_objects(self) -> dict[str, Any]:
+        """The argument of a tool that tells what an edit added from what was there."""
+        return {"old": list(self.old)} if len(self.old) <= _MOST_OLD else {}
 
     def verification(self, stage: Stage) -> dict[str, Any]:
         """What ``blender_verify`` is asked at the end of a stage."""

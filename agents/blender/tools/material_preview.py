@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING, Annotated, Literal
 
 from PIL import Image
 from pydantic import Field
+from pydantic.json_schema import SkipJsonSchema
 
 from agents.blender.formatting import format_list
 from agents.blender.sheets import contact_sheet
@@ -21,7 +22,7 @@ if TYPE_CHECKING:
 
 _PANEL, _COLUMNS = 272, 4  # pixels a side of an object's still
 _BACKGROUND: contact_sheet.Colour = (206, 209, 214)
-_MOST_OBJECTS, _MOST_FIRST, _MOST_FRAMES = 12, 40, 4
+_MOST_OBJECTS, _MOST_FIRST, _MOST_FRAMES = 12, 200, 4
 _NAMED = 6
 _Name = Annotated[str, Field(min_length=1, max_length=200)]
 
@@ -40,6 +41,9 @@ class MaterialArguments(Arguments):
         max_length=_MOST_FIRST,
         description="Of all objects, these first.",
     )
+    # Not for models, which name the objects: of all, only those that ``first`` names and that are not ``old``.
+    only_first: SkipJsonSchema[bool] = False
+    old: SkipJsonSchema[list[str] | None] = Field(default=None, max_length=5_000)
     frames: list[Frame] = Field(
         default_factory=list[Frame],
         max_length=_MOST_FRAMES,
@@ -67,6 +71,8 @@ def run(context: ToolContext, arguments: MaterialArguments, call: Call) -> Resul
         "show": arguments.show,
         "objects": arguments.objects,
         "first": arguments.first,
+        "only_first": arguments.only_first,
+        "old": arguments.old,
         "frames": list(dict.fromkeys(arguments.frames)),
         "folder": folder.workspace.for_blender(),
         "size": [arguments.width, _PANEL],

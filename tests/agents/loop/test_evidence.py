@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from typing import TYPE_CHECKING, Any, cast
+
 import numpy as np
 import pytest
 from PIL import Image
@@ -9,10 +11,16 @@ from small_plan import small_plan
 
 from agents.loop.algorithm import stages_of
 from agents.loop.edit.comparison import photometric_loss
-from agents.loop.evidence import motion_sheets
+from agents.loop.evidence import evidence, motion_sheets
+from agents.loop.options import Options
+from agents.loop.task import RunTask
+from agents.loop.tool_client import ToolOutcome
 from agents.plan.motion import MotionPhase
 from agents.plan.scene import ScenePlan
 from bench.blenderbench import photometric
+
+if TYPE_CHECKING:
+    from agents.loop.run import Run
 
 
 def phase(actor: str, start: int, end: int, name: str = "falls") -> MotionPhase:
@@ -59,3 +67,28 @@ def test_without_a_texture_there_is_no_uv_stage() -> None:
     assert "uv" not in stages_of(ScenePlan.model_validate(data))
     data["objects"][0]["material"]["texture"] = "a printed label"
     assert "uv" in stages_of(ScenePlan.model_validate(data))
+
+
+class Asked:
+    """Stands for a run whose tools show nothing: what they were asked."""
+
+    def __init__(self) -> None:
+        self.options = Options(mode="make", prompt="A mug.")
+        self.stills: tuple[()] = ()
+        self.calls: dict[str, dict[str, Any]] = {}
+
+    def use(
+        self, _role: str, _stage: str, name: str, asked: dict[str, Any], known: dict[str, Any] | None
+    ) -> ToolOutcome:
+        self.calls[name] = {**(known or {}), **asked}
+        return ToolOutcome(())
+
+
+def test_of_an_edit_the_materials_of_what_it_does_not_name_are_not_shown() -> None:
+    asked = Asked()
+    edited = RunTask("", edit=True, targets=("Mug", "Glaze"), old=("Mug", "Table"))
+    evidence(cast("Run", asked), "texture", edited)
+    shown = asked.calls["blender_material_preview"]
+    assert shown == {"width": 960, "first": ["Mug", "Glaze"], "only_first": True, "old": ["Mug", "Table"]}
+    evidence(cast("Run", asked), "texture", RunTask(""))
+    assert asked.calls["blender_material_preview"] == {"width": 960}

@@ -28,13 +28,13 @@ def material_sheet(arguments, report):
     """Renders stills into ``folder``: the scene at each of ``frames`` (none: the current one), and objects alone.
 
     ``objects``: names of the protocol's objects (lacking those, of Blender's); none: all, alike ones once, those that
-    ``first`` names before others. ``show``:
+    ``first`` names before others, and under ``only_first`` no others: see ``_asked_groups``. ``show``:
     "all", "scene" or "objects". ``size``: (of the scene's picture, of an object's), in pixels. After ``seconds`` no
     further still is begun. Returns ``scene`` and ``objects``, with the names of the files, and ``notes``.
     """
     scene = bpy.context.scene
     frames = arguments["frames"] or [scene.frame_current]
-    groups = {} if arguments["show"] == SCENE else _groups(scene, arguments["objects"])
+    groups = {} if arguments["show"] == SCENE else _asked_groups(scene, arguments)
     sheet = _Sheet(arguments, report, len(frames) + len(groups))
     for frame in frames[: 1 if arguments["show"] == OBJECTS else None]:
         sheet.take(scene, frame, groups if frame == frames[0] else {})
@@ -134,6 +134,28 @@ class _Sheet:
     def _say(self, what):
         self._report(self._done, self._total, what)
         self._done += 1
+
+
+def _asked_groups(scene, arguments):
+    """{title: names of Blender's objects}. Raises Refused.
+
+    Under ``only_first``: what ``first`` names, in whole or in part, or by its material or a collection that has it, and
+    what has objects that are not among the ``old`` ones (None: nothing is known of these).
+    """
+    if arguments["objects"] or not arguments["only_first"]:
+        return _groups(scene, arguments["objects"])
+    groups = _groups(scene, ())
+    grouped = set().union(*groups.values())
+    groups |= {obj.name: {obj.name} for obj in scene.objects if obj.name not in grouped}
+    wanted = set(arguments["first"])
+    held = [one for one in scene.collection.children_recursive if one.name in wanted]
+    named = wanted.union(obj.name for one in held for obj in one.all_objects)
+    old = set(arguments["old"]) if arguments["old"] is not None else grouped | groups.keys()
+    return {
+        title: owners
+        for title, owners in groups.items()
+        if title in wanted or owners & named or owners - old or wanted.intersection(_materials_of(owners))
+    }
 
 
 def _groups(scene, names):

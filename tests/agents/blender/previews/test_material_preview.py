@@ -163,3 +163,18 @@ def test_time_that_is_over_leaves_out_stills_and_says_which(session: LiveSession
     assert all(repr(name) in result.text for name in left)
     assert ("since the 1 seconds were over" in result.text) == bool(left)
     assert len(left) < 2, "nothing is shown at all"
+
+
+def test_of_an_edit_only_what_its_plan_names_or_what_is_new_is_shown_alone(session: LiveSession) -> None:
+    build(session, CLOSED_ROOM)
+    everything = ["Chest 0", "Chest 1", "Chest 2", "Shell"]
+
+    def alone(first: list[str], old: list[str] | None = everything) -> list[str]:
+        asked = {"show": "objects", "only_first": True, "first": first, "old": old}
+        return [one["name"] for one in session.use(material_preview.TOOL, **asked).data["objects"]]
+
+    assert alone(["The Chest 2", "World"]) == ["The Chest 2"]
+    assert alone(["Chest 2"], None) == ["The Chest 2"], "a part of it is named"
+    assert alone(["Checks"]) == ["The Chest 0"], "its material is named"
+    assert alone(["World"]) == []
+    assert alone([], everything[:-1]) == ["The Shell"], "it is new"
