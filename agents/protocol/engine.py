@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from agents.protocol.causes import without_consequences
 from agents.protocol.findings import Finding, Report
+from agents.protocol.judging.old_bakes import as_played
 from agents.protocol.measures.requests import Unmeasured, measure
 from agents.protocol.rule import NO_PLAN, NotApplicable, RuleContext
 from agents.protocol.structure import SceneStructure
@@ -34,7 +35,7 @@ def verify(
     """
     began = time.perf_counter()
     tolerances, refused = TOLERANCES.tightened(plan.tolerances if plan else {})
-    unbaked = any(cache.on and not cache.baked for cache in facts.caches)
+    unbaked = any(cache.on and (not cache.baked or cache.outdated) for cache in facts.caches)
     judges_end = not unbaked or any(rule.follows_motion for rule in rules)
     context = RuleContext(facts, SceneStructure(facts), tolerances, plan, judges_end)
     findings = [_error("plan", "soft", f"The plan's tolerances: {reason}.") for reason in refused]
@@ -71,7 +72,7 @@ def _judge(rule: Rule, context: RuleContext, measures: Measures) -> list[Finding
     """The findings of a rule. Raises NotApplicable where it has nothing to judge."""
     findings: list[Finding] = []
     try:
-        for finding in rule.judge(context, measures):
+        for finding in as_played(rule, context, rule.judge(context, measures)):
             findings.append(finding)
     except NotApplicable:
         if not findings:

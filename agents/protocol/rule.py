@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 class RuleContext:
     """What a rule judges: a scene's facts, and the plan that it was built to, if there is one.
 
-    ``judges_end``: the last frame counts too. It does not where simulations are still unbaked and no rule follows
+    ``judges_end``: the last frame counts too. It does not where simulations lack an up-to-date bake and no rule follows
     motion: then all of them would be simulated for it, and what is set up may still change.
     """
 

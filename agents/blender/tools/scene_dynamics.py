@@ -54,7 +54,7 @@ def physics(entry: Entry) -> str:
 def _cache(cache: dict[str, Any]) -> str:
     parts = [cache["state"].upper()]
     if cache.get("outdated"):
-        parts.append("OUTDATED")
+        parts.append("OUTDATED" if cache["state"] == "baked" else "simulates again")
     if "range" in cache:
         parts.append(f"frames {span(cache['range'])}")
     if "step" in cache:

@@ -50,18 +50,17 @@ def trial(arguments, report):
     own = caches.of_objects(scene, parts)
     if not own:
         raise Refused("There is nothing to try: none of these objects is simulated.")
-    notes += [_of_bake(cache) for cache in own if cache.baked]
+    if stale := [caches.describe_stale(cache) for cache in own if cache.baked and cache.outdated]:
+        raise Refused(
+            "Free the old bake first (blender_bake, free=true): it would be played here, and show nothing of what was "
+            f"changed since: {', '.join(stale)}."
+        )
+    notes += [f"Baked, so played as it is: {cache.label}." for cache in own if cache.baked]
     with _stepping_fluids(own, arguments["folder"]):
         run = _Trial(scene, actors, arguments, report)
         run.step()
         run.draw(notes)
     return {**run.result(own), "notes": notes}
-
-
-def _of_bake(cache):
-    if not cache.outdated:
-        return f"Baked, so played as it is: {cache.label}."
-    return f"Free the old bake first, which is played here: {caches.describe_stale(cache)}."
 
 
 def _simulated_names(scene, found):

@@ -2,7 +2,8 @@
 """Whether the inputs of a rigid-body simulation are still those of its bake.
 
 Blender marks the bake of a rigid-body world as outdated as soon as its file is opened, or anything about a body
-changes. So a digest of what the bake depends on is kept; for a file with a bake, from when it was opened.
+changes, and no longer once the old bake has been played. So a digest of what the bake depends on is kept, from when
+it was made; for a file with a bake, from when it was opened.
 """
 
 import hashlib
@@ -17,24 +18,42 @@ _remembered = {}  # scene → digest of the inputs when they last matched the ba
 
 
 def watch():
-    """Remembers the inputs of every file that is opened from now on."""
+    """Remembers the inputs of every file that is opened from now on, and follows what becomes of its bakes."""
     if _note not in bpy.app.handlers.load_post:
         bpy.app.handlers.load_post.append(_note)
+    if _follow not in bpy.app.handlers.frame_change_post:
+        bpy.app.handlers.frame_change_post.append(_follow)
 
 
 @persistent
 def _note(*_):
     _remembered.clear()
     for scene in bpy.data.scenes:
-        world = scene.rigidbody_world
-        if world is not None and world.point_cache is not None and world.point_cache.is_baked:
+        points = _points(scene)
+        if points is not None and points.is_baked:
             _remembered[_key(scene)] = _inputs_digest(scene)
+
+
+@persistent
+def _follow(scene, _graph=None):
+    """Forgets the inputs of a bake that is freed or made anew, and remembers those of the new one once it is made."""
+    points = _points(scene)
+    if points is None or not points.is_baked:
+        _remembered.pop(_key(scene), None)
+    elif _key(scene) not in _remembered and not points.is_outdated:
+        _remembered[_key(scene)] = _inputs_digest(scene)
+
+
+def _points(scene):
+    world = scene.rigidbody_world
+    return world.point_cache if world is not None else None
 
 
 def is_outdated(scene):
     """Whether the bake of a scene's rigid-body world is older than what it depends on."""
     state = _inputs_digest(scene)
-    if not scene.rigidbody_world.point_cache.is_outdated:
+    is_followed = _follow in bpy.app.handlers.frame_change_post
+    if not _points(scene).is_outdated and not (is_followed and _key(scene) in _remembered):
         _remembered[_key(scene)] = state
     return _remembered.get(_key(scene)) != state
 

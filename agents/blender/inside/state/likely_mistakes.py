@@ -106,9 +106,11 @@ def _not_finite(facts):
 
 
 def _outdated_caches(facts):
-    stale = [entry["name"] for entry in facts.get("physics", ()) if entry.get("cache", {}).get("outdated")]
+    """Old bakes, which are played as they are; old frames that are not baked are simulated again unasked."""
+    caches = [(entry["name"], entry.get("cache", {})) for entry in facts.get("physics", ())]
+    stale = [name for name, cache in caches if cache.get("outdated") and cache["state"] == "baked"]
     if stale:
-        yield f"Outdated caches (bake again): {listed(stale, MOST_NAMES)}."
+        yield f"Outdated bakes (free them, or bake again): {listed(stale, MOST_NAMES)}."
 
 
 def _broken_animation(facts):

@@ -10,8 +10,10 @@ from test_bake import PARTS
 from agents.blender.tools.bake import TOOL as BAKE
 from agents.blender.tools.execute import TOOL as EXECUTE
 from agents.blender.tools.files import LOAD, SAVE
+from agents.blender.tools.scene_state import TOOL as STATE
 from agents.blender.tools.trial import TOOL as TRIAL
 from agents.blender.tools.verify import TOOL as VERIFY
+from simworlds.sandbox.errors import Refusal
 
 if TYPE_CHECKING:
     from live_session import LiveSession
@@ -85,7 +87,12 @@ def test_all_tools_tell_of_it_and_a_saved_file_remembers_it(session: LiveSession
     assert stale(session) == ["soft body of 'Jelly' (changed since: 'Ball')"]
     told = session.use(VERIFY).text
     assert "is baked, but outdated: since then 'Ball' changed; the old bake is played" in told
-    assert "Free the old bake first" in session.use(TRIAL, frames=3).text
+    with pytest.raises(
+        Refusal, match=r"Free the old bake first .*soft body of 'Jelly' .changed since: 'Ball'"
+    ):
+        session.use(TRIAL, frames=3)
+    session.use(BAKE, free=True)
+    assert session.use(TRIAL, frames=3).data["last"] == 3
     session.use(BAKE)
     assert stale(session) == []
 
@@ -130,3 +137,69 @@ with bpy.context.temp_override(point_cache=modifier.point_cache):
     bpy.ops.ptcache.bake_from_cache()
 """
     assert stale(session, again) == []
+
+
+BRICKS = f"""{PARTS}
+body("Low", 0, 0.5)
+body("High", 0, 3)
+for name in ("Low", "High"):
+    box = bpy.data.collections.new(f"The {{name}}")
+    box["protocol_role"] = "object"
+    scene.collection.children.link(box)
+    box.objects.link(bpy.data.objects[name])
+scene.rigidbody_world.point_cache.frame_end = 12
+"""
+ANOTHER = """
+bpy.ops.mesh.primitive_cube_add(size=1, location=(1.2, 0, 0.5), rotation=(0, 0, 0))
+bpy.context.object.name = "Third"
+bpy.ops.rigidbody.object_add()
+"""
+PLAY = "for frame in (1, 2, 3, 12, 1): bpy.context.scene.frame_set(frame)"
+BODIES = "the rigid-body world"
+
+
+def test_bodies_are_still_to_be_baked_once_the_old_bake_was_played(session: LiveSession) -> None:
+    session.run(BRICKS)
+    session.use(BAKE)
+    assert stale(session, ANOTHER) == [BODIES]
+    assert stale(session, PLAY) == [BODIES]
+    assert "Outdated bakes (free them, or bake again): Scene." in session.use(STATE).data["notes"]
+    told = session.use(VERIFY, rules=["V2"])
+    assert "Judged at frame 1 only" in told.text
+    with pytest.raises(Refusal, match="Free the old bake first"):
+        session.use(TRIAL, frames=3)
+    session.use(BAKE, free=True)
+    session.use(TRIAL, frames=3)
+    freed = session.use(STATE)
+    assert freed.data["notes"] == []
+    assert "OUTDATED" not in freed.text
+    session.use(BAKE)
+    assert stale(session, PLAY) == []
+
+
+@pytest.mark.parametrize("anew", ["bpy.ops.ptcache.bake_all(bake=True)", "bpy.ops.ptcache.bake_from_cache()"])
+def test_bodies_that_code_bakes_anew_are_up_to_date(session: LiveSession, anew: str) -> None:
+    session.run(BRICKS)
+    session.use(BAKE)
+    again = f"""
+with bpy.context.temp_override(point_cache=bpy.context.scene.rigidbody_world.point_cache):
+    bpy.ops.ptcache.free_bake()
+    {{}}
+    for frame in range(1, 13):
+        bpy.context.scene.frame_set(frame)
+    {anew}
+"""
+    assert stale(session, again.format("bpy.context.scene.rigidbody_world.time_scale = 2")) == []
+
+
+def test_what_an_old_bake_shows_is_not_held_against_the_scene(session: LiveSession) -> None:
+    """The body that the bake does not know stays where another one falls."""
+    session.run(BRICKS)
+    session.use(BAKE)
+    session.run(
+        "bpy.ops.mesh.primitive_cube_add(size=1, location=(0, 0, 1.7))\nbpy.ops.rigidbody.object_add()"
+    )
+    old = session.use(VERIFY, rules=["V2", "T2"])
+    (finding,) = [one for one in old.data["findings"] if one["rule"] == "V2" and one["frame"] == 12]
+    assert finding["severity"] == "soft"
+    assert finding["fix"].startswith("Free it (blender_bake, free=true) or bake again (blender_bake)")

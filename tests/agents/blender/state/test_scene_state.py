@@ -369,7 +369,8 @@ def test_a_cache_says_whether_it_is_baked_and_what_it_holds(session: LiveSession
     )
     cache = entry(stale, "physics", "Flag")["cache"]
     assert (cache["state"], cache["outdated"]) == ("unbaked", True)
-    assert "Outdated caches (bake again): Flag." in stale.data["notes"]
+    assert "  cache UNBAKED, simulates again, frames 1–6" in stale.text
+    assert not any("Outdated" in note for note in stale.data["notes"]), "a bake that was freed is not old"
 
 
 def test_a_cache_on_disk_is_counted_and_weighed(own_session: LiveSession) -> None:
