@@ -13,17 +13,25 @@ if TYPE_CHECKING:
 
 _SLACK = 0.01  # of what was measured before, by which it may be worse: measuring is not exact
 _LEAST = 1e-4
+_GROUNDED = "W1"  # its findings name what floats, and what of all that this touches lacks a contact
 _OUTCOMES = ("undecided", "error", "broken")  # from what is least known to be wrong
 
 
 def new_findings(known: Iterable[Finding], findings: Sequence[Finding]) -> list[Finding]:
-    """Those ``findings`` that were not ``known``, or are worse than they were; of the latter, the message says so."""
+    """Those ``findings`` that were not ``known``, or are worse than they were; of the latter, the message says so.
+
+    What stands on something that already lacked a connection to the ground is not new.
+    """
     before: dict[tuple[Any, ...], list[Finding]] = defaultdict(list)
+    floating: set[str] = set()
     for finding in known:
         before[_about(finding)].append(finding)
+        floating.update(finding["objects"][:1] if finding["rule"] == _GROUNDED else ())
     found: dict[int, Finding] = {}
     for place in sorted(range(len(findings)), key=lambda place: -_badness(findings[place])):
         finding = findings[place]
+        if finding["rule"] == _GROUNDED and finding["objects"][1:] and finding["objects"][-1] in floating:
+            continue  # it touches what the file itself did not connect to the ground
         same = before[_about(finding)]
         as_bad = [one for one in same if _is_no_worse(finding, one)]
         if as_bad:

@@ -28,11 +28,17 @@ class DeclaredContact:
 def declared_contacts(context: RuleContext) -> Iterator[DeclaredContact]:
     """All declared contacts, each pair once, with the names that the declarations use."""
     seen: set[frozenset[str]] = set()
-    for contact in (*_of_tags(context), *_of_plan(context)):
+    for contact in declarations(context):
         pair = frozenset((contact.a, contact.b))
         if pair not in seen:
             seen.add(pair)
             yield contact
+
+
+def declarations(context: RuleContext) -> Iterator[DeclaredContact]:
+    """All declared contacts; a pair twice where both declare it."""
+    yield from _of_tags(context)
+    yield from _of_plan(context)
 
 
 def _of_tags(context: RuleContext) -> Iterator[DeclaredContact]:

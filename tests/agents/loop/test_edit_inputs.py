@@ -34,6 +34,17 @@ def test_a_fault_that_was_there_is_not_new_however_its_objects_are_ordered() -> 
     assert new_findings([depth(0.05)], [depth(0.02)]) == []
 
 
+def floating(*names: str) -> dict[str, Any]:
+    return {"rule": "W1", "severity": "soft", "objects": names, "message": "", "fix": "", "outcome": "broken"}
+
+
+def test_what_stands_on_something_that_floated_before_is_not_held_against_the_edit() -> None:
+    before, on_it, alone = floating("Table"), floating("Lantern", "Table"), floating("Lantern")
+    assert new_findings([before], [before, on_it]) == []
+    assert new_findings([before], [before, alone]) == [alone]
+    assert new_findings([floating("Shelf")], [on_it]) == [on_it]
+
+
 def test_a_fault_that_got_worse_is_new_and_says_what_it_was() -> None:
     (found,) = new_findings([depth(0.05)], [depth(0.06)])
     assert found["message"] == "Too deep. The edit made this worse: it was 0.05 m."

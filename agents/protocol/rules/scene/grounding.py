@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from agents.plan.graph import reachable
-from agents.protocol.judging.declared_contacts import declared_contacts
+from agents.protocol.judging.declared_contacts import declarations
 from agents.protocol.judging.sizes import diagonal_around
 from agents.protocol.measures.geometry import PiecesRequest
 from agents.protocol.measures.requests import Measures, Unmeasured
@@ -15,24 +16,84 @@ from agents.protocol.rule import NotApplicable, Rule, RuleContext
 from agents.protocol.tolerances import CONTACT
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
+    from agents.protocol.facts import WorldBox
     from agents.protocol.findings import Finding
     from agents.protocol.structure import LogicalObject
 
 _MAX_LISTED = 5
 
 
-def _neighbours(context: RuleContext) -> dict[str, set[str]]:
-    """Object → the objects that it is declared to touch."""
-    neighbours: dict[str, set[str]] = defaultdict(set)
-    for contact in declared_contacts(context):
-        a = context.structure.logical_object_of(contact.a)
-        b = context.structure.logical_object_of(contact.b)
-        if a is not None and b is not None and a.name != b.name:
-            neighbours[a.name].add(b.name)
-            neighbours[b.name].add(a.name)
-    return neighbours
+class _Contacts:
+    """Who is declared to touch whom: logical objects, and objects without tags that a declaration names."""
+
+    def __init__(self, context: RuleContext) -> None:
+        self._context = context
+        self.neighbours: dict[str, set[str]] = defaultdict(set)
+        self._holders: dict[str, dict[str, None]] = defaultdict(dict)  # in the order of the declarations
+        self.untagged: set[str] = set()
+        for contact in declarations(context):
+            a, b = self._node(contact.a), self._node(contact.b)
+            if a is not None and b is not None and a != b:
+                self.neighbours[a].add(b)
+                self.neighbours[b].add(a)
+                self._holders[a][b] = None
+
+    def _node(self, name: str) -> str | None:
+        obj = self._context.structure.logical_object_of(name)
+        if obj is not None:
+            return obj.name
+        if name in self._context.structure.owners or name not in self._context.structure.objects:
+            return None
+        self.untagged.add(name)
+        return name
+
+    def foot(self, name: str) -> str:
+        """What it is connected to that declares no contact itself; the lowest where all declare each other."""
+        found = reachable([name], lambda one: self._holders.get(one, ()))
+        open_ones = [one for one in found if one not in self._holders]
+        return open_ones[0] if open_ones else min(found, key=self._height)
+
+    def _height(self, name: str) -> float:
+        structure = self._context.structure
+        names = structure.by_name[name].surfaces if name in structure.by_name else (name,)
+        return min((box.low[2] for one in names if (box := _box(self._context, one))), default=math.inf)
+
+
+def _resting(context: RuleContext, names: Iterable[str]) -> set[str]:
+    """Those of some objects without tags that stand on the ground, by the boxes around them.
+
+    In a scene without a tagged ground, the ground is what lies lowest.
+    """
+    structure = context.structure
+    grounds = [
+        box
+        for name in structure.grounds
+        for one in structure.by_name[name].surfaces
+        if (box := _box(context, one))
+    ]
+    if not grounds:
+        boxes = [
+            mesh.box for mesh in structure.meshes if mesh.surface and mesh.rendered and mesh.box is not None
+        ]
+        grounds = [min(boxes, key=lambda box: (box.low[2], box.high[2]))] if boxes else []
+    return {
+        name
+        for name in names
+        if (box := _box(context, name)) and any(_is_on(context, box, ground) for ground in grounds)
+    }
+
+
+def _box(context: RuleContext, name: str) -> WorldBox | None:
+    return context.structure.objects[name].box
+
+
+def _is_on(context: RuleContext, box: WorldBox, ground: WorldBox) -> bool:
+    """Whether a box ends in another one or on it, within what counts as contact."""
+    gap = context.tolerances.contact_gap(min(box.diagonal, ground.diagonal))
+    beside = any(box.high[axis] < ground.low[axis] or ground.high[axis] < box.low[axis] for axis in (0, 1))
+    return not beside and ground.low[2] - gap <= box.low[2] <= ground.high[2] + gap
 
 
 def _planned_to_move(context: RuleContext) -> set[str]:
@@ -46,15 +107,25 @@ def _ungrounded(context: RuleContext, _measures: Measures) -> Iterator[Finding]:
     if not structure.logical_objects:
         raise NotApplicable("no collection is an object (L3)")
     strict = context.facts.strict_grounding or (context.plan is not None and context.plan.strict_grounding)
-    neighbours = _neighbours(context)
-    grounded = reachable(structure.grounds, lambda name: neighbours[name])
+    contacts = _Contacts(context)
+    starts = {*structure.grounds, *_resting(context, contacts.untagged)}
+    grounded = reachable(sorted(starts), lambda name: contacts.neighbours[name])
     airborne = set[str]() if strict else _planned_to_move(context)
     for obj in structure.logical_objects:
         if obj.name not in grounded and obj.surfaces and obj.name not in airborne:
-            finding = W1.finding(
-                (obj.name,), f"{obj.name!r} is not connected to the ground by declared contacts."
-            )
+            finding = _finding(obj.name, contacts.foot(obj.name))
             yield replace(finding, severity="hard") if strict else finding
+
+
+def _finding(name: str, foot: str) -> Finding:
+    """The finding about an object; ``foot`` is what lacks a contact, if it is not the object itself."""
+    if name == foot:
+        return W1.finding((name,), f"{name!r} is not connected to the ground by declared contacts.")
+    return W1.finding(
+        (name, foot),
+        f"{name!r} is connected to {foot!r} by declared contacts, but {foot!r} to nothing that stands on the ground.",
+        fix=f"Declare what {foot!r} touches (contact_with, or a relation of the plan); leave it if it should float.",
+    )
 
 
 def _pieces_request(context: RuleContext, obj: LogicalObject) -> PiecesRequest | None:

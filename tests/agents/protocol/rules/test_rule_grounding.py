@@ -45,9 +45,45 @@ def test_what_nothing_connects_to_the_ground_is_told(session: LiveSession) -> No
     report = verified(session, "W1")
     assert [(one.rule, one.severity, one.objects) for one in report.findings] == [
         ("W1", "soft", ("Table",)),
-        ("W1", "soft", ("Cup",)),
+        ("W1", "soft", ("Cup", "Table")),
     ]
+    table, cup = report.findings
+    assert table.message == "'Table' is not connected to the ground by declared contacts."
+    assert cup.message.startswith(
+        "'Cup' is connected to 'Table' by declared contacts, but 'Table' to nothing "
+    )
+    assert cup.fix.startswith("Declare what 'Table' touches ")
     assert report.ok
+
+
+def test_the_last_of_a_chain_is_what_lacks_a_contact(session: LiveSession) -> None:
+    build(
+        session,
+        STACK + 'thing("Lid", box("Cover", (-0.1, -0.1, 0.8), (0.1, 0.1, 0.82)))\n'
+        'touches("Cover", "Mug")\ntouches("Mug", "Top")\ntouches("Top", "Mug")',
+    )
+    lid = next(one for one in verified(session, "W1").findings if one.objects[0] == "Lid")
+    assert lid.objects == ("Lid", "Table")
+
+
+@pytest.mark.parametrize(("lift", "findings"), [(0.0, 0), (0.002, 0), (0.2, 1), (-0.05, 0)])
+@pytest.mark.parametrize("ground", ["ground", "floor"])
+def test_what_has_no_tags_connects_where_it_stands_on_the_ground(
+    session: LiveSession, lift: float, findings: int, ground: str
+) -> None:
+    build(
+        session,
+        f"""
+floor = box("Old floor", (-2, -2, -0.1), (2, 2, 0))
+table = box("Old table", (-0.5, -0.5, {lift}), (0.5, 0.5, 0.7))
+thing("Cup", box("Mug", (-0.1, -0.1, 0.7), (0.1, 0.1, 0.8)))
+bpy.data.objects["Mug"]["contact_with"] = ["Old table"]
+scene.collection.objects.link(table)
+if {ground!r} == "ground": thing("Floor", floor, system_name="ground")
+else: scene.collection.objects.link(floor)
+""",
+    )
+    assert len(verified(session, "W1").findings) == findings
 
 
 @pytest.mark.parametrize("by_plan", [False, True])
