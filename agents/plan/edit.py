@@ -13,6 +13,7 @@ from agents.plan.scene import DeformationKind, MotionMechanism, RenderSettings
 if TYPE_CHECKING:
     from collections.abc import Set
 
+_SLIP = 0.8  # from how alike on (0 to 1) a name is taken for a slip of another one
 # A name as it is in the file, which need not follow a plan's rules for names.
 FileName = Annotated[str, Field(min_length=1, max_length=255)]
 
@@ -25,7 +26,8 @@ class EditTask(PlanPart):
     targets: tuple[FileName, ...] = Field(
         min_length=1,
         description="Names of what changes, exactly as in the file: objects, collections, materials, lights, cameras, "
-        "the world or scene. For an addition: the names that the new items get.",
+        "the world or scene. For an addition: the names that the new items get; a modification may name new materials "
+        "beside what gets them.",
     )
     instruction: str = Field(min_length=1, max_length=4000, description="What to change, and into what.")
 
@@ -82,17 +84,22 @@ class EditPlan(PlanPart):
 
 
 def unknown_targets(plan: EditPlan, names: Set[str]) -> list[str]:
-    """Sentences about targets that the plan modifies or removes but that are not among the file's ``names``."""
+    """Sentences about targets that the plan modifies or removes but that are not among the file's ``names``.
+
+    A modification may bring something new, such as a material, beside what it changes, unless it looks like a slip.
+    """
     known = names | {name for task in plan.tasks if task.kind == "add" for name in task.targets}
     faults: list[str] = []
     for number, task in enumerate(plan.tasks):
+        may_bring = task.kind == "modify" and not known.isdisjoint(task.targets)
         for name in task.targets:
-            if name not in known:
-                nearest = ", ".join(map(repr, get_close_matches(name, sorted(known), n=3)))
-                hint = (
-                    f" Nearest: {nearest}."
-                    if nearest
-                    else " Use a name of the scene's state, or a task of the kind add."
-                )
-                faults.append(f"tasks.{number}.targets: there is nothing called {name!r} in the file.{hint}")
+            if name in known or (may_bring and not get_close_matches(name, known, n=1, cutoff=_SLIP)):
+                continue
+            nearest = ", ".join(map(repr, get_close_matches(name, sorted(known), n=3)))
+            hints = [f"Nearest: {nearest}."] if nearest else ["Use a name of the scene's state."]
+            if task.kind == "modify":
+                hints.append("If it is new, name it in a task of the kind add.")
+            faults.append(
+                f"tasks.{number}.targets: there is nothing called {name!r} in the file. {' '.join(hints)}"
+            )
     return faults

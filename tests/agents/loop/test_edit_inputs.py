@@ -116,10 +116,10 @@ def test_what_is_no_picture_is_said_to_be_none(tmp_path: Path, kind: str) -> Non
 # Plans
 
 
-def edit_plan(*tasks: tuple[str, str, str], **more: Any) -> EditPlan:
+def edit_plan(*tasks: tuple[str, ...], **more: Any) -> EditPlan:
     told = [
-        {"kind": kind, "stage": stage, "targets": [name], "instruction": "As told."}
-        for kind, stage, name in tasks
+        {"kind": kind, "stage": stage, "targets": names, "instruction": "As told."}
+        for kind, stage, *names in tasks
     ]
     return EditPlan.model_validate({"title": "An edit", "tasks": told, "render": STILL, **more})
 
@@ -131,6 +131,15 @@ def test_only_what_is_there_or_is_added_can_be_changed() -> None:
     assert unknown_targets(plan, frozenset({"Spoon"})) == [
         "tasks.2.targets: there is nothing called 'Spoom' in the file. Nearest: 'Spoon'."
     ]
+
+
+def test_a_modification_may_bring_what_is_new_beside_what_it_changes() -> None:
+    file = frozenset({"Body", "Red paint", "Wheels"})
+    assert unknown_targets(edit_plan(("modify", "texture", "Body", "Gold paint", "Beacon blue")), file) == []
+    (slip,) = unknown_targets(edit_plan(("modify", "texture", "Body", "Wheel")), file)
+    assert slip.endswith("Nearest: 'Wheels'. If it is new, name it in a task of the kind add.")
+    assert len(unknown_targets(edit_plan(("modify", "texture", "Gold paint", "Beacon blue")), file)) == 2
+    assert len(unknown_targets(edit_plan(("remove", "texture", "Body", "Gold paint")), file)) == 1
 
 
 def test_actors_need_a_task_that_sets_them_in_motion() -> None:
