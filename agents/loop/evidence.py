@@ -51,7 +51,7 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
         shown.take(_UV, {})
     if stage == "texture" or not run.options.stages:
         _show_materials(shown, task, first)
-    if task.actors and (stage == "motion" or (moves(stage) and (task.edit or not run.options.stages))):
+    if task.actors and (stage == "motion" or (moves(stage) and not run.options.stages)):
         phases = task.plan.motion.phases if task.plan is not None and stage == "motion" else ()
         sheets = motion_sheets(task.actors, phases)
         run.motion = MeasuredMotion.of([shown.take(_MOTION, sheet) for sheet in sheets], phases)
@@ -62,7 +62,7 @@ def evidence(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
         shown.take(_MATERIALS, {"show": "scene", "width": _width(task), "frames": frames})
     elif stage == "light":
         for frame in _telling_frames(task, run.motion):
-            shown.take(RENDER, still(f"look-{frame}", frame, _width(task)))
+            shown.take(RENDER, _again(still(f"look-{frame}", frame, _width(task))))
     shown.blocks += _coders_stills(run)
     focus, known = task.readout()
     shown.take(_STATE, focus or ({"first": first} if first else {}), known)
@@ -108,6 +108,11 @@ def still(name: str, frame: int | None, width: int | None = None) -> dict[str, A
     """The arguments of a still that is to be judged."""
     asked = {"kind": "still", "name": name, "width": width or WIDTH, "samples": SAMPLES, "denoise": True}
     return {**asked, "time_budget": _SECONDS} | ({} if frame is None else {"frame": frame})
+
+
+def _again(asked: dict[str, Any]) -> dict[str, Any]:
+    """The arguments of a still that is shown as it was rendered before, while nothing that it shows has changed."""
+    return {**asked, "keep": True}
 
 
 def _subjects(task: RunTask) -> list[str]:
@@ -178,7 +183,7 @@ def edit_comparison(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     """The file as it was, as it is, and as it is to be, at one size; nothing where there is nothing to compare with."""
     if task.before is None and task.goal is None:
         return []
-    outcome = run.use(RUNNER, stage, RENDER, still("present", task.before_frame))
+    outcome = run.use(RUNNER, stage, RENDER, _again(still("present", task.before_frame)))
     now = next((block for block in outcome.content if isinstance(block, Picture)), None)
     words = [Text(f"{RENDER}, the scene as it is now:"), *(b for b in outcome.content if isinstance(b, Text))]
     return [*words, *(compared(run, task, now) if now is not None else ())]

@@ -40,10 +40,14 @@ class UnbakedCache(Claim):
 
 
 class RenderPlan(Claim):
-    """``scene``: a digest for every data-block that the images depend on; the rest is the timeline and the shot."""
+    """``scene``: a digest for every data-block that the images depend on; the rest is the timeline and the shot.
+
+    ``looks``: a digest of all that a still depends on, where that was asked.
+    """
 
     shot: Shot
     scene: dict[Name, Name] = Field(max_length=_MOST_BLOCKS)
+    looks: Name = ""
     unbaked: list[UnbakedCache] = Field(max_length=20_000)
     notes: list[Text] = Field(max_length=1000)
     current: Frame

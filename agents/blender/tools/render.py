@@ -5,11 +5,13 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Annotated, Any, Literal
 
 from pydantic import Field, model_validator
+from pydantic.json_schema import SkipJsonSchema
 
 from agents.blender.formatting import format_count, format_list
 from agents.blender.render.frame_cache import FrameCache
 from agents.blender.render.frame_renderer import FrameRenderer
 from agents.blender.render.image_checks import LARGEST_STILL, RenderedPicture, image_faults, look_at
+from agents.blender.render.kept_still import KeptStill
 from agents.blender.render.picture_numbers import format_subjects
 from agents.blender.render.render_budget import RenderBudget
 from agents.blender.render.render_loop import RenderOutcome, StillStore, render_frames
@@ -22,6 +24,9 @@ if TYPE_CHECKING:
 _MOST_FRAMES = 50_000
 _LISTED = 200
 _NAMED = 8
+_UNCHANGED = (
+    "Not rendered again, since nothing that this still shows has changed since. What was said of it then:"
+)
 _FAR = 1_000_000
 _Frame = Annotated[int, Field(ge=-_FAR, le=_FAR)]
 _Side = Annotated[int, Field(ge=4, le=8192)]
@@ -56,6 +61,8 @@ class RenderArguments(Arguments):
         description="Seconds for the whole call.",
     )
     video: bool = Field(default=True, description="Make an MP4 of an animation.")
+    # Not for models: a still of this name that would look the same is shown again.
+    keep: SkipJsonSchema[bool] = False
     timeout: float = Field(default=900.0, ge=1, le=86400, description="Seconds for one frame.")
 
     @model_validator(mode="after")
@@ -81,7 +88,7 @@ def run(context: ToolContext, arguments: RenderArguments, call: Call) -> Result:
     blender = context.blender
     name = arguments.name or arguments.kind
     wanted = arguments.model_dump(
-        include={"engine", "samples", "denoise", "width", "height", "percentage", "camera"}
+        include={"engine", "samples", "denoise", "width", "height", "percentage", "camera", "frame", "keep"}
     )
     wanted["even"] = arguments.kind == "animation" and arguments.video
     still = blender.folder.place_for(f"renders/{name}", ".png")
@@ -95,6 +102,11 @@ def run(context: ToolContext, arguments: RenderArguments, call: Call) -> Result:
 
 def _still(renderer: FrameRenderer, arguments: RenderArguments, call: Call, path: Path) -> Result:
     frame = renderer.plan.current if arguments.frame is None else arguments.frame
+    kept = KeptStill(path, {"frame": frame, "shot": renderer.shot.settings, "looks": renderer.plan.looks})
+    if arguments.keep and (said := kept.reply()):
+        text, data = said
+        shown = _shown([look_at(renderer.pictures, path, LARGEST_STILL)])
+        return Result(f"{_UNCHANGED}\n{text}", data, shown)
     store = StillStore(path)
     outcome = render_frames(renderer, store, [frame], call, _budget(renderer, arguments))
     if not outcome.made:
@@ -105,7 +117,10 @@ def _still(renderer: FrameRenderer, arguments: RenderArguments, call: Call, path
     pictures = [look_at(renderer.pictures, path, LARGEST_STILL)]
     data["warnings"] = image_faults(pictures)
     data |= _measured(renderer, {frame: pictures[0]})
-    return Result(_text(renderer, data, outcome), data, _shown(pictures))
+    text = _text(renderer, data, outcome)
+    if arguments.keep:
+        kept.keep(text, data)
+    return Result(text, data, _shown(pictures))
 
 
 def _animation(

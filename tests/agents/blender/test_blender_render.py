@@ -116,6 +116,42 @@ def stopped_after(frames: int) -> Call:
 # Stills
 
 
+UNCHANGED = "Not rendered again, since nothing that this still shows has changed since."
+DROP = """
+bpy.context.view_layer.objects.active = cube = bpy.data.objects['Cube']
+bpy.ops.rigidbody.object_add()
+bpy.context.scene.rigidbody_world.point_cache.frame_end = 6
+bpy.ops.ptcache.bake_all(bake=True)
+"""
+
+
+def test_a_still_is_kept_while_it_would_look_the_same(session: LiveSession) -> None:
+    session.run(SCENE)
+
+    def render(frame: int = 1, **more: Any) -> tuple[bool, list[bytes], str]:
+        found = session.use(TOOL, None, **{**SMALL, "keep": True, "frame": frame, **more})
+        return found.text.startswith(UNCHANGED), [one.png for one in found.pictures], found.text
+
+    kept, first, told = render()
+    assert not kept
+    session.run(DROP)
+    kept, again, told_again = render()
+    assert kept, "a simulation shows nothing at its first frame"
+    assert again == first
+    assert told_again == f"{UNCHANGED} What was said of it then:\n{told}"
+    assert not render(samples=2)[0]
+    assert not render(6)[0]
+    assert render(6)[0]
+    session.run("bpy.data.objects['Cube'].rigid_body.mass = 3")
+    assert not render(6)[0], "it may have fallen otherwise"
+    assert not render()[0]
+    assert not render(keep=False)[0], "whoever measures time wants it rendered"
+    session.run("bpy.data.materials['Red'].node_tree.nodes['Emission'].inputs['Strength'].default_value = 2")
+    assert not render()[0]
+    session.run("bpy.data.objects['Cube'].location.x += 0.1")
+    assert not render()[0]
+
+
 @pytest.mark.parametrize("engine", ["cycles", "workbench"])
 def test_a_still_shows_what_the_camera_sees(session: LiveSession, engine: str) -> None:
     session.run(SCENE + "cube.location = (1, 0, -2)")

@@ -21,6 +21,7 @@ from bench.blenderbench import photometric
 
 if TYPE_CHECKING:
     from agents.loop.run import Run
+    from agents.plan.part import Stage
 
 
 def phase(actor: str, start: int, end: int, name: str = "falls") -> MotionPhase:
@@ -92,3 +93,10 @@ def test_of_an_edit_the_materials_of_what_it_does_not_name_are_not_shown() -> No
     assert shown == {"width": 960, "first": ["Mug", "Glaze"], "only_first": True, "old": ["Mug", "Table"]}
     evidence(cast("Run", asked), "texture", RunTask(""))
     assert asked.calls["blender_material_preview"] == {"width": 960}
+
+
+def test_of_an_edit_motion_is_shown_in_its_stage_alone() -> None:
+    for stage, is_shown in (("motion", True), ("camera", False), ("light", False)):
+        asked = Asked()
+        evidence(cast("Run", asked), cast("Stage", stage), RunTask("", actors=("Mug",), edit=True))
+        assert ("blender_motion_sheet_preview" in asked.calls) == is_shown

@@ -21,17 +21,18 @@ _ONLY_LOOKS = frozenset({"Material", "World", "Light", "Camera"})
 _LOOKS = frozenset(
     {"materials", "camera", "world", "render", "color management", "compositing", "markers", "sequencer"}
 )
+_OF_SIMULATIONS = frozenset({"physics", "gravity", CACHES})
 _FLUID_PARTICLES = frozenset({"FLUID", "FLIP", "FOAM", "SPRAY", "BUBBLE", "TRACER"})
 _RENDER_IMAGES = frozenset({"RENDER_RESULT", "COMPOSITING"})
 
 
-def fingerprint(scene):
+def fingerprint(scene, *, at_rest=False):
     """{"Object Cube": digest, …} of all that renders of ``scene`` depend on, apart from the frame.
 
-    Output paths and formats do not count.
+    Output paths and formats do not count; nor do simulations where it is ``at_rest``, before any has begun.
     """
-    plans, read = {}, {}
-    for block in _read_reachable([scene], plans, read, pictures=True):
+    read = {}
+    for block in _read_reachable([scene], read, _reader(True, _OF_SIMULATIONS if at_rest else ())):
         read[block] = _block_digest(read[block])
     return {key_of(block): digest for block, digest in read.items()}
 
@@ -50,7 +51,7 @@ def digests_by_part(blocks):
 def simulation_inputs(scene):
     """A digest of all that the simulations of ``scene`` may depend on, apart from the frame and their own caches."""
     read, total = {}, hashlib.blake2b(digest_size=12)
-    for _ in _read_reachable([scene], {}, read, pictures=False, without=_ONLY_LOOKS):
+    for _ in _read_reachable([scene], read, _reader(False), without=_ONLY_LOOKS):
         pass
     driven = any(getattr(getattr(block, "animation_data", None), "drivers", None) for block in read)
     # Blender itself writes the settings of a fluid's particles at each frame.
@@ -70,9 +71,9 @@ def data_blocks(report):
     Returns ``digests`` ({"Object Cube": digest}), ``parts`` ({"Object Cube": {"transform": digest, …}}) and ``uses``
     ({"Object Cube": {"data": ["Mesh Cube"], …}}: which data-blocks each part points to).
     """
-    plans, read = {}, {}
+    read = {}
     blocks = _saved_blocks()
-    for count, _ in enumerate(_read_reachable(blocks, plans, read, pictures=False)):
+    for count, _ in enumerate(_read_reachable(blocks, read, _reader(False))):
         if count % 500 == 499:
             report(count, None, "reading data-blocks")
     by_key = {key_of(block): parts for block, parts in read.items()}
@@ -90,12 +91,23 @@ def data_blocks(report):
     }
 
 
-def _read_reachable(roots, plans, read, *, pictures, without=frozenset()):
+def _reader(pictures, left_out=()):
+    """A function that reads a data-block's parts, without those that are ``left_out``; see ``BlockReader``."""
+    plans = {}
+
+    def read(block):
+        parts = BlockReader(block, plans, pictures=pictures).read()
+        return {name: part for name, part in parts.items() if name not in left_out}
+
+    return read
+
+
+def _read_reachable(roots, read, parts_of, *, without=frozenset()):
     """Reads ``roots`` and all they point to into ``read``, but blocks of some kinds; yields each after reading it."""
     waiting, seen = list(roots), {block.as_pointer() for block in roots}
     while waiting:
         block = waiting.pop()
-        read[block] = parts = BlockReader(block, plans, pictures=pictures).read()
+        read[block] = parts = parts_of(block)
         for _, uses in parts.values():
             for other in uses:
                 if (
