@@ -17,6 +17,7 @@ from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
+from agents.blender.formatting import format_list
 from agents.blender.saved_files import caches_folder
 from agents.blender.tools.scene_order import words_of
 from agents.loop.acceptance import AcceptanceRecord
@@ -60,8 +61,10 @@ _EXCHANGE = ("blender_import", "blender_export")
 RENDER = "blender_render"
 START = "start"
 _KEPT_STILLS = 2
+_LISTED = 12
 _LEAVING_SECONDS = 120.0  # of a session's limit, for saving and showing what stands
 _TIME_LEFT = "About {} minutes are left; then the run ends with what stands."
+_UNUSED = "Not saved, since nothing uses it any more: {} (use it, or set its use_fake_user, to keep it)."
 SCENE = "scene.blend"
 _MOST_WORDS = 60  # of an instruction
 _LOOKS = ("blender_scene_state", "preview")  # a reviewer sees, and nothing else
@@ -106,6 +109,9 @@ class Run:
     closed: str = START
     is_changed: bool = False
     is_leaving: bool = False
+    _unused: dict[str, bool] = field(
+        default_factory=dict[str, bool]
+    )  # what no file has: whether that is still to be told
     _checkpoint: int | None = None
     _seen: dict[str, ToolOutcome] = field(default_factory=dict[str, ToolOutcome])
     _began: float = field(default_factory=time.monotonic)
@@ -340,6 +346,8 @@ class Run:
         """Lets the tool save ``made``, and moves it to ``target``, unless an earlier session has."""
         moved = {str(made.parent): str(target.parent)}
         outcome = self.use(RUNNER, stage, "blender_save", {"name": name, "verify": verify}, moved=moved)
+        for unused in outcome.data.get("unused", ()):
+            self._unused.setdefault(unused, name != START)
         if made.is_file() and (is_replaced or not target.exists()):
             try:
                 _move(made, target)
@@ -347,6 +355,15 @@ class Run:
                 raise NotSaved(f"{target} cannot be written: {error.strerror or error}.") from error
         if not target.is_file() or "path" not in outcome.data:  # an earlier scene may stand there
             raise NotSaved(f"The scene could not be saved: {outcome.text}")
+
+    def unused_since(self) -> str:
+        """What the last saves have left out for want of a user, each named once; "" if that is nothing new.
+
+        What the run began with counts as told.
+        """
+        news = [name for name, is_news in self._unused.items() if is_news]
+        self._unused.update(dict.fromkeys(news, False))
+        return _UNUSED.format(format_list(news, _LISTED)) if news else ""
 
     def load(self, stage: Stage, file: Path) -> None:
         """Opens a .blend in place of the scene. Raises RunError."""

@@ -108,7 +108,8 @@ class StageLoop:
         """A tactical plan, and the first attempt to realise it. A decision to replan may have brought the plan."""
         run, stage = self._run, self._stage
         run.attempt = attempt
-        state = "\n\n".join(filter(None, (run.time_left(stage, attempt), run.state(stage))))
+        lost = run.unused_since() if self._task.edit else ""
+        state = "\n\n".join(filter(None, (run.time_left(stage, attempt), lost, run.state(stage))))
         tactic = replan.tactic if replan else None
         if tactic is None:
             why = f"The last plan did not do: {replan.reason}" if replan else ""

@@ -267,7 +267,7 @@ def test_what_is_compared_is_rendered_at_one_size_and_frame(taller: Played) -> N
     before, *present = [row["input"] for row in taller.of("tool.called", name="blender_render")][:2]
     (frame,) = {row["data"]["frame"] for row in taller.of("tool.answered", name="blender_render")[:2]}
     assert before["name"] == "before"
-    assert {**before, "name": "present", "frame": frame} == present[0]
+    assert {**before, "name": "present", "frame": frame, "keep": True} == present[0]
 
 
 # Faked physics
@@ -318,6 +318,53 @@ def test_a_real_simulation_closes_the_stage_and_its_consequences_are_no_surprise
     assert report["outside"] == [], report["why"]
     assert report["why"]["Collection crockery"] == "holds Mug"
     assert "Object Spoon" in report["unchanged"]
+
+
+# Stages that leave a picture, or a material, behind
+
+PAINTED = """\
+import bpy
+bpy.data.objects["Mug"].data.materials[0] = bpy.data.materials.new("Enamel")
+"""
+
+
+@pytest.fixture(scope="session")
+def painted(play: Callable[..., Played], kitchen: Path) -> Played:
+    """A mug with another material, in a stage that is followed by one in which nothing happens."""
+    team = Team(
+        plan=plan(task("texture", "Mug", "Enamel"), task("camera", "Camera")),
+        coder={"texture": (run(PAINTED), DONE), "camera": (DONE,)},
+    )
+    return play(team, mode="edit", prompt="Paint the mug, and keep the camera", file=kitchen)
+
+
+def test_what_fell_out_of_use_is_told_once_with_the_next_stage(painted: Played) -> None:
+    assert painted.ended.how == "done", painted.ended.why
+    told = [
+        (whose(one), words_of(one).count("Not saved, since nothing uses it any more"))
+        for one in painted.requests
+    ]
+    assert not any(count for (_, stage), count in told if stage == "texture")
+    coder = next(words_of(one) for one in painted.requests if whose(one) == ("coder", "camera"))
+    assert "material 'Glaze'" in coder.partition("Not saved, since")[2].partition("\n")[0]
+    assert [count for who, count in told if who == ("coder", "camera")] == [1]
+    assert any(count for (role, _), count in told if role == "planner")
+
+
+def test_a_still_that_shows_the_same_is_shown_again(painted: Played) -> None:
+    texture, camera = (
+        next(words_of(one) for one in painted.requests if whose(one) == ("reviewer", stage))
+        for stage in ("texture", "camera")
+    )
+    assert "Not rendered again" not in texture
+    assert "Not rendered again, since nothing that this still shows has changed since." in camera
+    first, second = (
+        painted.the("tool.answered", name="blender_render", role="runner", stage=stage)
+        for stage in ("texture", "camera")
+    )
+    assert [part["path"] for part in first["content"][1:]] == [part["path"] for part in second["content"][1:]]
+    (lit,) = painted.of("tool.answered", name="blender_material_preview", role="runner", stage="texture")
+    assert [one["name"] for one in lit["data"]["objects"]] == ["Mug"], "nothing else was to change"
 
 
 # A file of the protocol that has faults of its own
