@@ -66,7 +66,7 @@ _RENDER = (
     click.option(
         "--render-minutes",
         type=click.FloatRange(0, min_open=True),
-        help="Time for a film; its samples and size are fitted to it.  [default: 20]",
+        help="Time for a film; its samples and size are fitted to it.  [default: what --max-minutes leaves, else 20]",
     ),
     click.option(
         "--samples", type=click.IntRange(1), help="Samples of the rendering, instead of the plan's."

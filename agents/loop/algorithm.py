@@ -6,9 +6,9 @@ from contextlib import suppress
 from typing import TYPE_CHECKING
 
 from agents.loop.asset_library import prompt_with_assets
-from agents.loop.draft import room_for_film
 from agents.loop.errors import NotSaved
 from agents.loop.events import PlanMade, StageMoved
+from agents.loop.film_time import room_for_film
 from agents.loop.journal import PLAN_NAME
 from agents.loop.rendering import LastStage
 from agents.loop.run import START, plan_file

@@ -8,47 +8,68 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from agents.loop.errors import NotRendered
-from agents.loop.events import Drafted, FilmFitted, PlanMade, RoomTold, SceneRendered
-from agents.loop.film_settings import FilmSettings, FrameTime, fitted
+from agents.loop.events import Drafted, FilmFitted, SceneRendered
+from agents.loop.film_settings import FilmSettings, FrameTime, TimedFrame, fitted
+from agents.loop.film_time import minutes_of
 from agents.loop.pictures import link, pictures_of
 from agents.loop.run import RENDER, RUNNER
-from agents.loop.run_state import DEFAULT_RENDER_MINUTES
 from agents.loop.telling_frames import telling_frames
+from agents.roles import coder
 from simworlds.llm.messages import Picture, Text
-from simworlds.operating_system import SYSTEM
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Mapping, Sequence
 
     from agents.loop.run import Run
     from agents.plan.scene import RenderSettings
     from simworlds.llm.messages import Block
 
 DRAFT = "draft.mp4"
-_TIMED = (4, 12)  # samples of the two frames that are timed
+_FEW, _MORE = 4, 12  # samples of the frames that are timed
+_SMALLER = 4  # times smaller are the sides of the one that tells what a frame takes at any size
 STILLS = 5
 _PREVIEW_WIDTH = 320
-_PREVIEW_FRAMES = 40
+_PREVIEW_FRAMES, _FRAMES_OF_MENDED = 40, 10
 _PREVIEW_SECONDS = 60.0
+_LOOK_SECONDS = 60.0  # that the planner takes for its decision
+_EXECUTE = "blender_execute"
+_LOOKS = {
+    "materials",
+    "images",
+    "textures",
+}  # kinds of data-blocks that change what is seen, and not what it takes
 _ENGINES = {"CYCLES": "cycles", "BLENDER_WORKBENCH": "workbench"}
+_FRAMES = "Frames {} of the film: its ends, and where most happens, with its own size, samples and denoising."
+_MENDED_FRAME = "Frame {} of the film after the mend, with its own size, samples and denoising."
 _FITTED = """\
-Frames {frames} of the film: its ends, and where most happens, with its own size, samples and denoising.
+{frames}
 The film: {film}. A frame takes about {each:.1f} s, as asked for it would take {full:.1f} s; all of it takes about \
 {minutes:.0f} min; {most:g} min are allowed.{options}"""
-_ROOM = """\
-The film may take {minutes:g} minutes on the {cores} cores here; no GPU is counted on. In that time Cycles makes some \
-{millions:,.0f} million samples (frames × width × height × samples a pixel) of a simple scene, and half as many with \
-glass, volumes or many lights. What is planned beyond that is made smaller."""
-_SAMPLES_A_CORE_SECOND = 0.15  # million, of a furnished room
 _OPTIONS = " The run's options ask for {} samples, the plan for {}: the options hold."
 
 
 @dataclass(frozen=True, slots=True)
-class Draft:
-    """``film``: how the film will be rendered; ``shown``: words and stills for who is to look at it."""
+class Measured:
+    """The film as it is asked for, how long a frame of that takes, and the number of its first frame."""
 
+    planned: FilmSettings
+    frame_time: FrameTime
+    first: int
+
+    @property
+    def last(self) -> int:
+        """The number of its last frame."""
+        return self.first + self.planned.frames - 1
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """``film``: how the film will be rendered, in at most ``minutes``; ``shown``: words and stills for a model."""
+
+    measured: Measured
     film: FilmSettings
-    shown: tuple[Block, ...]
+    minutes: float
+    shown: tuple[Block, ...] = ()
 
 
 def asked_of(plan: RenderSettings) -> dict[str, Any]:
@@ -61,64 +82,116 @@ def asked_of(plan: RenderSettings) -> dict[str, Any]:
     return asked | ({"denoise": True} if engine == "cycles" else {})
 
 
-def minutes_of(run: Run) -> float:
-    """How long the film may take."""
-    return run.render_minutes or DEFAULT_RENDER_MINUTES
-
-
-def room_for_film(run: Run) -> str:
-    """What a film can have in its time on this machine, in words for who plans it.
-
-    A session that resumes says the same again, also on another machine; "" where the plan was made without it.
-    """
-    if run.journal.find(PlanMade()) is None:
-        minutes, cores = minutes_of(run), SYSTEM.cores()
-        millions = round(minutes * 60 * cores * _SAMPLES_A_CORE_SECOND, -1)
-        text = _ROOM.format(minutes=minutes, cores=cores, millions=millions)
-        run.journal.note(RoomTold(text=text))
-    told = run.journal.find(RoomTold())
-    return told.text if told is not None else ""
-
-
 def draft(run: Run, plan: RenderSettings, number: int) -> Draft:
     """Times frames, fits the film, and shows what it will be. Raises NotRendered."""
     run.attempt = number
-    width, height = plan.resolution
-    asked = asked_of(plan) | {"kind": "still", "name": "timing", "width": width, "height": height}
+    measured = _measured(run, plan)
+    count = measured.planned.frames
+    minutes = minutes_of(run, _PREVIEW_SECONDS + _LOOK_SECONDS, count / (count + STILLS))
+    film = fitted(measured.planned, measured.frame_time, minutes * 60)
+    frames = film_frames(run, measured.first, measured.last)
+    stills = _stills(run, plan, film, frames)
+    video = _preview(run, plan, film, _PREVIEW_FRAMES)
+    words = _FRAMES.format(", ".join(map(str, frames)))
+    known = _noted(run, plan, number, Draft(measured, film, minutes), words, stills, video)
+    shown: list[Block] = [Text(known.text)]
+    for frame, path in zip(frames, known.pictures, strict=False):
+        shown += [Text(f"Frame {frame}:"), Picture(run.picture(path))]
+    return Draft(measured, film, minutes, tuple(shown))
+
+
+def draft_again(run: Run, plan: RenderSettings, number: int, earlier: Draft) -> Draft:
+    """After a mend; nobody decides on it, so it has one still and a shorter preview, and shows nothing.
+
+    Where no more than materials are mended, a frame takes as long as before: that the machine is busier by now is no
+    reason to give up quality for which there is time. Raises NotRendered.
+    """
+    run.attempt = number
+    measured, busy = earlier.measured, None
+    if _is_recoloured(run, number):
+        planned, frame_time = measured.planned, measured.frame_time
+        now, _ = _timed(run, plan, min(_MORE, planned.samples))
+        factor = now.seconds / max(frame_time.seconds(now.samples), 1e-6)
+        measured = Measured(planned, frame_time.times(min(1.0, factor)), measured.first)
+        busy = frame_time.times(max(1.0, factor))
+    else:
+        measured = _measured(run, plan)
+    minutes = minutes_of(run, _PREVIEW_SECONDS)
+    film = fitted(measured.planned, measured.frame_time, minutes * 60, busy)
+    frames = film_frames(run, measured.first, measured.last)
+    frame = frames[len(frames) // 2]
+    stills = _stills(run, plan, film, [frame])
+    video = _preview(run, plan, film, _FRAMES_OF_MENDED)
+    made = Draft(measured, film, minutes)
+    _noted(run, plan, number, made, _MENDED_FRAME.format(frame), stills, video)
+    return made
+
+
+def _is_recoloured(run: Run, attempt: int) -> bool:
+    """Whether the coder has changed materials and their pictures alone, as the tool told of each piece of its code."""
+    about = {"type": "tool.answered", "role": coder.NAME, "stage": "render", "attempt": attempt}
+    for row in run.journal.rows:
+        if not about.items() <= row.items() or row["name"] == RENDER or run.tools.is_read_only(row["name"]):
+            continue
+        data = row.get("data") or {}
+        if row["name"] != _EXECUTE or data.get("unwatched") or not {*data.get("changed", "?")} <= _LOOKS:
+            return False
+    return True
+
+
+# Frames
+
+
+def _measured(run: Run, plan: RenderSettings) -> Measured:
+    """By three frames, of which the first warms up."""
     samples = run.samples or plan.samples
-    timed: list[tuple[int, float]] = []
-    first = last = 1
-    for count in _TIMED:
-        data = _rendered(run, asked | {"samples": min(count, samples)})
-        first, last = data["frame_range"]
-        timed.append((data["samples"] or 1, data["seconds_per_frame"] or 0.0))
+    few, _ = _timed(run, plan, min(_FEW, samples))
+    more, (first, last) = _timed(run, plan, min(_MORE, samples))
+    small, _ = _timed(run, plan, min(_FEW, samples), _SMALLER)
+    width, height = plan.resolution
     planned = FilmSettings(width, height, samples, last - first + 1, 0.0)
-    frame_time = FrameTime.of(timed[0], timed[1])
-    film = fitted(planned, frame_time, minutes_of(run) * 60)
-    stills: list[Path] = []
-    as_film = asked | {"width": film.width, "height": film.height, "samples": film.samples}
-    frames = film_frames(run, first, last)
-    for frame in frames:
-        stills.append(Path(_rendered(run, as_film | {"frame": frame, "name": f"draft {frame}"})["path"]))
-    video = _preview(run, asked, film)
+    return Measured(planned, FrameTime.of(few, more, small), first)
+
+
+def _timed(
+    run: Run, plan: RenderSettings, samples: int, smaller: int = 1
+) -> tuple[TimedFrame, tuple[int, int]]:
+    """A frame, and which are the film's first and last."""
+    width, height = (max(4, side // smaller) for side in plan.resolution)
+    asked = {"kind": "still", "name": "timing", "width": width, "height": height, "samples": samples}
+    data = _rendered(run, asked_of(plan) | asked)
+    share = min(1.0, data["width"] * data["height"] / math.prod(plan.resolution))
+    return TimedFrame(data["samples"] or 1, data["seconds_per_frame"] or 0.0, share), data["frame_range"]
+
+
+def _stills(run: Run, plan: RenderSettings, film: FilmSettings, frames: Sequence[int]) -> list[Path]:
+    asked = asked_of(plan) | {"kind": "still", "width": film.width, "height": film.height}
+    asked |= {"samples": film.samples}
+    return [
+        Path(_rendered(run, asked | {"frame": frame, "name": f"draft {frame}"})["path"]) for frame in frames
+    ]
+
+
+def _noted(  # noqa: PLR0913, PLR0917 - all that a draft is
+    run: Run, plan: RenderSettings, number: int, made: Draft, words: str, stills: Sequence[Path], video: str
+) -> Drafted:
+    """A draft as it was journalled first."""
     known = run.journal.find(Drafted(round=number))
     if known is None:
+        planned, frame_time, film = made.measured.planned, made.measured.frame_time, made.film
         text = _FITTED.format(
-            frames=", ".join(map(str, frames)),
+            frames=words,
             film=film,
-            each=film.seconds / film.frames,
-            full=frame_time.seconds(samples),
+            each=frame_time.seconds(film.samples, film.width / planned.width),
+            full=frame_time.seconds(planned.samples),
             minutes=film.seconds / 60,
-            most=minutes_of(run),
-            options=_OPTIONS.format(samples, plan.samples) if samples != plan.samples else "",
+            most=made.minutes,
+            options=_OPTIONS.format(planned.samples, plan.samples) if planned.samples != plan.samples else "",
         )
         kept = tuple(run.keep(picture) for _, picture in pictures_of(stills))
         known = Drafted(round=number, path=video, pictures=kept, text=text)
         run.journal.note(known)
-    shown: list[Block] = [Text(known.text)]
-    for frame, path in zip(frames, known.pictures, strict=False):
-        shown += [Text(f"Frame {frame}:"), Picture(run.picture(path))]
-    return Draft(film, tuple(shown))
+    return known
 
 
 def film_frames(run: Run, first: int, last: int) -> list[int]:
@@ -127,8 +200,18 @@ def film_frames(run: Run, first: int, last: int) -> list[int]:
     return telling_frames(first, last, STILLS, run.motion, plan.motion.phases if plan is not None else ())
 
 
-def note_film(run: Run, film: FilmSettings, number: int) -> None:
-    """Journals how the film is rendered from now on, unless it is said already."""
+def settled_film(run: Run, film: FilmSettings, number: int, minutes: float) -> FilmSettings:
+    """How the film is rendered, and journals that it is so from now on.
+
+    A session that resumes goes on with the film as it was begun, whose frames are kept, unless it is told otherwise.
+    """
+    known = run.journal.find(FilmFitted(round=number))
+    is_made = run.journal.find(SceneRendered(round=number)) is not None
+    is_told = run.limits.render_minutes is not None or run.limits.samples is not None
+    if known is not None and (is_made or not is_told):
+        return FilmSettings(
+            known.width, known.height, known.samples, known.frames, known.seconds, known.lowered
+        )
     event = FilmFitted(
         round=number,
         width=film.width,
@@ -136,17 +219,16 @@ def note_film(run: Run, film: FilmSettings, number: int) -> None:
         samples=film.samples,
         frames=film.frames,
         seconds=round(film.seconds, 1),
-        minutes=minutes_of(run),
+        minutes=minutes,
         lowered=film.lowered,
     )
-    known = run.journal.find(FilmFitted(round=number))
-    is_made = run.journal.find(SceneRendered(round=number)) is not None
-    if known is None or (known.as_row() != event.as_row() and not is_made):
+    if known is None or known.as_row() != event.as_row():
         run.journal.append(event)
+    return film
 
 
-def _preview(run: Run, asked: Mapping[str, Any], film: FilmSettings) -> str:
-    """A small film of few frames in the run's folder; its name, "" where it could not be made."""
+def _preview(run: Run, plan: RenderSettings, film: FilmSettings, frames: int) -> str:
+    """A small film of so many frames in the run's folder; its name, "" where it could not be made."""
     width = min(_PREVIEW_WIDTH, film.width)
     small = {
         "kind": "animation",
@@ -154,10 +236,10 @@ def _preview(run: Run, asked: Mapping[str, Any], film: FilmSettings) -> str:
         "width": width,
         "height": max(4, 2 * round(film.height * width / film.width / 2)),
         "samples": min(4, film.samples),
-        "step": max(1, math.ceil(film.frames / _PREVIEW_FRAMES)),
+        "step": max(1, math.ceil(film.frames / frames)),
         "time_budget": _PREVIEW_SECONDS,
     }
-    outcome = run.use(RUNNER, "render", RENDER, {**asked, **small})
+    outcome = run.use(RUNNER, "render", RENDER, asked_of(plan) | small)
     video = outcome.data.get("video")
     if outcome.failed or not video or not Path(video["path"]).is_file():
         return ""

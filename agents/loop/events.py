@@ -117,12 +117,16 @@ class RunBegan(Event):
 
 
 class SessionBegan(Event):
-    """A process began to work on the run; from here on, films have this time and these samples, if any are given."""
+    """A process began to work on the run; from here on, films have this time and these samples, if any are given.
+
+    ``max_minutes``: the limit of this session.
+    """
 
     type: Literal["sitting.began"] = "sitting.began"
     pid: Int = 0
     render_minutes: Float | None = None
     render_samples: Int | None = None
+    max_minutes: Float | None = None
 
 
 class SceneRestored(Event):

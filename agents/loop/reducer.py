@@ -50,7 +50,8 @@ def after(state: RunState, event: events.Event) -> RunState:  # noqa: PLR0911, P
         case events.SessionBegan():
             minutes = event.render_minutes
             options = state.options if minutes is None else {**state.options, "render_minutes": minutes}
-            return replace(state, sessions=state.sessions + 1, ending=None, options=options)
+            limit = event.max_minutes
+            return replace(state, sessions=state.sessions + 1, ending=None, options=options, limit=limit)
         case events.PlanMade():
             return replace(state, plan=event.plan or state.plan, edit=event.edit or state.edit)
         case events.StageMoved():

@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
+import logging
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
 
-from agents.loop.draft import asked_of, draft, film_frames, minutes_of, note_film
+from agents.loop.draft import asked_of, draft, draft_again, film_frames, settled_film
 from agents.loop.edit.comparison import compared
 from agents.loop.errors import NotRendered
 from agents.loop.events import FilmDecided, FinalReviewed, SceneRendered
+from agents.loop.film_time import is_time_to_mend, minutes_of
 from agents.loop.judging import note_verdict, verify
 from agents.loop.pictures import link, pictures_of
 from agents.loop.run import RENDER, RUNNER
@@ -30,6 +32,7 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Block
 
 T = TypeVar("T")
+_LOG = logging.getLogger(__name__)
 _MENDED = (
     "This is the result after what you asked for was mended. There is no further round: accept, and say in the summary "
     "what is mended, what is not, and what is worse than before."
@@ -41,6 +44,7 @@ class RenderResult:
     """What was rendered: a ``video`` and its frames, or a still; ``path`` is the file in the run's folder.
 
     ``shown``: some of the frames, each with its picture as models see it. ``samples``: of the last frames.
+    ``film``: how it was to be rendered.
     """
 
     path: Path
@@ -48,6 +52,7 @@ class RenderResult:
     text: str
     shown: tuple[tuple[Path, Picture], ...]
     samples: int | None = None
+    film: FilmSettings | None = None
 
 
 class LastStage:
@@ -70,10 +75,17 @@ class LastStage:
         self._mended_if_need_be(self._draft)
         rendering = self._mended_if_need_be(lambda: self._render(1))
         verdict = self._review(rendering, 1)
-        if verdict.verdict == "needs_fix" and self._fix(verdict.instructions):
+        if verdict.verdict == "needs_fix" and self._is_time_to_mend() and self._fix(verdict.instructions):
             rendering = self._render(2)
             self._review(rendering, 2)  # it sees what came of its instructions
         return rendering
+
+    def _is_time_to_mend(self) -> bool:
+        """Whether there is time to mend the scene and to render it again."""
+        if is_time_to_mend(self._run, self._attempt + 1, 1):
+            return True
+        _LOG.info("The limit leaves no time to mend the scene and to render it again.")
+        return False
 
     def _mended_if_need_be(self, work: Callable[[], T]) -> T:
         """What ``work`` gives. If the scene cannot be rendered, a coder hears why, once."""
@@ -98,7 +110,7 @@ class LastStage:
             decision = self._decision(made.shown)
             run.journal.note(FilmDecided(attempt=self._attempt, decision=decision))
             if decision.transition == "mend" and self._fix(decision.instructions):
-                made = draft(run, plan, self._attempt)
+                made = draft_again(run, plan, self._attempt, made)
         self._film = made.film
 
     def _decision(self, shown: Sequence[Block]) -> FilmDecision:
@@ -114,7 +126,8 @@ class LastStage:
         """Renders the scene as planned (without a plan: by its own settings). Raises NotRendered."""
         run, plan, film = self._run, self._plan, self._film
         run.attempt = self._attempt
-        asked: dict[str, Any] = {"kind": plan.kind if plan else "still", "time_budget": minutes_of(run) * 60}
+        minutes = minutes_of(run)
+        asked: dict[str, Any] = {"kind": plan.kind if plan else "still", "time_budget": minutes * 60}
         if plan is not None:
             width, height = plan.resolution
             asked |= asked_of(plan) | {
@@ -123,8 +136,8 @@ class LastStage:
                 "height": height,
             }
         if film is not None:
+            film = settled_film(run, film, number, minutes)
             asked |= {"samples": film.samples, "width": film.width, "height": film.height}
-            note_film(run, film, number)
         outcome = run.use(RUNNER, "render", RENDER, asked)
         if outcome.failed:
             raise NotRendered(f"The scene could not be rendered: {outcome.text}")
@@ -147,7 +160,7 @@ class LastStage:
                 pictures=tuple(run.keep(picture) for _, picture in shown),
             )
         )
-        return RenderResult(result, frames, outcome.text, shown, data.get("samples"))
+        return RenderResult(result, frames, outcome.text, shown, data.get("samples"), film)
 
     def _review(self, rendering: RenderResult, number: int) -> FinalReview:
         """The final reviewer's verdict. One that declines counts as accepting, and the summary says so."""
@@ -155,8 +168,8 @@ class LastStage:
         content: list[Block | str] = [Text(rendering.text)]
         if number > 1:
             content.append(Text(_MENDED))
-        if self._film is not None and self._plan is not None:
-            content.append(Text(quality_of(self._film, self._plan, self._run.samples, rendering.samples)))
+        if rendering.film is not None and self._plan is not None:
+            content.append(Text(quality_of(rendering.film, self._plan, self._run.samples, rendering.samples)))
         if self._run.withdrawn:
             told = "; ".join(map(str, self._run.withdrawn))
             content.append(

@@ -154,12 +154,12 @@ class Run:
         """A safe point: called before everything that costs time or money. Raises Stopping."""
         if self.stop.is_set():
             raise Stopping("You asked the run to stop.")
-        left = self._seconds_left
+        left = self.seconds_left
         if left is not None and left < 0:
             raise Stopping(f"The limit of {self.limits.max_minutes:g} minutes is reached.")
 
     @property
-    def _seconds_left(self) -> float | None:
+    def seconds_left(self) -> float | None:
         """Until the limit, without what is kept back for saving and showing the scene; None without a limit."""
         if (most := self.limits.max_minutes) is None:
             return None
@@ -167,8 +167,8 @@ class Run:
 
     def time_left(self, stage: Stage, attempt: int) -> str:
         """A sentence for the roles; "" in a run without a limit. A session that resumes says the same again."""
-        if self._seconds_left is not None:
-            left = max(0, round(self._seconds_left / 60))
+        if self.seconds_left is not None:
+            left = max(0, round(self.seconds_left / 60))
             self.journal.note(TimeTold(stage=stage, attempt=attempt, minutes=left))
         told = self.journal.find(TimeTold(stage=stage, attempt=attempt))
         return _TIME_LEFT.format(told.minutes) if told else ""

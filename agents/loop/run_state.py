@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Turn
 
 
-DEFAULT_RENDER_MINUTES = 20.0  # for a film, unless the run says otherwise
+DEFAULT_RENDER_MINUTES = 20.0  # for a film, unless the run says otherwise or has a limit
 
 
 @dataclass(frozen=True, slots=True)
@@ -141,6 +141,7 @@ class RunState:
 
     ``plan`` is the scene plan, ``edit`` the plan of an edit, which made the ``changes``. ``planning``: seconds until
     something was built (``is_building``). ``draft``, ``film``: what is known of the film before it is rendered.
+    ``limit``: the minutes that the session may take, if that is limited.
     ``spending`` is by role and stage, ``sent`` are digests of all that models were told. ``began`` and ``latest`` are
     the times of the first and the last row.
     """
@@ -159,6 +160,7 @@ class RunState:
     is_building: bool = False
     rows: int = 0
     sessions: int = 0
+    limit: float | None = None
     plan: ScenePlan | None = None
     edit: EditPlan | None = None
     steps: tuple[Step, ...] = ()
@@ -227,14 +229,19 @@ class RunState:
 
     @property
     def film_seconds(self) -> float | None:
-        """How long a film that is still to come takes, or may at most take; None where none is to come."""
+        """How long a film that is still to come takes, or may at most take; None where none is to come.
+
+        Also before it is fitted to what the session's limit leaves.
+        """
         plan = self.plan.render if self.plan else self.edit.render if self.edit else None
         if plan is None or plan.kind != "animation" or self.renderings:
             return None
         if self.film:
             return self.film.seconds
         minutes = self.options.get("render_minutes")
-        return 60.0 * (minutes if isinstance(minutes, (int, float)) else DEFAULT_RENDER_MINUTES)
+        if isinstance(minutes, (int, float)):
+            return 60.0 * minutes
+        return 60.0 * DEFAULT_RENDER_MINUTES if self.limit is None else None
 
     @property
     def share_done(self) -> float:

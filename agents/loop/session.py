@@ -179,7 +179,12 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
     )
     limits = session.limits
     journal.append(
-        SessionBegan(pid=os.getpid(), render_minutes=limits.render_minutes, render_samples=limits.samples)
+        SessionBegan(
+            pid=os.getpid(),
+            render_minutes=limits.render_minutes,
+            render_samples=limits.samples,
+            max_minutes=limits.max_minutes,
+        )
     )
     (root / "checkpoints").mkdir(exist_ok=True)
     setup = SessionSetup(

@@ -14,6 +14,7 @@ _SECOND_TRIAL_LEAST, _SECOND_TRIAL_MOST = 8, 16  # samples
 _SECOND_TRIAL_SHARE = 0.25  # of the time left
 _SURELY = 0.9  # of the time left, for frames that are taken up again
 _WORTH_RAISING = 1.5  # times the samples
+_WORTH_LOWERING = 0.2  # of a frame's time: fewer samples that save less do not make up for frames that are left out
 _SLACK = 1.05  # a little over the budget is not worth a change
 
 
@@ -79,13 +80,16 @@ class RenderBudget:
     def fit_samples(self, frames: int) -> None:
         """Fits ``samples`` to the ``frames`` that are wanted yet, those that were dropped too.
 
-        They are lowered as far as needed, and raised where there is time for many more.
+        They are lowered as far as needed, unless frames must be left out anyway and that saves little of their time.
+        They are raised where there is time for many more.
         """
         if self.samples is None or self._wanted is None or self._per_sample <= 0:
             return
         left = self.left
         if not self._fits(frames, left):
-            self.samples = min(self.samples, max(LEAST, self._affordable_samples(left / frames)))
+            fewest = self._cost(min(self.samples, LEAST))
+            if fewest * frames <= left * _SLACK or fewest <= self._cost(self.samples) * (1 - _WORTH_LOWERING):
+                self.samples = min(self.samples, max(LEAST, self._affordable_samples(left / frames)))
         elif (more := min(self._wanted, self._affordable_samples(left * _SURELY / frames))) >= (
             self.samples * _WORTH_RAISING
         ):

@@ -1,0 +1,70 @@
+"""How long a film may take: as the user says, else what a session's limit leaves for it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from agents.loop.events import AttemptBegan, PlanMade, RoomTold, SceneRendered
+from agents.loop.run_state import DEFAULT_RENDER_MINUTES
+from simworlds.operating_system import SYSTEM
+
+if TYPE_CHECKING:
+    from agents.loop.run import Run
+
+_REVIEW_SECONDS = 180.0  # for what follows a film: its review, and saving the result
+_REVIEW_SHARE = 0.1  # of the session's limit, which that may take at most
+_LEAST_SECONDS = 60.0  # a film always has so long, be it of few frames
+_PLANNED_SHARE = 1 / 3  # of the limit, which a film is planned with before it is known what is left
+_MENDING_SECONDS = 180.0
+_WORTH = 0.5  # of the time that a film took, for which it is rendered anew
+_SAMPLES_A_CORE_SECOND = 0.15  # million, of a furnished room
+_ROOM = """\
+The film may take {minutes:g} minutes on the {cores} cores here; no GPU is counted on. In that time Cycles makes some \
+{millions:,.0f} million samples (frames × width × height × samples a pixel) of a simple scene, and half as many with \
+glass, volumes or many lights. What is planned beyond that is made smaller."""
+
+
+def minutes_of(run: Run, ahead: float = 0.0, share: float = 1.0) -> float:
+    """How long the film may take.
+
+    Where that is what a limit leaves: ``ahead`` are seconds of work before it, ``share`` is the film's of the rest.
+    """
+    if run.render_minutes is not None:
+        return run.render_minutes
+    left, limit = run.seconds_left, run.limits.max_minutes
+    if left is None or limit is None:
+        return DEFAULT_RENDER_MINUTES
+    left -= min(_REVIEW_SECONDS, limit * 60 * _REVIEW_SHARE) + ahead
+    return round(max(_LEAST_SECONDS, left * share) / 60, 1)
+
+
+def is_time_to_mend(run: Run, attempt: int, number: int) -> bool:
+    """Whether the session has time for another ``attempt``, and to render the film again that was the ``number``-th.
+
+    A session that resumes goes on with an attempt that has begun.
+    """
+    made = run.journal.find(SceneRendered(round=number))
+    begun = run.journal.find(AttemptBegan(stage="render", attempt=attempt))
+    if made is None or made.kind != "animation" or begun is not None or run.seconds_left is None:
+        return True
+    if run.render_minutes is not None:
+        return True
+    return minutes_of(run, _MENDING_SECONDS) * 60 >= (made.seconds or 0.0) * _WORTH
+
+
+def room_for_film(run: Run) -> str:
+    """What a film can have in its time on this machine, in words for who plans it.
+
+    A session that resumes says the same again, also on another machine; "" where the plan was made without it.
+    """
+    if run.journal.find(PlanMade()) is None:
+        limit = run.limits.max_minutes
+        usual = min(
+            DEFAULT_RENDER_MINUTES, round(limit * _PLANNED_SHARE, 1) if limit else DEFAULT_RENDER_MINUTES
+        )
+        minutes, cores = run.render_minutes or usual, SYSTEM.cores()
+        millions = round(minutes * 60 * cores * _SAMPLES_A_CORE_SECOND, -1)
+        text = _ROOM.format(minutes=minutes, cores=cores, millions=millions)
+        run.journal.note(RoomTold(text=text))
+    told = run.journal.find(RoomTold())
+    return told.text if told is not None else ""
