@@ -345,6 +345,13 @@ class FinalReviewed(Event):
     lines: Strs = ()
 
 
+class MendWeighed(Event):
+    """Whether the limit leaves time to mend what the final reviewer found, and to render the film again."""
+
+    type: Literal["mend.weighed"] = "mend.weighed"
+    is_time: bool = True
+
+
 class Edited(Event):
     """What an edit did to the file's data-blocks, see ``agents.loop.edit.untouched.compared``."""
 
@@ -370,7 +377,8 @@ KnownEvent = Annotated[
     RunBegan | SessionBegan | SceneRestored | RunEnded | PlanMade | ReferenceKept
     | StageMoved | TacticMade | TimeTold | RoomTold | AttemptBegan | AttemptEnded
     | Verified | Reviewed | Withdrew | Decided | RolledBack | ModelAsked | ModelAnswered
-    | ToolCalled | ToolAnswered | Drafted | FilmFitted | FilmDecided | SceneRendered | FinalReviewed | Edited,
+    | ToolCalled | ToolAnswered | Drafted | FilmFitted | FilmDecided | SceneRendered | FinalReviewed | MendWeighed
+    | Edited,
     Field(discriminator="type"),
 ]  # fmt: skip
 _KNOWN: TypeAdapter[Event] = TypeAdapter(KnownEvent)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from agents.loop.events import AttemptBegan, PlanMade, RoomTold, SceneRendered
+from agents.loop.events import MendWeighed, PlanMade, RoomTold, SceneRendered
 from agents.loop.run_state import DEFAULT_RENDER_MINUTES
 from simworlds.operating_system import SYSTEM
 
@@ -38,18 +38,19 @@ def minutes_of(run: Run, ahead: float = 0.0, share: float = 1.0) -> float:
     return round(max(_LEAST_SECONDS, left * share) / 60, 1)
 
 
-def is_time_to_mend(run: Run, attempt: int, number: int) -> bool:
-    """Whether the session has time for another ``attempt``, and to render the film again that was the ``number``-th.
+def is_time_to_mend(run: Run, number: int) -> bool:
+    """Whether there is time for a coder, and to render the film again that was rendered as the ``number``-th.
 
-    A session that resumes goes on with an attempt that has begun.
+    A session that resumes does as was decided before it.
     """
-    made = run.journal.find(SceneRendered(round=number))
-    begun = run.journal.find(AttemptBegan(stage="render", attempt=attempt))
-    if made is None or made.kind != "animation" or begun is not None or run.seconds_left is None:
+    made, weighed = run.journal.find(SceneRendered(round=number)), run.journal.find(MendWeighed(round=number))
+    if weighed is not None:
+        return weighed.is_time
+    if made is None or made.kind != "animation" or run.render_minutes is not None or run.seconds_left is None:
         return True
-    if run.render_minutes is not None:
-        return True
-    return minutes_of(run, _MENDING_SECONDS) * 60 >= (made.seconds or 0.0) * _WORTH
+    is_time = minutes_of(run, _MENDING_SECONDS) * 60 >= (made.seconds or 0.0) * _WORTH
+    run.journal.note(MendWeighed(round=number, is_time=is_time))
+    return is_time
 
 
 def room_for_film(run: Run) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import logging
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -32,7 +31,6 @@ if TYPE_CHECKING:
     from simworlds.llm.messages import Block
 
 T = TypeVar("T")
-_LOG = logging.getLogger(__name__)
 _MENDED = (
     "This is the result after what you asked for was mended. There is no further round: accept, and say in the summary "
     "what is mended, what is not, and what is worse than before."
@@ -75,17 +73,11 @@ class LastStage:
         self._mended_if_need_be(self._draft)
         rendering = self._mended_if_need_be(lambda: self._render(1))
         verdict = self._review(rendering, 1)
-        if verdict.verdict == "needs_fix" and self._is_time_to_mend() and self._fix(verdict.instructions):
+        needs_fix = verdict.verdict == "needs_fix" and is_time_to_mend(self._run, 1)
+        if needs_fix and self._fix(verdict.instructions):
             rendering = self._render(2)
             self._review(rendering, 2)  # it sees what came of its instructions
         return rendering
-
-    def _is_time_to_mend(self) -> bool:
-        """Whether there is time to mend the scene and to render it again."""
-        if is_time_to_mend(self._run, self._attempt + 1, 1):
-            return True
-        _LOG.info("The limit leaves no time to mend the scene and to render it again.")
-        return False
 
     def _mended_if_need_be(self, work: Callable[[], T]) -> T:
         """What ``work`` gives. If the scene cannot be rendered, a coder hears why, once."""

@@ -54,6 +54,8 @@ def format_event(event: events.Event, run_state: RunState) -> list[str]:  # noqa
         case events.FilmDecided(decision=decision) if decision:
             wanted = "go on" if decision.transition == "film" else "mend first"
             return [f"Before the film: {wanted}: {shortened(decision.reason, _WORDS)}"]
+        case events.MendWeighed(is_time=False):
+            return ["There is no time left to mend that and to render again"]
         case events.SceneRendered():
             frames = f", {counted(event.frames, 'frame')}" if event.frames and event.frames > 1 else ""
             return [f"Rendered: {event.path}{frames}, {format_time(event.seconds)}"]

@@ -14,7 +14,7 @@ _SECOND_TRIAL_LEAST, _SECOND_TRIAL_MOST = 8, 16  # samples
 _SECOND_TRIAL_SHARE = 0.25  # of the time left
 _SURELY = 0.9  # of the time left, for frames that are taken up again
 _WORTH_RAISING = 1.5  # times the samples
-_WORTH_LOWERING = 0.2  # of a frame's time: fewer samples that save less do not make up for frames that are left out
+_WORTH_LOWERING = 0.2  # of a frame's time; where fewer samples save less, frames are left out instead
 _SLACK = 1.05  # a little over the budget is not worth a change
 
 
