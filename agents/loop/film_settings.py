@@ -10,6 +10,7 @@ _FEWEST_SAMPLES = 4
 _LEAST_SCALE = 0.5  # of the planned sides
 _SHARE = 0.9  # of the time is planned with: later frames may take longer than those that were timed
 _WORTH = 0.2  # of a frame's time; what can save less is left as it is, and frames are left out instead
+_WORTH_WITHOUT_ROOM = 0.5  # the same of a smaller picture, where what is fixed alone takes too long
 
 
 @dataclass(frozen=True, slots=True)
@@ -115,7 +116,8 @@ def _fewer_samples(frame: FrameTime, each: float, most: int, least: int, scale: 
 def _smaller(frame: FrameTime, each: float, samples: int, scale: float) -> float:
     """The scale at which a frame takes ``each`` seconds, or the least; ``scale`` if that saves too little."""
     now = frame.seconds(samples, scale)
-    if now <= each or frame.seconds(samples, _LEAST_SCALE) > now * (1 - _WORTH):
+    worth = _WORTH if frame.fixed < each else _WORTH_WITHOUT_ROOM
+    if now <= each or frame.seconds(samples, _LEAST_SCALE) > now * (1 - worth):
         return scale
     wanted = math.sqrt(max(0.0, each - frame.fixed) / (frame.seconds(samples) - frame.fixed))
     return min(scale, max(_LEAST_SCALE, wanted))

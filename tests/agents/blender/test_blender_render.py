@@ -553,6 +553,14 @@ def test_frames_are_dropped_only_at_the_least_samples() -> None:
     assert clock.now <= 33
 
 
+def test_samples_that_take_little_of_the_time_are_kept_where_frames_are_dropped_anyway() -> None:
+    clock = Clock(2.0, 0.01)
+    made = paced(clock, 30, 32, 24)
+    assert set(made) == {32}
+    assert 10 <= len(made) <= 13
+    assert clock.now <= 33
+
+
 def test_samples_are_raised_again_where_later_frames_take_half_the_time() -> None:
     clock = Clock(1.0, 1.0)
     budget = RenderBudget(600, 12, clock)

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import json
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import crates
 import pytest
 import teams
 from run_sessions import answered, asked_of, go_on, seat, sit
-from team import DONE, Team, call, run, whose
+from team import DONE, NEEDS_FIX, Team, call, run, whose
 
-from agents.loop import draft
-from agents.loop.film_settings import FilmSettings, FrameTime, fitted
+from agents.loop import draft, film_time
+from agents.loop.events import SceneRendered
+from agents.loop.film_settings import FilmSettings, FrameTime, TimedFrame, fitted
+from agents.loop.journal import Journal
 from agents.loop.options import RunLimits
 from agents.loop.reducer import read_run_state
 from agents.loop.rendering import quality_of
@@ -20,7 +23,7 @@ from agents.plan.scene import RenderSettings
 from agents.views.report.page import write_report
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
     from pathlib import Path
 
     from fake_messages_api import FakeMessagesAPI
@@ -33,20 +36,20 @@ PLANNED = FilmSettings(960, 540, 64, 100, 0.0)
 
 
 def test_a_film_that_fits_is_left_as_it_is_planned() -> None:
-    film = fitted(PLANNED, FrameTime(0.5, 0.05), 600)
+    film = fitted(PLANNED, FrameTime(0.0, 0.5, 0.05), 600)
     assert (film.width, film.height, film.samples, film.lowered) == (960, 540, 64, "")
     assert film.seconds == pytest.approx(370)
 
 
 def test_samples_are_lowered_first_and_that_is_said() -> None:
-    film = fitted(PLANNED, FrameTime(0.5, 0.1), 300)
+    film = fitted(PLANNED, FrameTime(0.2, 0.3, 0.1), 300)
     assert (film.width, film.samples) == (960, 22)
     assert film.lowered == "22 samples instead of 64"
     assert film.seconds <= 300
 
 
 def test_then_the_picture_gets_smaller_and_stays_even() -> None:
-    film = fitted(PLANNED, FrameTime(1.0, 0.2), 150)
+    film = fitted(PLANNED, FrameTime(0.0, 1.0, 0.2), 150)
     assert film.samples == 16
     assert 480 < film.width < 960
     assert film.width % 2 == film.height % 2 == 0
@@ -55,10 +58,31 @@ def test_then_the_picture_gets_smaller_and_stays_even() -> None:
 
 
 def test_what_fits_at_no_size_says_that_frames_will_be_left_out() -> None:
-    film = fitted(PLANNED, FrameTime(20.0, 5.0), 100)
+    film = fitted(PLANNED, FrameTime(0.0, 20.0, 5.0), 100)
     assert (film.width, film.height, film.samples) == (480, 270, 4)
-    assert "one frame in " in film.lowered
+    assert film.lowered.endswith("about 10 of 100 frames")
     assert film.seconds == 100
+
+
+def test_no_pixels_or_samples_are_given_up_where_that_saves_little() -> None:
+    film = fitted(PLANNED, FrameTime(10.0, 1.0, 0.015), 600)
+    assert (film.width, film.height, film.samples) == (960, 540, 64)
+    assert film.lowered == "about 50 of 100 frames"
+    assert film.seconds == 600
+
+
+def test_samples_that_take_most_of_the_time_are_lowered_though_the_picture_is_not() -> None:
+    film = fitted(PLANNED, FrameTime(10.0, 0.5, 0.2), 1000)
+    assert (film.width, film.samples) == (960, 16)
+    assert film.lowered == "16 samples instead of 64, about 72 of 100 frames"
+
+
+def test_a_busy_moment_costs_no_quality_that_there_is_time_for() -> None:
+    quiet = FrameTime(0.0, 1.0, 0.1)
+    film = fitted(PLANNED, quiet, 400)
+    assert fitted(PLANNED, quiet, 400, quiet.times(2.5)) == film, "the fewest samples have time yet"
+    smaller = fitted(PLANNED, quiet, 400, quiet.times(4))
+    assert (smaller.width < film.width, smaller.samples) == (True, film.samples)
 
 
 @pytest.mark.parametrize(
@@ -73,7 +97,50 @@ def test_what_fits_at_no_size_says_that_frames_will_be_left_out() -> None:
 def test_two_frames_tell_what_samples_cost(
     few: tuple[int, float], more: tuple[int, float], cost: float
 ) -> None:
-    assert FrameTime.of(few, more).seconds(64) == pytest.approx(cost)
+    assert FrameTime.of(TimedFrame(*few), TimedFrame(*more)).seconds(64) == pytest.approx(cost)
+
+
+@pytest.mark.parametrize(
+    "time", [FrameTime(7.0, 0.5, 0.3), FrameTime(0.2, 7.0, 0.3), FrameTime(3.0, 3.0, 0.0)]
+)
+def test_a_small_frame_tells_what_is_fixed(time: FrameTime) -> None:
+    few, more = (TimedFrame(samples, time.seconds(samples)) for samples in (4, 12))
+    told = FrameTime.of(few, more, TimedFrame(4, time.seconds(4, 0.25), 1 / 16))
+    if time.per_sample:
+        assert told.seconds(32, 0.5) == pytest.approx(time.seconds(32, 0.5))
+        assert told.fixed == pytest.approx(time.fixed)
+    else:
+        assert told.seconds(12) == pytest.approx(time.seconds(12)), "all of it may be the samples'"
+
+
+def test_a_small_frame_of_a_busy_moment_takes_no_longer_than_a_whole_one() -> None:
+    told = FrameTime.of(TimedFrame(4, 2.0), TimedFrame(12, 4.0), TimedFrame(4, 30.0, 1 / 16))
+    assert (told.fixed, told.per_picture) == (1.0, 0.0)
+
+
+# Its time
+
+
+@dataclass
+class Limited:
+    """What of a run tells how long its film may take, and how it was begun."""
+
+    limits: RunLimits
+    seconds_left: float | None = None
+    render_minutes: float | None = None
+    journal: Journal | None = None
+
+    def minutes(self, ahead: float = 0.0, share: float = 1.0) -> float:
+        return film_time.minutes_of(self, ahead, share)  # type: ignore[arg-type]
+
+
+def test_a_film_has_what_the_limit_leaves_but_for_the_review() -> None:
+    assert Limited(RunLimits()).minutes() == 20
+    assert Limited(RunLimits(max_minutes=85), 43 * 60).minutes() == 40
+    assert Limited(RunLimits(max_minutes=85), 43 * 60).minutes(120, 0.5) == 19
+    assert Limited(RunLimits(max_minutes=10), 6 * 60).minutes() == 5
+    assert Limited(RunLimits(max_minutes=10), -5).minutes() == 1, "a film of few frames, rather than none"
+    assert Limited(RunLimits(max_minutes=85), 43 * 60, render_minutes=7).minutes() == 7
 
 
 def test_a_film_planned_in_eevee_is_drawn_by_what_drew_its_stills() -> None:
@@ -105,6 +172,42 @@ def test_one_sentence_tells_how_a_films_samples_came_about(
     assert quality_of(film, plan, asked, made) == f"The film's samples: {told}"
 
 
+@pytest.fixture
+def journal(tmp_path: Path) -> Iterator[Journal]:
+    journal = Journal(tmp_path / "journal.jsonl")
+    yield journal
+    journal.close()
+
+
+def test_a_film_is_not_mended_where_the_limit_leaves_too_little_and_that_stays_so(journal: Journal) -> None:
+    def is_time(left: float | None, number: int = 1) -> bool:
+        run = Limited(RunLimits(max_minutes=85), left, journal=journal)
+        return film_time.is_time_to_mend(run, number)  # type: ignore[arg-type]
+
+    for number in (1, 2):
+        journal.note(SceneRendered(round=number, kind="animation", seconds=1000.0))
+    assert is_time(None)
+    assert not is_time(600)
+    assert not is_time(6000), "a session that resumes finds what was decided"
+    assert is_time(6000, 2)
+    assert is_time(600, 3), "no film"
+
+
+def test_a_film_goes_on_as_it_was_begun_unless_the_session_is_told_otherwise(journal: Journal) -> None:
+    def settled(film: FilmSettings, minutes: float, **limits: float) -> FilmSettings:
+        run = Limited(RunLimits.model_validate(limits), journal=journal)
+        return draft.settled_film(run, film, 1, minutes)  # type: ignore[arg-type]
+
+    begun = FilmSettings(764, 430, 16, 84, 1000.0, "16 samples instead of 32")
+    other = FilmSettings(480, 270, 8, 84, 170.0)
+    assert settled(begun, 31.4) == begun
+    assert settled(other, 20) == begun
+    assert settled(other, 3, render_minutes=3) == other
+    journal.note(SceneRendered(round=1, kind="animation"))
+    assert settled(begun, 40, render_minutes=40) == other, "it is made"
+    assert [row["minutes"] for row in journal.rows if row["type"] == "film.fitted"] == [31.4, 3]
+
+
 # In a run
 
 
@@ -114,6 +217,11 @@ def moving(**more: Any) -> crates.Plan:
     return crates.standing(frame_end=4, render=settings, **more)
 
 
+DARKER = """\
+import bpy
+bpy.data.materials["Paint"].diffuse_color = (0.1, 0.1, 0.1, 1)
+"""
+PAINTED = 'planks.data.materials.append(bpy.data.materials.new("Paint"))\n'
 CODE = {**crates.CODE, "modeling": crates.STANDING + "\nscene.frame_end = 4\n"}
 
 
@@ -138,8 +246,8 @@ def drafted(home: Path, tmp_path_factory: pytest.TempPathFactory) -> Played:
 def test_before_a_film_frames_are_timed_and_shown_as_the_film_will_be(drafted: Played) -> None:
     assert drafted.ended.how == "done"
     asked = renders(drafted)
-    timing, stills, preview, film = asked[:2], asked[2:6], asked[6], asked[-1]
-    assert [one["samples"] for one in timing] == [4, 6]
+    timing, stills, preview, film = asked[:3], asked[3:7], asked[7], asked[-1]
+    assert [(one["width"], one["samples"]) for one in timing] == [(64, 4), (64, 6), (16, 4)]
     assert [one["frame"] for one in stills] == [1, 2, 3, 4]
     kind = ("engine", "denoise", "width", "height", "samples")
     assert {tuple(one[name] for name in kind) for one in (*stills, film)} == {("cycles", True, 64, 36, 6)}
@@ -159,6 +267,44 @@ def test_the_planner_sees_the_stills_once_and_may_have_something_mended(drafted:
     assert drafted.the("film.decided")["decision"]["transition"] == "mend"
     assert drafted.the("verified", stage="render", attempt=2)["ok"]
     assert [row["round"] for row in drafted.of("rendered")] == [1]
+
+
+@pytest.mark.blender
+def test_after_a_mend_that_may_cost_time_frames_are_timed_anew_and_one_is_shown(drafted: Played) -> None:
+    after = renders(drafted)[8:-1]
+    assert [(one["name"], one.get("step")) for one in after] == [
+        *[("timing", None)] * 3,
+        ("draft 3", None),
+        ("draft", 1),
+    ]
+    first, second = drafted.of("drafted")
+    assert (len(first["pictures"]), len(second["pictures"])) == (4, 1)
+
+
+@pytest.mark.blender
+def test_a_film_has_what_the_limit_leaves_and_a_colour_does_not_change_what_it_takes(
+    home: Path, tmp_path: Path
+) -> None:
+    mend = {"transition": "mend", "reason": "Too pale.", "instructions": "Make the crate darker."}
+    team = Team(
+        plan=moving(),
+        code={**CODE, "modeling": CODE["modeling"] + PAINTED},
+        film=mend,
+        coder={"render": (run(DARKER), DONE)},
+        final=(NEEDS_FIX,),
+    )
+    with answered(home, team):
+        played = sit(tmp_path / "run", seat(RunLimits(max_minutes=30)))
+    assert played.ended.how == "done", played.ended.why
+    first, again = played.of("film.fitted")
+    assert 20 < first["minutes"] < 25
+    changed = [row["data"]["changed"] for row in played.of("tool.answered", role="coder", stage="render")]
+    assert changed[0] == {"materials": {"changed": ["Paint"]}}
+    assert played.the("mend.weighed")["is_time"]
+    asked = renders(played)
+    assert [one.get("name") for one in asked[8:11]] == ["timing", "draft 3", "draft"]
+    assert asked[11]["time_budget"] == pytest.approx(60 * first["minutes"])
+    assert again["minutes"] < first["minutes"]
 
 
 @pytest.mark.whole

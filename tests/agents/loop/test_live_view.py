@@ -190,6 +190,8 @@ def test_the_time_of_the_film_is_known_from_the_plan_on_and_follows_a_resume() -
     assert describe_time_left(planned, Now(planned.seconds)) == "at most 20 min for the film"
     more = after(planned, read_event({"type": "sitting.began", "pid": 1, "render_minutes": 45.0}))
     assert describe_time_left(more, Now(more.seconds)) == "at most 45 min for the film"
+    limited = after(planned, read_event({"type": "sitting.began", "pid": 1, "max_minutes": 85.0}))
+    assert describe_time_left(limited, Now(limited.seconds)) == "", "what the limit leaves is not known yet"
     assert describe_time_left(until("run.ended"), Now(377.0)) == ""
 
 
