@@ -89,6 +89,7 @@ def fitted(
     samples = _fewer_samples(frame, each, samples, _FEWEST_SAMPLES, scale)
     if busy is not None:
         scale = _smaller(busy, each, min(samples, _FEWEST_SAMPLES), scale)
+        samples = max(samples, min(planned.samples, _affordable(frame, each, scale)))
     width, height = planned.width, planned.height
     if scale < 1:
         width, height = (max(4, 2 * round(side * scale / 2)) for side in (width, height))
@@ -109,8 +110,14 @@ def _fewer_samples(frame: FrameTime, each: float, most: int, least: int, scale: 
     now = frame.seconds(most, scale)
     if now <= each or most <= least or frame.seconds(least, scale) > now * (1 - _WORTH):
         return most
-    affordable = math.floor((each - frame.seconds(0, scale)) / (frame.per_sample * scale * scale))
-    return max(least, min(most, affordable))
+    return max(least, min(most, _affordable(frame, each, scale)))
+
+
+def _affordable(frame: FrameTime, each: float, scale: float) -> int:
+    """The samples that a frame of ``each`` seconds has time for; none where samples take no time that could be seen."""
+    if frame.per_sample <= 0:
+        return 0
+    return math.floor((each - frame.seconds(0, scale)) / (frame.per_sample * scale * scale))
 
 
 def _smaller(frame: FrameTime, each: float, samples: int, scale: float) -> float:

@@ -82,7 +82,9 @@ def test_a_busy_moment_costs_no_quality_that_there_is_time_for() -> None:
     film = fitted(PLANNED, quiet, 400)
     assert fitted(PLANNED, quiet, 400, quiet.times(2.5)) == film, "the fewest samples have time yet"
     smaller = fitted(PLANNED, quiet, 400, quiet.times(4))
-    assert (smaller.width < film.width, smaller.samples) == (True, film.samples)
+    assert smaller.width < film.width
+    assert film.samples < smaller.samples < PLANNED.samples, "of which some give way while it is rendered"
+    assert quiet.times(4).seconds(4, smaller.width / PLANNED.width) * PLANNED.frames <= 400
 
 
 @pytest.mark.parametrize(
