@@ -283,6 +283,12 @@ class BaseReader:
             WHERE target = ? AND target != '' AND kind = 'property' AND type = 'pointer' ORDER BY path"""
         return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
+    def pointers_called(self, name: str, cls: str) -> list[str]:
+        """Paths of the pointer properties of this name whose value is a class, given by its name."""
+        sql = """SELECT path FROM symbols
+            WHERE name = ? AND kind = 'property' AND target = ? AND type = 'pointer' ORDER BY path"""
+        return [row[0] for row in self.rows(sql, name, cls)]
+
     def enum_owners(self, key: str) -> list[tuple[str, str, str]]:
         """(owner, identifier, name) for every enumeration that has the item."""
         return self.rows("SELECT owner, identifier, name FROM enum_items WHERE key = ?", key)

@@ -331,11 +331,7 @@ class MarkdownRenderer:
         name = cls.reached.rpartition(".")[2]
         if not name.isidentifier():
             return ""
-        holders = (
-            self.reader.symbol(entry.path)
-            for entry in self.reader.pointing_at(cls.name)
-            if entry.name == name
-        )
+        holders = map(self.reader.symbol, self.reader.pointers_called(name, cls.name))
         empty = next(
             (holder for holder in holders if holder and empty_when_new(holder) and fillers(holder)), None
         )
