@@ -381,7 +381,7 @@ class Observer:
                 if getattr(struct, field.name) != item:
                     continue
                 mode = f"{field.name}={item!r}"
-                self.compare(struct, label, mode, field, before)
+                has_changed_others = self.compare(struct, label, mode, field, before)
                 if empty:
                     now = self.empty_pointers(struct)
                     filled = {path for path in empty if not now[path]}
@@ -391,7 +391,9 @@ class Observer:
                 for part in self.belonging(struct):
                     if part.as_pointer() not in known:
                         self.look(f"{label} with {mode}", part, is_new=is_new)
-                before = self.restored(struct, before)
+                if has_changed_others:
+                    before = self.restored(struct, before)
+            before = self.restored(struct, before)
 
     def note_filled(self, struct, paths, call):
         """Notes that a call filled pointers which were None.
@@ -406,10 +408,12 @@ class Observer:
             self.pointers.add_filler(path, name + call)
 
     def compare(self, struct, label, mode, changed, before):
-        """Notes the properties that the mode has changed."""
+        """Notes the properties that the mode has changed. Returns whether there are any."""
+        found = False
         for field, value in self.read(struct).items():
             known = field in before and not field.is_chosen
             if field is not changed and known and value != before[field] and not same(value, before[field]):
+                found = True
                 rows = self.in_modes.setdefault(field.path, [])
                 for row in rows:
                     if row[1] == mode and same(row[0], value):
@@ -417,6 +421,7 @@ class Observer:
                         break
                 else:
                     rows.append((plain(value), mode, [label]))
+        return found
 
     def restored(self, struct, before):
         """Gives an instance its first values back. Returns those that it has: some cannot be given."""
