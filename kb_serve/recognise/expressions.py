@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _FEW = 3
+_FILE_ENDINGS = frozenset(
+    "abc avi blend exr fbx glb gltf hdr jpg json mkv mov mp4 obj ply png py stl tif usd usdc vdb wav zip".split()  # noqa: SIM905
+)
 _LONG = 12  # letters from which on a name is corrected without knowing what it belongs to
 _BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
@@ -43,6 +46,11 @@ _NOT_API = frozenset({*dir(builtins), "NoneType"})
 def _is_api(chain: Chain) -> bool:
     """Whether a chain may be Blender's; ``object.location`` is, although Python has an ``object`` too."""
     return chain.root not in _NOT_API or bool(chain.attributes)
+
+
+def _is_file_name(chain: Chain) -> bool:
+    """Whether a chain is a name and an ending that files have: ``file.blend``."""
+    return len(chain.steps) == 1 and set(chain.attributes) <= _FILE_ENDINGS and chain.steps[0].kind == "attr"
 
 
 class Expressions:
@@ -84,7 +92,7 @@ class Expressions:
                 and not self._misspelt(chain, readings[0])
             ):
                 self._reading(chain, readings, later, recognition)
-            elif not self._corrected(chain, readings, later, recognition):
+            elif not _is_file_name(chain) and not self._corrected(chain, readings, later, recognition):
                 if broken:
                     self._broken_off(chain, broken, later, recognition)
                 self._loose_name(chain, prose, recognition)

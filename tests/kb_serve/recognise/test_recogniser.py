@@ -506,3 +506,16 @@ def test_what_works_is_not_called_gone(kb: KnowledgeBase, reader: BaseReader) ->
     lines += [f"cam.{entry.name} = x" for entry in reader.members(f"{TYPES}Object").values()]
     lines += [f"mat.{entry.name}" for entry in reader.members(f"{TYPES}Material").values()]
     assert [line for line in lines if any("does not exist" in note for note in kb.query(line).notes)] == []
+
+
+@pytest.mark.parametrize(
+    "query", ["blender -b file.blend -a", "render scene.blend to out.png from the shell"]
+)
+def test_names_of_files_are_not_taken_for_code(kb: KnowledgeBase, query: str) -> None:
+    answer = kb.query(query)
+    assert answer.notes == ()
+    assert "bpy.types.CacheFile" not in [hit.id for hit in answer.hits[:1]]
+
+
+def test_an_attribute_that_is_called_as_an_ending_is_known(kb: KnowledgeBase) -> None:
+    assert kb.query("brush.blend").hits[0].id == "bpy.types.Brush.blend"
