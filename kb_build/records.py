@@ -9,7 +9,7 @@ from __future__ import annotations
 import hashlib
 from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
-from typing import TYPE_CHECKING, Any, Literal, cast, get_args
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast, get_args
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -214,6 +214,20 @@ class Page:
     def content_hash(self) -> str:
         """SHA-256 of the text with its white space folded: equal for equal content, whatever the layout."""
         return hashlib.sha256(" ".join(self.text.split()).encode(errors="replace")).hexdigest()
+
+
+class PanelCondition(NamedTuple):
+    """What Blender's panels ask of a setting (``gate``) before they let ``path`` be set, as text: ``on``, ``'SUN'``.
+
+    Of those with one ``clause`` any is enough; all clauses must hold. ``hides``: they do not show it otherwise,
+    instead of greying it out.
+    """
+
+    path: str
+    clause: int
+    gate: str
+    test: str
+    hides: bool
 
 
 @dataclass(frozen=True, slots=True)

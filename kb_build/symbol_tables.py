@@ -17,8 +17,7 @@ from kb_build.usage.examples import SymbolUsage
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kb_build.panels.conditions import PanelCondition
-    from kb_build.records import Page, Symbol
+    from kb_build.records import Page, PanelCondition, Symbol
     from kb_build.usage.examples import Uses
 
     Row = tuple[object, ...]

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from kb_build.records import Page, Symbol, page_from_json, symbol_from_json
+from kb_build.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import NoBase, open_read_only, unpack
 from kb_serve.errors import BadQuery, BaseMissing, BaseUnreadable
 from kb_serve.kept_rows import KeptRows
@@ -90,19 +90,6 @@ class Use:
     file: str
     line: int
     code: str
-
-
-class PanelTest(NamedTuple):
-    """What Blender's panels ask of a setting before they let a property be set: ``gate`` must be ``test``.
-
-    Of those with one ``clause`` any is enough. ``hides``: the property is not shown otherwise, instead of greyed out.
-    """
-
-    path: str
-    clause: int
-    gate: str
-    test: str
-    hides: bool
 
 
 _ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, line"
@@ -350,11 +337,11 @@ class BaseReader:
         """How often Blender's own scripts use each of some symbols; those that they do not use are left out."""
         return dict(self.rows_of("SELECT path, uses FROM use_counts WHERE path", paths))
 
-    def panel_tests(self, path: str) -> list[PanelTest]:
+    def panel_tests(self, path: str) -> list[PanelCondition]:
         """What Blender's panels ask before they let a property be set, by clause."""
         sql = "SELECT path, clause, gate, test, hides FROM panel_conditions WHERE path = ? ORDER BY clause"
         return [
-            PanelTest(path, clause, gate, test, bool(hides))
+            PanelCondition(path, clause, gate, test, bool(hides))
             for path, clause, gate, test, hides in self.rows(sql, path)
         ]
 

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from kb_build.panels.formulas import TRUE_VALUE, Clause, Need, follows
+from kb_build.records import PanelCondition
 from kb_build.schema import TEST_OFF, TEST_ON
 
 if TYPE_CHECKING:
@@ -27,20 +28,6 @@ _SHOWN_BY_TEMPLATES = frozenset(
 )  # fmt: skip
 _PANELS_IN_C = frozenset({"Modifier", "StripModifier", "ShaderFx", "Node", "NodeSocket"})
 _OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">", "==": "!=", "!=": "=="}
-
-
-class PanelCondition(NamedTuple):
-    """What Blender's panels ask of a setting (``gate``) before they let ``path`` be set, as text: ``on``, ``'SUN'``.
-
-    Of those with one ``clause`` any is enough; all clauses must hold. ``hides``: they do not show it otherwise,
-    instead of greying it out.
-    """
-
-    path: str
-    clause: int
-    gate: str
-    test: str
-    hides: bool
 
 
 def panel_conditions(found: Mapping[str, Gating], symbols: Symbols) -> Iterator[PanelCondition]:

@@ -62,22 +62,22 @@ FALSE = Either()
 
 def all_of(*parts: Formula) -> Formula:
     """The conjunction."""
-    kept: dict[Formula, None] = {}
-    for part in parts:
-        if part == FALSE:
-            return FALSE
-        kept.update(dict.fromkeys(part.parts if isinstance(part, All) else (part,)))
-    return next(iter(kept)) if len(kept) == 1 else All(tuple(kept))
+    return _combined(All, FALSE, parts)
 
 
 def either_of(*parts: Formula) -> Formula:
     """The disjunction."""
+    return _combined(Either, TRUE, parts)
+
+
+def _combined(kind: type[All | Either], decisive: Formula, parts: Iterable[Formula]) -> Formula:
+    """Parts in one formula of a ``kind``, flat and each once; ``decisive`` if that is among them."""
     kept: dict[Formula, None] = {}
     for part in parts:
-        if part == TRUE:
-            return TRUE
-        kept.update(dict.fromkeys(part.parts if isinstance(part, Either) else (part,)))
-    return next(iter(kept)) if len(kept) == 1 else Either(tuple(kept))
+        if part == decisive:
+            return decisive
+        kept.update(dict.fromkeys(part.parts if isinstance(part, kind) else (part,)))
+    return next(iter(kept)) if len(kept) == 1 else kind(tuple(kept))
 
 
 def negated(formula: Formula) -> Formula:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.api import Api
     from kb_build.flow.types import Resolution
-    from kb_build.panels.conditions import PanelCondition
+    from kb_build.records import PanelCondition
 
 MOST_EXAMPLES = 3  # of one symbol
 _MOST_LINES = 3

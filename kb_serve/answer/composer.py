@@ -201,15 +201,14 @@ class AnswerComposer:
 
     def _others(self, hits: Sequence[Hit], rows: Sequence[RankedId]) -> Iterator[AnswerBlock]:
         """A line for each further hit: symbols, then pages."""
-        symbols = [
-            f"- {self._line(hit, row)}" for hit, row in zip(hits, rows, strict=True) if not _is_page(hit)
-        ]
-        pages = [f"- {self._line(hit, row)}" for hit, row in zip(hits, rows, strict=True) if _is_page(hit)]
-        for title, lines in (("In Python", symbols), ("Pages", pages)):
+        further = list(zip(hits, rows, strict=True))
+        for title, name, are_pages in (
+            ("In Python", "further names", False),
+            ("Pages", "further pages", True),
+        ):
+            lines = [f"- {self._line(hit, row)}" for hit, row in further if _is_page(hit) == are_pages]
             if lines:
-                yield AnswerBlock(
-                    f"**{title}**\n" + "\n".join(lines), f"further {'names' if lines is symbols else 'pages'}"
-                )
+                yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), name)
 
     def _line(self, hit: Hit, row: RankedId) -> str:
         entry = None if _is_page(hit) else self._reader.entry(hit.id)

@@ -12,8 +12,8 @@ from kb_serve.reader import TYPES
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_build.records import Symbol
-    from kb_serve.reader import BaseReader, PanelTest
+    from kb_build.records import PanelCondition, Symbol
+    from kb_serve.reader import BaseReader
 
 _MOST_SWITCHED = 8
 
@@ -34,7 +34,7 @@ def panel_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
         yield f"while it is off, Blender's panels grey out or hide {', '.join(names[:_MOST_SWITCHED])}{more}"
 
 
-def _joined(clauses: Sequence[Sequence[PanelTest]], owners: set[str], reader: BaseReader) -> str:
+def _joined(clauses: Sequence[Sequence[PanelCondition]], owners: set[str], reader: BaseReader) -> str:
     """Clauses as one condition."""
     told: list[str] = []
     for rows in clauses:
@@ -43,7 +43,7 @@ def _joined(clauses: Sequence[Sequence[PanelTest]], owners: set[str], reader: Ba
     return " and ".join(told)
 
 
-def _told(row: PanelTest, owners: set[str], reader: BaseReader, *, alone: bool) -> str:
+def _told(row: PanelCondition, owners: set[str], reader: BaseReader, *, alone: bool) -> str:
     owner, _, name = row.gate.rpartition(".")
     gate = name if owner in owners else f"{owner.rpartition('.')[2]}.{name}"
     is_word = row.test[0].isalpha() or row.test[0] == "'"
@@ -51,7 +51,7 @@ def _told(row: PanelTest, owners: set[str], reader: BaseReader, *, alone: bool) 
     return text + (_when_new(row, reader) if alone else "")
 
 
-def _when_new(row: PanelTest, reader: BaseReader) -> str:
+def _when_new(row: PanelCondition, reader: BaseReader) -> str:
     """That a new one has a switch in the other position."""
     gate = reader.symbol(row.gate) if row.test in {TEST_ON, TEST_OFF} else None
     value = usual_default(gate) if gate else None

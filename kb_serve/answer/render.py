@@ -172,20 +172,22 @@ def _names(names: Iterable[str]) -> str:
 
 def _call_without(signature: str, names: Collection[str]) -> str:
     """An operator's call without some of its arguments."""
+    if not names:
+        return signature
     try:
         call = ast.parse(signature, mode="eval").body
     except SyntaxError:
         return signature
-    if not names or not isinstance(call, ast.Call):
+    if not isinstance(call, ast.Call):
         return signature
     call.keywords = [keyword for keyword in call.keywords if keyword.arg not in names]
     return ast.unparse(call)
 
 
 def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
+    aside = _of_file_browser(symbol)
     if symbol.parameters:
         defaults = _written_defaults(symbol.signature) if symbol.kind == "function" else {}
-        aside = _of_file_browser(symbol)
         lines = [
             _parameter_line(item, defaults.get(item.name, ""))
             for item in symbol.parameters
@@ -198,7 +200,7 @@ def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
         lines = "\n".join(map(_parameter_line, symbol.returns))
         yield AnswerBlock(f"**Returns**\n{lines}", "returns")
     for parameter in symbol.parameters:
-        items = () if parameter.name in _of_file_browser(symbol) else parameter.enum_items
+        items = () if parameter.name in aside else parameter.enum_items
         if len(items) > _NAMED_ITEMS or (len(items) > 3 and any(item.description for item in items)):
             yield AnswerBlock(
                 f"**Values of `{parameter.name}`**\n{_items(items)}",
