@@ -127,14 +127,15 @@ def build(
         ahead.start()
         extract = _extract(work)
         ahead.join()
-        with (
-            _script_usage(work, extract) as scripts,
-            beside(partial(_removed_symbols, extract)) as removed_symbols,
-        ):
+        # While pages are read, one process reads scripts: what is left of that is done while the index is made.
+        with _script_usage(work, extract, jobs=1 if reader.is_reading else work.options.jobs) as scripts:
             pages = _pages(work, reader.result(), extract)
             run = _summaries(work, pages)
             meta = _meta(work, extract, pages, run) | {"fingerprint": fingerprint}
-            with beside(partial(_symbol_tables, extract, pages, scripts)) as tables:
+            with (
+                beside(partial(_removed_symbols, extract)) as removed_symbols,
+                beside(partial(_symbol_tables, extract, pages, scripts)) as tables,
+            ):
                 from kb_build.blender.buttons import operator_buttons  # noqa: PLC0415 - not when nothing changed
                 from kb_build.store import Contents, write_base  # noqa: PLC0415 - likewise
 
@@ -276,8 +277,10 @@ def _extract(work: _Build) -> Extract:
 
 
 @contextmanager
-def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], ScriptUsage]]:
-    """Reads Blender's own scripts while pages are read; gives a function that waits for the uses of symbols there."""
+def _script_usage(work: _Build, extract: Extract, *, jobs: int) -> Generator[Callable[[], ScriptUsage]]:
+    """Reads Blender's own scripts in ``jobs`` processes meanwhile; gives a function that waits for the uses of symbols
+    there.
+    """
     from kb_build.usage.scripts import blender_scripts  # noqa: PLC0415 - not when nothing changed
     from kb_build.usage.usage_index import script_usage, usage_file  # noqa: PLC0415 - loaded ahead
 
@@ -285,7 +288,6 @@ def _script_usage(work: _Build, extract: Extract) -> Generator[Callable[[], Scri
     digests = Digests(cache_folder(work.home) / "digests.json")
     identity = f"{extract.version} {runtime_digest(work.runtime, digests)} {extractor_digest()}"
     file = usage_file(cache_folder(work.home), identity, scripts)
-    jobs = work.options.jobs
     with script_usage(extract.symbols, scripts, extract.version, file=file, jobs=jobs) as result:
         yield result
 

@@ -30,6 +30,10 @@ NOT_TAKEN = "by none that was tried"
 # How flags begin that say what fills a pointer that is None on a new thing, and on which new things it is not None.
 FILLED_BY = "filled-by:"
 FILLED_ON = "filled-on:"
+# How a flag begins that says what an operator's poll wants, of all that was tried.
+NEEDS = "needs:"
+# The flag of a socket that a node of a zone has once it is paired with the other one.
+WHEN_PAIRED = "when-paired"
 THEN = " then "  # between calls that fill it one after the other
 # How the names begin of what is there when Blender starts, among those of new things.
 STARTUP = "start-up "
@@ -78,7 +82,8 @@ class Parameter:
     """One argument (or returned value) of a function or an operator.
 
     ``type`` is text for people (``"float[3]"``, ``"enum"``, ``"Object"``); ``default`` is absent (None with
-    ``required``) when the caller must give the argument.
+    ``required``) when the caller must give the argument. ``values_asked`` are those that Blender named in a new file,
+    of an enumeration that it lists none of, or a stand-in: other files may have more.
     """
 
     name: str
@@ -91,6 +96,12 @@ class Parameter:
     hard_min: float | None = None
     hard_max: float | None = None
     unit: str = ""
+    values_asked: tuple[str, ...] = ()
+
+    @property
+    def is_open(self) -> bool:
+        """Whether the values depend on the instance: one that was not asked may take others."""
+        return any(item.where for item in self.enum_items)
 
 
 @dataclass(frozen=True, slots=True)
@@ -120,7 +131,8 @@ class Symbol:
     has it, best first; with the flag ``name-when-shown`` its name does only while the node shows it.
 
     A pointer that is None on new things has None as its new value; a flag ``filled-by:CALL`` then names what was seen
-    to fill it, flags ``filled-on:THING`` the new things on which it leads to something.
+    to fill it, flags ``filled-on:THING`` the new things on which it leads to something. A flag ``needs:WORDS`` says
+    with what an operator can run, of all that was tried, where it is not in an empty scene.
     """
 
     path: str
@@ -160,6 +172,20 @@ class Symbol:
         if self.kind == "socket":
             return self.path[self.path.index('["') + 2 : -2]
         return self.path.rpartition(".")[2]
+
+    @property
+    def socket_names(self) -> tuple[str, ...]:
+        """The names that a socket has in the modes of its node, the usual one first."""
+        return (self.label, *self.flagged("also-named:"))
+
+    @property
+    def type_settings(self) -> tuple[str, ...]:
+        """The settings of its node that choose a socket's type; none where it is always the same."""
+        return self.flagged("type-by:")
+
+    def flagged(self, prefix: str) -> tuple[str, ...]:
+        """What the flags that begin with ``prefix`` say."""
+        return tuple(flag.removeprefix(prefix) for flag in self.flags if flag.startswith(prefix))
 
 
 @dataclass(frozen=True, slots=True)
@@ -217,7 +243,8 @@ class Page:
 
 
 class PanelCondition(NamedTuple):
-    """What Blender's panels ask of a setting (``gate``) before they let ``path`` be set, as text: ``on``, ``'SUN'``.
+    """What Blender's panels ask of a setting (``gate``) before they let ``path`` be set, as text: ``on``, ``'SUN'``; of
+    an operator, before they let it be run.
 
     Of those with one ``clause`` any is enough; all clauses must hold. ``hides``: they do not show it otherwise,
     instead of greying it out.
@@ -272,7 +299,11 @@ def _enum_items(rows: list[dict[str, Any]]) -> tuple[EnumItem, ...]:
 def _parameters(rows: list[dict[str, Any]]) -> tuple[Parameter, ...]:
     parameters: list[Parameter] = []
     for row in rows:
-        values: dict[str, Any] = {**row, "enum_items": _enum_items(row.get("enum_items", []))}
+        values: dict[str, Any] = {
+            **row,
+            "enum_items": _enum_items(row.get("enum_items", [])),
+            "values_asked": tuple(row.get("values_asked", ())),
+        }
         parameters.append(Parameter(**values))
     return tuple(parameters)
 

@@ -15,7 +15,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 5
+SCHEMA_VERSION = 6
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -83,7 +83,8 @@ CREATE TABLE passages (
     path TEXT PRIMARY KEY, slug TEXT NOT NULL, section INTEGER NOT NULL, line INTEGER NOT NULL
 ) WITHOUT ROWID;
 
--- What a script writes for a label in the manual, in Markdown: for a term in a line of a section, -1 for the heading.
+-- What a script writes for a label in the manual, or for a choice below it, in Markdown: for a term in a line of a
+-- section, -1 for the heading. Also, in brackets, that a setting has no such choice.
 CREATE TABLE label_names (
     slug TEXT NOT NULL, section INTEGER NOT NULL, line INTEGER NOT NULL, names TEXT NOT NULL,
     PRIMARY KEY (slug, section, line)
@@ -129,9 +130,9 @@ CREATE TABLE uses (
 ) WITHOUT ROWID;
 CREATE TABLE use_counts (path TEXT PRIMARY KEY, uses INTEGER NOT NULL, files INTEGER NOT NULL) WITHOUT ROWID;
 
--- What panels in Blender's own scripts ask of a setting (gate) wherever they let a property be set, as text: on,
--- 'SUN' or 'SPOT'. Of the rows of one clause any is enough, all clauses must hold. hides: otherwise they do not show
--- it; else they grey it out.
+-- What panels in Blender's own scripts ask of a setting (gate) wherever they let a property be set, or offer an
+-- operator, as text: on, 'SUN' or 'SPOT'. Of the rows of one clause any is enough, all clauses must hold. hides:
+-- otherwise they do not show it; else they grey it out.
 CREATE TABLE panel_conditions (
     path TEXT NOT NULL, clause INTEGER NOT NULL, gate TEXT NOT NULL, test TEXT NOT NULL, hides INTEGER NOT NULL,
     PRIMARY KEY (path, clause, gate, test)

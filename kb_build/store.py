@@ -6,6 +6,7 @@ import json
 import os
 import sqlite3
 from array import array
+from collections import Counter
 from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING
 import sqlite_utils
 
 from kb_build.errors import StoreError
-from kb_build.index.analysis import content_words, stem
+from kb_build.index.analysis import terms_in, tokens
 from kb_build.index.documents import Document, kind_of, make_units, topic_documents
 from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
 from kb_build.index.label_names import find_label_names
@@ -30,6 +31,7 @@ from kb_build.index.postings import (
     vocabulary,
 )
 from kb_build.index.query_expansions import query_expansions
+from kb_build.index.value_names import find_value_names
 from kb_build.index.weights import symbol_weights
 from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
@@ -56,6 +58,7 @@ if TYPE_CHECKING:
 
 
 _MEMBERS = frozenset({"property", "function", "socket"})
+_FEW_CALLED_SO = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -177,8 +180,8 @@ def _phrases(
     targets: Mapping[str, int],
     expansions: Mapping[str, str],
 ) -> Iterator[tuple[str, int]]:
-    """(phrase, number of the document that it leads to): the query expansions, titles of pages, names of symbols with
-    their class.
+    """(phrase, number of the document that it leads to): the query expansions, titles of pages and of sections, names
+    of symbols with their class. Many pages have an Example: a section's title leads to it if few others are called so.
     """
     for ref, row in expansions.items():
         if ref in targets:
@@ -187,8 +190,11 @@ def _phrases(
     for topic in topics:
         if topic.kind in PAGE_SOURCES:
             yield topic.title, targets[topic.ref]
-    for unit in units:
-        if unit.kind in _MEMBERS:
+    called = Counter(unit.heading[0] for unit in units if unit.anchor)
+    for number, unit in enumerate(units):
+        if unit.anchor and called[unit.heading[0]] <= _FEW_CALLED_SO:
+            yield unit.heading[0], number
+        elif unit.kind in _MEMBERS:
             yield " ".join((unit.context[0], *unit.name, *unit.heading)), targets[unit.ref]
 
 
@@ -198,11 +204,11 @@ def write_index(
     """Writes what retrieval reads: the units, the topics around them, and the phrases that lead to either."""
     topics = [*topic_documents(units)]
     numbers = {topic.ref: number for number, topic in enumerate(topics)}
-    words_of = cache(content_words)
+    tokens_of = cache(tokens)
 
     @cache
     def stems_of(text: str) -> list[str]:
-        return [stem(word) for word in words_of(text)]
+        return [term for token in tokens_of(text) for term in terms_in(token)]
 
     of_units = _write_level(connection, UNITS, units, numbers, stems_of)
     of_topics = _write_level(connection, TOPICS, topics, numbers, stems_of)
@@ -219,7 +225,7 @@ def write_index(
         lend(postings, words)
     levels = (0, of_units), (len(units), of_topics), (len(units) + len(topics), of_phrases)
     _insert(connection, "postings", pack_postings(*levels), 3)
-    _insert(connection, "vocabulary", vocabulary(units, words_of), 2)
+    _insert(connection, "vocabulary", vocabulary(units, tokens_of), 2)
 
 
 def write_base(path: Path, contents: Contents) -> None:
@@ -260,7 +266,8 @@ def _write(part: Path, contents: Contents) -> None:
             _insert(connection, "still_works", contents.still_works, 2)
             _insert(connection, "passages", ((path, *passage) for path, passage in passages.items()), 4)
             names = find_label_names(symbols, pages, passages, labelled)
-            _insert(connection, "label_names", names, 4)
+            values = find_value_names(symbols, pages, passages)
+            _insert(connection, "label_names", (*names, *values), 4)
             tables = contents.tables() if contents.tables else symbol_tables(contents.symbols, contents.pages)
             _write_symbols(connection, tables)
             _write_usage(connection, tables.uses)

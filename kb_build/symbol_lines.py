@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import textwrap
-from itertools import dropwhile, takewhile
+from itertools import dropwhile, groupby, takewhile
+from operator import attrgetter
 from typing import TYPE_CHECKING
 
-from kb_build.records import FACTORY, FILLED_BY, FILLED_ON, NOT_TAKEN, THEN
+from kb_build.records import FACTORY, FILLED_BY, FILLED_ON, NEEDS, NOT_TAKEN, THEN
+from kb_build.schema import TEST_ON
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.records import Default, NewValue, Symbol
+    from kb_build.records import Default, NewValue, PanelCondition, Symbol
 
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
@@ -35,6 +37,8 @@ def type_text(symbol: Symbol) -> str:
         return f"pointer → {symbol.target}"
     if "enum-flag" in symbol.flags:
         return "set of enum items"
+    if settings := symbol.type_settings:
+        return f"{symbol.type}, or as {' and '.join(settings)} says"
     return symbol.type + "".join(f"[{n}]" for n in symbol.array)
 
 
@@ -74,14 +78,14 @@ def is_uncompared(symbol: Symbol) -> bool:
     return _is_of_struct(symbol) and not {"compared", "readonly"} & set(symbol.flags)
 
 
-def _flagged(symbol: Symbol, prefix: str) -> list[str]:
-    """What the flags that begin with ``prefix`` say."""
-    return [flag.removeprefix(prefix) for flag in symbol.flags if flag.startswith(prefix)]
-
-
 def fillers(symbol: Symbol) -> list[str]:
     """The calls that were seen to fill a pointer which is None on new things, in their order."""
-    return [call for text in _flagged(symbol, FILLED_BY) for call in text.split(THEN)]
+    return [call for text in symbol.flagged(FILLED_BY) for call in text.split(THEN)]
+
+
+def operator_needs(symbol: Symbol) -> str:
+    """What an operator's poll wants, of all that was tried; empty where that is not known."""
+    return "".join(symbol.flagged(NEEDS))
 
 
 def _made_by(symbol: Symbol) -> str:
@@ -92,7 +96,7 @@ def _made_by(symbol: Symbol) -> str:
 def _empty_text(symbol: Symbol, empty: NewValue) -> str:
     """Of a pointer that is None on new things: on which ones, and what fills it."""
     text = f"`None` on a new {_labels(empty.made or (symbol.owner.rpartition('.')[2],))}"
-    if others := _flagged(symbol, FILLED_ON):
+    if others := symbol.flagged(FILLED_ON):
         text += f" (but not on a new {_labels(others)})"
     return "; ".join(filter(None, (text, _made_by(symbol))))
 
@@ -140,6 +144,12 @@ def _labels(labels: Sequence[str]) -> str:
     return ", ".join(labels[:_SHOWN_LABELS]) + (f" and {more} more" if more > 0 else "")
 
 
+def version_meant(text: str) -> str:
+    """A version that RNA names, as people write it: where Blender's sources have 510 for 5.1, RNA makes 5.10 of it."""
+    major, _, minor = text.partition(".")
+    return f"{major}.{minor[0]}" if minor[1:] == "0" else text
+
+
 def identifier_of(socket: Symbol) -> str:
     """A socket's identifier, which its name need not be."""
     return next((flag[11:] for flag in socket.flags if flag.startswith("identifier:")), "")
@@ -167,6 +177,14 @@ def subscripts_text(socket: Symbol, most: int | None = None) -> str:
     if identifier not in ("", socket.label):
         shown.append(f"identifier `{identifier}`")
     return ", ".join(shown)
+
+
+def switches(conditions: Iterable[PanelCondition]) -> Iterator[list[str]]:
+    """Of one property's conditions, by clause, the settings of which one must be on, lest it is greyed out."""
+    for _, rows in groupby(conditions, key=attrgetter("clause")):
+        clause = [*rows]
+        if all(row.test == TEST_ON and not row.hides for row in clause):
+            yield [row.gate for row in clause]
 
 
 def _head(symbol: Symbol) -> str:

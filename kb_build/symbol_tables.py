@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
-from collections import defaultdict
 from dataclasses import dataclass, field, replace
-from operator import itemgetter
+from itertools import groupby
+from operator import attrgetter, itemgetter
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, short_path, topic_key
 from kb_build.index.creation import creation_calls
 from kb_build.records import to_json
-from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, TEST_ON, pack
-from kb_build.symbol_lines import member_line
+from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, pack
+from kb_build.symbol_lines import member_line, switches
 from kb_build.usage.examples import SymbolUsage
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import Page, PanelCondition, Symbol
     from kb_build.usage.examples import Uses
@@ -45,13 +45,13 @@ def symbol_tables(
     names = {row for symbol in symbols for row in symbol_names(symbol)}
     items = (row for symbol in symbols for row in enum_rows(symbol))
     calls = creation_calls(symbols, usage.reached, usage.names)
-    switches = _switches(usage.conditions)
+    on = _switches(usage.conditions)
     return SymbolTables(
         symbols=[
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label,
-                member_line(symbol, switches.get(symbol.path, "")), pack(to_json(_with_path(symbol, usage.reached))),
+                member_line(symbol, on.get(symbol.path, "")), pack(to_json(_with_path(symbol, usage.reached))),
             )
             for number, symbol in enumerate(symbols)
         ],
@@ -107,19 +107,12 @@ def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
     return replace(symbol, reached=path) if path else symbol
 
 
-def _switches(conditions: Sequence[PanelCondition]) -> dict[str, str]:
-    """Property → the setting of its own class without which panels grey it out, where that alone is asked."""
-    asked: dict[tuple[str, int], list[PanelCondition]] = defaultdict(list)
-    for row in conditions:
-        asked[row.path, row.clause].append(row)
+def _switches(conditions: Iterable[PanelCondition]) -> dict[str, str]:
+    """Property → the settings of its own class of which panels want one on, else grey it out: ``use_a or use_b``."""
     found: dict[str, str] = {}
-    for (path, _), rows in asked.items():
-        owner, _, gate = rows[0].gate.rpartition(".")
-        if (
-            len(rows) == 1
-            and not rows[0].hides
-            and rows[0].test == TEST_ON
-            and owner == path.rpartition(".")[0]
-        ):
-            found.setdefault(path, gate)
+    for path, rows in groupby(conditions, key=attrgetter("path")):
+        cls = path.rpartition(".")[0]
+        for gates in switches(rows):
+            if all(gate.rpartition(".")[0] == cls for gate in gates):
+                found.setdefault(path, " or ".join(gate.rpartition(".")[2] for gate in gates))
     return found

@@ -8,6 +8,8 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import NARROWER
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
@@ -92,7 +94,8 @@ def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int], names: Mapping[st
             detour = _LAST_RESORT.get(symbol.name, _DETOUR_COST if symbol.name in _DETOURS else 0.0)
             cost = 1.0 + detour + _rarity(symbol.path, uses)
             many = symbol.type == "collection"
-            graph.edges[owner].append(_Step(symbol.name, symbol.target, cost, many, symbol.collection))
+            target = NARROWER.get(symbol.path, symbol.target)
+            graph.edges[owner].append(_Step(symbol.name, target, cost, many, symbol.collection))
             if symbol.path == f"{TYPES}Object.data":
                 graph.edges[owner] += [_Step(symbol.name, name, cost) for name in _OBJECT_DATA]
     return graph

@@ -239,6 +239,7 @@ def _literal(expression: ast.expr | None) -> Default:
     return list(value) if isinstance(value, tuple) else value
 
 
+@cache
 def _definition(signature: str) -> ast.FunctionDef | None:
     """A call's text as Python reads a definition with these arguments; None where it is not Python."""
     call = signature[signature.index("(") :] if "(" in signature else "("

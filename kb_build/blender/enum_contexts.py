@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
+from kb_build.blender.enum_neighbours import TriedNeighbours, setting_text
 from kb_build.records import NOT_TAKEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
 _NAMED = 3
-_NAMED_VALUES = 6
 
 # What was made, and the mode that it was put into; "" for that of a new one.
 Context = tuple[str, str]
@@ -21,14 +21,19 @@ def items_in_contexts(
     listed: Sequence[Mapping[str, Any]],
     contexts: Sequence[Mapping[str, Any]],
     texts: Mapping[str, Sequence[str]],
+    neighbours: Mapping[str, Any] | None = None,
 ) -> list[dict[str, Any]]:
     """The items of an enumeration as rows for records.EnumItem, with ``where`` each is taken.
 
     ``listed`` are RNA's own; ``contexts`` rows with ``items``, ``made``, the contexts that take just those, and
     ``states``, the values that other enumerations of the instance had there; ``texts`` name and description of
-    items that RNA does not list. A lone placeholder of RNA's is left out.
+    items that RNA does not list; ``neighbours`` what was tried with settings of other structs, as enum_neighbours has
+    it. A lone placeholder of RNA's is left out.
     """
     taken: dict[str, set[Context]] = defaultdict(set)
+    beside = TriedNeighbours.of(neighbours)
+    for item in beside.items():
+        taken[item] = set()
     everywhere: set[Context] = set()
     for row in contexts:
         made = {(label, mode) for label, mode in row["made"]}
@@ -43,9 +48,11 @@ def items_in_contexts(
         rows.setdefault(item, {"identifier": item, "name": name, "description": description})
     for item, row in rows.items():
         row["where"] = "" if item in taken else NOT_TAKEN
-        if everywhere - taken.get(item, everywhere):
-            with_item = [each["states"] for each in contexts if item in each["items"]]
-            without = [each["states"] for each in contexts if item not in each["items"]]
+        with_item = [each["states"] for each in contexts if item in each["items"]]
+        without = [each["states"] for each in contexts if item not in each["items"]]
+        if where := beside.where(item, with_item, without):
+            row["where"] = where
+        elif everywhere - taken.get(item, everywhere):
             row["where"] = _deciding(with_item, without) or where_taken(taken[item], everywhere - taken[item])
     return list(rows.values())
 
@@ -59,15 +66,10 @@ def _deciding(
         refused = sorted({value for states in without for value in states.get(name, ())})
         if taken and refused and not set(taken) & set(refused):
             few_take = len(taken) <= len(refused)
-            return ("only with " if few_take else "not with ") + _setting(
+            return ("only with " if few_take else "not with ") + setting_text(
                 name, taken if few_take else refused
             )
     return ""
-
-
-def _setting(name: str, values: Sequence[str]) -> str:
-    shown = "|".join(repr(value) for value in values[:_NAMED_VALUES])
-    return f"{name}={shown}" + ("|…" if len(values) > _NAMED_VALUES else "")
 
 
 def where_taken(taken: set[Context], refused: set[Context]) -> str:

@@ -17,6 +17,7 @@ from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
     FILLED_BY,
     FILLED_ON,
+    NEEDS,
     Default,
     Link,
     Page,
@@ -83,15 +84,19 @@ class _Raw:
     templates: list[tuple[str, str]] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
     still_works: list[tuple[str, str]] = field(default_factory=list)
+    # enumeration → what was tried with settings beside its struct (see enum_neighbours)
+    neighbours: dict[str, dict[str, Any]] = field(default_factory=dict[str, "dict[str, Any]"])
     # record → class → what it says of it
     by_class: dict[str, dict[str, str]] = field(default_factory=lambda: defaultdict(dict))
 
 
-def _add_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
+def _add_items(
+    row: dict[str, Any] | None, asked: dict[str, Any], neighbours: Mapping[str, Any] | None
+) -> None:
     """Adds the items that instances listed, with where each is taken."""
     if row is not None:
-        listed = row.get("enum_items", ())
-        row["enum_items"] = items_in_contexts(listed, asked["contexts"], asked.get("texts", {}))
+        listed, texts = row.get("enum_items", ()), asked.get("texts", {})
+        row["enum_items"] = items_in_contexts(listed, asked["contexts"], texts, neighbours)
 
 
 def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
@@ -104,6 +109,13 @@ def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     elif row is not None:
         row["flags"] = [*row.get("flags", ()), "compared"]
         row["new_values"] = [*seen.get("values", ()), *seen.get("modes", ())]
+
+
+def _add_choices(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
+    """Adds the choices of a parameter for which RNA has a stand-in."""
+    for parameter in row.get("parameters", ()) if row is not None and asked["items"] else ():
+        if parameter["name"] == asked["parameter"]:
+            parameter["enum_items"] = asked["items"]
 
 
 def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
@@ -119,6 +131,31 @@ def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     row["flags"] = [*row.get("flags", ()), *flags]
 
 
+def _add_needs(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what an operator's poll wants."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), NEEDS + seen["needs"]]
+
+
+def _add_argument_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
+    """Adds the items that a function's argument takes; a default that is none of them is no value to give."""
+    for parameter in (row or {}).get("parameters", ()):
+        if parameter["name"] == asked["argument"]:
+            items = items_in_contexts(parameter.get("enum_items", ()), asked["contexts"], {})
+            parameter["enum_items"] = items
+            if parameter.get("default") not in {item["identifier"] for item in items}:
+                parameter.pop("default", None)
+
+
+_ADDED = {
+    "argument_items": _add_argument_items,
+    "choices": _add_choices,
+    "new_values": _add_values,
+    "new_pointer": _add_pointer,
+    "operator_needs": _add_needs,
+}
+
+
 def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
     """Adds one line of the extract."""
     match record:
@@ -131,17 +168,15 @@ def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
         case "manual":
             raw.manual.append((row["pattern"], row["page"]))
         case "enum_items":
-            _add_items(raw.symbols.get(row["path"]), row)
-        case "new_values":
-            _add_values(raw.symbols.get(row["path"]), row)
-        case "new_pointer":
-            _add_pointer(raw.symbols.get(row["path"]), row)
+            _add_items(raw.symbols.get(row["path"]), row, raw.neighbours.get(row["path"]))
+        case "enum_neighbours":
+            raw.neighbours[row["path"]] = row
+        case _ if record in _ADDED:
+            _ADDED[record](raw.symbols.get(row["path"]), row)
         case "own_name" | "stands_in":
             raw.by_class[record][row["path"].removeprefix(_TYPES)] = row["name"]
         case "still_works":
             raw.still_works.append((row["path"], row["taken_as"]))
-        case "making":
-            pass
         case "template":
             raw.templates.append((row["name"], row["text"]))
         case _:
@@ -163,7 +198,8 @@ def _read(path: Path) -> _Raw:
                 ended = row["lines"]
                 break
             lines += 1
-            _keep(raw, record, row)
+            if record != "making":  # which is for a Blender that crashes
+                _keep(raw, record, row)
     if ended != lines:
         raise ExtractError(
             f"{path}: {lines} records and no end; Blender stopped half-way. "
@@ -193,6 +229,8 @@ def call_text(name: str, parameters: Iterable[Parameter]) -> str:
     for parameter in parameters:
         if parameter.required:
             shown.append(parameter.name)
+        elif parameter.is_open and parameter.default is None:
+            continue  # Blender has a default that is no value to give
         elif isinstance(parameter.default, list) and parameter.type == "enum":
             chosen = ", ".join(map(repr, parameter.default))  # a list in order, which a set would lose
             shown.append(f"{parameter.name}={{{chosen}}}" if chosen else f"{parameter.name}=set()")

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
 from kb_build.flow.facts import (
+    CALLED,
     CLASS_OF_VALUE,
     CONTEXT_MEMBERS,
     DISCRIMINANTS,
@@ -55,8 +56,10 @@ ARRAY = "bpy.types.bpy_prop_array"
 STRUCT = "bpy.types.bpy_struct"
 _ROOTS = {"bpy.data": f"{T}BlendData", "bpy.context": f"{T}Context"}
 _SCALARS: dict[str, Type] = {"boolean": BOOL, "int": INT, "float": FLOAT, "string": STR}
+MENU_SOCKET = f"{T}NodeSocketMenu"
 _INTERFACE = f"{T}NodeTreeInterfaceSocket"
 _MOST_CLASSES = 2_000
+_KEY = re.compile(r'\["(?P<name>[^"]+)"\]$')
 _WORD = re.compile(r"[A-Z][a-z0-9]*$")
 _SIMPLE = re.compile(r"[^a-z0-9]")
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
@@ -100,7 +103,7 @@ class Api:
         self._named: dict[tuple[str, str], str] = {}
         self._returns: dict[str, Type] = {}
         self._value_classes: dict[str, dict[str, str]] = {}
-        self._labels: dict[str, dict[str, str]] = {}
+        self._labels: dict[str, dict[str, list[str]]] = {}
 
     # Classes.
 
@@ -389,22 +392,25 @@ class Api:
                 found[value] = T + name
         return found
 
-    def class_by_label(self, base: str, text: str) -> str:
-        """The class below ``base`` whose instances are called ``text`` unless somebody renames them."""
+    def classes_by_label(self, base: str, text: str) -> list[str]:
+        """The classes below ``base`` whose instances are called ``text`` unless somebody renames them."""
         if base not in self._labels:
-            labels: dict[str, str] = {}
+            labels: dict[str, list[str]] = {}
             for path in self.descendants(base):
                 symbol = self.symbols.symbol(path)
                 label = symbol.label if symbol else ""
-                for suffix in ("", " Modifier", " Constraint"):
-                    if label and label.endswith(suffix):
-                        labels.setdefault(label.removesuffix(suffix), path)
+                texts = {label.removesuffix(suffix) for suffix in ("", " Modifier", " Constraint")}
+                texts.add(CALLED.get(path.removeprefix(T), ""))
+                if symbol and (key := _KEY.search(symbol.reached)):  # the name that Blender gives
+                    texts.add(key["name"])
+                for own in texts - {""}:
+                    labels.setdefault(own, []).append(path)
             self._labels[base] = labels
         name, dot, number = text.rpartition(".")
-        return self._labels[base].get(name if dot and number.isdigit() else text, "")
+        return self._labels[base].get(name if dot and number.isdigit() else text, [])
 
-    def sockets(self, cls: str, side: str) -> Iterator[tuple[str, str, Symbol]]:
-        """(key, label, symbol) of the sockets of a node's class on one side, ``inputs`` or ``outputs``."""
+    def sockets(self, cls: str, side: str) -> Iterator[Symbol]:
+        """The sockets of a node's class on one side, ``inputs`` or ``outputs``."""
         found = self._sockets.get(cls)
         if found is None:
             found = self._sockets[cls] = tuple(
@@ -413,18 +419,27 @@ class Api:
             )  # fmt: skip
         for symbol in found:
             if symbol.path.startswith(f"{symbol.owner}.{side}["):
-                yield symbol.name, symbol.label, symbol
+                yield symbol
 
     def values_of(self, path: str) -> tuple[str, ...]:
         """The values of an enumeration, given by its property or by ``function(parameter)``."""
-        owner, _, parameter = path.removesuffix(")").partition("(")
-        symbol = self.symbols.symbol(owner)
+        symbol, parameter = self.symbols.symbol(path), ""
+        if symbol is None:
+            owner, _, parameter = path.removesuffix(")").partition("(")
+            symbol = self.symbols.symbol(owner)
         rows = [symbol] if symbol and not parameter else symbol.parameters if symbol else ()
         found = next((row for row in rows if not parameter or row.name == parameter), None)
         return tuple(item.identifier for item in found.enum_items) if found else ()
 
-    def socket_type(self, symbol: Symbol) -> Type:
-        """The type of a socket."""
+    def socket_type(self, symbol: Symbol, *, fixed: bool = True) -> Type:
+        """The type of a socket; UNKNOWN where a setting of its node chooses it.
+
+        ``fixed``: a menu has the same items in every such node.
+        """
+        if symbol.type_settings:
+            return UNKNOWN
+        if fixed and symbol.type == "menu" and symbol.enum_items and self.is_class(MENU_SOCKET):
+            return Instance(MENU_SOCKET, (("default_value", Plain("str", None, symbol.path)),))
         target = f"{T}{symbol.target}"
         if not self.descends(target, f"{T}NodeSocket"):
             target = f"{T}NodeSocket{symbol.type.title()}"

@@ -33,6 +33,7 @@ from kb_build.flow.types import (
     Union,
     bounded,
     join,
+    literal,
     literal_text,
     literal_texts,
     union,
@@ -161,8 +162,22 @@ class Calls(Narrowing):
             key = arguments[0] if arguments else UNKNOWN
             found = self.collection_item(callee.receiver, key, node.args[0] if node.args else node)
             return found if len(arguments) < 2 else join(found, arguments[1])
+        if name == "driver_add":
+            return self._added_drivers(node, arguments)
         result = self.api.returned(path, callee.receiver)
         return self._decided(result, symbol, arguments, keywords)
+
+    def _added_drivers(self, node: ast.Call, arguments: list[Type]) -> Type:
+        """One curve, or a list of them where the property has several values and no index is given."""
+        curve = self.api.instance(f"{T}FCurve")
+        named = self.resolutions.get(node.args[0]) if len(arguments) == 1 and not node.keywords else None
+        paths = named.symbols if named else ()
+        symbols = [symbol for path in paths if (symbol := self.api.symbols.symbol(path))]
+        if symbols and all(symbol.array for symbol in symbols):
+            return Sequence("list", curve)
+        index = literal(arguments[1]) if len(arguments) > 1 else None
+        is_one = (isinstance(index, int) and index >= 0) or (symbols and not any(s.array for s in symbols))
+        return curve if is_one else union((curve, Sequence("list", curve)))
 
     def _keywords(self, symbol: Symbol, keywords: list[tuple[ast.keyword, Type]]) -> None:
         parameters = {parameter.name: parameter for parameter in symbol.parameters}

@@ -413,14 +413,15 @@ class Expressions(Members):
             computed = symbol.enum_computed
             if parameter:
                 found = next((row for row in symbol.parameters if row.name == parameter), None)
-                items, computed = found.enum_items if found else (), False
+                items, computed = (found.enum_items, found.is_open) if found else ((), False)
             name = f"{path}({parameter})" if parameter else path
-            # Where classes are the values, RNA lists none or a stand-in.
-            is_listed = any(item.identifier == value for item in items) or self.api.is_class(f"{T}{value}")
-            is_listed = is_listed or value in MORE_VALUES.get(name, ())
+            is_listed = any(item.identifier == value for item in items) or value in MORE_VALUES.get(name, ())
+            are_classes = bool(items) and all(self.api.is_class(T + item.identifier) for item in items)
+            # Of classes, those of add-ons are taken as well; for what is none, RNA lists none or a stand-in.
+            is_listed = is_listed or self.api.is_class(T + value) != are_classes
             if len(items) < _FEWEST_VALUES or is_listed:
                 having.append(name)
-            elif not computed:
+            elif are_classes or not computed:
                 lacking.append(name)
         if having or lacking:
             self.resolve(node, use, value, having, lacking)

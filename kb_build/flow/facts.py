@@ -88,6 +88,10 @@ MORE_VALUES = {
     "bpy.types.ColorManagedDisplaySettings.display_device": ("NONE",),
 }  # fmt: skip
 
+# Names that new things have otherwise than their labels: a modifier of nodes is called after its group, and Blender
+# brings one of this name.
+CALLED = {"NodesModifier": "Array"}
+
 # Functions that take keywords which their signatures do not list.
 OPEN_CALLS = frozenset({"bpy.types.Context.temp_override"})
 # The keyword that all of bpy.props take and none lists: the property's own name, which registering fills in.

@@ -351,10 +351,8 @@ class Members(Core):
             if found is not None:
                 return found
         element = kind.element
-        if text and isinstance(element, Instance):
-            cls = self.api.class_by_label(element.cls, text)
-            if cls and self.api.descends(cls, element.cls):
-                return Instance(cls)
+        if text and isinstance(element, Instance) and text not in self.file.given_names:
+            return union(map(Instance, self.api.classes_by_label(element.cls, text) or [element.cls]))
         return element
 
     def _socket(self, owner: Instance, side: str, key: Type, node: ast.AST) -> Type | None:
@@ -366,17 +364,18 @@ class Members(Core):
         if not sockets:
             return None
         if isinstance(value, int):
-            symbol = next((s for _, _, s in sockets if f"{side}[{value}]" in s.subscripts), None)
+            found = [socket for socket in sockets if f"{side}[{value}]" in socket.subscripts]
         else:
-            symbol = next((s for name, _, s in sockets if name == value), None) or next(
-                (s for _, label, s in sockets if label == value), None
-            )
-        if symbol is None:
+            # Of several with one name the node's mode decides.
+            found = [socket for socket in sockets if value in socket.socket_names]
+            found = found or [socket for socket in sockets if socket.name == value]
+        if not found:
             if isinstance(value, str) and not _has_sockets_of_its_own(owner.cls):
                 self.resolve(node, "item", value, missing=(owner.cls,), sure=owner.sure)
             return None
-        self.resolve(node, "item", str(value), (symbol.path,), sure=owner.sure)
-        return self.api.socket_type(symbol)
+        self.resolve(node, "item", str(value), [symbol.path for symbol in found], sure=owner.sure)
+        fixed = not _has_sockets_of_its_own(owner.cls)
+        return union(self.api.socket_type(symbol, fixed=fixed) for symbol in found)
 
     def iterated(self, kind: Type) -> Type:  # noqa: PLR0911 - one return a type
         """What a loop over a value gives."""

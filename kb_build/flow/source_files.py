@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
@@ -14,7 +15,7 @@ if TYPE_CHECKING:
     from kb_build.flow.types import Resolution, Type
 
 
-@dataclass(slots=True)
+@dataclass
 class SourceFile:
     """One file: its module's dotted name, its text as a tree (None with an ``error``), and what was found in it.
 
@@ -35,6 +36,17 @@ class SourceFile:
     started: bool = False
     complete: bool = True
 
+    @cached_property
+    def given_names(self) -> frozenset[str]:
+        """The texts that it may give as names: all that it has for more than to look an item up."""
+        nodes = list(ast.walk(self.tree)) if self.tree else []
+        sought = {key for node in nodes for key in _sought(node)}
+        return frozenset(
+            node.value
+            for node in nodes
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in sought
+        )
+
     def imported(self, level: int, module: str) -> str:
         """The dotted name of what ``from ..module import`` means here, with ``level`` dots; empty for nothing."""
         if not level:
@@ -42,6 +54,19 @@ class SourceFile:
         parts = self.name.split(".")
         parts = parts[: len(parts) - level + self.is_package]
         return ".".join([*parts, module] if module else parts) if parts else ""
+
+
+def _sought(node: ast.AST) -> list[ast.expr]:
+    """The keys by which an expression looks items up."""
+    match node:
+        case ast.Subscript():
+            return [node.slice]
+        case ast.Call(func=ast.Attribute(attr="get" | "find")):
+            return node.args[:1]
+        case ast.Compare(ops=[ast.In() | ast.NotIn()]):
+            return [node.left]
+        case _:
+            return []
 
 
 def keeps_annotations(tree: ast.Module) -> bool:

@@ -13,6 +13,7 @@ from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.expressions import is_decided, is_math
 from kb_build.flow.facts import PARAMETERS, T
 from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
+from kb_build.flow.trees import walk
 from kb_build.flow.types import (
     NONE,
     STR,
@@ -233,7 +234,7 @@ class Statements(Calls):
 
     def _asks_version(self, test: ast.expr) -> bool:
         """Whether a condition asks for Blender's version by a function of the script, whose answer is not known."""
-        for node in ast.walk(test):
+        for node in walk(test):
             kind = self.types.get(node.func) if isinstance(node, ast.Call) else None
             if isinstance(kind, LocalFunction):
                 function = self.functions[kind.number]
@@ -350,7 +351,7 @@ class Statements(Calls):
             compared = ast.Compare(node, [ast.Eq()], [pattern.value])
             self.narrow(compared, holds=True)
             return
-        for part in ast.walk(pattern):
+        for part in walk(pattern):
             name = getattr(part, "name", None) or getattr(part, "rest", None)
             if isinstance(name, str):
                 self.scope.bind(name, UNKNOWN)
@@ -703,7 +704,7 @@ def _unsure(kind: Type) -> Type:
 def _used_names(function: ast.AST) -> dict[str, set[str]]:
     """Name → the attributes that a function reads from it; an empty one where it is indexed."""
     used: dict[str, set[str]] = {}
-    for node in ast.walk(function):
+    for node in walk(function):
         if isinstance(node, (ast.Attribute, ast.Subscript)) and isinstance(node.value, ast.Name):
             used.setdefault(node.value.id, set()).add(node.attr if isinstance(node, ast.Attribute) else "")
     return used
@@ -716,7 +717,7 @@ def _reads_version(function: ast.AST) -> bool:
         and node.attr == "version"
         and isinstance(node.value, (ast.Attribute, ast.Name))
         and (node.value.attr if isinstance(node.value, ast.Attribute) else node.value.id) == "app"
-        for node in ast.walk(function)
+        for node in walk(function)
     )
 
 

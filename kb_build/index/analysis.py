@@ -40,10 +40,7 @@ def stem(word: str) -> str:
 
 def words(text: str) -> list[str]:
     """Lower-case words; identifiers are split at ``_``, at dots and at CamelCase humps."""
-    parts: list[str] = []
-    for token in _WORD.findall(text):
-        parts += _words_in(token)
-    return parts
+    return [word for token in tokens(text) for word in _words_in(token)]
 
 
 @lru_cache(maxsize=30_000)
@@ -55,17 +52,28 @@ def _words_in(token: str) -> tuple[str, ...]:
 
 def distinct_words(text: str) -> set[str]:
     """The words of a long text, each once."""
-    return {word for token in set(_WORD.findall(text)) for word in _words_in(token)}
+    return {word for token in set(tokens(text)) for word in _words_in(token)}
 
 
-def content_words(text: str) -> list[str]:
-    """A text's words without stop words, in order and with repetitions."""
-    return [word for word in words(text) if word not in STOP_WORDS]
+def tokens(text: str) -> list[str]:
+    """What words are made of: numbers and runs of letters, as they are written."""
+    return _WORD.findall(text)
+
+
+def words_in(token: str) -> list[str]:
+    """The words of a token without stop words."""
+    return [word for word in _words_in(token) if word not in STOP_WORDS]
+
+
+@lru_cache(maxsize=100_000)
+def terms_in(token: str) -> tuple[str, ...]:
+    """The stems of the words of a token without stop words."""
+    return tuple(map(stem, words_in(token)))
 
 
 def terms(text: str) -> list[str]:
-    """The stems of a text's content words."""
-    return [stem(word) for word in content_words(text)]
+    """The stems of a text's words without stop words, in order and with repetitions."""
+    return [term for token in tokens(text) for term in terms_in(token)]
 
 
 def idf(documents: int, having: int) -> float:

@@ -26,6 +26,7 @@ _HELD = (
     ("bpy.context.scene", "scene"),
     ("bpy.context.view_layer", "view_layer"),
 )
+_BLOCKS = ("obj", "scene", "mesh", "mat", "tree", "curve")
 _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTree": "tree", "Curve": "curve"}
 
 # Class → the method that makes it, and a call.
@@ -112,29 +113,35 @@ class _Calls:
         types = next((p for p in maker.parameters if p.name == "type"), None)
         items = {item.identifier: item.name for item in types.enum_items} if types else {}
         # What takes the name of any class is a string, or an enumeration whose items come at run time.
-        by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"})
+        are_classes = bool(items) and all(TYPES + item in self._symbols for item in items)
+        by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"} or are_classes)
+        block = next((name for name in _BLOCKS if head.startswith(f"{name}.")), "")
         for cls in self._descendants(base.path):
             if choice := cls.name if by_name else _choice(cls, base, items):
-                yield cls.path, Creation(f"{head}({self._arguments(maker, cls, choice)})", maker.path, choice)
+                given = self._arguments(maker, cls, choice, block=block)
+                yield cls.path, Creation(f"{head}({given})", maker.path, choice)
         # Where a type must be told, only data-blocks are also made of the base class.
         if not items or (not by_name and holder.owner == f"{TYPES}BlendData"):
             first = next(iter(items), "")
-            yield base.path, Creation(f"{head}({self._arguments(maker, base, first)})", maker.path)
+            given = self._arguments(maker, base, first, block=block)
+            yield base.path, Creation(f"{head}({given})", maker.path)
 
-    def _arguments(self, maker: Symbol, cls: Symbol, choice: str) -> str:
+    def _arguments(self, maker: Symbol, cls: Symbol, choice: str, *, block: str) -> str:
         return ", ".join(
-            self._argument(parameter, cls, choice)
+            self._argument(parameter, cls, choice, block=block)
             for parameter in maker.parameters
             if parameter.required or (choice and parameter.name == "type")
         )
 
-    def _argument(self, parameter: Parameter, cls: Symbol, choice: str) -> str:
+    def _argument(self, parameter: Parameter, cls: Symbol, choice: str, *, block: str) -> str:
         if parameter.name == "type" and choice:
             return f"'{choice}'" if parameter.enum_items else f'"{choice}"'
         if parameter.name == "name":
             label = cls.label or cls.name
             label = label.removesuffix(" Modifier").removesuffix(" Constraint")
             return f'"{self._names.get(cls.name, label)}"'
+        if parameter.enum_items and block and f"{TYPES}ID.{parameter.name}" in self._symbols:
+            return f"{block}.{parameter.name}"  # what every data-block has: ``obj.id_type``
         if parameter.enum_items:
             return f"'{parameter.enum_items[0].identifier}'"
         return parameter.name

@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 
 TYPES = "bpy.types."
 FIELDS = ("name", "heading", "context", "body", "related", "expansions")
-# How to write the manual, single add-ons, features kept for old files.
-_RARELY_ASKED = re.compile(r"contribute/|addons/|freestyle\.|legacy")
+# How to write the manual, single add-ons, features kept for old files, the colours of Blender's own windows.
+_RARELY_ASKED = re.compile(r"contribute/|addons/|freestyle\.|legacy|bpy\.types\.(?:Theme|\w*ViewerPath)")
 _OF_NODES = re.compile(
     r".*/(?:geometry|shader)_nodes/|compositing/types/|bpy\.types\.\w*Node|bpy\.ops\.node\."
 )

@@ -52,8 +52,8 @@ def lend(postings: PostingLists, words: EverydayWords) -> None:
     A term of several stems lends the documents that have all of them. Documents that have the word itself stay as they
     are.
     """
-    # Many words share a term.
-    said_most = cache(partial(_said_most, postings))
+    # Many words share a term, and many terms a stem.
+    said_most = cache(partial(_said_most, cache(partial(_row, postings))))
     lent = {word: _lent(its_terms, said_most) for word, its_terms in words.items()}
     for word, weights in lent.items():
         if weights:
@@ -75,11 +75,10 @@ def _lent(its_terms: Iterable[tuple[str, ...]], said_most: _SaidMost) -> dict[in
     return weights
 
 
-def _said_most(postings: PostingLists, stems: tuple[str, ...]) -> Mapping[int, float]:
+def _said_most(row_of: Callable[[str], Mapping[int, float]], stems: tuple[str, ...]) -> Mapping[int, float]:
     """The documents that have all of the stems and say most of them: of the one of which they say least."""
-    having = _row(postings, stems[0])
-    for one in stems[1:]:
-        row = _row(postings, one)
+    having, *others = sorted(map(row_of, stems), key=len)
+    for row in others:
         having = {number: min(weight, row[number]) for number, weight in having.items() if number in row}
     return {number: having[number] for number in heapq.nlargest(_MOST, having, key=having.__getitem__)}
 

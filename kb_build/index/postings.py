@@ -17,7 +17,7 @@ from itertools import chain
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import content_words, idf, stem, terms
+from kb_build.index.analysis import idf, stem, terms, tokens, words_in
 from kb_build.index.documents import FIELDS
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
     from kb_build.index.documents import Document
 
-# A text → its content words, or their stems. Texts come several times, in units, topics and phrases: a cache pays.
+# A text → its tokens, or their stems. Texts come several times, in units, topics and phrases: a cache pays.
 Tokenize = Callable[[str], Sequence[str]]
 
 FIELD_WEIGHTS = {"name": 1.0, "heading": 2.0, "context": 1.5, "body": 1.0, "related": 0.25, "expansions": 1.5}
@@ -99,18 +99,22 @@ def pack_postings(*levels: tuple[int, PostingLists]) -> Iterator[tuple[str, int,
     Each level comes with the number that its first document gets; the units' comes first.
     """
     for term in dict.fromkeys(term for _, postings in levels for term in postings.numbers):
-        numbers, weights = array("I"), list[float]()
+        numbers, weights = list[int](), list[float]()
         for start, postings in levels:
-            numbers.extend([start + number for number in postings.numbers.get(term, ())])
-            weights += postings.weights.get(term, ())
+            if found := postings.numbers.get(term):
+                numbers += [start + number for number in found] if start else found
+                weights += postings.weights[term]
         units = len(levels[0][1].numbers.get(term, ()))
-        yield term, units, numbers.tobytes() + struct.pack(f"{len(weights)}e", *weights)
+        yield term, units, array("I", numbers).tobytes() + struct.pack(f"{len(weights)}e", *weights)
 
 
-def vocabulary(units: Iterable[Document], tokenize: Tokenize = content_words) -> Iterator[tuple[str, str]]:
+def vocabulary(units: Iterable[Document], tokens_of: Tokenize = tokens) -> Iterator[tuple[str, str]]:
     """(stem, most used spelling) for every word of the corpus."""
     texts = (text for unit in units for name in FIELDS for text in getattr(unit, name))
-    counts = Counter(chain.from_iterable(map(tokenize, texts)))
+    counts: dict[str, int] = {}
+    for token, count in Counter(chain.from_iterable(map(tokens_of, texts))).items():
+        for word in words_in(token):
+            counts[word] = counts.get(word, 0) + count
     usual: dict[str, str] = {}
     for word, count in counts.items():
         known = usual.setdefault(stem(word), word)

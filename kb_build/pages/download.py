@@ -12,13 +12,13 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
-import httpx2
-
 from kb_build.errors import SourceError
 
 if TYPE_CHECKING:
     from collections.abc import Callable
     from pathlib import Path
+
+    import httpx2
 
     from kb_build.pages.archives import Progress
 
@@ -154,6 +154,8 @@ class _Transfer:
             raise _BrokeOffError(f"nothing came for {time.monotonic() - started:.0f} s") from None
 
     def _work(self) -> None:
+        import httpx2  # noqa: PLC0415 - a tenth of a second to load, and most builds download nothing
+
         try:
             self._request()
             self.events.put(None)
@@ -174,6 +176,8 @@ class _Transfer:
         self.events.put(error)
 
     def _request(self) -> None:
+        import httpx2  # noqa: PLC0415 - likewise
+
         timeout = httpx2.Timeout(_STALL_SECONDS, connect=max(0.1, self.patience.seconds))
         offset, headers = self._resume_headers()
         with (

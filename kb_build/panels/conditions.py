@@ -26,6 +26,8 @@ _SHOWN_BY_TEMPLATES = frozenset(
         "CurveProfile", "MovieTrackingMarker", "MovieTrackingTrack", "CacheFile",
     }
 )  # fmt: skip
+# Operators that do what their arguments say: a button's condition is about what it names.
+_OF_ARGUMENTS = "bpy.ops.wm."
 _PANELS_IN_C = frozenset({"Modifier", "StripModifier", "ShaderFx", "Node", "NodeSocket"})
 _OPPOSITE = {">": "<=", ">=": "<", "<": ">=", "<=": ">", "==": "!=", "!=": "=="}
 
@@ -42,8 +44,12 @@ def panel_conditions(found: Mapping[str, Gating], symbols: Symbols) -> Iterator[
             if clause and all(_says_something(need, symbols) for need in clause)
         ]
         own = {*_lineage(symbol.owner, symbols)}
-        # Where another class's setting hides a property, other places may show it that are not read.
-        told = [row for row in clauses if not row[1] or all(_owner(need) in own for need in row[0])]
+        # Where another class's setting hides a property, other places may show it that are not read. What an operator
+        # works on is of another class.
+        is_operator = symbol.kind == "operator"
+        told = [
+            row for row in clauses if is_operator or not row[1] or all(_owner(need) in own for need in row[0])
+        ]
         told.sort(key=_rank)
         for number, (clause, hides) in enumerate(told[:_MOST_CLAUSES]):
             for need in sorted(clause, key=lambda one: (_owner(one) not in own, one.gate)):
@@ -68,6 +74,8 @@ def _lineage(cls: str, symbols: Symbols) -> Iterator[str]:
 
 
 def _is_shown_by_scripts_alone(symbol: Symbol, symbols: Symbols) -> bool:
+    if symbol.kind == "operator":
+        return not symbol.path.startswith(_OF_ARGUMENTS)
     names = [cls.rpartition(".")[2] for cls in _lineage(symbol.owner, symbols)]
     cls = symbols.symbol(symbol.owner)
     return (

@@ -1,4 +1,5 @@
 """Reads the functions that draw: where each shows a property, and under which conditions it does so and can be set.
+Buttons of operators are read as properties are: where they are shown, and can be pressed.
 
 A layout's ``active`` and ``enabled`` count for all that is drawn in it, whenever they are set: Blender looks at the
 last value once the function is through, and hands it down to the layouts within.
@@ -10,6 +11,7 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import children, walk
 from kb_build.flow.types import UNKNOWN, Instance, literal_texts
 from kb_build.panels.expressions import Conditions, Held, Script, is_unknown
 from kb_build.panels.formulas import FALSE, TRUE, Formula, all_of, chosen, either_of, is_large, negated
@@ -31,6 +33,9 @@ _SHOWS = frozenset(
         "template_ID",
     }
 )  # fmt: skip
+# Methods that show a button for the operator that their first argument names.
+_OFFERS = frozenset({"operator", "operator_menu_enum", "operator_enum", "operator_menu_hold"})
+_OPERATORS = "bpy.ops."
 _MAKES_LAYOUT = frozenset(
     {
         "row", "column", "column_flow", "grid_flow", "box", "split", "menu_pie",
@@ -44,7 +49,7 @@ class Place:
     """Where a property is shown: the ones that it can be, what they are read from, and two conditions.
 
     ``shown`` holds where it is there at all, ``active`` where it can be set as well. ``name`` is the property's last
-    part; ``symbols`` is empty where nobody knows whose property it is.
+    part; ``symbols`` is empty where nobody knows whose property it is. Of an operator, ``owner`` is empty.
     """
 
     name: str
@@ -84,9 +89,9 @@ class _Shown:
     path: Formula
 
 
-def shows_properties(code: str) -> bool:
-    """Whether a script's text calls what shows a property: most do not, and need not be read."""
-    return any(f".{name}(" in code for name in _SHOWS)
+def shows_something(code: str) -> bool:
+    """Whether a script's text calls what shows a property, or an operator: most do not, and need not be read."""
+    return any(f".{name}(" in code for name in _SHOWS | _OFFERS)
 
 
 def places_in(analysis: Analysis, symbols: Symbols) -> list[Place]:
@@ -121,16 +126,18 @@ def _showing(tree: ast.Module) -> list[tuple[ast.FunctionDef, ast.ClassDef | Non
     queue: list[tuple[ast.AST, ast.FunctionDef | None, ast.ClassDef | None]] = [(tree, None, None)]
     while queue:
         node, function, cls = queue.pop()
-        match node:
-            case ast.FunctionDef():
-                function, cls = node, cls if function is None else None
-            case ast.ClassDef():
-                function, cls = None, node
-            case ast.Call(func=ast.Attribute(attr=name)) if name in _SHOWS and function is not None:
+        if isinstance(node, ast.Call):
+            if (
+                function is not None
+                and isinstance(node.func, ast.Attribute)
+                and node.func.attr in _SHOWS | _OFFERS
+            ):
                 found.setdefault(function, cls)
-            case _:
-                pass
-        queue += [(child, function, cls) for child in ast.iter_child_nodes(node)]
+        elif isinstance(node, ast.FunctionDef):
+            function, cls = node, cls if function is None else None
+        elif isinstance(node, ast.ClassDef):
+            function, cls = None, node
+        queue += [(child, function, cls) for child in children(node)]
     return [*found.items()]
 
 
@@ -311,14 +318,14 @@ class Drawing(Conditions):
 
     def _calls(self, node: ast.expr) -> None:
         """Reads the calls in an expression: what they show, and names that they bind."""
-        for part in ast.walk(node):
-            if (
-                isinstance(part, ast.Call)
-                and isinstance(part.func, ast.Attribute)
-                and part.func.attr in _SHOWS
-            ):
-                self._show(part, part.func.value)
-        for part in ast.walk(node):
+        parts = [*walk(node)]
+        for part in parts:
+            if isinstance(part, ast.Call) and isinstance(part.func, ast.Attribute):
+                if part.func.attr in _SHOWS:
+                    self._show(part, part.func.value)
+                elif part.func.attr in _OFFERS:
+                    self._offer(part, part.func.value)
+        for part in parts:
             if isinstance(part, ast.NamedExpr):
                 self._assign(part.target, part.value)
 
@@ -331,14 +338,21 @@ class Drawing(Conditions):
         row = self.script.analysis.resolutions.get(named)
         symbols = (row.symbols or row.possible) if row is not None and row.kind == "button" else ()
         layout = self._layout(receiver)
-        names = (
-            [named.value]
-            if isinstance(named, ast.Constant)
-            else literal_texts(self.type_of(named) or UNKNOWN)
-        )
-        for name in names:
-            if isinstance(name, str):
-                self._shown.append(_Shown(name, symbols, self.text(owner), layout, self._state.path))
+        for name in self._strings(named):
+            self._shown.append(_Shown(name, symbols, self.text(owner), layout, self._state.path))
+
+    def _offer(self, call: ast.Call, receiver: ast.expr) -> None:
+        given = {keyword.arg: keyword.value for keyword in call.keywords}
+        named = call.args[0] if call.args else given.get("operator")
+        layout = self._layout(receiver)
+        for name in self._strings(named) if named is not None else ():
+            self._shown.append(_Shown(name, (_OPERATORS + name,), "", layout, self._state.path))
+
+    def _strings(self, node: ast.expr) -> list[str]:
+        """The strings that an expression can be."""
+        kind = self.type_of(node) or UNKNOWN
+        values = [node.value] if isinstance(node, ast.Constant) else literal_texts(kind)
+        return [value for value in values if isinstance(value, str)]
 
     # Statements.
 
@@ -471,7 +485,7 @@ class Drawing(Conditions):
         bound = {
             part.id
             for part in (*targets, *node.body)
-            for part in ast.walk(part)
+            for part in walk(part)
             if isinstance(part, ast.Name) and isinstance(part.ctx, ast.Store)
         }
         for name in bound:

@@ -213,14 +213,21 @@ class Conditions:
                 return self.truth(node.args[0])
             case ast.Name():
                 function = self.script.functions.get(node.func.id)
-            case ast.Attribute(value=ast.Name(id="self" | "cls")):
-                function = self.script.methods.get(self.cls, {}).get(node.func.attr)
-                is_bound = True
+            case ast.Attribute(value=ast.Name(id=name)):
+                is_own = name in {"self", "cls"}
+                function = self.script.methods.get(self.cls if is_own else name, {}).get(node.func.attr)
+                kinds = _decorators(function)
+                is_bound = "staticmethod" not in kinds and (is_own or "classmethod" in kinds)
             case _:
                 pass
         if function is None or node.keywords or any(isinstance(arg, ast.Starred) for arg in node.args):
             return self._not_understood(node)
         return self.called(function, node.args, is_bound=is_bound)
+
+
+def _decorators(function: ast.FunctionDef | None) -> set[str]:
+    nodes = function.decorator_list if function is not None else ()
+    return {node.id for node in nodes if isinstance(node, ast.Name)}
 
 
 def _literals(kind: Type | None) -> Iterator[object]:

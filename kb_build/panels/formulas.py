@@ -13,7 +13,9 @@ if TYPE_CHECKING:
 TRUE_VALUE = "True"
 _MOST_ANSWERS = 1 << 12  # combinations of answers that are looked at together
 _MOST_PARTS = 300  # of a formula
-_MOST_NEEDS = 2  # of one clause
+_MOST_NEEDS = 2  # of one clause that is not of switches alone
+_SWITCHES = 3, 4  # of which one must be on
+_MOST_SWITCHES = 8  # that are looked at together
 _MOST_CLAUSES = 12
 
 
@@ -181,6 +183,13 @@ def _follow(
             clauses.append(
                 frozenset({_need(told[first], first, pair[0]), _need(told[second], second, pair[1])})
             )
+    switches = [question for question in shown if not question.relation and values[question] == {TRUE_VALUE}]
+    for number in _SWITCHES if len(switches) <= _MOST_SWITCHES else ():
+        clauses += [
+            frozenset(_need(told[question], question, (frozenset({TRUE_VALUE}), True)) for question in group)
+            for group in combinations(switches, number)
+            if table.has_one(group, rows)
+        ]
     return strongest(clauses)
 
 
@@ -233,6 +242,12 @@ class _Table:
         """The values that a question has somewhere in ``rows``; None for any."""
         columns = self._columns[question]
         return _allowed(columns, {value for value, column in columns.items() if not column & rows})
+
+    def has_one(self, switches: Iterable[Question], rows: int) -> bool:
+        """Whether everywhere in ``rows`` at least one switch is on."""
+        for switch in switches:
+            rows &= ~self._columns[switch][TRUE_VALUE]
+        return not rows
 
     def allowed_either(
         self, first: Question, second: Question, rows: int
@@ -311,4 +326,5 @@ def _joined(first: Clause, second: Clause) -> Clause | None:
         if either is None:
             return None
         needs[gate] = either
-    return frozenset(needs.values()) if len(needs) <= _MOST_NEEDS else None
+    most = max(_MOST_NEEDS, len(first), len(second))
+    return frozenset(needs.values()) if len(needs) <= most else None

@@ -19,6 +19,7 @@ _TYPES = "bpy.types."
 # What only hides a part of a panel, or keeps the interface from changing what has an effect all the same, and what
 # Blender sets itself.
 _NO_SETTINGS = frozenset({"show_expanded", "expanded", "lock", "mute", "muted", "hide", "show_developer_ui"})
+_UNFOLDED = "_expanded"
 _STATUS = ("is_cache_", "has_cache_", "bl_")
 _OF_THE_INTERFACE = (
     "UILayout",
@@ -172,6 +173,7 @@ class _Gates:
             symbol.kind == "property"
             and "readonly" not in symbol.flags
             and symbol.name not in _NO_SETTINGS
+            and not symbol.name.endswith(_UNFOLDED)
             and not symbol.name.startswith(_STATUS)
             and (is_own or (symbol.type != "pointer" and not cls.startswith(_OF_THE_INTERFACE)))
         )

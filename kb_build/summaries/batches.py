@@ -28,7 +28,7 @@ from anthropic.types.messages import MessageBatch
 from pydantic import BaseModel, ValidationError
 
 from kb_build.errors import SummaryError
-from kb_build.summaries.prompt import SummaryReply
+from kb_build.summaries.replies import SummaryReply
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Collection, Sequence

@@ -20,7 +20,8 @@ from typing import TYPE_CHECKING
 from kb_build.errors import SummaryError
 from kb_build.summaries.batches import BatchAPI, BatchGoneError, ItemResult
 from kb_build.summaries.models import FALLBACK_CHARS_PER_TOKEN, batch_cost, facts, price_of
-from kb_build.summaries.prompt import PROMPT_VERSION, NoSummaryError, read_reply, request_for
+from kb_build.summaries.prompt import PROMPT_VERSION, request_for
+from kb_build.summaries.replies import NoSummaryError, read_reply
 from kb_build.summaries.store import BadAnswer, SentBatch, SummaryStore
 from kb_build.summaries.types import (
     ClaudeOptions,

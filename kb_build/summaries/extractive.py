@@ -30,7 +30,7 @@ from typing import TYPE_CHECKING
 from kb_build.summaries.types import PageSummary, summary_key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping, Sequence
+    from collections.abc import Container, Iterator, Mapping, Sequence
 
     from kb_build.records import Page, Section
 
@@ -72,10 +72,12 @@ _STOP_WORDS = frozenset(
 )
 
 
-def extractive_summaries(pages: Sequence[Page]) -> dict[str, PageSummary]:
-    """A summary for every page, by slug; at most ``MAX_CHARS`` characters of plain text, never empty."""
+def extractive_summaries(pages: Sequence[Page], besides: Container[str] = ()) -> dict[str, PageSummary]:
+    """A summary for every page but those ``besides``, by slug; at most ``MAX_CHARS`` characters of plain text, never
+    empty.
+    """
     titles = {page.slug: page.title for page in pages}
-    return {page.slug: extractive_summary(page, titles) for page in pages}
+    return {page.slug: extractive_summary(page, titles) for page in pages if page.slug not in besides}
 
 
 def extractive_summary(page: Page, titles: Mapping[str, str]) -> PageSummary:

@@ -40,13 +40,12 @@ def summarise(
     Raises SummaryError when ``claude`` cannot be used: no key, a limit below the estimate, an API that rejects the
     requests or stays out of reach. A batch that was sent by then is picked up by the next call with the same store.
     """
-    extractive = extractive_summaries(pages)
-    if method == "extractive":
-        return SummaryRun(extractive, SummaryReport(method=method, made=len(extractive)))
-    shipped = shipped_summaries(pages)
-    if method == "shipped":
-        report = SummaryReport(method=method, made=len(pages) - len(shipped), reused=len(shipped))
-        return SummaryRun({**extractive, **shipped}, report)
+    shipped = shipped_summaries(pages) if method != "extractive" else {}
+    extractive = extractive_summaries(pages, besides=shipped)
+    by_slug = {page.slug: shipped.get(page.slug) or extractive[page.slug] for page in pages}
+    if method != "claude":
+        report = SummaryReport(method=method, made=len(extractive), reused=len(shipped))
+        return SummaryRun(by_slug, report)
     if store is None:
         raise SummaryError(
             "Summaries by Claude need a SummaryStore to keep what was paid for. "
@@ -56,4 +55,4 @@ def summarise(
 
     others = [page for page in pages if page.slug not in shipped]
     by_claude, report = claude_summaries(others, store, options or ClaudeOptions(), progress)
-    return SummaryRun({**extractive, **shipped, **by_claude}, report)
+    return SummaryRun({**by_slug, **by_claude}, report)

@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_build.flow.analysis import analyse
+from kb_build.flow.trees import children
 from kb_build.flow.types import UNKNOWN, Instance, Operator
 from kb_build.usage.scripts import PRESETS
 
@@ -273,7 +274,7 @@ def _names(statement: ast.stmt) -> Iterator[ast.Name]:
         node = queue.pop()
         if isinstance(node, ast.Name):
             yield node
-        queue += [child for child in ast.iter_child_nodes(node) if not isinstance(child, ast.stmt)]
+        queue += [child for child in children(node) if not isinstance(child, ast.stmt)]
 
 
 def _is_literal(node: ast.expr) -> bool:

@@ -20,7 +20,7 @@ from kb_build.flow.analysis import analyse
 from kb_build.flow.api import Api
 from kb_build.flow.symbols import SymbolList
 from kb_build.panels import gating
-from kb_build.panels.drawing import places_in, shows_properties
+from kb_build.panels.drawing import places_in, shows_something
 from kb_build.usage.examples import Example, Uses, analysed_uses, uses_in
 from kb_build.usage.scripts import TEMPLATES, read_script
 from simworlds.files import remove_unfinished_files, staged_file
@@ -102,7 +102,7 @@ def _read(symbols: Sequence[Symbol], scripts: Iterable[Script], version: str) ->
         code = read_script(script.path)
         analysis = analyse(code, api, numbers)
         uses.append(analysed_uses(analysis, code, script.name, api, script.cost))
-        if shows_properties(code) and not script.name.startswith(TEMPLATES):
+        if shows_something(code) and not script.name.startswith(TEMPLATES):
             gatings.append(gating.gatings_in(places_in(analysis, api.symbols), api.symbols))
     return ScriptUsage(merged(uses), gating.merged(gatings))
 

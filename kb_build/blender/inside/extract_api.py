@@ -12,8 +12,19 @@ import traceback
 
 import bpy
 
-from . import context, modules, new_things, nodes, operators, own_names, pointer_fillers, rna
+from . import (
+    context,
+    modules,
+    new_things,
+    nodes,
+    operator_needs,
+    operators,
+    own_names,
+    pointer_fillers,
+    rna,
+)
 from .instances import Observer
+from .neighbours import Neighbours
 from .wire import Writer
 
 
@@ -70,9 +81,19 @@ STEPS = (
     ("templates", write_templates),
     # Last, because they change the scene.
     ("context", lambda write, _found: context.write_all(write)),
-    ("new things", lambda write, found: new_things.write_all(write, found["observer"], found["skipped"])),
+    (
+        "new things",
+        lambda write, found: new_things.write_all(
+            write, found["observer"], found["neighbours"], found["skipped"]
+        ),
+    ),
     ("pointers", lambda write, found: pointer_fillers.find_all(write, found["observer"], found["skipped"])),
     ("own names", lambda write, found: own_names.find_all(write, found["observer"], found["skipped"])),
+    (
+        "needs",
+        lambda write, found: operator_needs.find_all(write, found["observer"], found["skipped"]),
+    ),
+    ("neighbours", lambda write, found: found["neighbours"].write(write)),
     ("instances", lambda write, found: found["observer"].write(write)),
 )
 
@@ -86,7 +107,8 @@ def main(arguments):
     given, output = arguments
     write = Writer(output)
     with open(given, encoding="utf-8") as file:
-        found = {"observer": Observer(), **json.load(file)}
+        observer = Observer()
+        found = {"observer": observer, "neighbours": Neighbours(observer), **json.load(file)}
     write(
         "blender",
         version=bpy.app.version_string.split()[0],

@@ -58,12 +58,17 @@ KINDS = frozenset({
 })  # fmt: skip
 
 
+def refused_items(refusal):
+    """The items that Blender names where it refuses a value."""
+    return re.findall(r"'([^']*)'", str(refusal).partition("not found in")[2])
+
+
 def refused_value_items(owner, name, flag=False):
     """An enum's items as Blender names them when it refuses a value that cannot be one of them."""
     try:
         setattr(owner, name, {"\x01"} if flag else "\x01")
     except (TypeError, ValueError) as refusal:
-        return re.findall(r"'([^']*)'", str(refusal).partition("not found in")[2])
+        return refused_items(refusal)
     except (AttributeError, RuntimeError):
         pass
     return []
@@ -132,6 +137,18 @@ class Field:
         self.is_mode = self.is_enum and not self.is_flag and (cls, self.name) not in KINDS
 
 
+def computed_choices(rna):
+    """(path, name, argument, other required arguments) of functions with a choice of which RNA lists one at most."""
+    for function in rna.functions:
+        given = [item for item in function.parameters if not item.is_output]
+        names = [item.identifier for item in given if item.is_required and item.type == "STRING"]
+        needs_more = any(item.is_required and item.type != "STRING" for item in given)
+        for item in given if not needs_more else ():
+            if item.type == "ENUM" and not item.is_required and len(item.enum_items) < 2:
+                path = f"bpy.types.{rna.identifier}.{function.identifier}"
+                yield path, function.identifier, item.identifier, names
+
+
 class Layout:
     """What there is to read in the instances of a class; ``pointers``: name → path where it is declared."""
 
@@ -157,6 +174,7 @@ class Layout:
                 and not (getattr(prop, "is_array", False) and not 0 < prop.array_length <= LONGEST_ARRAY)
             ):
                 self.fields.append(Field(rna, prop))
+        self.choices = list(computed_choices(rna))
         self.enums = [field for field in self.fields if field.is_enum]
         self.modes = [field for field in self.fields if field.is_mode]
 
@@ -245,6 +263,8 @@ class Observer:
         self.items = {}
         # path → {identifier: (name, description)}
         self.texts = {}
+        # (path of a function, argument) → {items: Contexts}
+        self.choices = {}
         self.pointers = Pointers()
         self.names = OwnNames()
         self._layouts = {}
@@ -306,6 +326,7 @@ class Observer:
                 if not field.is_chosen or label == field.unasked:
                     self.add(seen.setdefault(field.path, []), plain(value), label)
             self.ask(struct, label + place, "")
+            self.ask_choices(struct, label + place)
         for struct, before in parts if vary else ():
             name = struct.bl_rna.identifier
             if name not in UNVARIED and self._varied.get(name, 0) < VARIED:
@@ -347,10 +368,27 @@ class Observer:
             if items:
                 found = self.items.setdefault(field.path, {}).setdefault(tuple(items), Contexts())
                 found.add((label, mode), state)
-                known = self.texts.setdefault(field.path, {})
-                for item in items:
-                    if item not in known and item not in field.static:
-                        known[item] = self.text(struct, field.name, item)
+                self.keep_texts(struct, field, items)
+
+    def ask_choices(self, struct, label):
+        """Notes which items an instance's functions take, of those that RNA does not list."""
+        for path, function, argument, names in self.layout(struct).choices:
+            try:
+                getattr(struct, function)(**dict.fromkeys(names, "name"), **{argument: "\x01"})
+            except TypeError as refusal:
+                items = refused_items(refusal)
+                if items:
+                    found = self.choices.setdefault((path, argument), {}).setdefault(tuple(items), Contexts())
+                    found.add((label, ""), {})
+            except Exception:
+                continue
+
+    def keep_texts(self, struct, field, items):
+        """Keeps name and description of the items that RNA does not list."""
+        known = self.texts.setdefault(field.path, {})
+        for item in items:
+            if item not in known and item not in field.static:
+                known[item] = self.text(struct, field.name, item)
 
     @staticmethod
     def text(struct, name, item):
@@ -445,7 +483,8 @@ class Observer:
         return present
 
     def write(self, write):
-        """A ``new_values`` record for each property that was read, ``enum_items`` for each asked, and the pointers.
+        """A ``new_values`` record for each property that was read, ``enum_items`` for each asked, ``argument_items``
+        for each choice of a function, and the pointers.
 
         One that is ``chosen`` says nothing about what is new.
         """
@@ -456,6 +495,9 @@ class Observer:
                 write("new_values", path=path, chosen=True)
         for path in sorted(self.items):
             self.write_items(write, path)
+        for (path, argument), found in sorted(self.choices.items()):
+            contexts = [row.row(items, argument) for items, row in found.items()]
+            write("argument_items", path=path, argument=argument, contexts=contexts)
         self.pointers.write(write)
         self.names.write(write)
 

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Everything that lives outside RNA: modules, their classes and functions, from their reST docstrings."""
 
+import ast
 import importlib
 import inspect
 import pkgutil
 import sys
+import textwrap
 import types
 
 import bpy
@@ -17,7 +19,7 @@ from .wire import plain
 ROOTS = (
     "mathutils", "bmesh.types", "bmesh", "gpu.types", "gpu", "gpu_extras", "bl_math", "blf", "aud", "idprop.types",
     "idprop", "bgl", "imbuf.types", "imbuf", "freestyle.types", "freestyle", "bpy.app", "bpy.props", "bpy.utils",
-    "bpy.path", "bpy.msgbus", "bpy_extras",
+    "bpy.path", "bpy.msgbus", "bpy_extras", "_bpy_internal.grease_pencil.stroke",
 )  # fmt: skip
 # Class → path of those written so far.
 WRITTEN = {}
@@ -55,6 +57,37 @@ def signature(value):
         return ""
 
 
+def returned_class(function):
+    """The class of which a function written in Python returns a new instance, by its first such line; else None."""
+    try:
+        tree = ast.parse(textwrap.dedent(inspect.getsource(function)))
+    except (OSError, TypeError, SyntaxError):
+        return None
+    names = dict(getattr(function, "__globals__", {}))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module in ROOTS:
+            names.update(vars(load(node.module) or types))
+    for node in ast.walk(tree):
+        if (
+            isinstance(node, ast.Return)
+            and isinstance(node.value, ast.Call)
+            and isinstance(node.value.func, ast.Name)
+        ):
+            cls = names.get(node.value.func.id)
+            return cls if isinstance(cls, type) and cls.__module__ in ROOTS else None
+    return None
+
+
+def returned_type(function):
+    """The type that a function written in Python returns, with what its elements are: ``Slice[Stroke]``."""
+    cls = returned_class(function)
+    if cls is None:
+        return ""
+    element = returned_class(vars(cls).get("__getitem__"))
+    text = f"{cls.__module__}.{cls.__qualname__}"
+    return f"{text}[{element.__module__}.{element.__qualname__}]" if element else text
+
+
 def write_member(write, owner, name, value, flags=()):
     """A method or attribute of a class."""
     attribute = isinstance(value, ATTRIBUTE_TYPES)
@@ -72,6 +105,7 @@ def write_member(write, owner, name, value, flags=()):
         kind="property" if attribute else "function",
         owner=owner,
         docstring=inspect.getdoc(function) or "",
+        type=returned_type(value.fget) if isinstance(value, property) else "",
         signature="" if attribute else signature(function),
         flags=flags,
     )
@@ -155,7 +189,7 @@ class Walk:
             "symbol",
             path=name,
             kind="module",
-            owner=name.rpartition(".")[0],
+            owner="" if name.startswith("_") else name.rpartition(".")[0],
             docstring=inspect.getdoc(module) or ""
             if not isinstance(module, tuple)
             else type(module).__doc__ or "",

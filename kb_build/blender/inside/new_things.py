@@ -533,8 +533,8 @@ def attempts(write, functions, skipped):
         yield function
 
 
-def write_all(write, observer, skipped):
-    """Makes everything but what the makers ``skipped`` make, for ``observer`` to read.
+def write_all(write, observer, neighbours, skipped):
+    """Makes everything but what the makers ``skipped`` make, for ``observer`` and ``neighbours`` to look at.
 
     A maker that fails is a ``fault``.
     """
@@ -545,5 +545,6 @@ def write_all(write, observer, skipped):
                 if thing is not None:
                     observer.calls[label] = "".join(call)
                     observer.look(label, thing)
+                    neighbours.look(thing)
         except Exception:
             write("fault", step="new things", traceback=traceback.format_exc())

@@ -1,30 +1,41 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Node sockets: RNA does not describe them, so every node is made once and asked.
 
-Sockets that a node shows only in some of its modes (``ShaderNodeMix.data_type``) carry those modes.
+Sockets that a node shows only in some of its modes (``ShaderNodeMix.data_type``) carry those modes; those that a mode
+gives another type or another name (``GeometryNodeSwitch.input_type``) carry what decides it, and the names.
 """
 
 import itertools
-import re
 
 import bpy
 
+from .instances import refused_items
 from .rna import read_items
 from .wire import limit, plain
 
 TREES = ("ShaderNodeTree", "GeometryNodeTree", "CompositorNodeTree", "TextureNodeTree")
 
 
-def menu_items(socket):
-    """A menu socket's choices. RNA has none to list; refusing a wrong one, Blender names them all."""
+def choices_of(give):
+    """The choices of what ``give`` gives a wrong one to: where RNA has none to list, Blender names them in refusing."""
     try:
-        socket.default_value = "\x01"
+        give("\x01")
     except TypeError as refusal:
-        return [
-            {"identifier": name}
-            for name in re.findall(r"'([^']*)'", str(refusal).partition("not found in")[2])
-        ]
+        return refused_items(refusal)
     return []
+
+
+def menu_items(socket):
+    """A menu socket's choices."""
+    names = choices_of(lambda name: setattr(socket, "default_value", name))
+    return [{"identifier": name} for name in names]
+
+
+def write_choices(write):
+    """What takes a type of node trees: RNA lists a stand-in."""
+    kinds = choices_of(lambda name: bpy.data.node_groups.new("scratch", name))
+    items = [{"identifier": name} for name in kinds]
+    write("choices", path="bpy.types.BlendDataNodeTrees.new", parameter="type", items=items)
 
 
 def available(socket):
@@ -102,8 +113,12 @@ class Sockets:
         # key → (states in which it exists, …is shown, …its name gives it, …its identifier does) and its places
         self.seen = {}
         self.places = {}
+        # key → the names it has, the usual one first
+        self.names = {}
         for node in nodes:
             self.look(node, "")
+        # key → the properties that decide its type
+        self.deciding = {}
         # Those that a new node does not show, or does not have.
         new = {key for key, (_, shown, _, _) in self.seen.items() if shown}
         self.modes = self.vary()
@@ -111,8 +126,8 @@ class Sockets:
         self.hidden = self.rows.keys() - new
 
     def look(self, node, mode):
-        """Reads the sockets in the node's present mode. Returns the keys of those that it shows."""
-        shown = []
+        """Reads the sockets in the node's present mode. Returns those that it shows: key → type."""
+        shown = {}
         state = (node.id_data.bl_idname, mode)
         for side, sockets in sides(node).items():
             for place, socket in enumerate(sockets):
@@ -121,14 +136,16 @@ class Sockets:
                     self.rows[key] = describe(socket)
                     self.seen[key] = (set(), set(), set(), set())
                     self.places[key] = set()
+                    self.names[key] = {}
+                self.names[key][socket.name] = None
                 states = self.seen[key]
                 pointer = socket.as_pointer()
                 states[0].add(state)
                 self.places[key].add(place)
                 if available(socket):
-                    shown.append(key)
+                    shown[key] = socket.bl_idname
                     states[1].add(state)
-                if found(sockets, socket.name) == pointer:
+                if socket.name == self.rows[key]["label"] and found(sockets, socket.name) == pointer:
                     states[2].add(state)
                 if found(sockets, socket.identifier) == pointer:
                     states[3].add(state)
@@ -138,14 +155,17 @@ class Sockets:
         """Sets every mode in turn; returns key → the modes that show the socket."""
         modes = {}
         for name, values in mode_enums(self.nodes[0]):
-            shown = {}
+            shown, types = {}, {}
             for node in self.nodes:
                 before = getattr(node, name)
                 for value in values:
                     if put(node, name, value):
-                        for key in self.look(node, f"{name}={value}"):
+                        for key, kind in self.look(node, f"{name}={value}").items():
                             shown.setdefault(key, set()).add(value)
+                            types.setdefault(key, set()).add(kind)
                 put(node, name, before)
+            for key in [key for key in types if len(types[key]) > 1]:
+                self.deciding.setdefault(key, []).append(name)
             tried = set().union(*shown.values())
             for key in self.rows:
                 if key in shown and shown[key] != tried:
@@ -164,7 +184,8 @@ class Sockets:
             for value, other in itertools.product(values, others):
                 unseen = {key for key, (_, shown, _, _) in self.seen.items() if not shown}
                 if unseen and put(node, first, value) and put(node, second, other):
-                    for key in unseen.intersection(self.look(node, f"{first}={value},{second}={other}")):
+                    shown = self.look(node, f"{first}={value},{second}={other}")
+                    for key in unseen.intersection(shown):
                         self.modes[key] = [f"{first}={value}", f"{second}={other}"]
             put(node, first, before[0])
             put(node, second, before[1])
@@ -201,8 +222,11 @@ def remove(nodes):
             node.id_data.nodes.remove(node)
 
 
-def write_node(write, owner, nodes, former):
-    """The sockets of a node (see Sockets). ``former``: side → names that its sockets had in other Blenders."""
+def write_node(write, owner, nodes, former, alone=None):
+    """The sockets of a node (see Sockets). ``former``: side → names that its sockets had in other Blenders.
+
+    ``alone`` are (side, identifier) of those that it had before it was paired; None if it is not.
+    """
     sockets = Sockets(nodes)
     node = nodes[0]
     named, paths = set(), {}
@@ -217,6 +241,9 @@ def write_node(write, owner, nodes, former):
         flags = [f"identifier:{identifier}"]
         flags += ["hidden-by-default"] if key in sockets.hidden else []
         flags += ["name-when-shown"] if while_shown else []
+        flags += [f"also-named:{name}" for name in sockets.names[key] if name not in {"", row["label"]}]
+        flags += ["when-paired"] if alone is not None and key not in alone else []
+        flags += [f"type-by:{name}" for name in sockets.deciding.get(key, ())]
         write(
             "symbol",
             path=paths[key],
@@ -277,6 +304,7 @@ def write_all(write, structs, observer, former):
             trees[name] = bpy.data.node_groups.new("scratch", name)
         except TypeError:
             continue
+    write_choices(write)
     scene = compositing_scene()
     for identifier in sorted(structs):
         cls = getattr(bpy.types, identifier, None)
@@ -289,13 +317,14 @@ def write_all(write, structs, observer, former):
             continue
         owner = f"bpy.types.{identifier}"
         node, *others = nodes.values()
+        alone = {(side, socket.identifier) for side, sockets in sides(node).items() for socket in sockets}
         end = paired(node, node.id_data)
         # Which items its enumerations take depends on the tree; what a new one has does not.
         observer.look(identifier, node, place=f" in a {node.id_data.bl_idname}" if others else "")
         for other in others:
             observer.ask(other, f"{identifier} in a {other.id_data.bl_idname}", "")
         write("node", path=owner, trees=list(nodes))
-        write_node(write, owner, list(nodes.values()), former.get(identifier, {}))
+        write_node(write, owner, list(nodes.values()), former.get(identifier, {}), alone if end else None)
         remove((*nodes.values(), end))
     write_former_classes(write, trees, [name for name in former if name not in structs])
     for tree in trees.values():

@@ -3,7 +3,40 @@
 
 import bpy
 
+from .instances import refused_items
 from .rna import parameter
+
+REFUSED = "\x01"
+
+
+def names_in_file():
+    """The names of all data-blocks."""
+    kinds = [prop.identifier for prop in bpy.data.bl_rna.properties if prop.type == "COLLECTION"]
+    return {block.name for kind in kinds for block in getattr(bpy.data, kind)}
+
+
+def values_asked(operator, prop):
+    """The values of an argument of which RNA lists one at most, as Blender names them when it refuses another.
+
+    It does so before anything runs, where the context lets the operator run. Where one of them is the name of something
+    in the file, all of them are, and none is told.
+    """
+    if prop.type != "ENUM" or len(prop.enum_items) > 1:
+        return []
+    try:
+        operator(**{prop.identifier: {REFUSED} if prop.is_enum_flag else REFUSED})
+    except TypeError as refusal:
+        values = refused_items(refusal)
+        return values if len(values) > 1 and names_in_file().isdisjoint(values) else []
+    except RuntimeError:
+        pass
+    return []
+
+
+def argument(operator, prop):
+    """One argument of an operator, in the terms of ``records.Parameter``."""
+    row, values = parameter(prop), values_asked(operator, prop)
+    return {**row, "values_asked": values} if values else row
 
 
 def write_all(write):
@@ -15,7 +48,8 @@ def write_all(write):
             "symbol", path=owner, kind="module", owner="bpy.ops", description=f"Operators of {module_name}."
         )
         for name in sorted(dir(module)):
-            rna = getattr(module, name).get_rna_type()
+            operator = getattr(module, name)
+            rna = operator.get_rna_type()
             write(
                 "symbol",
                 path=f"{owner}.{name}",
@@ -23,6 +57,8 @@ def write_all(write):
                 owner=owner,
                 label=rna.name,
                 description=rna.description,
-                parameters=[parameter(prop) for prop in rna.properties if prop.identifier != "rna_type"],
+                parameters=[
+                    argument(operator, prop) for prop in rna.properties if prop.identifier != "rna_type"
+                ],
                 target=rna.identifier,
             )

@@ -16,8 +16,8 @@ from .new_things import attempts, block_makers, choices, mesh_object, operator_c
 ADDING = frozenset({"add", "new", "create", "ensure", "mark", "toggle"})
 # Operators of other modules work in a mode, in an editor, or on files.
 MODULES = ("anim", "dpaint", "object", "particle", "rigidbody", "scene", "texture", "world")
-# These lead to another mode, write files, or wait for an answer.
-LEFT_OUT = ("mode_toggle", "paint_toggle", "edit_toggle", "preset", "interactive")
+# These lead to another mode, write files, wait for an answer, or move what is there (which crashes Blender 5.0.1).
+LEFT_OUT = ("mode_toggle", "paint_toggle", "edit_toggle", "preset", "interactive", "move_to")
 # More types than these are types of other things than the active one.
 MOST_TYPES = 4
 

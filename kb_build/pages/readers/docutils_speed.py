@@ -7,7 +7,9 @@ from typing import TYPE_CHECKING, Any
 from unittest import mock
 
 import sphinx.util.docutils
+from docutils import nodes
 from docutils.nodes import Node
+from docutils.transforms.references import DanglingReferencesVisitor
 from docutils.utils import DependencyList
 
 from kb_build.docutils_states import states_when_entered
@@ -15,11 +17,13 @@ from kb_build.docutils_states import states_when_entered
 if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator
 
+_REFERENCES = (nodes.reference, nodes.footnote_reference, nodes.citation_reference)
+
 
 @contextmanager
 def less_repeated() -> Generator[None]:
-    """Within this context states are made when needed, the settings of pages are worked out once, and trees are
-    searched in one go.
+    """Within this context states are made when needed, the settings of pages are worked out once, and trees are put
+    together and searched in one go.
 
     Else docutils makes all states for every list, definition and directive, and Sphinx a parser of command-line
     options for every page: together a third of the time that the manual takes to parse.
@@ -39,6 +43,8 @@ def less_repeated() -> Generator[None]:
         states_when_entered(),
         mock.patch.object(sphinx.util.docutils, "_get_settings", get_settings),
         mock.patch.object(Node, "_fast_findall", _find),
+        mock.patch.object(Node, "setup_child", _set_up_child),
+        mock.patch.object(nodes.document, "walk", _walk),
     ):
         yield
 
@@ -60,3 +66,25 @@ def _find(self: Node, cls: type[Node] | tuple[type[Node], ...]) -> Iterator[Node
                 break
         else:
             levels.pop()
+
+
+def _set_up_child(self: Any, child: Any) -> None:
+    """What docutils does with a node's new child. It looks for the document, through all that is above, four times."""
+    child.parent = above = self
+    while above is not None and above._document is None:
+        above = above.parent
+    if above is not None:
+        document = child._document = above._document
+        if child.source is None:
+            child.source = document.current_source
+        if child.line is None:
+            child.line = document.current_line
+
+
+def _walk(self: nodes.document, visitor: nodes.NodeVisitor) -> bool:
+    """Visits the tree. The visitor that resolves references has nothing to do with other nodes."""
+    if not isinstance(visitor, DanglingReferencesVisitor):
+        return Node.walk(self, visitor)
+    for reference in [*_find(self, _REFERENCES)]:
+        visitor.dispatch_visit(reference)
+    return False

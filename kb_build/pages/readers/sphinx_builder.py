@@ -2,19 +2,24 @@
 
 from __future__ import annotations
 
+import pickle
 import re
 from dataclasses import replace
 from operator import itemgetter
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+from unittest import mock
 
-from docutils import nodes
+from docutils import nodes, utils
 from sphinx import addnodes
 from sphinx.builders import Builder
-from sphinx.environment.collectors.asset import ImageCollector
+from sphinx.environment.adapters.toctree import note_toctree
+from sphinx.environment.collectors.asset import DownloadFileCollector, ImageCollector
+from sphinx.environment.collectors.toctree import TocTreeCollector
 from sphinx.project import Project
 from sphinx.transforms import SphinxTransform
 from sphinx.transforms.post_transforms.code import HighlightLanguageTransform
+from sphinx.util.docutils import LoggingReporter
 
 from kb_build.pages.readers import blender_markup
 from kb_build.pages.readers import markdown as md
@@ -29,6 +34,8 @@ if TYPE_CHECKING:
     from sphinx.application import Sphinx
     from sphinx.environment import BuildEnvironment
     from sphinx.util.typing import ExtensionMetadata
+
+    _Parsed = tuple[BuildEnvironment, dict[str, bytes]]
 
 _HEADING = re.compile(r"^[ ]{0,4}(\S[^\n]*)\n([^\w\s])\2{2,}[ \t]*$", re.MULTILINE)
 
@@ -115,6 +122,7 @@ class PagesBuilder(Builder):
         self.unread: Mapping[str, str] = {}
         self.step: Callable[[str], None] | None = None
         self.take_warnings: Callable[[], dict[str, list[str]]] = dict
+        self.trees: dict[str, bytes] = {}
         self.pages: dict[str, PageText] = {}
         self.warnings: dict[str, list[str]] = {}
 
@@ -148,15 +156,17 @@ class PagesBuilder(Builder):
         for docname in docnames:
             self.env.clear_doc(docname)  # which also makes the tables that are merged later
         names = [name for name in docnames if name not in self.unread]
-        gathered: list[tuple[Sequence[str], BuildEnvironment]] = []
+        gathered: list[tuple[Sequence[str], _Parsed]] = []
 
-        def merge(read: Sequence[str], environment: BuildEnvironment) -> None:
-            gathered.append((read, environment))
+        def merge(read: Sequence[str], found: _Parsed) -> None:
+            gathered.append((read, found))
 
-        parsed = self._apart(names, PageWork(self._parse, self._gather, merge, self.step))
+        with mock.patch.object(self, "write_doctree", self._keep):
+            parsed = self._apart(names, PageWork(self._parse, self._gather, merge, self.step))
         # Not before: each process sends back what was here when it started, too.
-        for read, environment in sorted(gathered, key=itemgetter(0)):
+        for read, (environment, trees) in sorted(gathered, key=itemgetter(0)):
             self.env.merge_info_from(read, environment, self._app)
+            self.trees |= trees
         for texts in parsed.answers.values():
             self._warned(texts)
         for docname, reason in {**self.unread, **parsed.failed}.items():
@@ -177,15 +187,32 @@ class PagesBuilder(Builder):
             raise
         return self.take_warnings()
 
-    def _gather(self) -> BuildEnvironment:
+    def _keep(self, docname: str, doctree: nodes.document, **_: Any) -> None:
+        """Instead of Sphinx's writing to a file: what the processes that resolve pages will read.
+
+        Without settings, which are many and the same for all pages.
+        """
+        kept: Any = doctree
+        kept.reporter = kept.transformer = kept.settings = None
+        self.trees[docname] = pickle.dumps(kept, pickle.HIGHEST_PROTOCOL)
+
+    def _kept(self, docname: str) -> nodes.document:
+        doctree: nodes.document = pickle.loads(self.trees[docname])  # noqa: S301 - from a process of ours
+        doctree.settings = self._settings
+        doctree.reporter = LoggingReporter(str(self.env.doc2path(docname)))
+        return doctree
+
+    def _gather(self) -> _Parsed:
         """What a process that is done with its pages has of them; the list of all pages is known without it."""
         self.env.project = Project("", ())
-        return self.env
+        return self.env, self.trees
 
     def write_documents(self, docnames: Set[str]) -> None:
         """Resolve all pages. Sphinx would do so in the main process and hand each tree to another; here the others do
         both, and send back only the finished text."""
         names = sorted(docnames - self.pages.keys())
+        self._settings = utils.new_document("").settings
+        vars(self._settings).update(self.env.settings, env=self.env)
         resolved = self._apart(names, PageWork(self._resolve, done=self.step))
         for docname, (page, found) in resolved.answers.items():
             self.pages[docname] = page
@@ -195,7 +222,7 @@ class PagesBuilder(Builder):
 
     def _resolve(self, docname: str) -> tuple[PageText, dict[str, list[str]]]:
         reader = DoctreeReader()
-        doctree = self.env.get_doctree(docname)
+        doctree = self._kept(docname)
         # Not get_and_resolve_doctree: expanding the tables of contents costs more than all else together,
         # and the page's children are known from the environment.
         self.env.apply_post_transforms(doctree, docname)
@@ -228,11 +255,17 @@ def drop_needless_work(app: Sphinx) -> None:
     """Take out of a configured application what costs time and leaves no trace in the text."""
     # Numbers of sections and figures. Sphinx goes down all tables of contents for them, however deep.
     app.events.listeners.pop("env-get-updated", None)
-    # Looks for each picture's file, once for every language.
+    # Pictures and files to download are looked for, pictures once for every language; each page's own table of
+    # contents is made, of which the pages below it are all that is asked for.
     listeners = app.events.listeners["doctree-read"]
     listeners[:] = [
-        each for each in listeners if not isinstance(getattr(each.handler, "__self__", None), ImageCollector)
+        each
+        for each in listeners
+        if not isinstance(
+            getattr(each.handler, "__self__", None), (ImageCollector, DownloadFileCollector, TocTreeCollector)
+        )
     ]
+    app.connect("doctree-read", _note_pages_below)
     registry = app.registry
     registry.transforms[:] = [each for each in registry.transforms if each.__name__ not in _NEEDLESS]
     registry.post_transforms[:] = [
@@ -240,6 +273,14 @@ def drop_needless_work(app: Sphinx) -> None:
         for each in registry.post_transforms
         if each.__name__ not in _NEEDLESS and not each.__module__.startswith("sphinx.builders.latex")
     ]
+
+
+def _note_pages_below(app: Sphinx, doctree: nodes.document) -> None:
+    env, docname = app.env, app.env.current_document.docname
+    for table in doctree.findall(addnodes.toctree):
+        note_toctree(env, docname, table)
+    env.tocs[docname] = nodes.bullet_list()  # Sphinx merges them
+    env.toc_num_entries[docname] = 0
 
 
 def setup(app: Sphinx) -> ExtensionMetadata:

@@ -19,7 +19,6 @@ from collections import deque
 from dataclasses import dataclass, field
 from math import sqrt
 from multiprocessing.connection import wait
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, Final
 
 from kb_build.errors import SourceError
@@ -39,7 +38,8 @@ _LARGER_BATCH: Final = 60
 _DEEPEST: Final = 1_000
 _NO_MEMORY: Final = 77
 _NO_ANSWER: Final = 78
-_MEMORY = Path("/proc/self/statm")
+_MEMORY = "/proc/self/statm"
+_PAGE = resource.getpagesize()
 
 
 @dataclass(frozen=True, slots=True)
@@ -355,6 +355,10 @@ def _lower(which: int, limit: int) -> None:
 def _address_space() -> int:
     """In bytes; 0 where the system does not tell (only Linux holds to a limit on it)."""
     try:
-        return int(_MEMORY.read_text(encoding="ascii").split()[0]) * resource.getpagesize()
+        file = os.open(_MEMORY, os.O_RDONLY)
     except OSError:
         return 0
+    try:
+        return int(os.read(file, 100).split()[0]) * _PAGE
+    finally:
+        os.close(file)

@@ -69,3 +69,44 @@ def test_a_lone_placeholder_goes() -> None:
 def test_items_of_instances_bring_their_texts() -> None:
     rows = items_in_contexts([], [context("A", ("lamp", ""))], {"A": ("Name", "Words")})
     assert rows == [{"identifier": "A", "name": "Name", "description": "Words", "where": ""}]
+
+
+def beside(tried: dict[str, str], start: str, **states: str) -> dict[str, Any]:
+    """A row of what was tried with a neighbour's ``codec``: value → items, one letter each."""
+    own = {name: list(values) for name, values in states.items()}
+    rows = [[[value], list(items)] for value, items in tried.items()]
+    return {"states": own, "setting": "Video.codec", "start": start, "tried": rows}
+
+
+def where_beside(contexts: list[dict[str, Any]], tried: str, *rows: dict[str, Any]) -> dict[str, str]:
+    """Where items are taken; ``tried`` are the formats in which the neighbour was tried."""
+    neighbours = {"rows": rows, "states": {"format": list(tried)}}
+    listed = [{"identifier": item} for item in "AB"]
+    return {row["identifier"]: row["where"] for row in items_in_contexts(listed, contexts, {}, neighbours)}
+
+
+def test_a_neighbour_decides_in_one_mode_and_the_own_setting_in_the_others() -> None:
+    contexts = [context("AB", ("scene", ""), format="PQ"), context("A", ("scene", "format='V'"), format="VR")]
+    found = where_beside(contexts, "PQRV", beside({"x": "A", "y": "AB"}, "x", format="V"))
+    assert found == {"A": "", "B": "not with format='R'; with format='V' only if Video.codec='y'"}
+    contexts[1]["states"]["format"] += "ST"
+    found = where_beside(contexts, "PQRSTV", beside({"x": "A", "y": "AB"}, "x", format="V"))
+    assert found["B"] == "only with format='P'|'Q'; with format='V' only if Video.codec='y'"
+
+
+def test_a_neighbour_alone_decides_in_all_modes() -> None:
+    contexts = [context("AB", ("scene", ""), format="PQ")]
+    found = where_beside(contexts, "PQ", beside({"x": "AB", "y": "AC"}, "x", format="PQ"))
+    assert found == {"A": "", "B": "only with Video.codec='x'", "C": "only with Video.codec='y'"}
+
+
+def test_what_only_a_neighbour_allows_in_a_mode() -> None:
+    contexts = [context("A", ("scene", ""), format="PV")]
+    found = where_beside(contexts, "PV", beside({"x": "A", "y": "AB"}, "x", format="V"))
+    assert found["B"] == "only with format='V' if Video.codec='y'"
+
+
+def test_a_mode_that_some_states_contradict_decides_nothing() -> None:
+    contexts = [context("AB", ("scene", ""), format="P"), context("A", ("scene", "format='V'"), format="V")]
+    rows = beside({"x": "A", "y": "AB"}, "x", format="P"), beside({"x": "A", "y": "AB"}, "x", format="V")
+    assert where_beside(contexts, "PV", *rows)["B"] == "only with Video.codec='y'"

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import subprocess
 import sys
 from collections import Counter
@@ -13,7 +14,7 @@ import pytest
 
 from kb_build.blender.extractor import extract_api
 from kb_build.records import NewValue
-from kb_build.symbol_lines import fillers, usual_default
+from kb_build.symbol_lines import fillers, operator_needs, type_text, usual_default
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:
@@ -178,6 +179,16 @@ def test_items_that_blender_computes_are_listed(symbols: dict[str, Symbol]) -> N
         item.identifier for item in symbols["bpy.types.ColorManagedViewSettings.view_transform"].enum_items
     }
     assert {"AgX", "Standard", "Filmic"} <= views
+
+
+def test_values_that_blender_names_when_asked_are_known(symbols: dict[str, Symbol]) -> None:
+    def asked(path: str, name: str) -> tuple[str, ...]:
+        return next(p.values_asked for p in symbols[path].parameters if p.name == name)
+
+    assert asked("bpy.ops.export_scene.gltf", "export_format") == ("GLB", "GLTF_SEPARATE")
+    assert "COPY_LOCATION" in asked("bpy.ops.object.constraint_add", "type")
+    assert asked("bpy.ops.object.collection_link", "collection") == ()  # the file's own
+    assert asked("bpy.ops.object.modifier_add", "type") == ()  # RNA lists them
 
 
 def test_a_property_carries_everything_a_coder_needs(symbols: dict[str, Symbol]) -> None:
@@ -363,6 +374,17 @@ def test_sockets_list_the_modes_that_show_them(symbols: dict[str, Symbol]) -> No
     assert "SQRT" not in clamped.modes[0].split("|")
 
 
+def test_sockets_say_what_decides_their_type_and_their_names(symbols: dict[str, Symbol]) -> None:
+    switch = symbols['bpy.types.GeometryNodeSwitch.inputs["True"]']
+    assert switch.type_settings == ("input_type",)
+    assert symbols['bpy.types.GeometryNodeSwitch.inputs["Switch"]'].type_settings == ()
+    assert symbols['bpy.types.ShaderNodeMix.inputs["A"]'].type_settings == ()
+    assert type_text(switch) == "value, or as input_type says"
+    first = symbols['bpy.types.GeometryNodeMeshBoolean.inputs["Mesh 2"]']
+    assert first.socket_names == ("Mesh 2", "Mesh")
+    assert 'inputs["Mesh"]' not in first.subscripts
+
+
 def test_subscripts_are_python_that_finds_the_socket(extract: Extract, tmp_path: Path) -> None:
     """``node.inputs["X"]``, evaluated by Blender, is the socket that the extract lists the subscript for."""
     trees = {symbol.path: symbol.trees[0] for symbol in extract.symbols if symbol.trees}
@@ -516,6 +538,156 @@ def test_items_say_where_they_are_taken(symbols: dict[str, Symbol], path: str, w
     assert {name: items.get(name) for name in where} == where
 
 
+# Run by this interpreter: whether a scene takes a value once its other settings, by their classes, have theirs.
+ASK_ITEMS = """
+import json, os, sys, bpy
+claims, answers = json.load(open(sys.argv[1])), []
+for path, value, others in claims:
+    scene = bpy.data.scenes.new("scratch")
+    owners = {"FFmpegSettings": scene.render.ffmpeg, "ImageFormatSettings": scene.render.image_settings,
+              "ColorManagedDisplaySettings": scene.display_settings, "ColorManagedViewSettings": scene.view_settings}
+    for setting, other in others:
+        owner, name = setting.split(".")
+        setattr(owners[owner], name, other)
+    owner, name = path.split(".")
+    try:
+        setattr(owners[owner], name, value)
+        answers.append(True)
+    except TypeError:
+        answers.append(False)
+json.dump(answers, open(sys.argv[2], "w"))
+os._exit(0)
+"""
+VIDEO = ["ImageFormatSettings.media_type", "VIDEO"]
+CODEC, DEVICE = "FFmpegSettings.codec", "ColorManagedDisplaySettings.display_device"
+
+
+@pytest.mark.parametrize(
+    ("path", "item", "setting", "states"),
+    [
+        ("ImageFormatSettings.color_depth", "10", CODEC, [VIDEO]),
+        ("ImageFormatSettings.color_depth", "16", CODEC, [VIDEO]),
+        ("ColorManagedViewSettings.view_transform", "Filmic", DEVICE, []),
+        ("ColorManagedViewSettings.view_transform", "AgX - HDR 1000 nits", DEVICE, []),
+    ],
+)
+def test_items_that_depend_on_a_neighbour_name_the_values_that_blender_takes_them_with(
+    symbols: dict[str, Symbol], tmp_path: Path, path: str, item: str, setting: str, states: list[list[str]]
+) -> None:
+    where = next(row.where for row in symbols[f"bpy.types.{path}"].enum_items if row.identifier == item)
+    told = re.findall(r"'([^']*)'", where.partition(f"{setting}=")[2])
+    values = [row.identifier for row in symbols[f"bpy.types.{setting}"].enum_items]
+    claims = [(path, item, [*states, [setting, value]]) for value in values]
+    answers = zip(values, ask_blender(ASK_ITEMS, tmp_path, claims), strict=True)
+    assert told
+    assert set(told) == {value for value, taken in answers if taken}
+
+
+def test_a_second_setting_of_a_neighbour_is_told_where_it_matters(symbols: dict[str, Symbol]) -> None:
+    items = {
+        row.identifier: row.where for row in symbols["bpy.types.ImageFormatSettings.color_mode"].enum_items
+    }
+    assert "'PRORES' (with ffmpeg_prores_profile='4444'|'4444_XQ')" in items["RGBA"]
+    assert items["RGB"] == ""
+
+
+# Run by this interpreter: whether operators can run with an empty scene, with an object, and after something else.
+ASK_POLLS = """
+import json, os, sys, bpy
+claims, answers = json.load(open(sys.argv[1])), []
+
+def make():
+    obj = bpy.data.objects.new("asked", bpy.data.meshes.new("asked"))
+    obj.data.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+    bpy.context.scene.collection.objects.link(obj)
+    bpy.context.view_layer.objects.active = obj
+    obj.select_set(True)
+    return obj
+
+def asked(paths):
+    found = []
+    for path in paths:
+        module, name = path.split(".")[2:]
+        try:
+            found.append(getattr(getattr(bpy.ops, module), name).poll())
+        except Exception:
+            found.append(False)
+    return found
+
+for code, paths in claims:
+    scene = bpy.context.window.scene = bpy.data.scenes.new("asked")
+    empty = asked(paths)
+    obj = make()
+    before = asked(paths)
+    material = bpy.data.materials.new("asked")
+    exec(code)
+    answers.append([empty, before, asked(paths)])
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+json.dump(answers, open(sys.argv[2], "w"))
+os._exit(0)
+"""
+OBJECT, EDIT = "an active object", "an active object of type 'MESH' in mode 'EDIT'"
+ADDS = re.compile(r"an active object with what (.*) adds")
+
+
+@pytest.fixture(scope="module")
+def by_needs(extract: Extract) -> dict[str, list[str]]:
+    """What operators want → their paths."""
+    found: dict[str, list[str]] = {}
+    for symbol in extract.symbols:
+        if symbol.kind == "operator" and (needs := operator_needs(symbol)):
+            found.setdefault(needs, []).append(symbol.path)
+    return found
+
+
+def test_operators_can_run_with_what_they_are_said_to_want(
+    by_needs: dict[str, list[str]], tmp_path: Path
+) -> None:
+    added = {
+        needs: "\n".join(match[1].replace("`", "").split(", then "))
+        for needs in by_needs
+        if (match := ADDS.fullmatch(needs))
+    }
+    codes = {OBJECT: "", EDIT: "bpy.ops.object.mode_set(mode='EDIT')", **added}
+    answers = ask_blender(ASK_POLLS, tmp_path, [(code, by_needs[needs]) for needs, code in codes.items()])
+    assert len(added) > 6
+    for needs, (empty, before, after) in zip(codes, answers, strict=True):
+        assert not any(empty), needs
+        assert all(before) if needs == OBJECT else not any(before), needs
+        assert all(after), needs
+
+
+@pytest.mark.parametrize(
+    ("operator", "needs"),
+    [
+        ("fluid.bake_all", OBJECT),
+        ("rigidbody.object_add", "an active object of type 'MESH'"),
+        ("pose.transforms_clear", "an active object of type 'ARMATURE' in mode 'POSE'"),
+        ("object.shape_key_add", "an active object, not of type 'EMPTY', not in mode 'EDIT'"),
+        ("object.vertex_group_remove", "an active object with what `obj.vertex_groups.new()` adds"),
+        ("rigidbody.connect", "an active object with what `bpy.ops.rigidbody.object_add()` adds"),
+        ("mesh.primitive_cube_add", ""),  # it runs in an empty scene
+        ("view3d.view_selected", ""),  # which an area decides about
+        ("anim.clear_useless_actions", ""),  # which wants what no object has
+    ],
+)
+def test_an_operator_says_what_it_wants(symbols: dict[str, Symbol], operator: str, needs: str) -> None:
+    assert operator_needs(symbols[f"bpy.ops.{operator}"]) == needs
+
+
+def test_a_choice_that_depends_on_the_instance_is_asked_of_instances(symbols: dict[str, Symbol]) -> None:
+    new_socket = symbols["bpy.types.NodeTreeInterface.new_socket"]
+    assert new_socket.signature == "new_socket(name, description=None, in_out='INPUT', parent=None)"
+    (kind,) = [parameter for parameter in new_socket.parameters if parameter.name == "socket_type"]
+    assert (kind.required, kind.default, kind.is_open) == (False, None, True)
+    items = {item.identifier: item.where for item in kind.enum_items}
+    assert items["NodeSocketColor"] == ""
+    assert items["NodeSocketShader"] == "only by shader node tree"
+    assert items["NodeSocketMenu"] == "not by texture node tree"
+    assert "DEFAULT" not in items  # which RNA lists, and no tree takes
+
+
 def test_names_that_the_maker_gives_and_times_are_not_defaults(symbols: dict[str, Symbol]) -> None:
     for path in ("FieldSettings.seed", "Light.type", "ActionSlot.name_display", "NlaStrip.frame_end"):
         assert "compared" not in symbols[f"bpy.types.{path}"].flags
@@ -526,3 +698,15 @@ def test_extracting_twice_gives_the_same_bytes(base: Path, tmp_path: Path) -> No
     first = next((base.parent.parent / "extracts").glob("*.jsonl"))
     assert again.read_bytes() == first.read_bytes()
     assert not [line for line in first.read_text(encoding="utf-8").splitlines() if " at 0x" in line]
+
+
+def test_what_python_code_returns_has_the_type_of_its_elements(symbols: dict[str, Symbol]) -> None:
+    module = "_bpy_internal.grease_pencil.stroke"
+    slices = f"{module}.GreasePencilStrokeSlice[{module}.GreasePencilStroke]"
+    assert symbols["bpy.types.GreasePencilDrawing.strokes"].type == slices
+    assert f"{module}.GreasePencilStrokePoint.radius" in symbols
+    assert symbols["bpy.types.Object.children_recursive"].type in {
+        "",
+        "list[Object]",
+        "list[bpy.types.Object]",
+    }

@@ -33,6 +33,7 @@ def calls(extract: Extract) -> dict[str, Creation]:
         ("SunLight", "bpy.data.lights.new(\"Sun\", 'SUN')"),
         ("NodesModifier", "obj.modifiers.new(\"GeometryNodes\", 'NODES')"),
         ("TrackToConstraint", "obj.constraints.new('TRACK_TO')"),
+        ("ActionSlot", 'scene.animation_data.action.slots.new(scene.id_type, "Action slot")'),
         ("Material", 'bpy.data.materials.new("Material")'),
         ("MeshUVLoopLayer", "mesh.uv_layers.new()"),
         ("ShaderNodeMath", 'tree.nodes.new("ShaderNodeMath")'),

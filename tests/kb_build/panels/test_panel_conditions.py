@@ -370,6 +370,93 @@ def test_what_may_be_another_class_is_not_told_of_each(symbols: BaseSymbols) -> 
     assert asked(symbols, panel(own), of="EditBone.bbone_easein") == ["greyed unless bbone_segments > 1"]
 
 
+def offered(symbols: BaseSymbols, *bodies: str, operator: str = "fluid.bake_all") -> list[str]:
+    """What panels that draw a fluid's domain ask before they offer an operator."""
+    before = "domain = context.fluid.domain_settings\n"
+    codes = [panel(before + dedent(body)) for body in bodies]
+    api = Api(symbols)
+    parts = [gatings_in(places_in(analyse(code, api, (5, 1, 0)), symbols), symbols) for code in codes]
+    rows = panel_conditions(settled(merged(parts), symbols), symbols)
+    return sorted(
+        f"{'hidden' if row.hides else 'greyed'} unless {row.gate.removeprefix(T)} {row.test}"
+        for row in rows
+        if row.path == f"bpy.ops.{operator}"
+    )
+
+
+@pytest.mark.parametrize(
+    ("body", "expected"),
+    [
+        ("layout.operator('fluid.bake_all')", []),
+        ("""
+         if domain.cache_type == 'ALL':
+             layout.operator("fluid.bake_all", text="Resume")
+         """, ["hidden unless FluidDomainSettings.cache_type 'ALL'"]),
+        ("""
+         layout.enabled = domain.use_mesh
+         layout.operator(operator="fluid.bake_all")
+         """, ["greyed unless FluidDomainSettings.use_mesh on"]),
+        ("""
+         for name in ("fluid.bake_all", "fluid.free_all"):
+             if domain.use_mesh:
+                 layout.operator(name)
+         """, ["hidden unless FluidDomainSettings.use_mesh on"]),
+        ("""
+         if domain.use_mesh:
+             layout.operator(context.scene.name)
+         """, []),
+    ],
+)  # fmt: skip
+def test_the_button_of_an_operator(symbols: BaseSymbols, body: str, expected: list[str]) -> None:
+    assert offered(symbols, body) == expected
+    assert offered(symbols, body, "layout.operator('fluid.bake_all')") == []
+
+
+def test_an_operator_that_its_arguments_decide_says_nothing(symbols: BaseSymbols) -> None:
+    body = "if domain.use_mesh:\n    layout.operator('{}')"
+    assert offered(symbols, body.format("wm.context_toggle"), operator="wm.context_toggle") == []
+    assert offered(symbols, body.format("fluid.bake_mesh"), operator="fluid.bake_mesh") != []
+
+
+@pytest.mark.parametrize(
+    ("kind", "call"),
+    [
+        ("@staticmethod\ndef is_on(context):", "Base.is_on(context)"),
+        ("@staticmethod\ndef is_on(context):", "cls.is_on(context)"),
+        ("@classmethod\ndef is_on(cls, context):", "Base.is_on(context)"),
+        ("@classmethod\ndef is_on(cls, context):", "cls.is_on(context)"),
+        ("def is_on(self, context):", "Base.is_on(None, context)"),
+    ],
+)
+def test_a_poll_asks_a_function_of_a_class(symbols: BaseSymbols, kind: str, call: str) -> None:
+    base = f"class Base:\n{indent(kind, '    ')}\n        return context.camera.dof.use_dof\n"
+    code = panel(
+        "layout.prop(dof, 'focus_distance')",
+        base,
+        f"@classmethod\ndef poll(cls, context):\n    return {call}",
+    )
+    derived = code.replace("DATA_PT_dof(bpy.types.Panel)", "DATA_PT_dof(Base, bpy.types.Panel)")
+    assert asked(symbols, derived) == [HIDDEN]
+
+
+SPRAY, FOAM, BUBBLE = (f"domain.use_{name}_particles" for name in ("spray", "foam", "bubble"))
+
+
+@pytest.mark.parametrize(
+    ("condition", "count"),
+    [
+        (f"{SPRAY} or {FOAM} or {BUBBLE}", 3),
+        (f"{SPRAY} or {FOAM} or {BUBBLE} or domain.use_mesh", 4),
+        (f"{SPRAY} or {FOAM} or not {BUBBLE}", 0),  # only of what is to be on
+        (f"{SPRAY} or {FOAM} or {BUBBLE} or context.scene.get('else')", 0),
+    ],
+)
+def test_of_several_switches_one_must_be_on(symbols: BaseSymbols, condition: str, count: int) -> None:
+    body = f"layout.active = {condition}\nlayout.operator('fluid.bake_all')"
+    assert len(offered(symbols, body)) == count
+    assert len(offered(symbols, body, body)) == count
+
+
 def test_what_is_kept_between_builds_is_read_back(symbols: BaseSymbols) -> None:
     code = panel("layout.active = dof.use_dof or dof.aperture_ratio > 1\nlayout.prop(dof, 'focus_distance')")
     found = gatings_in(places_in(analyse(code, Api(symbols), (5, 1, 0)), symbols), symbols)

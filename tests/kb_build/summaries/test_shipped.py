@@ -11,7 +11,8 @@ from test_summaries_claude import good, options
 
 from kb_build.records import Page, Section
 from kb_build.summaries.methods import summarise
-from kb_build.summaries.prompt import PROMPT_VERSION, sound_phrases
+from kb_build.summaries.prompt import PROMPT_VERSION
+from kb_build.summaries.replies import sound_phrases
 from kb_build.summaries.shipped import ShippedSummary, file_name, shipped_summaries
 from kb_build.summaries.store import MAX_TEXT, SummaryStore
 

@@ -1,0 +1,304 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Finds what operators want to be active before they run, by asking each whether it can (``poll``), without an area.
+
+Those that refuse in an empty scene are asked with an active object of every type in every mode. Those that refuse all
+of these are asked after everything was added to a mesh object and its scene that calls are known to add; and those
+that can run then, after each of these calls alone.
+"""
+
+import traceback
+
+import bpy
+
+from .new_things import activate, add_object, attempts, choices, mesh_object, object_of, remove
+
+MOST_TYPES = 6
+MOST_CASES = 3
+# More modifiers than these are any modifier.
+MOST_MODIFIERS = 6
+MODIFIER = 'obj.modifiers.new("name", '
+THEN = " then "
+# It crashes Blender 5.0 where no object is active.
+NOT_ASKED = frozenset({"anim.slot_channels_move_to_new_action"})
+# Of bpy.data.
+CLEARED = (
+    "scenes",
+    "objects",
+    "meshes",
+    "node_groups",
+    "materials",
+    "actions",
+    "particles",
+    "armatures",
+    "curves",
+)
+# What is added to an object in other ways than by a collection's ``new`` and by what fills pointers.
+ADDED = ("obj.data.materials.append(material)", 'obj.keyframe_insert("location")')
+
+
+def operators():
+    """Path → operator."""
+    return {
+        f"bpy.ops.{module}.{name}": getattr(getattr(bpy.ops, module), name)
+        for module in dir(bpy.ops)
+        for name in dir(getattr(bpy.ops, module))
+        if f"{module}.{name}" not in NOT_ASKED
+    }
+
+
+def can_run(known):
+    """The operators of these whose poll says yes, in their order."""
+    found = []
+    for path, operator in known.items():
+        try:
+            if operator.poll():
+                found.append(path)
+        except Exception:
+            continue
+    return found
+
+
+def clear(scene):
+    """Removes all other scenes and what is in any: Blender computes all that there is after each operator."""
+    ids = [block for name in CLEARED for block in getattr(bpy.data, name, ()) if block != scene]
+    bpy.data.batch_remove(ids)
+
+
+def empty_scene():
+    """A new scene in the window."""
+    scene = bpy.context.window.scene = bpy.data.scenes.new("new")
+    return scene
+
+
+def typed_object(kind):
+    """A new, active object of a type, with what people expect in it; None where this Blender cannot make one."""
+    if kind == "EMPTY":
+        return add_object(None)
+    if kind == "ARMATURE":
+        bpy.ops.object.armature_add()
+        return bpy.context.object
+    return object_of(kind)
+
+
+def modes(obj):
+    """Puts an object into each of its modes; yields their identifiers."""
+    for mode in choices("Object", "mode"):
+        try:
+            if obj.mode != mode:
+                bpy.ops.object.mode_set(mode=mode)
+        except (TypeError, RuntimeError):
+            continue
+        if obj.mode == mode:
+            yield mode
+    if obj.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+
+
+def listed(values):
+    """``'MESH'|'CURVE'``."""
+    return "|".join(map(repr, values[:MOST_TYPES])) + ("|…" if len(values) > MOST_TYPES else "")
+
+
+def in_modes(passed, refused):
+    """In which modes, if it is these of all that were tried."""
+    if not refused:
+        return ""
+    is_few = len(passed) <= len(refused)
+    return f" in mode {listed(passed)}" if is_few else f", not in mode {listed(refused)}"
+
+
+class Objects:
+    """With which types of active objects, in which modes, each operator can run."""
+
+    def __init__(self):
+        # type → all modes that were tried
+        self.tried = {}
+        # path → {type: modes in which it can run}
+        self.passed = {}
+        # Those that can run with a mesh object in Object Mode that is active and not selected.
+        self.unselected = set()
+
+    def ask(self, known):
+        """Asks these operators."""
+        for kind in choices("Object", "type"):
+            try:
+                obj = typed_object(kind)
+            except (TypeError, RuntimeError):
+                continue
+            if obj is None:
+                continue
+            activate(obj)
+            if kind == "MESH":
+                obj.select_set(False)
+                self.unselected.update(can_run(known))
+            obj.select_set(True)
+            for mode in modes(obj):
+                self.tried.setdefault(kind, []).append(mode)
+                for path in can_run(known):
+                    self.passed.setdefault(path, {}).setdefault(kind, []).append(mode)
+            remove(obj)
+        self.keep_repeated(known)
+
+    def keep_repeated(self, known):
+        """Forgets the operators that do not answer twice as they did: something else has its part in it."""
+        obj = mesh_object()
+        obj.select_set(True)
+        again = set(can_run(known))
+        for path in list(self.passed):
+            if (path in again) != ("OBJECT" in self.passed[path].get("MESH", ())):
+                del self.passed[path]
+        remove(obj)
+
+    def needs(self, path):
+        """What an operator wants, in words."""
+        found = self.passed[path]
+        is_selected = "OBJECT" in found.get("MESH", ()) and path not in self.unselected
+        active = "an active and selected object" if is_selected else "an active object"
+        return self.cases(active, found)
+
+    def cases(self, active, found):
+        """The types of objects, each with its modes."""
+        passed = {mode: None for modes_passed in found.values() for mode in modes_passed}
+        refused = {mode: None for kind in found for mode in self.tried[kind] if mode not in found[kind]}
+        if not passed.keys() & refused.keys():
+            return active + self.types(list(found)) + in_modes(list(passed), list(refused))
+        by_modes = {}
+        for kind, modes_passed in found.items():
+            by_modes.setdefault(tuple(modes_passed), []).append(kind)
+        if len(by_modes) > MOST_CASES:
+            return f"{active}{self.types(list(found))} in some modes"
+        cases = []
+        for has, kinds in by_modes.items():
+            told = in_modes(list(has), [mode for mode in self.tried[kinds[0]] if mode not in has])
+            cases.append(listed(kinds) + (f" ({told.strip(', ')})" if told else ""))
+        return f"{active} of type {' or '.join(cases)}"
+
+    def types(self, kinds):
+        """Of which types, unless it is all."""
+        others = [kind for kind in self.tried if kind not in kinds]
+        if not others:
+            return ""
+        return f" of type {listed(kinds)}" if len(kinds) <= len(others) else f", not of type {listed(others)}"
+
+
+def arguments(function):
+    """The required arguments of a collection's ``new`` as source; None where they are not names and choices."""
+    given = []
+    for item in function.parameters:
+        if not item.is_required or item.is_output:
+            continue
+        if item.type not in {"STRING", "ENUM"}:
+            return None
+        given.append(
+            '"name"' if item.type == "STRING" else repr(next(iter(item.enum_items.keys()), "")),
+        )
+    return ", ".join(given)
+
+
+def collection_calls(struct, text):
+    """The calls that add an element to each collection of a struct."""
+    for prop in struct.bl_rna.properties:
+        function = prop.srna.functions.get("new") if prop.type == "COLLECTION" and prop.srna else None
+        given = arguments(function) if function is not None and prop.identifier != "modifiers" else None
+        if given is not None:
+            yield f"{text}.{prop.identifier}.new({given})"
+
+
+def adding_calls(observer):
+    """Calls that add something to a mesh object ``obj`` or its ``scene``, without modifiers."""
+    obj = mesh_object()
+    calls = [
+        *ADDED,
+        *collection_calls(obj, "obj"),
+        *collection_calls(obj.data, "obj.data"),
+        *collection_calls(bpy.context.scene, "scene"),
+    ]
+    remove(obj)
+    for path in sorted(observer.pointers.fillers):
+        calls += observer.pointers.fillers[path]
+    firsts = ("obj.", "scene.", "bpy.ops.")
+    return [
+        call for call in dict.fromkeys(calls) if call.startswith(firsts) and not call.startswith(MODIFIER)
+    ]
+
+
+def modifier_calls():
+    """The calls that add each kind of modifier."""
+    return [f"{MODIFIER}{kind!r})" for kind in choices("Modifier", "type")]
+
+
+def add(calls):
+    """Makes calls, each if it can be made, with a new mesh object in a scene of its own. Returns those it made."""
+    scene = empty_scene()
+    obj = mesh_object()
+    obj.select_set(True)
+    names = {"bpy": bpy, "obj": obj, "scene": scene, "material": bpy.data.materials.new("new")}
+    made = []
+    for call in calls:
+        try:
+            for part in call.split(THEN):
+                exec(part, names)  # noqa: S102 - of the text that is told
+        except Exception:
+            continue
+        made.append(call)
+    if bpy.context.mode != "OBJECT":
+        bpy.ops.object.mode_set(mode="OBJECT")
+    return made
+
+
+def parts_needed(known, observer):
+    """path → the calls after which an operator can run that cannot with a new object alone."""
+    found = {}
+    for calls in (adding_calls(observer), modifier_calls()):
+        made = add(calls)
+        after_all = {path: known[path] for path in can_run(known)}
+        add(())
+        for path in can_run(after_all):
+            del after_all[path]  # it wants something that is nobody's, as an action
+        for call in made if after_all else ():
+            add([call])
+            for path in can_run(after_all):
+                found.setdefault(path, []).append(call)
+    return found
+
+
+def added(path, calls):
+    """What an operator wants that these calls add, in words: the one that says most of the operator's own."""
+    if sum(call.startswith(MODIFIER) for call in calls) > MOST_MODIFIERS:
+        return "an active object with a modifier"
+    words = path.rpartition(".")[2].split("_")
+    best = max(calls, key=lambda call: sum(word in call.lower() for word in words))
+    owner = "" if best.startswith("scene.") else "an active object with "
+    return f"{owner}what `{'`, then `'.join(best.split(THEN))}` adds"
+
+
+def find_all(write, observer, skipped):
+    """One ``operator_needs`` record for each operator that wants something that is known."""
+    window = bpy.context.window
+    if window is None:
+        return
+    scene = window.scene
+    clear(scene)
+    known = operators()
+
+    def with_objects():
+        empty_scene()
+        for path in can_run(known):
+            del known[path]
+        objects = Objects()
+        objects.ask(known)
+        for path in objects.passed:
+            write("operator_needs", path=path, needs=objects.needs(path))
+            del known[path]
+
+    def with_parts():
+        for path, calls in sorted(parts_needed(known, observer).items()):
+            write("operator_needs", path=path, needs=added(path, calls))
+
+    for find in attempts(write, (with_objects, with_parts), skipped):
+        try:
+            find()
+        except Exception:
+            write("fault", step="operators", traceback=traceback.format_exc())
+        finally:
+            window.scene = scene

@@ -1,0 +1,61 @@
+"""Goes through the syntax trees of scripts."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+# What stands in no place of its own: texts and numbers, how a name is used, operators.
+_NO_NODES = frozenset(
+    {
+        "id",
+        "attr",
+        "arg",
+        "kind",
+        "level",
+        "module",
+        "asname",
+        "rest",
+        "type_comment",
+        "tag",
+        "conversion",
+        "is_async",
+    }
+    | {"simple", "ctx", "op", "ops"}
+)
+
+
+class _Fields(dict[type[ast.AST], tuple[str, ...]]):
+    """Class of nodes → its fields that may hold nodes with a place of their own."""
+
+    def __missing__(self, kind: type[ast.AST]) -> tuple[str, ...]:
+        fields = self[kind] = tuple(name for name in kind._fields if name not in _NO_NODES)
+        return fields
+
+
+_FIELDS = _Fields({ast.Constant: ()})
+
+
+def children(node: ast.AST) -> list[ast.AST]:
+    """The nodes right below one, like ast.iter_child_nodes, which takes three times as long; without operators and
+    without how names are used.
+    """
+    found: list[ast.AST] = []
+    for name in _FIELDS[type(node)]:
+        value = getattr(node, name, None)
+        if isinstance(value, list):
+            found += [each for each in value if isinstance(each, ast.AST)]
+        elif isinstance(value, ast.AST):
+            found.append(value)
+    return found
+
+
+def walk(node: ast.AST) -> Iterator[ast.AST]:
+    """A node and all below it, in the order of ast.walk."""
+    waiting = [node]
+    for each in waiting:
+        waiting += children(each)
+        yield each
