@@ -194,6 +194,15 @@ class BaseReader:
         rows = self.rows_of(f"SELECT {_PAGE} FROM pages WHERE slug", slugs)
         return {row[0]: PageEntry._make(row) for row in rows}
 
+    @cached_property
+    def slugs(self) -> frozenset[str]:
+        """The slugs of all pages."""
+        return frozenset(slug for (slug,) in self.rows("SELECT slug FROM pages"))
+
+    def is_page(self, identifier: str) -> bool:
+        """Whether an id is a page's slug, and not a symbol's path."""
+        return identifier in self.slugs
+
     def _page_children(self, slugs: Sequence[str]) -> dict[str, tuple[PageEntry, ...]]:
         rows = self.rows_of(f"SELECT parent, {_PAGE} FROM pages WHERE parent", slugs, "parent, position")
         return _grouped((row[0], PageEntry._make(row[1:])) for row in rows)

@@ -7,8 +7,7 @@ names the part to go on with. So part 12 begins at the same word, however much o
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -36,8 +35,7 @@ def clip(text: str, budget: int) -> str:
     return (cut[: cut.rindex(" ")] if " " in cut else cut) + " …"
 
 
-@dataclass(frozen=True, slots=True)
-class AnswerBlock:
+class AnswerBlock(NamedTuple):
     """A piece of an answer that belongs together; ``name`` is its name in the list of what is left.
 
     ``plain`` is the documentation's own text, where something was added to it.
@@ -48,8 +46,7 @@ class AnswerBlock:
     plain: str = ""
 
 
-@dataclass(frozen=True, slots=True)
-class AnswerPart:
+class AnswerPart(NamedTuple):
     """A few lines of a block. ``glue`` is what stands between them and the part before."""
 
     text: str

@@ -6,6 +6,7 @@ import json
 import re
 from dataclasses import dataclass
 from functools import lru_cache
+from itertools import zip_longest
 from typing import TYPE_CHECKING, Literal
 
 from kb_build.records import PAGE_SOURCES
@@ -15,12 +16,15 @@ from kb_serve.answer.practice import Practice
 from kb_serve.answer.render import MarkdownRenderer, first_sentence, said_of
 from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
-from kb_serve.rank.merging import QueryRanker, RankedId, Ranking
+from kb_serve.rank.merging import SURE, QueryRanker, RankedId, Ranking
+from kb_serve.reader import TYPES
+from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.recognise.several import QuestionPart
 
 AnswerKind = Literal["schema", "page", "candidates", "none"]
 LIMIT = 8
@@ -32,6 +36,8 @@ _NOTES_TOKENS = 500
 _EXCERPT_TOKENS = 300  # of the best of several candidates
 _LEAST_SAID = 30
 _LINE_TOKENS = 60
+_NAMES_OF_A_PART, _PAGES_OF_A_PART = 3, 2
+_SETTINGS = 2  # of a topic that are hits before its classes
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
 _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
 
@@ -90,7 +96,7 @@ class AnswerComposer:
         self._renderer = MarkdownRenderer(reader)
         self._topics = Topics(reader)
         self._practice = Practice(reader)
-        self._draft = lru_cache(maxsize=256)(self._make_draft)
+        self._draft = lru_cache(maxsize=64)(self._make_draft)
 
     def answer(self, query: str, limit: int, max_tokens: int, part: int, command: str = "") -> DocsAnswer:
         """Answers a query; ``command`` is what it was asked by, if in a shell.
@@ -118,6 +124,10 @@ class AnswerComposer:
         topic = "" if self._reader.entry(text) else self._topics.find(text)
         if topic:
             return self._overview(topic, ranking, limit)
+        names = [match for match in ranking.recognition.matches if match.sure >= SURE]
+        is_named = ranking.named or any(match.why != "enum item" for match in names)
+        if not is_named and (parts := parts_of(text)):
+            return self._answer_each(parts, ranking, limit)
         rows = self._listed(ranking, limit)
         hits = self._hits(rows)
         known = self._practice.of(hits[0].id) if hits else ()
@@ -127,17 +137,38 @@ class AnswerComposer:
             told = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
             return _draft("none", (), notes, (told,))
         if ranking.named:
-            blocks = (*self._whole(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
+            asked = self._renderer.arguments(hits[0].id, ranking.recognition.arguments.get(hits[0].id, ()))
+            blocks = (*asked, *self._whole(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
         blocks = (*self._excerpt(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
         return _draft("candidates", hits, notes, blocks)
+
+    def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> _Draft:
+        """The names and the page for each part of a question, in brief."""
+        blocks: list[AnswerBlock] = []
+        found: list[list[RankedId]] = []
+        for number, part in enumerate(parts, 1):
+            told = {row.id for rows in found for row in rows}
+            ranked = self._ranker.rank(part.text, limit, part.about)
+            rows = [row for row in self._listed(ranked, limit) if row.id not in told]
+            hits = self._hits(rows)
+            are_pages = [_is_page(hit) for hit in hits]
+            chosen = [place for place, is_page in enumerate(are_pages) if not is_page][:_NAMES_OF_A_PART]
+            chosen += [place for place, is_page in enumerate(are_pages) if is_page][:_PAGES_OF_A_PART]
+            lines = [f"- {self._line(hits[place], rows[place])}" for place in chosen]
+            blocks.append(AnswerBlock("\n".join((f"**{number}. {part.text}**", *lines)), part.text))
+            found.append([rows[place] for place in sorted(chosen)])
+        # In turns, as each part is one of several answers.
+        ids = dict.fromkeys(row.id for rows in zip_longest(*found) for row in rows if row)
+        hits = self._hits([RankedId(i, 1.0 - 0.02 * n, "part") for n, i in enumerate(list(ids)[:limit])])
+        note = f"The question has {len(parts)} parts, each answered in brief. Ask one alone for all of its answer."
+        return _draft("candidates", hits, (note, *ranking.notes, *self._source_notes(ranking, hits)), blocks)
 
     def _listed(self, ranking: Ranking, limit: int) -> list[RankedId]:
         """The ids that the answer lists. Whoever asks for more than usual wants what is far, too."""
         if limit > LIMIT:
             return ranking.ranked[:limit]
-        self._reader.page_entry.load(row.id for row in ranking.ranked)
-        return ranking.listed(limit, lambda ref: self._reader.page_entry(ref) is not None)
+        return ranking.listed(limit, self._reader.is_page)
 
     def _source_notes(self, ranking: Ranking, hits: Sequence[Hit]) -> Iterator[str]:
         """Notes on the documentation behind the answer: pages of other versions, missing sources."""
@@ -151,15 +182,16 @@ class AnswerComposer:
             yield f"This base was built without the {' and the '.join(missing)}; `simworlds kb info` says why."
 
     def _hits(self, rows: Sequence[RankedId]) -> tuple[Hit, ...]:
-        self._reader.page_entry.load(row.id for row in rows)
-        symbols = [row.id for row in rows if self._reader.page_entry(row.id) is None]
+        pages = [row.id for row in rows if self._reader.is_page(row.id)]
+        symbols = [row.id for row in rows if row.id not in pages]
+        self._reader.page_entry.load(pages)
         self._reader.entry.load(symbols)
         self._renderer.load_manual_pages(symbols)
         return tuple(self._hit(row) for row in rows)
 
     def _hit(self, row: RankedId) -> Hit:
         score = round(row.score, 3)
-        page = self._reader.page_entry(row.id)
+        page = self._reader.page_entry(row.id) if self._reader.is_page(row.id) else None
         if page:
             url = page.url + (f"#{row.anchor}" if row.anchor else "")
             return Hit(row.id, page.source, page.title, score, url)
@@ -171,11 +203,10 @@ class AnswerComposer:
     # The text
 
     def _whole(self, hit: Hit, row: RankedId) -> Iterator[AnswerBlock]:
-        symbol = self._reader.symbol(hit.id)
-        if symbol is not None:
-            yield from self._renderer.symbol(symbol)
-        else:
+        if self._reader.is_page(hit.id):
             yield from self._renderer.page(hit.id, row.anchor)
+        elif symbol := self._reader.symbol(hit.id):
+            yield from self._renderer.symbol(symbol)
 
     def _excerpt(self, hit: Hit, row: RankedId) -> Iterator[AnswerBlock]:
         """The beginning of the best hit: its description, or the heading and the section that matches, the members
@@ -219,7 +250,8 @@ class AnswerComposer:
                 if entry.kind in {"operator", "function", "class"}
                 else entry.line
             )
-            text = text.removeprefix(f"`{entry.name}`").strip() or self._instead_of_words(entry)
+            name = hit.id[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
+            text = text.removeprefix(f"`{name}`").strip(", ") or self._instead_of_words(entry)
             nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
             return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS) + nearest
         page = self._reader.page_entry(hit.id)
@@ -236,9 +268,23 @@ class AnswerComposer:
 
     def _overview(self, topic: str, ranking: Ranking, limit: int) -> _Draft:
         overview = self._topics.overview(topic)
-        ids = dict.fromkeys((topic, *overview.members, *(row.id for row in ranking.ranked)))
+        lead = overview.settings[:_SETTINGS]
+        ids = dict.fromkeys((topic, *lead, *overview.members, *(row.id for row in ranking.ranked)))
         hits = self._hits([RankedId(i, 1.0 - 0.02 * n, "topic") for n, i in enumerate(list(ids)[:limit])])
-        return _draft("page", hits, tuple(self._source_notes(ranking, hits)), overview.blocks)
+        notes = tuple(self._source_notes(ranking, hits))
+        if not overview.is_single:
+            return _draft("page", hits, notes, overview.blocks)
+        told = "".join(block.text for block in overview.first)
+        rows = [row for row in self._listed(ranking, limit) if row.id != topic and not _is_told(row.id, told)]
+        page = () if overview.says_how else [*self._excerpt(hits[0], RankedId(topic, 1.0, "topic"))][1:]
+        blocks = (*overview.first, *page, *self._others(self._hits(rows), rows), *overview.more)
+        return _draft("page", hits, notes, blocks)
+
+
+def _is_told(path: str, text: str) -> bool:
+    """Whether a text has a name: the path, or its last part as code and its owner."""
+    owner, _, name = path.removeprefix(TYPES).rpartition(".")
+    return path in text or (bool(owner) and f"`{name}`" in text and f"`{owner}`" in text)
 
 
 def _is_box(text: str) -> bool:

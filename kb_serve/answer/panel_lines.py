@@ -1,4 +1,6 @@
-"""What Blender's own panels ask before they let a setting be changed: settings that do nothing unless another is on."""
+"""What Blender's own panels ask before they let a setting be changed, or an operator be run: what does nothing unless
+another setting is on.
+"""
 
 from __future__ import annotations
 
@@ -16,18 +18,20 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 _MOST_SWITCHED = 8
+_ON, _OFF = "it on", "it off"
 
 
 def panel_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
-    """When panels let a property be set, and what they let be set once it is on."""
-    if symbol.kind != "property":
+    """When panels let a property be set, or an operator be run, and what they let be set once a property is on."""
+    if symbol.kind not in {"property", "operator"}:
         return
     clauses = [list(rows) for _, rows in groupby(reader.panel_tests(symbol.path), lambda row: row.clause)]
     owners = {entry.path for entry in reader.lineage(symbol.owner)}
     if greyed := [rows for rows in clauses if not rows[0].hides]:
         yield f"greyed out in Blender's panels unless {_joined(greyed, owners, reader)}"
     if hidden := [rows for rows in clauses if rows[0].hides]:
-        yield f"shown in Blender's panels only if {_joined(hidden, owners, reader)}"
+        offers = "offered by" if symbol.kind == "operator" else "shown in"
+        yield f"{offers} Blender's panels only if {_joined(hidden, owners, reader)}"
     if symbol.type == "boolean" and (switched := reader.panels_let_set(symbol.path, TEST_ON)):
         names = [f"`{name}`" for name in _names(switched, symbol.owner, reader)]
         more = f" and {len(names) - _MOST_SWITCHED} more" if len(names) > _MOST_SWITCHED else ""
@@ -38,26 +42,39 @@ def _joined(clauses: Sequence[Sequence[PanelCondition]], owners: set[str], reade
     """Clauses as one condition."""
     told: list[str] = []
     for rows in clauses:
-        either = " or ".join(_told(row, owners, reader, alone=len(rows) == 1) for row in rows)
+        either = " or ".join(_told(row, owners) for row in rows) + _when_new(rows, reader)
         told.append(f"({either})" if len(rows) > 1 and len(clauses) > 1 else either)
     return " and ".join(told)
 
 
-def _told(row: PanelCondition, owners: set[str], reader: BaseReader, *, alone: bool) -> str:
+def _told(row: PanelCondition, owners: set[str]) -> str:
     owner, _, name = row.gate.rpartition(".")
     gate = name if owner in owners else f"{owner.rpartition('.')[2]}.{name}"
     is_word = row.test[0].isalpha() or row.test[0] == "'"
-    text = f"`{gate}` is {row.test}" if is_word else f"`{gate} {row.test}`"
-    return text + (_when_new(row, reader) if alone else "")
+    return f"`{gate}` is {row.test}" if is_word else f"`{gate} {row.test}`"
 
 
-def _when_new(row: PanelCondition, reader: BaseReader) -> str:
-    """That a new one has a switch in the other position."""
-    gate = reader.symbol(row.gate) if row.test in {TEST_ON, TEST_OFF} else None
-    value = usual_default(gate) if gate else None
-    if not isinstance(value, bool) or value == (row.test == TEST_ON):
+def _when_new(rows: Sequence[PanelCondition], reader: BaseReader) -> str:
+    """That new things have none of what is asked for, where it is known what they have."""
+    found = [_contrary(row, reader) for row in rows]
+    if not all(found):
         return ""
-    return " (a new one has it on)" if value else " (a new one has it off)"
+    if len(found) == 1:
+        return f" (a new one has {found[0]})"
+    are_off = set(found) == {_OFF}
+    return " (a new one has all of them off)" if are_off else ""
+
+
+def _contrary(row: PanelCondition, reader: BaseReader) -> str:
+    """What a new one has instead of what is asked for; empty where it has that, or nobody knows."""
+    gate = reader.symbol(row.gate)
+    value = usual_default(gate) if gate else None
+    if isinstance(value, bool) and row.test in {TEST_ON, TEST_OFF}:
+        return "" if value == (row.test == TEST_ON) else _ON if value else _OFF
+    if gate is None or gate.type != "enum" or not isinstance(value, str) or "'" not in row.test:
+        return ""
+    is_named, is_asked = repr(value) in row.test, row.test.startswith("'")
+    return "" if is_named == is_asked else f"`{value!r}`"
 
 
 def _names(paths: Sequence[str], cls: str, reader: BaseReader) -> list[str]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -14,9 +15,11 @@ from kb_build.symbol_lines import (
     first_sentence,
     literal,
     new_subscript,
+    operator_needs,
     passage_text,
     subscripts_text,
     type_text,
+    version_meant,
 )
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.panel_lines import panel_lines
@@ -27,6 +30,7 @@ if TYPE_CHECKING:
 
     from kb_build.records import EnumItem, Parameter, Section, Symbol
 
+_PAIRS = "pair_with_output"  # the method of a zone's first node, which has its sockets from the last one
 _NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
 _SHORT_PAGE = 80  # letters
 _LONGEST_DEFAULT = 60  # letters
@@ -44,6 +48,7 @@ _SHOWN_FLAGS = (
     "classmethod",
     "hidden-by-default",
 )
+_BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
 _BROWSER_ALWAYS = "filter_folder"  # every operator that opens the file browser has it
 _BROWSER = frozenset({"filemode", "display_type", "sort_method", "hide_props_region"})
 _MACHINERY = {
@@ -145,11 +150,16 @@ def _parameter_line(parameter: Parameter, written: str = "") -> str:
         text += f": {parameter.description}"
     elif parameter.label:
         text += f": {parameter.label}"
-    if parameter.enum_items:
-        names = [repr(item.identifier) for item in parameter.enum_items]
-        more = f", … {len(names)} in all" if len(names) > _NAMED_ITEMS else ""
-        text += "\n  one of " + ", ".join(names[:_NAMED_ITEMS]) + more
+    if parameter.values_asked:
+        text += f"\n  in a new file one of {_values(parameter.values_asked)}"
+    elif parameter.enum_items:
+        text += f"\n  one of {_values([item.identifier for item in parameter.enum_items])}"
     return text
+
+
+def _values(identifiers: Sequence[str]) -> str:
+    more = f", … {len(identifiers)} in all" if len(identifiers) > _NAMED_ITEMS else ""
+    return ", ".join(map(repr, identifiers[:_NAMED_ITEMS])) + more
 
 
 def _listed(title: str, entries: Iterable[SymbolEntry]) -> Iterator[AnswerBlock]:
@@ -184,15 +194,15 @@ def _call_without(signature: str, names: Collection[str]) -> str:
     return ast.unparse(call)
 
 
+def _parameter_lines(symbol: Symbol, parameters: Iterable[Parameter]) -> list[str]:
+    defaults = _written_defaults(symbol.signature) if symbol.kind == "function" else {}
+    return [_parameter_line(item, defaults.get(item.name, "")) for item in parameters]
+
+
 def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
     aside = _of_file_browser(symbol)
     if symbol.parameters:
-        defaults = _written_defaults(symbol.signature) if symbol.kind == "function" else {}
-        lines = [
-            _parameter_line(item, defaults.get(item.name, ""))
-            for item in symbol.parameters
-            if item.name not in aside
-        ]
+        lines = _parameter_lines(symbol, [item for item in symbol.parameters if item.name not in aside])
         if aside:
             lines.append(f"- of the file browser; a script leaves them out: {_names(aside)}")
         yield AnswerBlock("**Parameters**\n" + "\n".join(lines), "parameters")
@@ -201,14 +211,16 @@ def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
         yield AnswerBlock(f"**Returns**\n{lines}", "returns")
     for parameter in symbol.parameters:
         items = () if parameter.name in aside else parameter.enum_items
-        if len(items) > _NAMED_ITEMS or (len(items) > 3 and any(item.description for item in items)):
+        if len(items) > _NAMED_ITEMS or (
+            len(items) > 3 and any(item.description or item.where for item in items)
+        ):
             yield AnswerBlock(
                 f"**Values of `{parameter.name}`**\n{_items(items)}",
                 f"values of {parameter.name}",
             )
 
 
-def _is_machinery(entry: SymbolEntry) -> bool:
+def is_machinery(entry: SymbolEntry) -> bool:
     """Whether a member is one that every class has, for Blender's own use, or a class within a class."""
     return entry.kind == "class" or entry.name in _MACHINERY
 
@@ -225,8 +237,10 @@ class MarkdownRenderer:
         used = AnswerBlock(self.used(symbol.path), "a use in Blender's scripts")
         if symbol.kind == "class":
             members = list(self.reader.members(symbol.path).values())
+            pairs = any(entry.name == _PAIRS for entry in members)
+            title = f"Inputs and outputs, once it is paired (`{_PAIRS}`)" if pairs else "Inputs and outputs"
             # A node is asked for what goes in and out; what follows the lists below may find no room.
-            yield from _listed("Inputs and outputs", [entry for entry in members if entry.kind == "socket"])
+            yield from _listed(title, [entry for entry in members if entry.kind == "socket"])
             yield from self._passage(symbol.path)
             if used.text:
                 yield used
@@ -237,10 +251,27 @@ class MarkdownRenderer:
             yield from self._module(symbol)
         if symbol.enum_items:
             yield AnswerBlock(f"**Values**\n{_items(symbol.enum_items)}", "values")
+        if symbol.kind == "socket":
+            yield from _listed(f"Others called {symbol.label}", self._namesakes(symbol))
         if symbol.kind != "class":
             yield from self._passage(symbol.path)
             if used.text:
                 yield used
+
+    def _namesakes(self, socket: Symbol) -> Iterator[SymbolEntry]:
+        """The other sockets of a node that have the name of one, of which each mode shows another."""
+        side = socket.path[len(socket.owner) :].partition("[")[0]
+        for entry in self.reader.members(socket.owner).values():
+            is_named_so = entry.label == socket.label and entry.path.startswith(f"{socket.owner}{side}[")
+            if entry.kind == "socket" and is_named_so and entry.path != socket.path:
+                yield entry
+
+    def arguments(self, path: str, names: Collection[str]) -> Iterator[AnswerBlock]:
+        """Some arguments of an operator or function."""
+        symbol = self.reader.symbol(path) if names else None
+        if symbol is not None:
+            lines = _parameter_lines(symbol, [item for item in symbol.parameters if item.name in names])
+            yield AnswerBlock(f"**Asked for**, of `{path}`\n" + "\n".join(lines), "what was asked for")
 
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section ``anchor`` comes first."""
@@ -261,7 +292,7 @@ class MarkdownRenderer:
                 plain = f"{heading}\n\n{section.text}"
                 if number:  # the page's own name stands in its head
                     heading += _beside(names, number, -1)
-                text = f"{heading}\n\n{_with_names(section.text, number, names)}"
+                text = f"{heading}\n\n{with_names(section.text, number, names)}"
                 yield AnswerBlock(text, section.title, plain)
         below = self.reader.page_children(slug)
         if below:
@@ -284,13 +315,15 @@ class MarkdownRenderer:
             lines.append(text)
         if line := " · ".join(facts(symbol)):
             lines.append(line)
+        if needs := operator_needs(symbol):
+            lines.append(f"Of all that was tried, its poll takes {needs}.")
         if line := "; ".join(panel_lines(symbol, self.reader)):
             lines.append(line[0].upper() + line[1:] + ".")
         if symbol.deprecation:
-            removal = (
-                f", removal planned for {symbol.deprecation.removal}" if symbol.deprecation.removal else ""
-            )
-            since = f" since {symbol.deprecation.since}" if symbol.deprecation.since else ""
+            removal = version_meant(symbol.deprecation.removal)
+            removal = f", removal planned for {removal}" if removal else ""
+            since = version_meant(symbol.deprecation.since)
+            since = f" since {since}" if since else ""
             lines.append(f"**Deprecated**{since}{removal}: {symbol.deprecation.note}")
         lines.extend(self._place(symbol))
         return "\n\n".join(lines)
@@ -372,7 +405,7 @@ class MarkdownRenderer:
             return
         section = page.sections[found[1]]
         where = page.title if found[1] == 0 else f"{page.title} › {section.title}"
-        named = _with_names(section.text, found[1], self.reader.label_names(page.slug))
+        named = with_names(section.text, found[1], self.reader.label_names(page.slug))
         if text := passage_text(named, found[2]):
             yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")
 
@@ -401,7 +434,7 @@ class MarkdownRenderer:
         seen = set(self.reader.members(path))
         for ancestor in lineage:
             members = self.reader.members(ancestor.path)
-            new = [name for name, entry in members.items() if name not in seen and not _is_machinery(entry)]
+            new = [name for name, entry in members.items() if name not in seen and not is_machinery(entry)]
             seen |= members.keys()
             if new and ancestor.path != STRUCT:
                 yield f"{len(new)} of `{ancestor.name}`"
@@ -419,12 +452,22 @@ def _beside(names: Mapping[tuple[int, int], str], section: int, line: int) -> st
     return f" · {name}" if name else ""
 
 
-def _with_names(text: str, section: int, names: Mapping[tuple[int, int], str]) -> str:
+def with_names(text: str, section: int, names: Mapping[tuple[int, int], str]) -> str:
     """A section's text, the names that scripts have for its labels beside them."""
     if not names:
         return text
-    lines = text.split("\n")
-    return "\n".join(line + _beside(names, section, number) for number, line in enumerate(lines))
+    return "\n".join(
+        _named(line, name) if (name := names.get((section, number))) else line
+        for number, line in enumerate(text.split("\n"))
+    )
+
+
+def _named(line: str, names: str) -> str:
+    """A line of a section with names: beside the term of a list, else at its end."""
+    bullet = _BULLET.match(line)
+    if bullet is None or bullet.end() == len(line):
+        return f"{line} · {names}"
+    return f"{bullet[0].rstrip()} {names} · {line[bullet.end() :]}"
 
 
 def _leads_to(anchor: str, section: Section) -> bool:

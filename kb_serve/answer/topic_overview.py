@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -9,7 +10,9 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, terms, topic_key
 from kb_serve.answer.budget import AnswerBlock, clip, tokens
 from kb_serve.answer.render import first_sentence, own_summary, said_of
+from kb_serve.answer.topic_settings import TopicSettings
 from kb_serve.answer.topic_steps import Steps, TopicNames
+from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -17,23 +20,43 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, PageEntry, SymbolEntry
 
 ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
+_EDITOR = f"{TYPES}Space"
+_SELDOM = ("grease_pencil/", "render/freestyle/")  # seldom meant by who does not say so
 _MAX_WORDS = 4
+_CALLED_SO = 4  # pages
+_KINDS = ("modifier", "constraint", "node")  # how titles of pages end
+_SHORT_FOR = _KINDS[:2]  # of these the name alone is used; nodes are mostly called as what else does the same
+_MOST_SETTINGS = 10
 _OVERVIEW_TOKENS = 1_200
 _FIRST = (10, 8, 6, 5, 4, 3)  # entries of each list, as many as fit; the others follow all lists
 _LINE_TOKENS = 50
 _MEMBERS = 6
 _NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
-_ASIDE = 0.2  # nodes are found by their own names
+_ASIDE = 0.2
+_OWN_NAMES = re.compile(r"Node|\.Theme|ViewerPath")  # what is asked for by its own name
 _ON_ITS_MODULE = 2.0
 _UNUSUAL = 0.2  # presets, and what interface code calls
 
 
 @dataclass(frozen=True, slots=True)
 class TopicOverview:
-    """The text on a topic, and the ids of its main classes and operators."""
+    """The text on a topic, the ids of its main classes and operators, and those of its settings if it has no classes.
 
-    blocks: tuple[AnswerBlock, ...]
+    ``more``: what has no room among the ``first`` blocks. ``is_single``: whether it is on a single page; ``says_how``:
+    whether the text says how it is done.
+    """
+
+    first: tuple[AnswerBlock, ...]
+    more: tuple[AnswerBlock, ...]
     members: tuple[str, ...]
+    settings: tuple[str, ...]
+    is_single: bool
+    says_how: bool
+
+    @property
+    def blocks(self) -> tuple[AnswerBlock, ...]:
+        """The whole text."""
+        return (*self.first, *self.more)
 
 
 class Topics:
@@ -41,22 +64,32 @@ class Topics:
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
+        self._settings = TopicSettings(reader)
 
     def find(self, text: str) -> str:
         """The slug of the manual page that a few plain words name; empty for none.
 
-        Of several pages with that title, in singular or plural, the one with the most pages and symbols; a page
-        without any is not a topic.
+        Of several pages with that title, in singular or plural, the one with the most pages and symbols; of many single
+        pages none. A modifier's or a constraint's name is enough where nothing else is called so.
         """
         plain = text.strip().strip("`'\"?!.")
-        if len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
+        if not key(plain) or len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
             return ""
         if plain != plain.lower() and self._is_class(plain):
             return ""
-        slugs = {slug for _, slug in self._reader.by_key(topic_key(plain))}
-        slugs |= {slug for _, slug in self._reader.by_key(key(plain)) if self._children(slug)}
-        sizes = {slug: self._size(slug) for slug in slugs if self._is_topic(slug)}
-        return max(sizes, key=lambda slug: (sizes[slug], slug)) if sizes else ""
+        keys = [topic_key(f"{plain} {kind}") for kind in ("", *_SHORT_FOR)]
+        self._reader.by_key.load((*keys, key(plain)))
+        titled = [{slug for _, slug in self._reader.by_key(title)} for title in keys]
+        titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._children(slug)}
+        for slugs in titled:
+            if sizes := {slug: self._size(slug) for slug in slugs if self._is_topic(slug)}:
+                best = max(sizes, key=lambda slug: (not slug.startswith(_SELDOM), sizes[slug], slug))
+                is_seldom = best.startswith(_SELDOM) and not all(slug.startswith(_SELDOM) for slug in slugs)
+                is_one_of_many = len(slugs) > _CALLED_SO and not self._children(best)
+                return "" if is_seldom or is_one_of_many else best
+        # A page that explains nothing but settings, if no other may be meant.
+        alone = next((slugs for slugs in titled if len(slugs) == 1), set[str]())
+        return next((slug for slug in alone if self._sets_something(slug)), "")
 
     def _is_class(self, text: str) -> bool:
         """Whether a text in capitals may mean a class: ``Camera``, ``Particle System``, unlike ``Rigid Body``."""
@@ -64,10 +97,17 @@ class Topics:
         return any(entry is not None and entry.kind == "class" for entry in entries)
 
     def _is_topic(self, slug: str) -> bool:
+        return self._may_be_topic(slug) and bool(self._children(slug) or self._reader.symbols_of_page(slug))
+
+    def _sets_something(self, slug: str) -> bool:
         page = self._reader.page_entry(slug)
-        if page is None or page.source != "manual" or slug.startswith(ASIDE_PAGES):
+        if page is None or not self._may_be_topic(slug):
             return False
-        return bool(self._children(slug) or self._reader.symbols_of_page(slug))
+        return bool(self._settings.labelled(slug) or [*self._settings.as_value(_plain_title(page))])
+
+    def _may_be_topic(self, slug: str) -> bool:
+        page = self._reader.page_entry(slug)
+        return page is not None and page.source == "manual" and not slug.startswith(ASIDE_PAGES)
 
     def _children(self, slug: str) -> tuple[PageEntry, ...]:
         return self._reader.page_children(slug)
@@ -92,7 +132,10 @@ class Topics:
         names = self._names(slug, page.title)
         head = "\n\n".join(filter(None, (f"## {page.title}", self._said(page), page.url)))
         classes, operators = self._entries(names.classes), self._entries(names.operators)
-        blocks = [AnswerBlock(head, "summary"), *Steps(self._reader, names).blocks()]
+        is_single = not self._children(slug)
+        settings = self._settings.labelled(slug) if is_single else []
+        steps = [*self._how(page, names, settings)]
+        blocks = [AnswerBlock(head, "summary"), *steps]
         lists = (
             ("Classes", [_line(entry) for entry in classes]),
             ("Operators", [_line(entry) for entry in operators]),
@@ -104,9 +147,26 @@ class Topics:
         )
         for title, lines in lists:
             blocks += _list_of(title, lines[:most])
-        for title, lines in lists:
-            blocks += _list_of(f"More {title.lower()}", lines[most:])
-        return TopicOverview(tuple(blocks), tuple(entry.path for entry in (*classes[:6], *operators[:4])))
+        more = [block for title, lines in lists for block in _list_of(f"More {title.lower()}", lines[most:])]
+        members = tuple(entry.path for entry in (*classes[:6], *operators[:4]))
+        # Those of a class that is named stand with it.
+        named = () if classes else tuple(entry.path for entry in settings)
+        return TopicOverview(tuple(blocks), tuple(more), members, named, is_single, says_how=bool(steps))
+
+    def _how(
+        self, page: PageEntry, names: TopicNames, settings: Sequence[SymbolEntry]
+    ) -> Iterator[AnswerBlock]:
+        """The steps, or else where the topic is a value; and what is set on the page without being told in them."""
+        steps = [*Steps(self._reader, names).blocks()]
+        yield from steps
+        if not steps and (values := [*self._settings.as_value(_plain_title(page))]):
+            lines = "\n".join(f"- {line}" for line in values)
+            yield AnswerBlock(f"**How it is done**\n{lines}", "as a value")
+        if steps:  # on a page about an editor how it looks is set, too
+            settings = [entry for entry in settings if not self._reader.descends(entry.owner, _EDITOR)]
+        told = "".join(block.text for block in steps)
+        left = [entry for entry in settings if f"`{entry.name}`" not in told]
+        yield from _list_of("Settings", [*self._settings.lines(left[:_MOST_SETTINGS])])
 
     def members(self, slug: str) -> frozenset[str]:
         """All classes and operators that belong to a topic."""
@@ -135,9 +195,14 @@ class Topics:
         for below, depth in self._subtree(slug).items():
             for path in self._reader.symbols_of_page(below):
                 nearness.setdefault(path, _NEAR if depth < 2 else _FAR)
+        is_operated = any(
+            names.names(path.rpartition(".")[2]) for path in nearness if not path.startswith(TYPES)
+        )
         for path, words in self._classes.items():
+            if is_operated and path not in nearness and _OWN_NAMES.search(path):
+                continue
             if any(wanted <= words for wanted in names.words):
-                nearness[path] = _NAMED * nearness.get(path, _ASIDE if "Node" in path else _FAR)
+                nearness[path] = _NAMED * nearness.get(path, _ASIDE if _OWN_NAMES.search(path) else _FAR)
         for module in names.keys:
             for path in self._reader.operators_of(module):
                 nearness[path] = _ON_ITS_MODULE * _NEAR
@@ -176,6 +241,12 @@ class Topics:
             yield clip(f"`{child.slug}` ({child.title}) {said}", _LINE_TOKENS)
             if depth > 1:
                 yield from (f"  {line}" for line in self._page_lines(child.slug, depth - 1))
+
+
+def _plain_title(page: PageEntry) -> str:
+    """A page's title without the kind of what it explains."""
+    name, _, last = page.title.rpartition(" ")
+    return name if last.lower() in _KINDS else page.title
 
 
 def _line(entry: SymbolEntry) -> str:

@@ -13,13 +13,16 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
-from kb_build.symbol_lines import empty_when_new, fillers
+from kb_build.symbol_lines import empty_when_new, fillers, operator_needs
 from kb_serve.answer.budget import AnswerBlock, tokens
+from kb_serve.answer.panel_lines import panel_lines
+from kb_serve.answer.render import is_machinery
 from kb_serve.reader import STRUCT, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
+    from kb_build.records import Symbol
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _MOST_TOKENS = 1_150  # of all steps
@@ -29,6 +32,7 @@ _SETTINGS = 10
 _HOLDERS = 4  # pointers of a thing whose settings are shown
 _FUNCTIONS = 3
 _RUNS = 4
+_VALUES = 8  # of one argument
 _ARGUMENTS = 3  # of an operator's call
 _MAKES = ("add", "new", "create", "insert")
 _REMOVES = (
@@ -81,8 +85,11 @@ class Steps:
         self._shown: set[str] = set()
         self._chosen: set[str] = set()
         self._creations = reader.creations(list(names.classes))
-        # Where classes have the topic's name, the others of its pages are other topics' matter.
+        # Where classes have the topic's name, the others of its pages are other topics' matter, unless these alone can
+        # be made.
         named = [path for path in names.classes if names.names(path)]
+        if self._creations and self._creations.keys().isdisjoint(named):
+            named = []
         self._classes = named or list(names.classes)
 
     def blocks(self) -> Iterator[AnswerBlock]:
@@ -124,6 +131,7 @@ class Steps:
         if self._reader.descends(main, _NODE):
             yield from self._tree(main)
             yield from self._nodes(paths)
+            yield from self._calls_on_nodes(paths)
             return
         yield self._call(paths)
         if self._creations[main].call.startswith("bpy.data."):
@@ -150,6 +158,13 @@ class Steps:
         """How nodes are made and joined."""
         yield self._call(paths)
         yield from (f"`{link.call}`" for link in self._reader.creations([f"{TYPES}NodeLink"]).values())
+
+    def _calls_on_nodes(self, paths: Iterable[str]) -> Iterator[str]:
+        """The functions that nodes themselves have, as those at the ends of zones do."""
+        for path in paths:
+            entries = self._reader.members(path).values()
+            functions = [entry for entry in entries if entry.kind == "function" and not is_machinery(entry)]
+            yield from (f"`{self._variable(path)}.{_call_of(entry)}`" for entry in functions[:_FUNCTIONS])
 
     def _own_tree(self, path: str) -> Iterator[str]:
         """The nodes of what holds a tree, as a material does."""
@@ -189,7 +204,11 @@ class Steps:
     def _tree(self, node: str) -> Iterator[str]:
         """The tree that takes a node."""
         symbol = self._reader.symbol(node)
-        trees = [f"{TYPES}{tree}" for tree in (symbol.trees if symbol else ())][:1]
+        name = node.removeprefix(TYPES)
+        own = sorted(
+            symbol.trees if symbol else (), key=lambda t: not name.startswith(t.removesuffix("Tree"))
+        )
+        trees = [f"{TYPES}{tree}" for tree in own[:1]]
         for tree, creation in self._reader.creations(trees).items():
             if tree in self._shown:
                 continue
@@ -308,7 +327,20 @@ class Steps:
                 if entry.type == "pointer" and not _is_set(entry) and target not in self._names.classes:
                     for function in self._heaviest(self._reader.members(target).values())[:2]:
                         if function.kind == "function" and function.name.startswith("new"):
-                            yield f"`{variable}.{entry.name}.{_call_of(function)}`"
+                            choices = self._choices(function, path)
+                            yield f"`{variable}.{entry.name}.{_call_of(function)}`{choices}"
+
+    def _choices(self, function: SymbolEntry, cls: str) -> str:
+        """The values of a function's arguments that are a choice, of those that an instance of the class takes."""
+        symbol, made = self._reader.symbol(function.path), self._reader.entry(cls)
+        label = made.label.lower() if made else ""
+        told: list[str] = []
+        for parameter in symbol.parameters if symbol else ():
+            taken = [item.identifier for item in parameter.enum_items if _is_taken(item.where, label)]
+            if len(taken) > 1:
+                values = "|".join(map(repr, taken[:_VALUES])) + ("|…" if len(taken) > _VALUES else "")
+                told.append(f"`{parameter.name}={values}`")
+        return f" ({', '.join(told)})" if told else ""
 
     def _belongs(self, path: str) -> bool:
         return path not in self._shown and (path in self._names.classes or path == _CACHE)
@@ -372,7 +404,12 @@ class Steps:
         entry = self._reader.entry(path)
         said = entry.line.partition(" — ")[2].removeprefix("(undocumented operator)") if entry else ""
         more = f" and {left} more" if left else ""
-        return f"`{path}({', '.join(arguments)})`{more}" + (f" — {said}" if said else "")
+        asked = "; ".join(_asked(symbol, self._reader)) if symbol else ""
+        return (
+            f"`{path}({', '.join(arguments)})`{more}"
+            + (f" — {said}" if said else "")
+            + (f" ({asked})" if asked else "")
+        )
 
     def _bakes(self) -> Iterator[str]:
         """The heaviest operator of the page that explains the cache."""
@@ -396,6 +433,21 @@ class Steps:
     def _expression(self, entry: SymbolEntry) -> str:
         owner = self._reader.symbol(entry.owner)
         return f"{owner.reached if owner and owner.reached else entry.owner.removeprefix(TYPES)}.{entry.name}"
+
+
+def _asked(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
+    """What must be before an operator runs, and does what is wanted."""
+    if needs := operator_needs(symbol):
+        yield f"takes {needs}"
+    yield from panel_lines(symbol, reader)
+
+
+def _is_taken(where: str, label: str) -> bool:
+    """Whether an item is taken by a new thing of this label."""
+    kind, _, labels = where.partition(" by ")
+    if not labels or labels.endswith("…"):
+        return True
+    return (label in labels.split(", ")) == (kind == "only")
 
 
 def _is_set(entry: SymbolEntry) -> bool:

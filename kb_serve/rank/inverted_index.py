@@ -5,6 +5,7 @@ All is numbered through: first the units, then the topics around them, then the 
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 from kb_build.index.analysis import idf
 from kb_build.schema import DOCUMENT_KINDS, POSTING_BYTES, TOPICS, UNITS
 from kb_serve.kept_rows import KeptRows
+from kb_serve.rank.areas import NO_AREA, area_of
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -24,6 +26,7 @@ if TYPE_CHECKING:
 Scores = NDArray[np.float32]
 
 K1 = 2.2
+_PAGES = 2.0  # what a page counts, as pages are not weighed: as much as a symbol that is often used
 _NUMBER_BYTES = 4
 _KEPT = 300  # stems; a query has a dozen at most
 
@@ -78,6 +81,16 @@ class InvertedIndex:
         return units, topics
 
     @cached_property
+    def areas(self) -> NDArray[np.uint8]:
+        """For each unit its area (see area_of): that of a page, and of what is of one chapter with it."""
+        units, _ = self.levels
+        areas = np.full(units.count, NO_AREA, np.uint8)  # of chapters, which are numbered by their units
+        for chapter, slug in zip(units.chapters.tolist(), units.refs, strict=True):
+            if (area := area_of(slug)) != NO_AREA:
+                areas[chapter] = area
+        return areas[units.chapters]
+
+    @cached_property
     def asked(self) -> NDArray[np.intp]:
         """For each phrase the number of the document that it asks for. Raises BaseUnreadable."""
         try:
@@ -94,6 +107,17 @@ class InvertedIndex:
         """The numbers at which units, topics and phrases end."""
         units, topics = (level.count for level in self.levels)
         return units, units + topics, units + topics + len(self.asked)
+
+    @cached_property
+    def counts(self) -> Scores:
+        """How much each unit counts among its like, on a scale that begins at 0. Raises BaseUnreadable."""
+        weights: list[tuple[str, float]] = self._reader.rows("SELECT path, weight FROM weights")
+        try:
+            own = {path: math.log1p(weight) for path, weight in weights}
+        except (ValueError, TypeError) as error:
+            raise self._reader.damaged(error) from error
+        own |= dict.fromkeys(self._reader.slugs, _PAGES)
+        return np.array([own.get(ref, 0.0) for ref in self.levels[0].refs], np.float32)
 
     def idf(self, stem: str) -> float:
         """How much a stem tells, by the units that have it; 0 for an unknown one."""

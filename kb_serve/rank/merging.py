@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
@@ -26,15 +26,15 @@ _TOO_FAR = 0.25  # share of the best hit's score below which a symbol does not h
 _LEAST_HITS = 20  # of the search, so that it also finds alternatives to a named class, and names beside pages
 
 
-@dataclass(frozen=True, slots=True)
-class RankedId:
-    """An id and why it is in the list; ``score`` falls from 1 down the list. ``members`` as of the search's hits."""
+class RankedId(NamedTuple):
+    """An id and why it is in the list; ``score`` falls from 1 down the list. The rest is as of the search's hits."""
 
     id: str
     score: float
     why: str
     anchor: str = ""
     members: tuple[str, ...] = ()
+    chapter: int = -1
 
 
 @dataclass(slots=True)
@@ -50,13 +50,19 @@ class Ranking:
         """The first ``limit`` ids, without what the search found far below its best.
 
         A description's first few are listed in any case, as the search may have misjudged it. What follows makes up
-        for symbols that they lack: a page tells how, but code needs names.
+        for symbols that they lack: a page tells how, but code needs names. Those that are far from the best are of
+        one chapter with one of the first: others have hardly ever to do with the question.
         """
         kept = 1 if self.named else _ALWAYS
         first, rest = self.ranked[: min(kept, limit)], self.ranked[kept:]
         room = max(0, limit - kept)
         lacking = 0 if self.named else _NAMES - sum(not is_page(row.id) for row in first)
-        names = [row for row in rest if row.score >= _TOO_FAR * SURE and not is_page(row.id)]
+        chapters = {row.chapter for row in first}
+        names = [
+            row
+            for row in rest
+            if row.score >= (_TOO_FAR if row.chapter in chapters else _FAR) * SURE and not is_page(row.id)
+        ]
         names = names[: min(room, max(0, lacking))]
         near = [row for row in rest if row not in names and (row.why != "found" or row.score >= _FAR * SURE)]
         chosen = {row.id for row in (*names, *near[: room - len(names)])}
@@ -78,8 +84,8 @@ class QueryRanker:
 
         return Searcher(self._reader)
 
-    def rank(self, query: str, limit: int = _LEAST_HITS) -> Ranking:
-        """The ids for a query, at least ``limit`` of them if there are."""
+    def rank(self, query: str, limit: int = _LEAST_HITS, about: str = "") -> Ranking:
+        """The ids for a query, at least ``limit`` of them if there are; ``about``: see Searcher.search."""
         recognition = self._recogniser.recognise(query)
         best = recognition.best
         if best is not None and best.sure >= 1.0 and best.why != "successor":
@@ -89,7 +95,7 @@ class QueryRanker:
             ranked = [RankedId(m.id, m.sure, m.why) for m in recognition.matches if m.sure >= SURE]
             return Ranking(ranked, recognition, named=False, notes=self._notes.on(recognition))
         prose = prose_of(query)
-        hits = self.searcher.search(prose, max(limit, _LEAST_HITS), failed=is_message(query))
+        hits = self.searcher.search(prose, max(limit, _LEAST_HITS), failed=is_message(query), about=about)
         ranked = self._merged(recognition, hits)
         ranked[:1] = [self._at_its_section(row, prose) for row in ranked[:1]]
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
@@ -101,7 +107,7 @@ class QueryRanker:
         page = self._reader.page(row.id) if row.why == "found" and not row.anchor else None
         if page is None or len(page.sections) == 1:
             return row
-        return replace(row, anchor=asked_section(page, self.searcher.concepts(prose)))
+        return row._replace(anchor=asked_section(page, self.searcher.concepts(prose)))
 
     @staticmethod
     def _merged(recognition: Recognition, hits: list[SearchHit]) -> list[RankedId]:
@@ -113,7 +119,10 @@ class QueryRanker:
             RankedId(match.id, match.sure, match.why) for match in recognition.matches if match.sure < SURE
         ]
         top = hits[0].score if hits else 1.0
-        prose = [RankedId(hit.ref, SURE * hit.score / top, "found", hit.anchor, hit.members) for hit in hits]
+        prose = [
+            RankedId(hit.ref, SURE * hit.score / top, "found", hit.anchor, hit.members, hit.chapter)
+            for hit in hits
+        ]
         merged: dict[str, RankedId] = {}
         for row in (*sure, *prose[:3], *maybe, *prose[3:]):
             merged.setdefault(row.id, row)

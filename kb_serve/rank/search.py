@@ -8,9 +8,9 @@ name, and a class with the page that explains it.
 from __future__ import annotations
 
 from collections import Counter
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from rapidfuzz import process
@@ -36,26 +36,27 @@ TOPIC_WEIGHT = 0.4
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 UNKNOWN_IDF = 6.0
 _CORRECTED_WEIGHT = 0.95  # what a corrected word counts, next to one that was written so
+_AROUND = 0.4  # what a word around the query counts, next to one of it
 _TWO_TYPOS = 9  # letters from which on two may be wrong
 _MAX_WORDS = 40
 _CANDIDATES = 400
-_DIFFERENT = 5
+_DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
 _MEMBERS = 3  # of a class that are told with it
 _NEAR = 0.35  # share of the best member's score below which another one is not told
 _INDEX = DOCUMENT_KINDS.index("index")
 
 
-@dataclass(frozen=True, slots=True)
-class SearchHit:
+class SearchHit(NamedTuple):
     """One ranked unit: a symbol path or a page's slug, and the anchor of the section that was found; of a class or
-    module the names of those members that speak most of the query.
+    module the names of those members that speak most of the query. ``chapter``: see Level.
     """
 
     ref: str
     anchor: str
     score: float
     members: tuple[str, ...] = ()
+    chapter: int = -1
 
 
 @dataclass(frozen=True, slots=True)
@@ -111,9 +112,19 @@ class Searcher:
             return Concept(word, corrected, _CORRECTED_WEIGHT, self.index.idf(corrected))
         return Concept(word, "", 0.0, UNKNOWN_IDF)
 
-    def search(self, text: str, limit: int = 50, *, failed: bool = False) -> list[SearchHit]:
-        """The best documents for a text, best first, each id once. ``failed`` where it is an error's message."""
-        if (found := self.find(text, failed=failed)) is None:
+    def _around(self, about: str, text: str) -> Iterator[Concept]:
+        """The words around a text that it does not have itself."""
+        if about:
+            own = set(map(stem, words(text)))
+            for concept in self.concepts(about):
+                if concept.stem not in own:
+                    yield replace(concept, weight=_AROUND * concept.weight)
+
+    def search(self, text: str, limit: int = 50, *, failed: bool = False, about: str = "") -> list[SearchHit]:
+        """The best documents for a text, best first, each id once. ``failed`` where it is an error's message; ``about``
+        are words around it, which count less.
+        """
+        if (found := self.find(text, failed=failed, about=about)) is None:
             return []
         numbers, evidence = found
         scores = scores_of(evidence)
@@ -129,7 +140,7 @@ class Searcher:
         number, topic = ranked.numbers[place], ranked.topics[place]
         ref = units.refs[number]
         members: list[str] = []
-        if topic >= 0 and topics.refs[topic] == ref and not units.anchors[number]:
+        if topic >= 0 and topics.refs[topic] == ref and not self._reader.is_page(ref):
             below = np.flatnonzero(ranked.topics == topic)
             near = [
                 units.refs[ranked.numbers[other]]
@@ -137,11 +148,19 @@ class Searcher:
                 if ranked.scores[other] >= _NEAR * ranked.scores[below[0]]
             ]
             members = [other.removeprefix(f"{ref}.") for other in near if other.startswith(f"{ref}.")]
-        return SearchHit(ref, units.anchors[number], float(ranked.scores[place]), tuple(members[:_MEMBERS]))
+        return SearchHit(
+            ref,
+            units.anchors[number],
+            float(ranked.scores[place]),
+            tuple(members[:_MEMBERS]),
+            int(units.chapters[number]),
+        )
 
-    def find(self, text: str, *, failed: bool = False) -> tuple[NDArray[np.intp], Evidence] | None:
+    def find(
+        self, text: str, *, failed: bool = False, about: str = ""
+    ) -> tuple[NDArray[np.intp], Evidence] | None:
         """The units that speak most of a text: their numbers, and what is known of them. None if there are none."""
-        concepts = self.concepts(text)
+        concepts = [*self.concepts(text), *self._around(about, text)]
         units, topics = self.index.levels
         found = score_all(self.index, concepts)
         numbers = np.flatnonzero(found.coverage[: units.count] > 0)
@@ -158,6 +177,8 @@ class Searcher:
             failed,
             texts,
             self._asked(found, numbers, topic),
+            self.index.counts[numbers],
+            self.index.areas[numbers],
             units.chapters[numbers],
             units.kinds[numbers],
         )

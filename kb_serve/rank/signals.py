@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from kb_build.schema import DOCUMENT_KINDS
+from kb_serve.rank.areas import NO_AREA, unasked
 from kb_serve.rank.weights import WEIGHTS
 
 if TYPE_CHECKING:
@@ -42,14 +43,16 @@ class Evidence:
     """What is known of the units that speak of a query, as arrays in one order.
 
     ``texts``: BM25F of the unit and of the topic around it. ``asked``: how nearly the query is a phrase that the unit
-    or its topic is asked for by, 0…1. ``chapters`` and ``kinds`` are as in the index. ``words`` are the query's; it is
-    an error's message if ``failed``.
+    or its topic is asked for by, 0…1. ``counts``, ``areas``, ``chapters`` and ``kinds`` are as in the index. ``words``
+    are the query's; it is an error's message if ``failed``.
     """
 
     words: frozenset[str]
     failed: bool
     texts: Scores
     asked: Scores
+    counts: Scores
+    areas: NDArray[np.uint8]
     chapters: NDArray[np.int32]
     kinds: NDArray[np.uint8]
 
@@ -68,6 +71,11 @@ def asked(evidence: Evidence) -> Scores:
     return evidence.asked
 
 
+def counts(evidence: Evidence) -> Scores | None:
+    """How much the unit counts among its like. Who gets a message may have used the rarest of them."""
+    return None if evidence.failed else evidence.counts
+
+
 def code(evidence: Evidence) -> Scores | None:
     """Whether the unit is about code, where the query asks for code."""
     return None if evidence.words.isdisjoint(CODE_WORDS) else evidence.of_kind("code")
@@ -84,6 +92,13 @@ def unasked_node(evidence: Evidence) -> Scores | None:
     return evidence.of_kind("node") if evidence.words.isdisjoint(NODE_WORDS) else None
 
 
+def unasked_area(evidence: Evidence) -> Scores:
+    """Whether the unit is of an area that stands apart, where the query does not speak of it."""
+    of_area = np.zeros(NO_AREA + 1, np.float32)
+    of_area[unasked(evidence.words)] = 1
+    return of_area[evidence.areas]
+
+
 def rarely_asked(evidence: Evidence) -> Scores:
     """Whether the unit is of what is rarely asked for."""
     return evidence.of_kind("rarely asked")
@@ -97,9 +112,11 @@ def index(evidence: Evidence) -> Scores:
 SIGNALS: dict[str, Signal] = {
     "text": text,
     "asked": asked,
+    "counts": counts,
     "code": code,
     "code of an error": code_of_an_error,
     "unasked node": unasked_node,
+    "unasked area": unasked_area,
     "rarely asked": rarely_asked,
     "index": index,
 }

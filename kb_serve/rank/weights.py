@@ -6,9 +6,11 @@ Chosen by hand, near what ``python -m measurements.fit_weights`` finds; ``make b
 WEIGHTS: dict[str, float] = {
     "text": 1.0,
     "asked": 0.9,
+    "counts": 0.1,
     "code": 0.5,
     "code of an error": 0.25,
     "unasked node": -0.5,
+    "unasked area": -0.3,
     "rarely asked": -0.35,
     "index": -1.0,
     "chapter": 0.1,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -15,6 +16,8 @@ NO_OVERRIDE = (
 )
 _WITH = "with bpy.context.temp_override"
 _OBJECT = f"{_WITH}(object=ob, active_object=ob, selected_objects=[ob], selected_editable_objects=[ob])"
+_ACTIVE = "bpy.context.view_layer.objects.active = ob"
+_MODE = re.compile(r"(?P<refused>not )?in mode '(?P<mode>\w+)'")
 _MODES = {
     "mesh": "EDIT", "uv": "EDIT", "curve": "EDIT", "curves": "EDIT", "armature": "EDIT", "lattice": "EDIT",
     "mball": "EDIT", "surface": "EDIT", "font": "EDIT", "pose": "POSE", "poselib": "POSE", "sculpt": "SCULPT",
@@ -39,14 +42,14 @@ _OF_OBJECTS = frozenset(
         "material",
     }
 )
-# Which objects a module's operators take, where it is not any of a fitting type.
-_FITTING = {"rigidbody": "a mesh for `object_add`, a rigid body for most others"}
 
 
-def context_for(path: str) -> str:
-    """What lets an operator run whose ``poll()`` failed."""
+def context_for(path: str, needs: str = "") -> str:
+    """What lets an operator run whose ``poll()`` failed; ``needs`` is what it wants, of all that was tried."""
     _, _, module, name = path.split(".", 3)
     failed = f"`{path}.poll()` failed: "
+    if needs:
+        return f"{failed}of all that was tried, it takes {needs}. {_giving(path, needs)}".rstrip()
     if module in _EDITORS:
         return (
             f"{failed}it runs in an area of type {_EDITORS[module]}. `area = next(a for a in "
@@ -56,23 +59,34 @@ def context_for(path: str) -> str:
     if mode := "" if name.endswith("_add") else _MODES.get(module):
         return (
             f"{failed}it needs an active object of a fitting type in another mode: "
-            f"`bpy.context.view_layer.objects.active = ob`, then `bpy.ops.object.mode_set(mode='{mode}')`."
+            f"`{_ACTIVE}`, then `bpy.ops.object.mode_set(mode='{mode}')`."
         )
     if module == "ptcache":
+        given = "bake=True" if name == "bake" else ""  # without, it bakes nothing and says that it did
         return (
-            f"{failed}it needs the cache in the context: `{_WITH}(point_cache=modifier.point_cache): {path}()`. "
+            f"{failed}it needs the cache in the context: `{_WITH}(point_cache=modifier.point_cache): {path}({given})`. "
             "`bpy.ops.ptcache.bake_all(bake=True)` needs none, and bakes all of the scene."
         )
     if module in _OF_OBJECTS or module in _MODES:
-        fitting = _FITTING.get(module, "of a fitting type")
         return (
-            f"{failed}it needs an active object ({fitting}; an Empty mostly is none), some in Object Mode alone: "
-            f"`bpy.ops.object.mode_set(mode='OBJECT')`. `{_OBJECT}: {path}()` gives it the object `ob`."
+            f"{failed}it needs an active object (of a fitting type; an Empty mostly is none), some in Object Mode "
+            f"alone: `bpy.ops.object.mode_set(mode='OBJECT')`. `{_OBJECT}: {path}()` gives it the object `ob`."
         )
     return (
         f"{failed}it needs another mode, active object, selection or editor than the context has. "
         f"`{OVERRIDE}` can provide it."
     )
+
+
+def _giving(path: str, needs: str) -> str:
+    """Lines that give an operator what it wants; empty where its needs say how."""
+    if not needs.startswith("an active"):
+        return ""
+    mode = _MODE.search(needs)
+    if mode and not mode["refused"]:
+        return f"`{_ACTIVE}`, then `bpy.ops.object.mode_set(mode='{mode['mode']}')`."
+    left = " after `bpy.ops.object.mode_set(mode='OBJECT')`" if mode else ""
+    return f"`{_OBJECT}: {path}()` gives it the object `ob`{left}."
 
 
 def with_context(chain: Chain) -> str:

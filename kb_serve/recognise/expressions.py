@@ -28,6 +28,7 @@ _FILE_ENDINGS = frozenset(
     "abc avi blend exr fbx glb gltf hdr jpg json mkv mov mp4 obj ply png py stl tif usd usdc vdb wav zip".split()  # noqa: SIM905
 )
 _LONG = 12  # letters from which on a name is corrected without knowing what it belongs to
+_CALLED = 0.9  # from here on, a named operator's or function's arguments may stand behind it
 _BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 _CLEAR = 0.85  # fit of a variable's name that hardly means another class
@@ -92,10 +93,21 @@ class Expressions:
                 and not self._misspelt(chain, readings[0])
             ):
                 self._reading(chain, readings, later, recognition)
-            elif not _is_file_name(chain) and not self._corrected(chain, readings, later, recognition):
+            elif _is_file_name(chain) or self._is_argument(chain, recognition):
+                continue
+            elif not self._corrected(chain, readings, later, recognition):
                 if broken:
                     self._broken_off(chain, broken, later, recognition)
                 self._loose_name(chain, prose, recognition)
+
+    def _is_argument(self, chain: Chain, recognition: Recognition) -> bool:
+        """Adds a name that stands behind an operator or function as an argument of it; whether it is one."""
+        for match in recognition.matches if not chain.steps else ():
+            symbol = self._reader.symbol(match.id) if match.sure >= _CALLED else None
+            if symbol and any(parameter.name == chain.root for parameter in symbol.parameters):
+                recognition.arguments.setdefault(match.id, []).append(chain.root)
+                return True
+        return False
 
     @staticmethod
     def _trusted(chain: Chain, resolved: ResolvedChain, broken: ResolvedChain | None) -> bool:

@@ -7,6 +7,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
+from kb_build.symbol_lines import operator_needs
 from kb_serve.reader import COLLECTION, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import unknown_keywords
@@ -190,9 +191,9 @@ class Messages:
 
     def _operators(self, query: str, recognition: Recognition) -> None:
         for match in _matches(forms.POLL, query):
-            if self._reader.entry(match["path"]):
-                recognition.add(match["path"], 0.98, "error message")
-                recognition.notes.append(context_for(match["path"]))
+            if symbol := self._reader.symbol(match["path"]):
+                recognition.add(symbol.path, 0.98, "error message")
+                recognition.notes.append(context_for(symbol.path, operator_needs(symbol)))
                 self._page(_ON_OPERATORS, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")
         for match in _matches(forms.WRONG_TYPE, query):
@@ -348,5 +349,5 @@ class Messages:
                     recognition.add(factor, 0.95 - 0.02 * rank, "error message")
 
     def _page(self, slug: str, recognition: Recognition) -> None:
-        if self._reader.page_entry(slug):
+        if self._reader.is_page(slug):
             recognition.add(slug, 0.86, "error message")

@@ -15,7 +15,7 @@ from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.corrections import Corrector, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
-from kb_serve.recognise.message_patterns import without_callers_names, without_wording
+from kb_serve.recognise.message_patterns import is_message, without_callers_names, without_wording
 from kb_serve.recognise.messages import Messages
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.old_code import OldCode
@@ -24,11 +24,13 @@ from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
 from kb_serve.recognise.resolver import Resolver
 from kb_serve.recognise.spellings import Spellings
+from kb_serve.recognise.subscripts import NODES_MODIFIER, asks_for_inputs
 
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
 _FEW = 3
 _SURE = 0.9
 _MANY = 12
+_DESCRIBED = 0.85  # … what plain words describe
 _OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
 _OWNER_OF_REMOVED = 0.85  # … one whose removed member has no known successor
 # Of names that resemble a removed one: how sure those are from a score on; half of these are its successors, of the
@@ -73,6 +75,8 @@ class Recogniser:
             self._expressions.recognise(chains if code == query else find_chains(code), recognition)
             self._enum_values.recognise(text, recognition)
             self._removed_values(text, recognition)
+            if asks_for_inputs(query) and not is_message(query) and self._reader.entry(NODES_MODIFIER):
+                recognition.add(NODES_MODIFIER, _DESCRIBED, "described")
         self._check_uses(query, chains, recognition)
         self._messages.explain(query, recognition)
         self._explain_removed(recognition)

@@ -36,6 +36,7 @@ class MissingName:
 class Recognition:
     """What was recognised: ``matches``, and what was wrong with the names in the query.
 
+    ``arguments``: function or operator → those of its arguments that are named beside it.
     ``notes`` are further sentences for the caller. ``is_open`` tells that the query does not say which of several
     operators it is about.
     """
@@ -44,6 +45,7 @@ class Recognition:
     missing: list[MissingName] = field(default_factory=list)
     corrections: list[Correction] = field(default_factory=list)
     removed: list[RemovedSymbol] = field(default_factory=list)
+    arguments: dict[str, list[str]] = field(default_factory=dict[str, "list[str]"])
     notes: list[str] = field(default_factory=list)
     is_open: bool = False
 

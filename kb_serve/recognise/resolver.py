@@ -224,7 +224,7 @@ class Resolver:
     def _sequence(self, symbol: str, classes: list[str]) -> ChainValue:
         """An instance of the first class; of a sequence, the elements are of the class that it names or creates."""
         first, *others = classes
-        if first.endswith("Seq"):
+        if first.endswith(("Seq", "Slice")):
             makes = self.member(first, "new")
             element = others[0] if others else self._returned(makes.path) if makes else ""
             return ChainValue(symbol, element, many=True, container=first)

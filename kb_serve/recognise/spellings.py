@@ -57,15 +57,16 @@ class Spellings:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds the symbols and pages that the whole query names."""
         text = query.strip().strip("`'\"").rstrip(".:;,?!")
-        candidates = (text, f"bpy.{text}")
-        self._reader.entry.load(candidates)
-        for path in candidates:
-            if self._reader.entry(path):
-                recognition.add(path, 1.0, "exact")
+        if "[" in text or " " not in text:  # a path; only sockets' have spaces, in brackets
+            candidates = (text, f"bpy.{text}")
+            self._reader.entry.load(candidates)
+            for path in candidates:
+                if self._reader.entry(path):
+                    recognition.add(path, 1.0, "exact")
+                    return
+            if taken_as := self._reader.still_works(TYPES + text):
+                recognition.add_former_name(taken_as, 1.0)
                 return
-        if taken_as := self._reader.still_works(TYPES + text):
-            recognition.add_former_name(taken_as, 1.0)
-            return
         if slug := find_page(text, self._reader):
             recognition.add(slug, 1.0, "exact")
             return
@@ -75,7 +76,8 @@ class Spellings:
         rows = self._reader.by_key(key(called))
         if rows:
             self._spelled(called, rows, recognition)
-        if recognition.best is None or recognition.best.sure < 1:
+        in_plain_words = " " in called and called.islower()
+        if not in_plain_words and (recognition.best is None or recognition.best.sure < 1):
             for removed in self._removed.spelled(called):
                 recognition.add_removed(removed)
 

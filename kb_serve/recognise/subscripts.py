@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import stem, words
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -30,6 +31,20 @@ _TAKING = frozenset(
 )
 _PROPERTIES = f"{NODES_MODIFIER}.properties"  # since Blender 5.2
 _ITEMS = f"{TYPES}NodeTreeInterface.items_tree"
+# How people say in plain words that they want to set an input: of a modifier it may be called anything, of geometry
+# nodes alone it is one where no node is meant.
+_SAID = frozenset(map(stem, ("geometry", "nodes")))
+_INPUT = frozenset(map(stem, ("input", "value", "property", "socket", "slider", "attribute", "setting")))
+_OUTSIDE = frozenset(map(stem, ("parameter", "exposed")))
+_MODIFIER = stem("modifier")
+_MAKING = frozenset(map(stem, ("add", "new", "create", "remove", "delete", "interface", "field")))
+
+
+def asks_for_inputs(query: str) -> bool:
+    """Whether a query in plain words asks for the inputs of a geometry-nodes modifier, rather than to make some."""
+    stems = set(map(stem, words(query)))
+    said = _OUTSIDE | _INPUT if _MODIFIER in stems else _OUTSIDE
+    return stems >= _SAID and not stems.isdisjoint(said) and stems.isdisjoint(_MAKING)
 
 
 class CustomProperties:

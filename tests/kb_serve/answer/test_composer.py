@@ -26,6 +26,7 @@ QUERIES = (
     "how do I stop cloth from passing through its collider?", "Subdivision Surface", "templates_py/operator_modal",
     'mat.node_tree.nodes["Principled BSDF"].inputs["Specular"]', "rna_enum_icon_items", "xyzzy plugh",
     "AttributeError: 'Action' object has no attribute 'fcurves'", "bpy.types.UILayout.label", "EEVEE bloom",
+    "add a cube, give it cloth and render it",
 )  # fmt: skip
 FOOTER = re.compile(r"\n\n_Parts? \d+(?: to \d+)? of \d+\. Left: .*\. Next: .*_$", re.DOTALL)
 
@@ -174,6 +175,15 @@ def test_a_class_that_was_found_is_told_with_the_members_that_were(
     assert name in kb.query(query).text
 
 
+def test_an_argument_that_is_named_comes_first(kb: KnowledgeBase) -> None:
+    answer = kb.query("bpy.ops.wm.usd_export selected_objects_only")
+    assert answer.text.startswith(
+        "**Asked for**, of `bpy.ops.wm.usd_export`\n- `selected_objects_only` (boolean"
+    )
+    assert not answer.notes
+    assert "Asked for" not in kb.query("bpy.ops.wm.usd_export").text
+
+
 def test_corrections_come_before_the_answer(kb: KnowledgeBase) -> None:
     answer = kb.query("ClothSettings.qualiti")
     assert answer.text.startswith("> `qualiti` does not exist; read as `quality`.")
@@ -206,3 +216,24 @@ def test_every_further_hit_says_something(kb: KnowledgeBase, query: str) -> None
     assert not [
         line for line in lines if line.startswith("- ") and line.endswith("`") and line.count("`") == 2
     ]
+
+
+def test_each_part_of_a_question_is_answered_in_brief_and_no_name_twice(kb: KnowledgeBase) -> None:
+    answer = kb.query(
+        "add a modifier to the object, make cloth collide with itself and set the render engine"
+    )
+    parts = [line for line in answer.text.split("\n") if line.startswith("**")]
+    assert parts == [
+        "**1. add a modifier to the object**",
+        "**2. make cloth collide with itself**",
+        "**3. set the render engine**",
+    ]
+    assert "3 parts" in answer.notes[0]
+    assert answer.kind == "candidates"
+    first, second, third = (part.split("\n")[1:] for part in re.split(r"\n\n\*\*\d\. ", answer.text)[1:])
+    assert any("modifier" in line for line in first)
+    assert any("use_self_collision" in line for line in second)
+    assert any("RenderSettings.engine" in line for line in third)
+    named = [line.split("`")[1] for line in (*first, *second, *third)]
+    assert len(named) == len({*named})
+    assert {hit.id for hit in answer.hits} <= {*named}

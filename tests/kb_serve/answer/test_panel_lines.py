@@ -14,6 +14,7 @@ if TYPE_CHECKING:
 
 GREYED = "greyed out in Blender's panels unless "
 SHOWN = "shown in Blender's panels only if "
+OFFERED = "offered by Blender's panels only if "
 SWITCHES = "while it is off, Blender's panels grey out or hide "
 
 
@@ -36,7 +37,11 @@ def lines(reader: BaseReader, path: str) -> list[str]:
          [f"{GREYED}`use_custom_distance` is on (a new one has it off)", f"{SHOWN}`type` is not 'SUN'"]),
         ("RigidBodyConstraint.breaking_threshold",
          [f"{GREYED}`use_breaking` is on (a new one has it off)", f"{SHOWN}`type` is not 'MOTOR'"]),
-        ("AreaLight.size_y", [f"{SHOWN}`shape` is 'ELLIPSE' or 'RECTANGLE'"]),
+        ("AreaLight.size_y", [f"{SHOWN}`shape` is 'ELLIPSE' or 'RECTANGLE' (a new one has `'SQUARE'`)"]),
+        ("FluidDomainSettings.sndparticle_life_max",
+         [f"{GREYED}`use_bubble_particles` is on or `use_foam_particles` is on or `use_spray_particles` is on "
+          "(a new one has all of them off)",
+          f"{SHOWN}`domain_type` is 'LIQUID' (a new one has `'GAS'`)"]),
         ("CyclesRenderSettings.rolling_shutter_type",
          [f"{GREYED}`RenderSettings.use_motion_blur` is on (a new one has it off)"]),
         ("CameraDOFSettings.use_dof",
@@ -49,6 +54,28 @@ def lines(reader: BaseReader, path: str) -> list[str]:
 )  # fmt: skip
 def test_a_setting_says_what_it_depends_on(reader: BaseReader, path: str, expected: list[str]) -> None:
     assert lines(reader, path) == expected
+
+
+@pytest.mark.parametrize(
+    ("operator", "expected"),
+    [
+        ("fluid.bake_all",
+         [f"{OFFERED}`FluidDomainSettings.cache_type` is 'ALL' (a new one has `'REPLAY'`) and "
+          "`FluidModifier.fluid_type` is 'DOMAIN' (a new one has `'NONE'`)"]),
+        ("fluid.bake_noise",
+         [f"{GREYED}`FluidDomainSettings.use_noise` is on (a new one has it off)",
+          f"{OFFERED}`FluidDomainSettings.cache_type` is 'MODULAR' (a new one has `'REPLAY'`) and "
+          "`FluidDomainSettings.domain_type` is 'GAS'"]),
+        ("rigidbody.object_add", []),  # offered everywhere
+        ("wm.context_set_value", []),  # its arguments say what it does
+    ],
+)  # fmt: skip
+def test_an_operator_says_when_panels_offer_it(
+    reader: BaseReader, operator: str, expected: list[str]
+) -> None:
+    symbol = reader.symbol(f"bpy.ops.{operator}")
+    assert symbol is not None
+    assert list(panel_lines(symbol, reader)) == expected
 
 
 def test_a_switch_for_several_kinds_names_each_setting_once(reader: BaseReader) -> None:
@@ -69,17 +96,23 @@ def test_every_condition_names_symbols_of_the_base(reader: BaseReader) -> None:
     for path in {path for row in rows for path in row}:
         entry = reader.entry(path)
         assert entry is not None, path
-        assert entry.kind == "property", path
+        assert entry.kind in {"property", "operator"}, path
+    assert all(row[1].startswith("bpy.types.") for row in rows)
 
 
 def test_a_class_lists_its_settings_with_their_switch(reader: BaseReader) -> None:
     members = reader.members("bpy.types.CameraDOFSettings")
     assert "(if use_dof) — " in members["aperture_fstop"].line
+    line = reader.members("bpy.types.FluidDomainSettings")["sndparticle_life_max"].line
+    assert "(if use_bubble_particles or use_foam_particles or use_spray_particles) — " in line
     assert "(if " not in members["use_dof"].line
-    # Only if it is of the same class, greyed out and not hidden, and one alone.
+    assert (
+        "(if use_bulge_max or use_bulge_min)"
+        in reader.members("bpy.types.SplineIKConstraint")["bulge_smooth"].line
+    )
+    # Only if it is of the same class, greyed out and not hidden.
     assert "(if " not in reader.members("bpy.types.CyclesRenderSettings")["rolling_shutter_type"].line
     assert "(if " not in reader.members("bpy.types.AreaLight")["size_y"].line
-    assert "(if " not in reader.members("bpy.types.SplineIKConstraint")["bulge_smooth"].line
 
 
 def test_it_stands_in_the_answer(kb: KnowledgeBase) -> None:

@@ -9,7 +9,7 @@ from asking import classes, of_data, paths
 
 from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Symbol
 from kb_build.symbol_lines import usual_default
-from kb_serve.answer.render import MarkdownRenderer, facts, said_of
+from kb_serve.answer.render import MarkdownRenderer, facts, said_of, with_names
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -157,6 +157,8 @@ def test_a_context_member_says_which_editors_provide_it(kb: KnowledgeBase) -> No
 def test_deprecation_is_shown_with_versions(renderer: MarkdownRenderer) -> None:
     symbol = Symbol("m.a", "property", "m", deprecation=Deprecation("Use b.", "5.0", "6.0"))
     assert "**Deprecated** since 5.0, removal planned for 6.0: Use b." in shown(renderer, symbol)
+    symbol = Symbol("m.a", "property", "m", deprecation=Deprecation("Use b.", "5.10", "6.0"))
+    assert "**Deprecated** since 5.1, removal planned for 6.0: Use b." in shown(renderer, symbol)
     symbol = Symbol("m.a", "property", "m", deprecation=Deprecation("Use b."))
     assert "**Deprecated**: Use b." in shown(renderer, symbol)
 
@@ -190,6 +192,25 @@ def test_undescribed_enum_items_are_all_listed(renderer: MarkdownRenderer) -> No
     symbol = Symbol("m.f", "function", "m", parameters=(Parameter("icon", "enum", enum_items=items),))
     text = shown(renderer, symbol)
     assert [item.identifier for item in items if repr(item.identifier) not in text] == []
+
+
+def test_values_that_were_asked_stand_instead_of_a_stand_in(renderer: MarkdownRenderer) -> None:
+    kind = Parameter("kind", "enum", enum_items=(EnumItem("DEFAULT"),), values_asked=("A", "B"))
+    text = shown(renderer, Symbol("m.f", "function", "m", parameters=(kind,)))
+    assert "in a new file one of 'A', 'B'" in text
+    assert "one of 'DEFAULT'" not in text
+
+
+def test_a_socket_tells_of_those_that_have_its_name_in_other_modes(kb: KnowledgeBase) -> None:
+    text = kb.query('FunctionNodeRandomValue.inputs["Min"]').text
+    assert "**Others called Min**" in text
+    assert "`inputs[2]`, identifier `Min_001` value = 0 when data_type=FLOAT" in text
+    assert "outputs" not in text.partition("**Others")[2].partition("**In")[0]
+
+
+def test_the_sockets_of_a_zone_are_those_of_a_pair(kb: KnowledgeBase) -> None:
+    assert "once it is paired (`pair_with_output`)" in kb.query("GeometryNodeSimulationInput").text
+    assert "once it is paired" not in kb.query("GeometryNodeMeshCube").text
 
 
 def test_a_page_shows_where_it_stands_and_every_section(kb: KnowledgeBase) -> None:
@@ -289,3 +310,36 @@ def test_an_argument_shows_its_default_as_the_call_has_it(renderer: MarkdownRend
 def test_a_call_that_is_not_python_shows_the_known_defaults(renderer: MarkdownRenderer) -> None:
     symbol = Symbol("m.f", "function", "m", signature="f(a, [b])", parameters=(Parameter("b", default=1),))
     assert "- `b` (default `1`)" in shown(renderer, symbol)
+
+
+@pytest.mark.parametrize(
+    ("line", "expected"),
+    [
+        ("**Type**", "**Type** · `'X'`"),
+        ("  - **Replay:** As played.", "  - **Replay:** `'X'` · As played."),
+        ("  - **Replay**", "  - **Replay** · `'X'`"),
+        ("As the Final type.", "As the Final type. · `'X'`"),
+    ],
+)
+def test_names_stand_beside_the_term_that_they_are_of(line: str, expected: str) -> None:
+    assert with_names(f"Above.\n{line}\nBelow.", 3, {(3, 1): "`'X'`", (2, 0): "`'Y'`"}) == (
+        f"Above.\n{expected}\nBelow."
+    )
+
+
+@pytest.mark.parametrize(
+    ("operator", "expected"),
+    [
+        (
+            "mesh.bevel",
+            "\n\nOf all that was tried, its poll takes an active object of type 'MESH' in mode 'EDIT'.\n",
+        ),
+        (
+            "rigidbody.connect",
+            "its poll takes an active object with what `bpy.ops.rigidbody.object_add()` adds.",
+        ),
+    ],
+)
+def test_an_operator_says_what_its_poll_takes(kb: KnowledgeBase, operator: str, expected: str) -> None:
+    assert expected in kb.query(f"bpy.ops.{operator}").text
+    assert "its poll" not in kb.query("bpy.ops.mesh.primitive_cube_add").text

@@ -39,6 +39,23 @@ def test_a_brush_that_paints_is_toggled_before_it_is_set(reader: BaseReader) -> 
     assert "set on `modifier.brush_settings`" in found[found.index(made) + 1]
 
 
+def test_an_operator_says_what_it_takes_and_what_must_be_set(reader: BaseReader) -> None:
+    names = TopicNames(frozenset({"fluid"}), (), {}, operators={"bpy.ops.fluid.bake_all": 1.0})
+    (run,) = [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+    assert "Bake Entire Fluid Simulation (takes an active object; offered by Blender's panels only if" in run
+    assert "`FluidDomainSettings.cache_type` is 'ALL' (a new one has `'REPLAY'`)" in run
+
+
+def test_the_sockets_of_a_tree_are_those_that_it_takes(reader: BaseReader) -> None:
+    (compositor,) = [
+        line for line in steps(reader, "compositor", "CompositorNodeTree") if "new_socket" in line
+    ]
+    assert "`in_out='INPUT'|'OUTPUT'`" in compositor
+    assert "'NodeSocketString'" in compositor
+    assert "Shader" not in compositor
+    assert "Geometry" not in compositor
+
+
 def test_shader_nodes_are_made_in_the_tree_that_a_material_has(reader: BaseReader) -> None:
     found = " ".join(steps(reader, "volume scatter", "ShaderNodeVolumeScatter"))
     assert "`tree = material.node_tree`" in found

@@ -104,6 +104,16 @@ def test_symbols_come_before_further_pages_if_the_first_are_pages() -> None:
     ]
 
 
+def test_a_symbol_far_below_the_best_is_listed_only_if_it_is_of_the_chapter_of_one_of_the_first() -> None:
+    pages = [RankedId(f"page/{n}", 0.8, "found", chapter=n) for n in range(5)]
+    near = RankedId("near", 0.5, "found", chapter=7)
+    far = [RankedId(f"far.{chapter}", 0.3, "found", chapter=chapter) for chapter in (7, 2, 8, 4)]
+    listed = Ranking([*pages, near, *far], Recognition(), named=False).listed(
+        8, lambda ref: ref.startswith("page/")
+    )
+    assert [row.id for row in listed[5:]] == ["near", "far.2", "far.4"]
+
+
 @pytest.mark.parametrize(
     ("found", "query", "opened"),
     [

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import SEED, of_data
 
-from kb_build.index.analysis import STOP_WORDS, content_words, stem, terms
+from kb_build.index.analysis import STOP_WORDS, stem, terms, words
 from kb_build.index.query_expansions import load_query_expansions
 from kb_serve.rank.search import Searcher
 from kb_serve.rank.weights import WEIGHTS
@@ -51,7 +51,7 @@ def test_phrases_find_their_symbol_in_any_word_order(reader: BaseReader, searche
         if path.startswith("bpy.types.") and reader.entry(path)
     ]
     for path, row in chance.sample(rows, 300):
-        said = content_words(chance.choice(row.split(";")))
+        said = [word for word in words(chance.choice(row.split(";"))) if word not in STOP_WORDS]
         if len(said) < 3:
             continue
         asked += 1
@@ -151,3 +151,21 @@ def test_any_words_in_any_number_are_searched(searcher: Searcher, reader: BaseRe
     chance, words = random.Random(SEED), [row[0] for row in reader.rows("SELECT word FROM vocabulary")]
     for size in (1, 2, 5, 20, 60, 400):
         assert isinstance(searcher.search(" ".join(chance.choices(words, k=size))), list)
+
+
+@pytest.mark.parametrize(
+    ("about", "cls"), [("a rigid body", "RigidBodyObject"), ("the world of rigid bodies", "RigidBodyWorld")]
+)
+def test_words_around_a_query_tell_which_of_the_same_is_meant(
+    searcher: Searcher, about: str, cls: str
+) -> None:
+    refs = [hit.ref for hit in searcher.search("is it enabled", 5, about=about)]
+    assert any(ref.startswith(f"bpy.types.{cls}") for ref in refs)
+
+
+def test_words_around_a_query_count_less_than_its_own(searcher: Searcher) -> None:
+    own, around = "self collision of cloth", "motor of a rigid body constraint"
+    (best, *_) = searcher.search(own)
+    assert searcher.search(own, about=around)[0].ref == best.ref
+    assert searcher.search(around, about=own)[0].ref == searcher.search(around)[0].ref != best.ref
+    assert searcher.search(own, about=own) == searcher.search(own)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from kb_build.index.analysis import content_words, stem
+from kb_build.index.analysis import stem, words
 from kb_build.records import Page, Section
 from kb_serve.rank.scoring import Concept
 from kb_serve.rank.sections import asked_section
@@ -30,7 +30,7 @@ PAGE = Page(
 
 
 def asked(query: str) -> str:
-    return asked_section(PAGE, [Concept(word, stem(word), 1.0, 5.0) for word in content_words(query)])
+    return asked_section(PAGE, [Concept(word, stem(word), 1.0, 5.0) for word in words(query)])
 
 
 @pytest.mark.parametrize(

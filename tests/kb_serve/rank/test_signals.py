@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from kb_build.records import Page, Section
+from kb_build.records import Link, Page, Section
 from kb_build.schema import DOCUMENT_KINDS, DocumentKind
 from kb_build.store import Contents, write_base
+from kb_serve.rank.areas import NO_AREA, area_of
 from kb_serve.rank.search import Searcher
 from kb_serve.rank.signals import SIGNALS, Evidence, scores_of
 from kb_serve.rank.weights import WEIGHTS
@@ -21,14 +22,21 @@ if TYPE_CHECKING:
 
 
 def evidence(
-    words: str = "cloth", *kinds: DocumentKind, failed: bool = False, asked: tuple[float, ...] = ()
+    words: str = "cloth",
+    *kinds: DocumentKind,
+    failed: bool = False,
+    asked: tuple[float, ...] = (),
+    counts: tuple[float, ...] = (),
+    areas: tuple[int, ...] = (),
 ) -> Evidence:
-    count = len(kinds) or len(asked)
+    count = len(kinds) or len(asked) or len(counts) or len(areas)
     return Evidence(
         frozenset(words.split()),
         failed,
         np.ones(count, np.float32),
         np.array(asked or [0] * count, np.float32),
+        np.array(counts or [0] * count, np.float32),
+        np.array(areas or [NO_AREA] * count, np.uint8),
         np.arange(count, dtype=np.int32),
         np.array([DOCUMENT_KINDS.index(kind) for kind in kinds or ["data"] * count], np.uint8),
     )
@@ -63,6 +71,35 @@ def test_a_unit_gains_by_a_phrase_that_is_near() -> None:
     assert near > far
 
 
+def test_a_unit_gains_by_what_it_counts_but_not_where_a_message_may_be_about_the_rarest() -> None:
+    rare, usual = scores_of(evidence(counts=(0.0, 2.0))).tolist()
+    assert usual > rare
+    assert len(set(scores_of(evidence(counts=(0.0, 2.0), failed=True)).tolist())) == 1
+
+
+def test_an_area_apart_comes_later_unless_the_query_speaks_of_it() -> None:
+    pencil = area_of("grease_pencil/modifiers/deform/smooth")
+    assert pencil != area_of("modeling/modifiers/deform/smooth") == NO_AREA
+    apart, other = scores_of(evidence("smooth a mesh", areas=(pencil, NO_AREA))).tolist()
+    assert other > apart
+    assert len(set(scores_of(evidence("smooth a stroke", areas=(pencil, NO_AREA))).tolist())) == 1
+
+
+def test_what_a_page_of_an_area_explains_is_of_it(tmp_path: Path, reader: BaseReader) -> None:
+    smooth = reader.symbol("bpy.types.GreasePencilSmoothModifier")
+    other = reader.symbol("bpy.types.SmoothModifier")
+    assert smooth is not None
+    assert other is not None
+    slug = "grease_pencil/modifiers/smooth"
+    pages = (Page(slug, "manual", "5.1", "Smooth", (Section("s", "Smooth", 1, "Less noise."),)),)
+    links = (Link(smooth.path, slug, "manual"),)
+    write_base(tmp_path / "base.sqlite", Contents((smooth, other), pages, links, {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        index = Searcher(own).index
+        areas = dict(zip(index.levels[0].refs, index.areas.tolist(), strict=True))
+    assert areas == {slug: area_of(slug), smooth.path: area_of(slug), other.path: NO_AREA}
+
+
 def test_a_unit_gains_by_its_chapter() -> None:
     one = evidence(asked=(0.5, 0.5, 0.5))
     one.chapters[:] = [0, 1, 1]
@@ -71,7 +108,7 @@ def test_a_unit_gains_by_its_chapter() -> None:
 
 
 @pytest.fixture
-def base(tmp_path: Path) -> Path:
+def panes(tmp_path: Path) -> Path:
     """Of a page that only has its title, and of one that speaks of the same more weakly."""
     pages = (
         Page("glass/index", "manual", "5.1", "Glass Panes", (Section("glass", "Glass Panes", 1, ""),)),
@@ -82,11 +119,37 @@ def base(tmp_path: Path) -> Path:
 
 
 def test_a_page_without_text_comes_after_the_first_with_one(
-    base: Path, monkeypatch: pytest.MonkeyPatch
+    panes: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setitem(WEIGHTS, "index", 0.0)
-    with closing(BaseReader(base)) as reader:
+    with closing(BaseReader(panes)) as reader:
         hits = Searcher(reader).search("glass panes")
         assert [hit.ref for hit in hits] == ["house", "glass/index"]
         assert hits[0].score < hits[1].score
         assert [hit.ref for hit in Searcher(reader).search("panes")] == ["glass/index"]
+
+
+def test_a_section_is_found_by_its_title_unless_many_are_called_so(tmp_path: Path) -> None:
+    texts = ("How panes are cut and set into frames of wood.", "Cut frames, then set panes.", "Wood is cut.")
+    pages = [
+        Page(
+            f"page{number}",
+            "manual",
+            "5.1",
+            f"Page {number}",
+            (
+                Section("top", f"Page {number}", 1, text),
+                Section("cut", "Cutting Frames" if number == 2 else "Example", 2, "It is done with care."),
+            ),
+        )
+        for number, text in enumerate((*texts, *texts))
+    ]
+    write_base(tmp_path / "base.sqlite", Contents((), pages, (), {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as reader:
+        searcher = Searcher(reader)
+        (best, *_) = searcher.search("cutting frames")
+        assert (best.ref, best.anchor) == ("page2", "cut")
+        asked = [
+            found[1].asked.max() for text in ("cutting frames", "example") if (found := searcher.find(text))
+        ]
+        assert asked == [pytest.approx(1, abs=0.01), 0]

@@ -9,6 +9,7 @@ import pytest
 from kb_serve.recognise.removed_symbols import RemovedSymbolLookup, plain_path, socket_node
 
 if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
 T = "bpy.types."
@@ -83,3 +84,8 @@ def test_successors_exist_and_exclude_guesses(reader: BaseReader, removed: Remov
 )
 def test_paths_are_taken_apart(path: str, plain: str, node: str) -> None:
     assert (plain_path(path), socket_node(path)) == (plain, node)
+
+
+def test_plain_words_are_no_removed_class(kb: KnowledgeBase) -> None:
+    assert not any("VertexColors" in note for note in kb.query("vertex colors").notes)
+    assert any("VertexColors" in note for note in kb.query("VertexColors").notes)

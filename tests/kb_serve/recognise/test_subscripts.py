@@ -17,12 +17,28 @@ if TYPE_CHECKING:
         'obj.modifiers["GeometryNodes"]["Input_2"] = 5.0',
         'mod["Socket_2"]',
         "how do I set a geometry nodes modifier input value from Python",
+        "change the value of an input of a geometry nodes modifier from python",
+        "How do I set a geometry nodes modifier's input?",
+        "set the Size parameter of my geometry nodes",
+        "animate a geometry node modifier's slider",
     ],
 )
 def test_inputs_of_a_geometry_nodes_modifier_are_set_by_identifier(kb: KnowledgeBase, query: str) -> None:
     notes = "\n".join(kb.query(query).notes)
     assert 'modifier[modifier.node_group.interface.items_tree["Size"].identifier] = 5.0' in notes
     assert "has no" not in notes
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "add an input to a geometry nodes modifier",
+        "set a value of the array modifier",
+        "geometry nodes",
+    ],
+)
+def test_inputs_are_not_told_of_where_others_are_asked_for(kb: KnowledgeBase, query: str) -> None:
+    assert not any("Inputs of a geometry-nodes modifier" in note for note in kb.query(query).notes)
 
 
 @pytest.mark.parametrize(

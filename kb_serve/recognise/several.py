@@ -1,0 +1,72 @@
+"""Takes a question of several parts apart: ``make a cube fall, bake it and render a film``."""
+
+from __future__ import annotations
+
+import re
+from typing import NamedTuple
+
+from kb_serve.recognise.message_patterns import is_message
+
+_CODE = re.compile(r"[`()=\[\]{}_/\\<>\"]|\w\.\w|[a-z][A-Z]|::")
+_BETWEEN = re.compile(
+    r"\s*[,;.?!]\s+(?:(?:and|then|also|finally|afterwards)\s+)*|\s+(?:and|then)\s+(?:(?:then|also|finally)\s+)*",
+    re.I,
+)
+# What frames a request, before its verb.
+_FRAME = re.compile(
+    r"(?:(?:how|do|can|should|would|i|you|we|want|need|like|to|please|first|next|then|now)\s+)*", re.I
+)
+# Verbs that nothing in Blender is called by.
+_VERBS = frozenset(
+    """add append apply assign attach build calculate change choose compute convert create delete disable duplicate
+    emit enable evaluate find freeze generate get give hide insert install list load make merge move open parent put
+    randomize read remove rename replace retarget reset rotate run save select send separate set shoot show
+    simulate spawn store swap throw triangulate turn unlink unwrap update use write""".split()  # noqa: SIM905
+)
+# Those that may be names as well ("render and bake settings"): after "and" alone, one of the words below must follow.
+_ALSO_NAMES = frozenset(
+    """animate bake bend blend bring color connect copy cut drive drop export extrude fill flip fracture group import
+    instance join keyframe light limit link lock loop measure mirror mix model output paint pin place play point pose
+    print record render repeat rig scale scatter sculpt shade shrink smooth snap split start stick stop subdivide switch
+    texture track transfer weight weld""".split()  # noqa: SIM905
+)
+_OBJECTS = frozenset(
+    "a an all another both each every everything him it its my one our that the their them these this those two".split()  # noqa: SIM905
+)
+_MOST = 5
+
+
+class QuestionPart(NamedTuple):
+    """A part as it is written, and the object of the first part, which it may be about."""
+
+    text: str
+    about: str = ""
+
+
+def parts_of(query: str) -> tuple[QuestionPart, ...]:
+    """The parts of a question that asks for several actions, in order; none where it may ask for one."""
+    text = query.strip(" .?!")
+    ends = [(found.start(), found.end()) for found in _BETWEEN.finditer(text)]
+    if not ends or _CODE.search(query) or is_message(query):
+        return ()
+    # What does not begin with a verb says more of what is before it.
+    starts = [0, *(end for start, end in ends if _is_request(text[end:], sure=_is_sure(text[start:end])))]
+    if not 1 < len(starts) <= _MOST or not _is_request(text, sure=False):
+        return ()
+    stops = [*(start for start, end in ends if end in starts), len(text)]
+    clauses = [text[start:stop] for start, stop in zip(starts, stops, strict=True)]
+    _, _, about = _FRAME.sub("", clauses[0], count=1).partition(" ")
+    first, *others = clauses
+    return (QuestionPart(first), *(QuestionPart(clause, about) for clause in others))
+
+
+def _is_sure(between: str) -> bool:
+    """Whether what stands between two clauses joins no names."""
+    return between.strip().lower() != "and"
+
+
+def _is_request(text: str, *, sure: bool) -> bool:
+    """Whether a text begins with what is to be done, and says to what."""
+    verb, _, rest = _FRAME.sub("", text, count=1).lower().partition(" ")
+    is_verb = verb in _VERBS or (verb in _ALSO_NAMES and (sure or rest.partition(" ")[0] in _OBJECTS))
+    return is_verb and bool(rest)

@@ -1,0 +1,109 @@
+"""Topics of one page: what is asked for in a word or two is answered with how it is set."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.records import Link, Page, Section, Symbol
+from kb_build.store import Contents, write_base
+from kb_serve.knowledge_base import KnowledgeBase
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
+    from kb_serve.reader import BaseReader
+
+TYPES = "bpy.types."
+BLUR = "render/motion_blur"
+SCATTER = "nodes/volume_scatter"
+SWIRL = "physics/swirl"
+HELD = {
+    BLUR: ("RenderSettings.use_motion_blur", "RenderSettings.motion_blur_shutter"),
+    SCATTER: ("ShaderNodeVolumeScatter",),
+    "physics/ocean": ("OceanModifier", "OceanModifier.damping", "OceanModifier.depth"),
+}
+PAGES = (
+    Page(
+        BLUR, "manual", "5.1", "Motion Blur",
+        (Section("m", "Motion Blur", 1, "What moves is smeared.\n\n**Shutter**\n  How long the shutter is open."),),
+    ),
+    Page(SCATTER, "manual", "5.1", "Volume Scatter", (Section("v", "Volume Scatter", 1, "Makes a fog."),)),
+    Page(
+        "physics/ocean", "manual", "5.1", "Ocean Modifier",
+        (Section("o", "Ocean Modifier", 1, "Makes waves.\n\n**Damping**\n  Calms.\n\n**Depth**\n  Of the water."),),
+    ),
+    Page(SWIRL, "manual", "5.1", "Turbulence", (Section("t", "Turbulence", 1, "A force that whirls."),)),
+    Page("render/film", "manual", "5.1", "Film", (Section("f", "Film", 1, "It says nothing of settings."),)),
+)  # fmt: skip
+
+
+def _symbols(reader: BaseReader) -> list[Symbol]:
+    """A few classes of Blender with their members and what they are derived from."""
+    owners = (
+        "RenderSettings", "ShaderNodeVolumeScatter", "ShaderNode", "Node", "NodeInternal", "OceanModifier", "Modifier",
+        "FieldSettings", "Material", "NodeTree", "ShaderNodeTree", "bpy_struct", "BlendData", "BlendDataMaterials",
+        "Object", "ObjectModifiers", "Nodes", "NodeLinks", "Context", "ID",
+    )  # fmt: skip
+    paths = [f"{TYPES}{owner}" for owner in owners] + ["bpy.ops.object.effector_add"]
+    paths += [entry.path for owner in owners for entry in reader.members(f"{TYPES}{owner}").values()]
+    return [symbol for path in paths if (symbol := reader.symbol(path))]
+
+
+@pytest.fixture(scope="module")
+def topics(reader: BaseReader, tmp_path_factory: pytest.TempPathFactory) -> Iterator[KnowledgeBase]:
+    """A base of a few classes and of pages about them."""
+    links = [Link(f"{TYPES}{name}", slug, "manual") for slug, names in HELD.items() for name in names]
+    path: Path = tmp_path_factory.mktemp("topics") / "base.sqlite"
+    write_base(path, Contents(_symbols(reader), PAGES, links, {"minor": "5.1"}))
+    with KnowledgeBase(path) as knowledge:
+        yield knowledge
+
+
+@pytest.mark.parametrize(
+    ("query", "slug", "told"),
+    [
+        (
+            "motion blur",
+            BLUR,
+            ("on `bpy.context.scene.render` (`RenderSettings`):", "  - `motion_blur_shutter` float = 0.5"),
+        ),
+        ("volume scatter", SCATTER, ('tree.nodes.new("ShaderNodeVolumeScatter")', "How it is done")),
+        (
+            "ocean",
+            "physics/ocean",
+            ("`bpy.types.OceanModifier`", "`depth`"),
+        ),
+    ],
+)
+def test_a_word_or_two_tell_how_it_is_set(
+    topics: KnowledgeBase, query: str, slug: str, told: tuple[str, ...]
+) -> None:
+    answer = topics.query(query)
+    assert (answer.kind, answer.hits[0].id) == ("page", slug)
+    assert [part for part in told if part not in answer.text] == []
+
+
+def test_of_what_is_a_value_the_calls_and_settings_are_told_that_take_it(topics: KnowledgeBase) -> None:
+    answer = topics.query("turbulence")
+    assert answer.hits[0].id == SWIRL
+    call, setting = (
+        answer.text.index(text)
+        for text in (
+            "`bpy.ops.object.effector_add(type='TURBULENCE')`",
+            "`bpy.context.object.field.type = 'TURBULENCE'`",
+        )
+    )
+    assert call < setting
+
+
+def test_a_setting_is_told_once_and_its_class_with_it(topics: KnowledgeBase) -> None:
+    text = topics.query("motion blur").text
+    assert text.count("`motion_blur_shutter`") == 1
+    assert "bpy.types.RenderSettings.motion_blur_shutter" not in text
+
+
+def test_a_page_that_sets_nothing_is_no_topic(topics: KnowledgeBase) -> None:
+    assert topics.query("film").kind == "candidates"

@@ -1,0 +1,45 @@
+"""Questions of several parts, and those that only look so."""
+
+from __future__ import annotations
+
+import pytest
+
+from kb_serve.recognise.several import parts_of
+
+
+@pytest.mark.parametrize(
+    ("query", "parts"),
+    [
+        ("make a cube fall, bake it and render a film", ("make a cube fall", "bake it", "render a film")),
+        (
+            "How do I import a mesh and then keyframe its rotation?",
+            ("How do I import a mesh", "keyframe its rotation"),
+        ),
+        ("add a floor; give it a texture.", ("add a floor", "give it a texture")),
+        (
+            "create a node group with input and output sockets, then save the file",
+            ("create a node group with input and output sockets", "save the file"),
+        ),
+        ("scale the bones and location of a rig", ()),
+        ("add fire and smoke", ()),
+        ("set the render and bake settings", ()),
+        ("add an array and mirror modifier", ()),
+        ("set it up, then render frames 1 to 5", ("set it up", "render frames 1 to 5")),
+        ("shear and bending stiffness", ()),
+        ("my cloth falls and then goes through the floor", ()),
+        ("how to make a body start animated and then become dynamic", ()),
+        ("obj.select_set(True); delete the object", ()),
+        ("RuntimeError: Operator failed, add an object and select it", ()),
+        ("add bones and", ()),
+        ("", ()),
+        (", and then ;", ()),
+        ("and ".join(["add a cube "] * 9), ()),
+    ],
+)
+def test_actions_are_taken_apart_and_their_objects_are_not(query: str, parts: tuple[str, ...]) -> None:
+    assert tuple(part.text for part in parts_of(query)) == parts
+
+
+def test_later_parts_are_about_the_object_of_the_first() -> None:
+    parts = parts_of("how do I add a sun lamp, make it warm and render the scene")
+    assert [part.about for part in parts] == ["", "a sun lamp", "a sun lamp"]
