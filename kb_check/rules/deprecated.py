@@ -12,6 +12,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbol_lines import version_meant
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 
@@ -55,17 +56,11 @@ def _fix(script: Script, row: Resolution, symbol: Symbol, successor: Symbol) -> 
     return Fix(f"Write {successor.name}", (edit,), sure=same) if edit else None
 
 
-def _version(text: str) -> str:
-    """A version as people write it; RNA's numbers make ``5.10`` of 5.1."""
-    major, _, minor = text.partition(".")
-    return f"{major}.{minor[0]}" if major.isdigit() and int(major) >= 3 and minor[1:] == "0" else text
-
-
 def _told(symbol: Symbol) -> str:
     deprecation = symbol.deprecation
     assert deprecation is not None
-    since = f" since Blender {_version(deprecation.since)}" if deprecation.since else ""
-    removal = f" and goes in {_version(deprecation.removal)}" if deprecation.removal else ""
+    since = f" since Blender {version_meant(deprecation.since)}" if deprecation.since else ""
+    removal = f" and goes in {version_meant(deprecation.removal)}" if deprecation.removal else ""
     note = f" {deprecation.note.strip().rstrip('.')}." if deprecation.note else ""
     return f"`{symbol.path}` is deprecated{since}{removal}.{note}"
 

@@ -136,6 +136,8 @@ def _is_nameless(script: Script, element: Instance) -> bool:
     api = script.api
     if not api.is_class(element.cls) or not element.cls.startswith(_T) or api.member(element.cls, "name"):
         return False
+    if api.below(element.cls, "name"):
+        return False
     return not any(api.descends(element.cls, f"{_T}{cls}") for cls in (*_NAMED_OTHERWISE, "PropertyGroup"))
 
 

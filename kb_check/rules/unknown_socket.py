@@ -28,7 +28,7 @@ def _check(script: Script) -> Iterator[Finding]:
         if any(_still_works(script, node, row.value) for node in row.missing):
             continue
         node = row.missing[0]
-        names = [s.name for side in ("inputs", "outputs") for _, _, s in script.api.sockets(node, side)]
+        names = [s.name for side in ("inputs", "outputs") for s in script.api.sockets(node, side)]
         yield lacking_finding(
             script, RULE.id, row, script.names.socket(node, row.value, dict.fromkeys(names))
         )

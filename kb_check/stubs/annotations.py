@@ -225,7 +225,9 @@ class Annotations:
 
     def parameter(self, parameter: Parameter, scope: str) -> str:
         """The annotation of a parameter."""
-        if parameter.enum_items:
+        if parameter.is_open:
+            text = "str"
+        elif parameter.enum_items:
             text = self.enums.text(parameter.enum_items)
             if isinstance(parameter.default, list) or parameter.type.startswith("set") or _is_set(parameter):
                 text = f"set[{text}]"

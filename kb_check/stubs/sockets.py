@@ -41,10 +41,14 @@ class Sockets:
 
     def _class(self, cls: str, side: str, name: str, container: str) -> list[str]:
         types: dict[str | int, set[str]] = {}
-        for key, label, symbol in self._api.sockets(cls, side):
+        for symbol in self._api.sockets(cls, side):
             kind = self._api.socket_type(symbol)
             text = kind.cls if isinstance(kind, Instance) else self._any
-            keys = {key, label, *(_subscript(written, side) for written in symbol.subscripts)}
+            keys = {
+                symbol.name,
+                *symbol.socket_names,
+                *(_subscript(written, side) for written in symbol.subscripts),
+            }
             for one in keys - {"", None}:
                 if one is not None:
                     types.setdefault(one, set()).add(text)

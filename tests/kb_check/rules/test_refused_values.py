@@ -27,6 +27,7 @@ camera = bpy.data.cameras.new("camera")
 tree = bpy.data.node_groups.new("tree", 'ShaderNodeTree')
 principled = tree.nodes.new('ShaderNodeBsdfPrincipled')
 mapping = tree.nodes.new('ShaderNodeMapping')
+mix = tree.nodes.new('ShaderNodeMix')
 bm = bmesh.new()
 bm.from_mesh(mesh)
 bm.verts.ensure_lookup_table()
@@ -52,6 +53,7 @@ material.diffuse_color = (1, 0, 0)
 material.diffuse_color = Color((1, 0, 0))
 ob.location = (1, 2)
 ob.location = 5
+mix.inputs["A"].default_value = "red"
 ob.location = (1, 2, "3")
 ob.location = (1, None, 3)
 ob.rotation_quaternion = Euler((0, 0, 0))
@@ -167,6 +169,7 @@ ob.location @= ob.matrix_world
 scene[0]
 ob[None]
 mesh.vertices["a"]
+tree.interface.items_tree[1.5]
 mesh.vertices[1.5]
 bpy.data.objects[::2]
 bpy.data.objects[None]
@@ -231,6 +234,26 @@ principled.inputs["Base Color"].default_value = (1, 0, 0, 1)
 principled.inputs["Roughness"].default_value = 1
 principled.inputs[5]
 tree.links.new(principled.outputs[0], mapping.inputs[0])
+geometry = bpy.data.node_groups.new("geometry", 'GeometryNodeTree')
+number = geometry.nodes.new("FunctionNodeRandomValue")
+number.inputs["Min"].default_value = 0.5
+number.data_type = 'FLOAT_VECTOR'
+number.inputs["Min"].default_value = (0, 0, 0.5)
+mix.data_type = 'RGBA'
+mix.inputs["A"].default_value = (1, 0, 0, 1)
+mix.inputs[6].default_value = (1, 0, 0, 1)
+switch = geometry.nodes.new("GeometryNodeSwitch")
+switch.input_type = 'STRING'
+switch.inputs["False"].default_value = "no"
+switch.inputs[2].default_value = "yes"
+geometry.interface.new_socket("Size", socket_type='NodeSocketFloat')
+geometry.interface.items_tree["Size"].default_value = 2
+subdivision = ob.modifiers.new("", 'SUBSURF')
+ob.modifiers["Subdivision"].levels = 2
+solidify = ob.modifiers.new("Lattice", 'SOLIDIFY')
+ob.modifiers["Lattice"].thickness = 2
+tree.nodes["Mix"].data_type = 'RGBA'
+tree.nodes["Mix"].inputs[7]
 bpy.data.objects.new("name", None)
 bpy.data.objects[-1]
 bpy.data.objects[:][::2]

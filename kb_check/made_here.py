@@ -1,0 +1,153 @@
+"""What a script surely makes itself, and what it may do to that out of sight."""
+
+from __future__ import annotations
+
+import ast
+import re
+import sys
+from typing import TYPE_CHECKING
+
+from kb_build.symbol_lines import fillers
+from kb_check.script import once_per_script
+
+if TYPE_CHECKING:
+    from kb_check.script import Script
+
+_DEEPEST = 8
+_ID = "bpy.types.ID"
+_WORD = re.compile(r"\w+")
+_COMPUTING = frozenset({"setattr", "exec", "eval"})
+# Modules that change nothing in Blender's data but what is given to them.
+_HARMLESS = (sys.stdlib_module_names - {"runpy", "importlib"}) | {
+    "bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "idprop", "bl_math", "blf", "aud", "imbuf", "numpy",
+}  # fmt: skip
+_OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
+
+
+@once_per_script
+def named_words(script: Script) -> frozenset[str]:
+    """Every word of the script that may name a setting."""
+    found: set[str] = set()
+    for node in script.nodes:
+        match node:
+            case ast.Attribute(attr=name) | ast.keyword(arg=str(name)):
+                found.add(name)
+            case ast.Constant(value=str(text)):
+                found.update(_WORD.findall(text))
+            case _:
+                pass
+    return frozenset(found)
+
+
+@once_per_script
+def computes_names(script: Script) -> bool:
+    """Whether something out of sight may set settings: computed names, or the files beside the script."""
+    return any(
+        (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _COMPUTING)
+        or (isinstance(node, ast.ImportFrom) and node.level > 0)
+        for node in script.nodes
+    )
+
+
+@once_per_script
+def knows_all(script: Script) -> bool:
+    """Whether all that a script does stands in it: it computes no names, and imports nothing that changes scenes."""
+    if computes_names(script):
+        return False
+    imported: set[str] = set()
+    for node in script.nodes:
+        if isinstance(node, ast.Import):
+            imported.update(alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            imported.add(node.module or "")
+    return {name.partition(".")[0] for name in imported} <= _HARMLESS
+
+
+def is_new(script: Script, node: ast.expr, depth: int = _DEEPEST) -> bool:
+    """Whether the script has surely made what an expression is, or what it belongs to."""
+    if not depth:
+        return False
+    match node:
+        case ast.Name():
+            values = bindings(script).get(node.id, [None])
+            handed_on = node.id in _handed_on(script)
+            return not handed_on and all(value and is_new(script, value, depth - 1) for value in values)
+        case ast.Call():
+            return callee_path(script, node).endswith(".new")
+        case ast.Attribute():
+            return _is_new_member(script, node, depth)
+        case _:
+            return False
+
+
+def _is_new_member(script: Script, node: ast.Attribute, depth: int) -> bool:
+    row = script.analysis.resolutions.get(node)
+    symbol = script.api.symbols.symbol(row.symbols[0]) if row and len(row.symbols) == 1 else None
+    if symbol is None or symbol.type != "pointer":
+        return False
+    if calls := fillers(symbol):
+        return any(call.partition("(")[0] in called_operators(script) for call in calls)
+    if symbol.name == "data" and symbol.owner == "bpy.types.Object":
+        return is_new(script, node.value, depth - 1) and _has_new_data(script, node.value, depth - 1)
+    points_elsewhere = script.names.reader.descends(f"bpy.types.{symbol.target}", _ID)
+    return not points_elsewhere and is_new(script, node.value, depth - 1)
+
+
+def _has_new_data(script: Script, node: ast.expr, depth: int) -> bool:
+    """Whether a new object was made with new data."""
+    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else [node]
+    return bool(values) and all(
+        isinstance(value, ast.Call)
+        and callee_path(script, value) == _OBJECTS_NEW
+        and len(value.args) > 1
+        and is_new(script, value.args[1], depth)
+        for value in values
+    )
+
+
+def callee_path(script: Script, call: ast.Call) -> str:
+    """The path of the one thing of the API that a call surely calls; empty for none."""
+    row = script.analysis.resolutions.get(call)
+    return row.symbols[0] if row and row.kind == "call" and len(row.symbols) == 1 and row.sure else ""
+
+
+@once_per_script
+def called_operators(script: Script) -> frozenset[str]:
+    """The operators that the script calls."""
+    rows = script.resolutions("call", "attribute")
+    return frozenset(path for row in rows for path in row.symbols if path.startswith("bpy.ops."))
+
+
+@once_per_script
+def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
+    """Name → everything that it is bound to, None for what is no expression."""
+    found: dict[str, list[ast.expr | None]] = {}
+    assigned: set[ast.Name] = set()
+    for node in script.nodes:
+        match node:
+            case ast.Assign(targets=[ast.Name() as name]) | ast.AnnAssign(target=ast.Name() as name):
+                found.setdefault(name.id, []).append(node.value)
+                assigned.add(name)
+            case ast.arg(arg=name):
+                found.setdefault(name, []).append(None)
+            case _:
+                pass
+    for node in script.nodes:
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node not in assigned:
+            found.setdefault(node.id, []).append(None)
+    return found
+
+
+@once_per_script
+def _handed_on(script: Script) -> frozenset[str]:
+    """The names whose values are passed to functions that are neither the API's nor the script's own."""
+    own = {node.name for node in script.nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    found: set[str] = set()
+    for node in script.nodes:
+        if isinstance(node, ast.Call) and not callee_path(script, node):
+            function = node.func
+            name = function.id if isinstance(function, ast.Name) else getattr(function, "attr", "")
+            if name not in own:
+                arguments = (*node.args, *(keyword.value for keyword in node.keywords))
+                found.update(value.id for value in arguments if isinstance(value, ast.Name))
+    return frozenset(found)

@@ -1,0 +1,154 @@
+"""Something is read from what is None on a new thing, and nothing in the script fills it.
+
+```python
+fluid = obj.modifiers.new("Fluid", "FLUID")
+fluid.domain_settings.domain_type = "LIQUID"  # reported: fluid.fluid_type = 'DOMAIN' makes domain_settings
+```
+
+Not reported: things that the script did not make itself; scripts that name what fills it, anywhere, that compute
+names or import modules which may change scenes; and what the script asks for (``if obj.rigid_body:``).
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.flow.facts import T
+from kb_build.symbol_lines import empty_when_new, fillers
+from kb_check.findings import Finding
+from kb_check.made_here import bindings, called_operators, is_new, knows_all, named_words
+from kb_check.rule import Rule
+from kb_check.script import once_per_script
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Symbol
+    from kb_check.script import Script
+
+# What fills animation data besides what makes nothing else: methods, and operators of these modules.
+_ANIMATING = re.compile(r"keyframe_insert|driver_add|bpy\.ops\.(anim|nla|action|graph|pose|poselib)\.")
+# Operators that hand on what other things have.
+_COPYING = re.compile(r"copy|link|join|quick|transfer|preset|paste|append|undo|duplicate")
+_ACTIVE = frozenset({f"{T}Context.object", f"{T}Context.active_object"})
+# Operators that leave the active object as new as it is.
+_PLAIN = re.compile(r"bpy\.ops\.(mesh\.primitive_\w+_add|object\.(select_all|shade_\w+|delete)|wm\.read_\w+)")
+_PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
+_DOTS = 3  # of the path of an operator; that of a module has fewer
+_WORD = re.compile(r"\w+")
+_GENERAL = frozenset({"object", "mesh", "scene", "anim"})  # modules whose operators fill many things
+_MAKING = frozenset({"new", "modifier_add"})
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    told: set[str] = set()
+    for row in script.resolutions("attribute", "store"):
+        node = row.node
+        if not isinstance(node, ast.Attribute) or not row.sure or row.guarded:
+            continue
+        pointer = _pointer(script, node.value)
+        if pointer is None or ast.unparse(pointer) in told:
+            continue
+        symbol = _empty(script, pointer)
+        if symbol is None or not _stays_empty(script, symbol) or not _is_made(script, pointer.value):
+            continue
+        told.add(ast.unparse(pointer))
+        calls = " or ".join(f"`{call}`" for call in fillers(symbol)[-1:])
+        yield Finding(
+            RULE.id, "warning", script.name_span(node),
+            f"`{symbol.path}` is None on what is new, and nothing in this script fills it: {calls} does.",
+            symbol.path,
+        )  # fmt: skip
+
+
+def _pointer(script: Script, node: ast.expr) -> ast.Attribute | None:
+    """The attribute that an expression reads, itself or by the only value of a name that is only read from."""
+    if isinstance(node, ast.Name) and node.id not in _asked(script):
+        values = bindings(script).get(node.id, [])
+        value = values[0] if len(values) == 1 else None
+        return value if isinstance(value, ast.Attribute) else None
+    return node if isinstance(node, ast.Attribute) else None
+
+
+def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:
+    """The symbol of a pointer that is None on all that is new, and that something fills."""
+    row = script.analysis.resolutions.get(pointer)
+    if row is None or not row.sure or row.guarded or row.missing or len(row.symbols) != 1:
+        return None
+    symbol = script.api.symbols.symbol(row.symbols[0])
+    empty = empty_when_new(symbol) if symbol else None
+    return symbol if symbol and empty and not empty.made and fillers(symbol) else None
+
+
+def _stays_empty(script: Script, symbol: Symbol) -> bool:
+    """Whether the script names nothing that may fill a pointer, and does not ask whether it is None."""
+    if not knows_all(script) or symbol.name in _asked(script) or symbol.owner == f"{T}ID":
+        return False
+    words, operators = named_words(script), called_operators(script)
+    is_animated = symbol.name == "animation_data" and any(map(_ANIMATING.search, words | operators))
+    if is_animated or any(map(_COPYING.search, operators)):
+        return False
+    for call in fillers(symbol):
+        named = _WORD.findall(call)
+        if call.startswith("bpy.ops."):
+            module = named[2]
+            if named[3] in words or (
+                module not in _GENERAL and any(word.startswith(module) for word in words)
+            ):
+                return False
+        elif ".modifiers.new(" in call:
+            if named[-1] in words or _computes_kinds(script):
+                return False
+        elif named[1] in words:
+            return False
+    return True
+
+
+@once_per_script
+def _computes_kinds(script: Script) -> bool:
+    """Whether the script makes modifiers of a kind that it computes."""
+    for node in script.nodes:
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _MAKING:
+            given = [*node.args[1:], *(keyword.value for keyword in node.keywords)]
+            if not all(isinstance(value, (ast.Constant, ast.Attribute)) for value in given):
+                return True
+    return False
+
+
+@once_per_script
+def _asked(script: Script) -> frozenset[str]:
+    """The names and attributes that are used for more than to read from them, or to hold them."""
+    read = {node.value for node in script.nodes if isinstance(node, ast.Attribute)}
+    held = {node.value for node in script.nodes if isinstance(node, ast.Assign)}
+    found: set[str] = set()
+    for node in script.nodes:
+        if isinstance(node, (ast.Attribute, ast.Name)) and isinstance(node.ctx, ast.Load):
+            if node in read or (node in held and isinstance(node, ast.Attribute)):
+                continue
+            found.add(node.attr if isinstance(node, ast.Attribute) else node.id)
+    return frozenset(found)
+
+
+def _is_made(script: Script, node: ast.expr) -> bool:
+    """Whether the script has surely made a thing: by ``new``, or as the active object by the operators of meshes."""
+    if isinstance(node, ast.Name):
+        values = bindings(script).get(node.id, [])
+        if len(values) == 1 and isinstance(values[0], ast.Attribute):
+            return _is_active(script, values[0])
+    return is_new(script, node) or (isinstance(node, ast.Attribute) and _is_active(script, node))
+
+
+def _is_active(script: Script, node: ast.Attribute) -> bool:
+    row = script.analysis.resolutions.get(node)
+    if row is None or not _ACTIVE.issuperset(row.symbols) or "active" in named_words(script):
+        return False
+    operators = {path for path in called_operators(script) if path.count(".") == _DOTS}
+    made = [call for call in script.resolutions("call") if any(map(_PRIMITIVE.fullmatch, call.symbols))]
+    before = any(getattr(call.node, "end_lineno", 0) <= node.lineno for call in made)
+    computed = any(isinstance(node, ast.Name) and node.id == "getattr" for node in script.nodes)
+    return before and not computed and all(map(_PLAIN.fullmatch, operators))
+
+
+RULE = Rule("empty-pointer", "warning", "Something read from what is None on a new thing", _check)

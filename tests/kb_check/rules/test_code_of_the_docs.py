@@ -1,0 +1,54 @@
+"""The code that the docs give is right: none of it is flagged."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.records import THEN
+from kb_build.symbol_lines import fillers, new_subscript
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.checker import Checker
+    from kb_serve.reader import BaseReader
+
+# What the names stand for with which calls begin that make things.
+SETTING = """\
+import bpy
+obj = bpy.context.object
+scene = bpy.context.scene
+view_layer = bpy.context.view_layer
+tree = bpy.data.node_groups.new("tree", 'GeometryNodeTree')
+"""
+_CODE = re.compile(r"`([^`]+)`")
+_AT_ONCE = 500
+
+
+def code_of_the_docs(checker: Checker, reader: BaseReader) -> Iterator[str]:
+    """How symbols are reached, what makes instances and fills pointers, and what stands for labels of the manual."""
+    for (path,) in reader.rows("SELECT path FROM symbols"):
+        symbol = checker.api.symbols.symbol(path)
+        assert symbol is not None
+        cls = symbol if symbol.kind == "class" else checker.api.symbols.symbol(symbol.owner)
+        part = {"class": "", "socket": f".{new_subscript(symbol)}"}.get(symbol.kind, f".{symbol.name}")
+        if cls and cls.reached and part != "." and not symbol.deprecation:
+            yield cls.reached + part
+        for calls in fillers(symbol):
+            yield from calls.split(THEN)
+    yield from (call for (call,) in reader.rows("SELECT call FROM creation"))
+    for (names,) in reader.rows("SELECT names FROM label_names"):
+        yield from _CODE.findall(names)
+
+
+def test_no_code_of_the_docs_is_flagged(rule_checker: Checker, reader: BaseReader) -> None:
+    lines = list(dict.fromkeys(code_of_the_docs(rule_checker, reader)))
+    assert len(lines) > 15_000
+    flagged: dict[str, str] = {}
+    for start in range(0, len(lines), _AT_ONCE):
+        part = [line for line in lines[start : start + _AT_ONCE] if line.isprintable()]
+        for finding in rule_checker.check(SETTING + "\n".join(part)):
+            if finding.severity != "note":
+                flagged[part[finding.span.line - 1 - SETTING.count("\n")]] = finding.message
+    assert flagged == {}

@@ -1,0 +1,133 @@
+"""Mistakes with things that a script has just made: each is run in Blender, which refuses the wrong ones only."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import Check
+
+    from kb_check.checker import Checker
+
+_FLUID = "bpy.ops.mesh.primitive_cube_add()\nfluid = bpy.context.object.modifiers.new('Fluid', 'FLUID')\n"
+_CUBE = "bpy.ops.mesh.primitive_cube_add()\n"
+_OBJECT = "ob = bpy.data.objects.new('x', None)\n"
+_TREE = "tree = bpy.data.node_groups.new('x', 'GeometryNodeTree')\n"
+_POINTS = _TREE + "points = tree.nodes.new('GeometryNodeDistributePointsOnFaces')\n"
+_ZONE = _TREE + "first = tree.nodes.new('GeometryNodeSimulationInput')\n"
+_GLARE = "tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\nglare = tree.nodes.new('CompositorNodeGlare')\n"
+_ARMATURE = "armature = bpy.data.armatures.new('x')\nob = bpy.data.objects.new('x', armature)\n"
+_ACTION = "action = bpy.data.actions.new('x')\n" + _OBJECT + "ob.animation_data_create().action = action\n"
+WRONG = {
+    "empty-pointer": [
+        _FLUID + "fluid.domain_settings.domain_type = 'LIQUID'",
+        _FLUID + "settings = fluid.flow_settings\nsettings.flow_type = 'SMOKE'",
+        _OBJECT + "ob.field.type = 'WIND'",
+        _OBJECT + "ob.animation_data.use_nla = True",
+        _CUBE + "bpy.context.object.rigid_body.mass = 2",
+        _CUBE + "cube = bpy.context.active_object\ncube.rigid_body.mass = 2",
+    ],
+    "hidden-socket": [
+        _POINTS + "points.inputs['Density Max'].default_value = 3",
+        _ZONE + "first.inputs['Geometry']",
+        _ZONE + "second = tree.nodes.new('GeometryNodeSimulationOutput')\n"
+        "tree.links.new(first.outputs['Geometry'], second.inputs['Geometry'])\nfirst.pair_with_output(second)",
+    ],
+    "unknown-value": [
+        _GLARE + "glare.inputs['Type'].default_value = 'FOG_GLOW'",
+        _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketFloatFactor')",
+        "bpy.data.node_groups.new('x', 'NodeTree')",
+    ],
+    "list-attribute": [
+        _OBJECT + "ob.driver_add('location').driver",
+        _OBJECT + "curve = ob.driver_add('scale')\ncurve.driver.expression = '1'",
+    ],
+    "not-animated": [_ACTION + "ob.animation_data.action_slot = action.slots.new('ACTION', 'x')"],
+    "not-in-edit-mode": [_ARMATURE + "armature.edit_bones.new('x')"],
+}
+RIGHT = [
+    _OBJECT + "ob.driver_add('location', -1)[0].driver",
+    _OBJECT + "place = -1\nob.driver_add('location', place)[0].driver",
+    _POINTS + "if 'Density Max' in points.inputs:\n    points.inputs['Density Max'].default_value = 1",
+    _POINTS + "try:\n    points.inputs['Density Max'].default_value = 1\nexcept KeyError:\n    pass",
+    _OBJECT + "try:\n    ob.field.type = 'WIND'\nexcept AttributeError:\n    pass",
+    _OBJECT + "print(ob.field.type if ob.field else '')",
+    _TREE + "menu = tree.nodes.new('GeometryNodeMenuSwitch')\nmenu.enum_items.new('C')\n"
+    "menu.inputs['Menu'].default_value = 'C'",
+    _FLUID + "fluid.fluid_type = 'DOMAIN'\nfluid.domain_settings.domain_type = 'LIQUID'",
+    _FLUID
+    + "kind = 'FLOW'\nfluid.fluid_type = kind\nsettings = fluid.flow_settings\nsettings.flow_type = 'SMOKE'",
+    _FLUID + "if fluid.domain_settings:\n    fluid.domain_settings.domain_type = 'LIQUID'",
+    _FLUID + "settings = fluid.domain_settings\nif settings:\n    settings.domain_type = 'LIQUID'",
+    _OBJECT + "ob.keyframe_insert('location')\nob.animation_data.action.name",
+    _OBJECT + "ob.driver_add('location', 0)\nob.animation_data.drivers[0].driver",
+    _CUBE + "bpy.ops.rigidbody.object_add()\nbpy.context.object.rigid_body.mass = 2",
+    _CUBE + "bpy.ops.rigidbody.objects_add(type='ACTIVE')\nbpy.context.object.rigid_body.mass = 2",
+    _CUBE + "getattr(bpy.ops.object, 'force' + 'field_toggle')()\nbpy.context.object.field.type = 'WIND'",
+    _CUBE + "bpy.context.object.modifiers.new('x', 'COLLISION')\nbpy.context.object.collision.damping = 1",
+    "bpy.ops.object.effector_add(type='WIND')\nbpy.context.object.field.strength = 3",
+    _POINTS + "points.distribute_method = 'POISSON'\npoints.inputs['Density Max'].default_value = 3",
+    _POINTS + "points.inputs[3].default_value = 3",
+    _POINTS + "points.inputs['Density'].default_value = 3",
+    _ZONE + "second = tree.nodes.new('GeometryNodeSimulationOutput')\nfirst.pair_with_output(second)\n"
+    "tree.links.new(first.outputs['Geometry'], second.inputs['Geometry'])",
+    _ZONE + "first.outputs['Delta Time']",
+    _GLARE + "glare.inputs['Type'].default_value = 'Fog Glow'",
+    _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketGeometry')",
+    _OBJECT + "ob.driver_add('location', 2).driver",
+    _OBJECT + "ob.driver_add('location')[0].driver",
+    _OBJECT + "ob.driver_add('hide_render').driver",
+    _OBJECT + "for curve in ob.driver_add('rotation_euler'):\n    curve.driver.expression = '1'",
+    _ACTION + "ob.animation_data.action_slot = action.slots.new('OBJECT', 'x')",
+    _ARMATURE + "bpy.context.collection.objects.link(ob)\nbpy.context.view_layer.objects.active = ob\n"
+    "bpy.ops.object.mode_set(mode='EDIT')\narmature.edit_bones.new('x')\nbpy.ops.object.mode_set(mode='OBJECT')",
+]
+
+
+def run_each(folder: Path, codes: list[str]) -> list[list[str]]:
+    """What became of each code, each run in a file of its own."""
+    emptied = "import bpy\nbpy.ops.wm.read_factory_settings(use_empty=True)"
+    return run_statements(folder, [line for code in codes for line in (emptied, code)])[1::2]
+
+
+@pytest.mark.parametrize("rule", WRONG)
+def test_what_blender_refuses_is_found(check: Check, tmp_path: Path, rule: str) -> None:
+    codes = [f"import bpy\n{code}" for code in WRONG[rule]]
+    answers = run_each(tmp_path, codes)
+    assert [code for code, (error, *_) in zip(codes, answers, strict=True) if not error] == []
+    assert [code for code in codes if len(check(rule, code)) != 1] == []
+
+
+def test_what_blender_takes_is_no_finding(rule_checker: Checker, tmp_path: Path) -> None:
+    codes = [f"import bpy\n{code}" for code in RIGHT]
+    answers = run_each(tmp_path, codes)
+    assert [(code, error) for code, (error, *_) in zip(codes, answers, strict=True) if error] == []
+    assert [code for code in codes if rule_checker.check(code, rules=list(WRONG))] == []
+
+
+def test_an_input_by_its_name_changes_nothing(check: Check, tmp_path: Path) -> None:
+    made = (
+        f"import bpy\n{_TREE}item = tree.interface.new_socket('Size', in_out='INPUT', socket_type='NodeSocketFloat')\n"
+        f"{_CUBE}modifier = bpy.context.object.modifiers.new('x', 'NODES')\nmodifier.node_group = tree\n"
+    )
+    lines = [
+        made + "modifier['Size'] = 5.0",
+        made + "modifier[item.identifier] = 5.0",
+        made + "modifier['other'] = 5.0",
+    ]
+    answers = run_statements(tmp_path, lines, dict.fromkeys(range(len(lines)), "modifier[item.identifier]"))
+    assert [(error, after) for error, _, after in answers] == [("", "0.0"), ("", "5.0"), ("", "0.0")]
+    assert [len(check("input-by-name", line)) for line in lines] == [1, 0, 0]
+
+
+@pytest.mark.parametrize("rule", ["empty-pointer", "hidden-socket", "not-in-edit-mode"])
+@pytest.mark.parametrize(
+    "elsewhere", ["import rigs\nrigs.prepare()", "from .rigs import prepare", "setattr(x, y, 1)"]
+)
+def test_what_may_be_done_elsewhere_is_no_finding(check: Check, rule: str, elsewhere: str) -> None:
+    assert [code for code in WRONG[rule] if check(rule, f"import bpy\n{elsewhere}\n{code}")] == []
