@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from agents.loop.task import RunTask
     from agents.plan.motion import MotionPhase
     from agents.plan.part import Stage
+    from agents.plan.scene import RenderSettings
     from simworlds.llm.messages import Block
 
 WIDTH, SAMPLES = 960, 16  # of stills, at most
@@ -100,8 +101,13 @@ def _show_materials(shown: _Shown, task: RunTask, first: Sequence[str]) -> None:
 
 
 def _width(task: RunTask) -> int:
-    """Of stills: no more than the plan's picture has, as larger ones take longer than they tell."""
-    return min(WIDTH, task.plan.render.resolution[0]) if task.plan is not None else WIDTH
+    """Of stills."""
+    return still_width(task.plan.render) if task.plan is not None else WIDTH
+
+
+def still_width(render: RenderSettings) -> int:
+    """No more than the plan's picture has, as larger ones take longer than they tell."""
+    return min(WIDTH, render.resolution[0])
 
 
 def still(name: str, frame: int | None, width: int | None = None) -> dict[str, Any]:
@@ -183,7 +189,7 @@ def edit_comparison(run: Run, stage: Stage, task: RunTask) -> list[Block | str]:
     """The file as it was, as it is, and as it is to be, at one size; nothing where there is nothing to compare with."""
     if task.before is None and task.goal is None:
         return []
-    outcome = run.use(RUNNER, stage, RENDER, _again(still("present", task.before_frame)))
+    outcome = run.use(RUNNER, stage, RENDER, _again(still("present", task.before_frame, task.before_width)))
     now = next((block for block in outcome.content if isinstance(block, Picture)), None)
     words = [Text(f"{RENDER}, the scene as it is now:"), *(b for b in outcome.content if isinstance(b, Text))]
     return [*words, *(compared(run, task, now) if now is not None else ())]

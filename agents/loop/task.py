@@ -30,7 +30,8 @@ class RunTask:
     ``tagged`` (keeps the scene protocol), without the rules of its layout. ``actors`` are those that move;
     of an edit, ``declared`` says by what, ``targets`` are what its plan changes, ``old`` the objects that the file had,
     and ``unplanned`` finds what has changed that its plan does not ask for.
-    ``before`` is a still of the file as it was, at ``before_frame``, and ``goal`` a picture of what it is to look like.
+    ``before`` is a still of the file as it was, at ``before_frame`` and of ``before_width`` pixels, and ``goal`` a
+    picture of what it is to look like.
     """
 
     plan_text: str
@@ -45,6 +46,7 @@ class RunTask:
     unplanned: Callable[[Stage], list[Finding]] | None = None
     before: Picture | None = None
     before_frame: int | None = None
+    before_width: int | None = None
     goal: Picture | None = None
 
     def readout(self) -> tuple[dict[str, Any], dict[str, Any]]:

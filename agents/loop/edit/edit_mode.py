@@ -12,7 +12,7 @@ from agents.loop.edit.inputs import picture
 from agents.loop.edit.untouched import blocks, compared, unplanned
 from agents.loop.errors import Unusable
 from agents.loop.events import PlanMade, ReferenceKept
-from agents.loop.evidence import still
+from agents.loop.evidence import still, still_width
 from agents.loop.journal import PLAN_NAME
 from agents.loop.judging import verify
 from agents.loop.run import RENDER, RUNNER, START, plan_file
@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from agents.loop.run import Run
     from agents.plan.edit import EditPlan
     from agents.plan.part import Stage
+    from agents.plan.scene import RenderSettings
 
 _FIRST: Stage = "modeling"
 
@@ -41,7 +42,7 @@ def edit(run: Run) -> RenderResult:
     plan = planner.edit(prompt_with_assets(run), state, before.names, seen.pictures, reference)
     run.write(PLAN_NAME, plan_file(plan))
     run.journal.note(PlanMade(edit=plan))
-    run.task = task = replace(_task(run, plan, before), goal=reference, **_still_before(run))
+    run.task = task = replace(_task(run, plan, before), goal=reference, **_still_before(run, plan.render))
     wanted = plan.stages if options.stages else ALL_AT_ONCE
     last = build(run, planner, task, wanted)
     rendering = finish(run, planner, task, plan.render, last)
@@ -60,12 +61,13 @@ def _opened(run: Run) -> Blocks:
     return blocks(run, _FIRST)
 
 
-def _still_before(run: Run) -> dict[str, Any]:
+def _still_before(run: Run, render: RenderSettings) -> dict[str, Any]:
     """A still of the file as it is, and its frame; nothing if it cannot be rendered, for want of a camera say."""
-    outcome = run.use(RUNNER, _FIRST, RENDER, still("before", None))
+    outcome = run.use(RUNNER, _FIRST, RENDER, still("before", None, still_width(render)))
     if outcome.failed or not outcome.pictures:
         return {}
-    return {"before": outcome.pictures[0], "before_frame": outcome.data["frame"]}
+    data = outcome.data
+    return {"before": outcome.pictures[0], "before_frame": data["frame"], "before_width": data["width"]}
 
 
 def _reference(run: Run) -> Picture | None:
