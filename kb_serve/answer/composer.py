@@ -37,6 +37,7 @@ _EXCERPT_TOKENS = 300  # of the best of several candidates
 _LEAST_SAID = 30
 _LINE_TOKENS = 60
 _NAMES_OF_A_PART, _PAGES_OF_A_PART = 3, 2
+_NAMES = "further names"
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
 _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
@@ -140,8 +141,18 @@ class AnswerComposer:
             asked = self._renderer.arguments(hits[0].id, ranking.recognition.arguments.get(hits[0].id, ()))
             blocks = (*asked, *self._whole(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
-        blocks = (*self._excerpt(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
-        return _draft("candidates", hits, notes, blocks)
+        return _draft("candidates", hits, notes, self._found(hits, rows))
+
+    def _found(self, hits: Sequence[Hit], rows: Sequence[RankedId]) -> Iterator[AnswerBlock]:
+        """The best hit in brief, and the others. A page says how, but code needs names: they follow its heading."""
+        excerpt = self._excerpt(hits[0], rows[0])
+        others = [*self._others(hits[1:], rows[1:])]
+        yield next(excerpt)
+        if _is_page(hits[0]):
+            yield from (block for block in others if block.name == _NAMES)
+            others = [block for block in others if block.name != _NAMES]
+        yield from excerpt
+        yield from others
 
     def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> _Draft:
         """The names and the page for each part of a question, in brief."""
@@ -234,7 +245,7 @@ class AnswerComposer:
         """A line for each further hit: symbols, then pages."""
         further = list(zip(hits, rows, strict=True))
         for title, name, are_pages in (
-            ("In Python", "further names", False),
+            ("In Python", _NAMES, False),
             ("Pages", "further pages", True),
         ):
             lines = [f"- {self._line(hit, row)}" for hit, row in further if _is_page(hit) == are_pages]
