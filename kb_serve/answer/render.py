@@ -34,6 +34,8 @@ _PAIRS = "pair_with_output"  # the method of a zone's first node, which has its 
 _NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
 _SHORT_PAGE = 80  # letters
 _LONGEST_DEFAULT = 60  # letters
+_IN_A_CALL = 20  # arguments
+_OUTLINE = 16  # sections that a heading lists
 _UNITS = {
     "LENGTH": "metres", "ROTATION": "radians", "TIME": "frames", "TIME_ABSOLUTE": "seconds", "MASS": "kg",
     "VELOCITY": "m/s", "ACCELERATION": "m/s²", "AREA": "m²", "VOLUME": "m³", "CAMERA": "mm", "POWER": "W",
@@ -181,8 +183,8 @@ def _names(names: Iterable[str]) -> str:
 
 
 def _call_without(signature: str, names: Collection[str]) -> str:
-    """An operator's call without some of its arguments."""
-    if not names:
+    """An operator's call without some of its arguments, and of very many the first only: all are listed below."""
+    if not names and signature.count("=") <= _IN_A_CALL:
         return signature
     try:
         call = ast.parse(signature, mode="eval").body
@@ -190,8 +192,10 @@ def _call_without(signature: str, names: Collection[str]) -> str:
         return signature
     if not isinstance(call, ast.Call):
         return signature
-    call.keywords = [keyword for keyword in call.keywords if keyword.arg not in names]
-    return ast.unparse(call)
+    keywords = [keyword for keyword in call.keywords if keyword.arg not in names]
+    call.keywords = keywords[:_IN_A_CALL]
+    more = len(keywords) - len(call.keywords)
+    return ast.unparse(call) + (f"  # and {more} more, see Parameters" if more else "")
 
 
 def _parameter_lines(symbol: Symbol, parameters: Iterable[Parameter]) -> list[str]:
@@ -281,9 +285,8 @@ class MarkdownRenderer:
         names = self.reader.label_names(slug)
         above = " › ".join((*page.breadcrumbs, page.title))
         head = f"## {above}{_beside(names, 0, -1)}\n\n{page.url or slug}"
-        others = [section.title for section in page.sections[1:]]
-        if len(others) > 1:
-            head += "\n\nSections: " + ", ".join(others)
+        if len(page.sections) > 2:
+            head += f"\n\nSections: {outline(page.sections[1:])}"
         yield AnswerBlock(head, "heading")
         sections = sorted(enumerate(page.sections), key=lambda item: not _leads_to(anchor, item[1]))
         for number, section in sections:
@@ -468,6 +471,15 @@ def _named(line: str, names: str) -> str:
     if bullet is None or bullet.end() == len(line):
         return f"{line} · {names}"
     return f"{bullet[0].rstrip()} {names} · {line[bullet.end() :]}"
+
+
+def outline(sections: Sequence[Section]) -> str:
+    """The titles of sections; of many, those of the highest level, as far as there is room for them."""
+    highest = min(section.level for section in sections)
+    many = len(sections) > _OUTLINE
+    titles = [section.title for section in sections if not many or section.level == highest]
+    left = len(sections) - len(titles[:_OUTLINE])
+    return ", ".join(titles[:_OUTLINE]) + (f", and {left} more" if left else "")
 
 
 def _leads_to(anchor: str, section: Section) -> bool:

@@ -7,11 +7,13 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import classes, of_data, paths
 
-from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Symbol
+from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Section, Symbol
 from kb_build.symbol_lines import usual_default
-from kb_serve.answer.render import MarkdownRenderer, facts, said_of, with_names
+from kb_serve.answer.render import MarkdownRenderer, facts, outline, said_of, with_names
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
@@ -85,7 +87,12 @@ def test_an_operator_shows_its_call_with_defaults_and_every_argument(
         if any(parameter.name == "filter_folder" for parameter in symbol.parameters):
             assert all(f"`{parameter.name}`" in text for parameter in symbol.parameters)
             continue
-        assert f"```python\n{symbol.signature}\n```" in text
+        call = text.partition("```python\n")[2].partition("\n```")[0]
+        shown, more = (
+            call.removesuffix(" more, see Parameters").split("  # and ") if "#" in call else (call, "0")
+        )
+        assert symbol.signature.startswith(shown.removesuffix(")"))
+        assert shown.count("=") + int(more) == len(symbol.parameters)
         for parameter in symbol.parameters:
             assert f"- `{parameter.name}` (" in text
             assert parameter.description in text
@@ -102,6 +109,15 @@ def test_what_an_operator_only_asks_of_the_file_browser_stands_last(kb: Knowledg
     browsers = text.partition("- of the file browser; a script leaves them out: ")[2].partition("\n")[0]
     assert browsers.startswith("`filter_blender`, `filter_backup`, ")
     assert "`sort_method`" in browsers
+
+
+def test_of_very_many_arguments_a_call_has_the_first_and_counts_the_others(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.ops.wm.obj_export", max_tokens=10_000).text
+    call = text.partition("```python\n")[2].partition("\n```")[0]
+    shown, _, more = call.partition("  # and ")
+    assert shown.count("=") == 20
+    listed = text.partition("**Parameters**\n")[2].partition("- of the file browser")[0].count("\n- `")
+    assert more == f"{listed + 1 - 20} more, see Parameters"
 
 
 def test_a_function_shows_parameters_and_returns(kb: KnowledgeBase) -> None:
@@ -222,6 +238,19 @@ def test_a_page_shows_where_it_stands_and_every_section(kb: KnowledgeBase) -> No
     for section in page.sections:
         assert section.title in text
         assert section.text in text
+
+
+@pytest.mark.parametrize(
+    ("levels", "told"),
+    [
+        ((1, 2, 2), "S0, S1, S2"),
+        ((1, *[2] * 30, 1), "S0, S31, and 30 more"),
+        ([1] * 20, ", ".join(f"S{number}" for number in range(16)) + ", and 4 more"),
+    ],
+)
+def test_a_heading_lists_few_sections_all_and_of_many_the_highest(levels: Sequence[int], told: str) -> None:
+    sections = [Section("", f"S{number}", level, "") for number, level in enumerate(levels)]
+    assert outline(sections) == told
 
 
 def test_a_label_of_the_manual_has_its_python_name_beside_it(kb: KnowledgeBase) -> None:
