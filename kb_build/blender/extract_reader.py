@@ -224,13 +224,13 @@ def python_value(value: Default) -> str:
 
 
 def call_text(name: str, parameters: Iterable[Parameter]) -> str:
-    """``modifier_add(type='SUBSURF')``: a call with every argument's default."""
+    """``modifier_add(type='SUBSURF')``: a call with every argument's default; ``...`` for what is no value to give."""
     shown: list[str] = []
     for parameter in parameters:
         if parameter.required:
             shown.append(parameter.name)
         elif parameter.is_open and parameter.default is None:
-            continue  # Blender has a default that is no value to give
+            shown.append(f"{parameter.name}=...")
         elif isinstance(parameter.default, list) and parameter.type == "enum":
             chosen = ", ".join(map(repr, parameter.default))  # a list in order, which a set would lose
             shown.append(f"{parameter.name}={{{chosen}}}" if chosen else f"{parameter.name}=set()")

@@ -111,7 +111,7 @@ def _items(items: Sequence[EnumItem]) -> str:
 
 
 def _written_defaults(call: str) -> dict[str, str]:
-    """The defaults in a call's text by argument, as Python source; {} where it is not Python."""
+    """The defaults in a call's text by argument, as Python source, where they are told; {} where it is not Python."""
     try:
         definition = ast.parse(f"def _{call[call.index('(') :]}: ...").body[0]
     except (SyntaxError, ValueError):
@@ -123,7 +123,8 @@ def _written_defaults(call: str) -> dict[str, str]:
         *zip(reversed(by_position), reversed(arguments.defaults), strict=False),
         *zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True),
     ]
-    return {argument.arg: ast.unparse(default) for argument, default in pairs if default is not None}
+    told = ((argument.arg, ast.unparse(default)) for argument, default in pairs if default is not None)
+    return {name: default for name, default in told if default != "..."}
 
 
 def _default_text(parameter: Parameter, written: str) -> str:

@@ -255,8 +255,9 @@ def test_a_call_shows_required_arguments_bare_and_the_others_with_defaults() -> 
         Parameter("c", "enum", default=["P"]),
         Parameter("d", "enum", default=[]),
         Parameter("e", "float[2]", default=[0, 1]),
+        Parameter("g", "enum", enum_items=(EnumItem("X", where="of a kind"),)),
     ]
-    assert call_text("f", parameters) == "f(a, b='X', c={'P'}, d=set(), e=(0, 1))"
+    assert call_text("f", parameters) == "f(a, b='X', c={'P'}, d=set(), e=(0, 1), g=...)"
     assert call_text("f", []) == "f()"
 
 
