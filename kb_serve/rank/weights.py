@@ -5,12 +5,12 @@ Chosen by hand, near what ``python -m measurements.fit_weights`` finds; ``make b
 
 WEIGHTS: dict[str, float] = {
     "text": 1.0,
-    "asked": 0.9,
+    "asked": 0.85,
     "counts": 0.1,
     "code": 0.5,
     "code of an error": 0.25,
-    "unasked node": -0.5,
-    "unasked area": -0.3,
+    "unasked node": -0.4,
+    "unasked area": -0.25,
     "rarely asked": -0.35,
     "index": -1.0,
     "chapter": 0.1,
