@@ -17,11 +17,30 @@ from mcp.shared.message import SessionMessage
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from types import TracebackType
 
 _AT_ONCE = 64 * 1024  # what a pipe holds
 
 
-class PipeReader:
+class _Stream:
+    """What both streams are to the MCP package besides: asynchronous context managers."""
+
+    async def aclose(self) -> None:
+        """Nothing: the descriptor is the caller's."""
+
+    async def __aenter__(self) -> Self:
+        return self
+
+    async def __aexit__(
+        self,
+        exc_type: type[BaseException] | None,
+        exc_val: BaseException | None,
+        exc_tb: TracebackType | None,
+    ) -> None:
+        await self.aclose()
+
+
+class PipeReader(_Stream):
     """The messages that the client sends: a stream as the MCP package reads it."""
 
     def __init__(self, descriptor: int) -> None:
@@ -36,7 +55,10 @@ class PipeReader:
             if self._has_ended:
                 raise anyio.EndOfStream
             await anyio.wait_readable(self._descriptor)
-            self._take(os.read(self._descriptor, _AT_ONCE))
+            try:
+                self._take(os.read(self._descriptor, _AT_ONCE))
+            except ConnectionError:  # of a socket whose client has gone without reading all
+                self._take(b"")
         line = self._lines.popleft().decode(errors="replace")
         try:
             return SessionMessage(types.jsonrpc_message_adapter.validate_json(line, by_name=False))
@@ -47,10 +69,10 @@ class PipeReader:
         """Splits what was read into lines."""
         self._has_ended = not read
         *ends, begun = read.split(b"\n")
-        if ends or self._has_ended:
-            self._begun += ends[0] if ends else b""
-            self._lines.append(bytes(self._begun))
-            self._lines.extend(ends[1:])
+        if self._has_ended and self._begun:
+            ends = [b""]
+        for end in ends:
+            self._lines.append(bytes(self._begun) + end)
             self._begun.clear()
         self._begun += begun
 
@@ -68,14 +90,8 @@ class PipeReader:
         except anyio.EndOfStream:
             raise StopAsyncIteration from None
 
-    async def __aenter__(self) -> Self:
-        return self
 
-    async def __aexit__(self, *_: object) -> None:
-        await self.aclose()
-
-
-class PipeWriter:
+class PipeWriter(_Stream):
     """The messages to the client: a stream as the MCP package writes it.
 
     ``give_up`` is called when nobody reads them any more.
@@ -109,12 +125,3 @@ class PipeWriter:
             if not self._has_room.poll(0):
                 await anyio.wait_writable(self._descriptor)
             left = left[os.write(self._descriptor, left[: select.PIPE_BUF]) :]
-
-    async def aclose(self) -> None:
-        """Nothing: the descriptor is the caller's."""
-
-    async def __aenter__(self) -> Self:
-        return self
-
-    async def __aexit__(self, *_: object) -> None:
-        await self.aclose()

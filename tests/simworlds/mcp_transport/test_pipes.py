@@ -49,9 +49,9 @@ def ends(request: pytest.FixtureRequest) -> Iterator[tuple[int, int]]:
 @pytest.mark.parametrize(
     ("sent", "expected"),
     [
-        (b"", [""]),
-        (PING + b"\n", ["ping", ""]),
-        (PING + b"\r\n" + PING + b"\n", ["ping", "ping", ""]),
+        (b"", []),
+        (PING + b"\n", ["ping"]),
+        (PING + b"\r\n" + PING + b"\n", ["ping", "ping"]),
         (PING, ["ping"]),
         (PING + b"\nno message\n" + PING, ["ping", "", "ping"]),
         (PING.replace(b"ping", b"p\xffng"), ["p\ufffdng"]),
@@ -102,3 +102,11 @@ async def test_a_client_that_is_gone_is_given_up(ends: tuple[int, int]) -> None:
     with pytest.raises(anyio.BrokenResourceError):
         await PipeWriter(ends[1], lambda: given_up.append(True)).send(said("x"))
     assert given_up
+
+
+async def test_a_client_that_goes_without_reading_ends_the_messages() -> None:
+    own, others = socket.socketpair()
+    with own, others:
+        own.send(b"unread")
+        others.close()
+        assert [message async for message in PipeReader(own.fileno())] == []
