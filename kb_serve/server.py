@@ -84,8 +84,8 @@ def make_server(service: Service) -> Server[None]:
         if not ready.is_set():
             await ready.wait()
         try:
-            # Handing a call over to a thread costs more than a millisecond in ten. A thread that is at work may
-            # keep the base locked.
+            # Handing a short call over to a thread and back costs more than others gain. A thread that is at work
+            # may keep the base locked.
             if is_quick(name, params.arguments) and not thread.borrowed_tokens:
                 return answer(name, service, params.arguments)
             return await anyio.to_thread.run_sync(answer, name, service, params.arguments, limiter=thread)
