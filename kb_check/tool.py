@@ -92,6 +92,12 @@ def answer(service: Service, arguments: dict[str, Any] | None) -> CallToolResult
     )
 
 
+def is_quick(arguments: dict[str, Any] | None) -> bool:
+    """Never: reading code takes longer than most answers."""
+    del arguments
+    return False
+
+
 def _checked(base: KnowledgeBase, code: str, max_tokens: int, note: str) -> CheckReply:
     from kb_check.run_reach import RunReach, may_bring_names  # noqa: PLC0415 - loaded by the first check
     from kb_check.source import split_lines  # noqa: PLC0415

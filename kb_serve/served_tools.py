@@ -1,7 +1,8 @@
 """The tools that the server serves, each a module that is loaded when it is listed or called.
 
 Those of parts that are built on this one stand here by name: this part must not import them. Such a module has
-``tool()``, its entry in the list of tools, and ``answer(service, arguments)``, which raises KBServeError.
+``tool()``, its entry in the list of tools, ``answer(service, arguments)``, which raises KBServeError, and
+``is_quick(arguments)``.
 """
 
 from __future__ import annotations
@@ -23,6 +24,8 @@ class _ToolModule(Protocol):
 
     def answer(self, service: Service, arguments: dict[str, Any] | None) -> CallToolResult: ...
 
+    def is_quick(self, arguments: dict[str, Any] | None) -> bool: ...
+
 
 def listing() -> list[Tool]:
     """The entries of all tools in the list of tools."""
@@ -32,6 +35,11 @@ def listing() -> list[Tool]:
 def answer(name: str, service: Service, arguments: dict[str, Any] | None) -> CallToolResult:
     """The result of a call of one of ``TOOL_NAMES``. Raises KBServeError."""
     return _module(name).answer(service, arguments)
+
+
+def is_quick(name: str, arguments: dict[str, Any] | None) -> bool:
+    """Whether a call takes so few milliseconds that others need not be served meanwhile."""
+    return _module(name).is_quick(arguments)
 
 
 def _module(name: str) -> _ToolModule:

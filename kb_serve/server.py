@@ -18,7 +18,7 @@ from starlette.responses import Response
 
 from kb_build.records import to_json
 from kb_serve.errors import KBServeError
-from kb_serve.served_tools import TOOL_NAMES, answer, listing
+from kb_serve.served_tools import TOOL_NAMES, answer, is_quick, listing
 from simworlds.mcp_transport.tool_listing import SCHEMAS, as_listed, schemas_text
 
 if TYPE_CHECKING:
@@ -81,8 +81,13 @@ def make_server(service: Service) -> Server[None]:
             raise MCPError(
                 types.INVALID_PARAMS, f"There is no tool {name[:80]!r}. Available: {', '.join(TOOL_NAMES)}."
             )
-        await ready.wait()
+        if not ready.is_set():
+            await ready.wait()
         try:
+            # Handing a short call over to a thread and back costs more than others gain. A thread that is at work
+            # may keep the base locked.
+            if is_quick(name, params.arguments) and not thread.borrowed_tokens:
+                return answer(name, service, params.arguments)
             return await anyio.to_thread.run_sync(answer, name, service, params.arguments, limiter=thread)
         except KBServeError as error:
             return _failed(str(error))

@@ -34,6 +34,7 @@ class Service:
     def warm(self) -> None:
         """Loads what the first answer needs, and looks up which Blender is in use and whether it has a base."""
         import_module("kb_serve.rank.search")  # else loaded by the first search
+        _ = self.bases.in_use  # an executable takes long to say it
         self.upkeep.plan()
         with contextlib.suppress(KBServeError):
             self.upkeep.note(self.bases.pick().meta, None)

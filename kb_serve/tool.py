@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from kb_serve.service import Service
 
 NAME = "blender_docs"
+_QUICK_CHARACTERS = 300
 _Arguments = TypeVar("_Arguments", bound=BaseModel)
 
 DESCRIPTION = """\
@@ -127,3 +128,9 @@ def answer(service: Service, arguments: dict[str, Any] | None) -> CallToolResult
     return CallToolResult(
         content=[TextContent(text=found.text)], structured_content={**asdict(found), "blender": version}
     )
+
+
+def is_quick(arguments: dict[str, Any] | None) -> bool:
+    """Whether a call takes milliseconds: that depends on the length of the query, and on the base being open."""
+    given = arguments or {}
+    return len(str(given.get("query", ""))) <= _QUICK_CHARACTERS and not given.get("blender")

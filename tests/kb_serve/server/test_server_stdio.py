@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import signal
+import subprocess
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -80,6 +82,31 @@ def test_lines_that_are_no_messages_do_not_end_the_server(wire: Wire) -> None:
     while wire.receive().get("id") != number:
         pass
     assert not wire.ask(QUALITY)["isError"]
+
+
+def test_stdin_and_stdout_may_be_files(home: Path, tmp_path: Path) -> None:
+    asked, answered = tmp_path / "asked", tmp_path / "answered"
+    asked.write_text('{"jsonrpc": "2.0", "id": 1, "method": "ping"}\n', encoding="utf-8")
+    with asked.open("rb") as stdin, answered.open("wb") as stdout:
+        done = subprocess.run(
+            [*COMMAND, "serve"],
+            stdin=stdin,
+            stdout=stdout,
+            env=environment(home),
+            cwd=REPO,
+            timeout=60,
+            check=False,
+        )
+    assert done.returncode == 0
+    assert json.loads(answered.read_bytes())["id"] == 1
+
+
+def test_the_server_ends_when_nobody_reads_its_answers(wire: Wire) -> None:
+    wire.shake_hands()
+    assert wire.process.stdout is not None
+    wire.process.stdout.close()
+    wire.send({"id": 1, "method": "ping"})
+    assert wire.process.wait(timeout=60) == 0
 
 
 NOISY = r"""

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable
 from dataclasses import asdict, fields
 from pathlib import Path
-from threading import Event
+from threading import Event, get_ident
 from typing import TYPE_CHECKING, Any
 
 import anyio
@@ -207,8 +207,9 @@ async def test_huge_limits_are_no_trouble(service: Service) -> None:
     assert 8 < len(result.structured_content["hits"]) <= 50
 
 
-async def test_others_are_served_while_a_query_is_answered(
-    service: Service, monkeypatch: pytest.MonkeyPatch
+@pytest.mark.parametrize("arguments", [{"query": f"{QUALITY} " * 10}, {"query": QUALITY, "blender": "5.1"}])
+async def test_others_are_served_while_a_call_that_may_take_long_is_answered(
+    service: Service, monkeypatch: pytest.MonkeyPatch, arguments: dict[str, Any]
 ) -> None:
     begun, others_served = Event(), Event()
     ask_base = Service.ask
@@ -220,10 +221,25 @@ async def test_others_are_served_while_a_query_is_answered(
 
     monkeypatch.setattr(Service, "ask", ask_slowly)
     async with Client(make_server(service)) as client, anyio.create_task_group() as calls:
-        calls.start_soon(client.call_tool, "blender_docs", {"query": QUALITY})
+        calls.start_soon(client.call_tool, "blender_docs", arguments)
         await anyio.to_thread.run_sync(begun.wait)
         assert (await client.list_tools()).tools
         others_served.set()
+
+
+async def test_a_short_query_is_answered_without_a_thread(
+    service: Service, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    ask_base, threads = Service.ask, list[int]()
+
+    def ask_and_note(self: Service, *arguments: Any, **more: Any) -> tuple[DocsAnswer, str]:
+        threads.append(get_ident())
+        return ask_base(self, *arguments, **more)
+
+    monkeypatch.setattr(Service, "ask", ask_and_note)
+    await ask(service, query=QUALITY)
+    await ask(service, query=f"{QUALITY} " * 10)
+    assert [thread == get_ident() for thread in threads] == [True, False]
 
 
 async def test_another_tool_is_refused_by_name(service: Service) -> None:
