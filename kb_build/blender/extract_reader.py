@@ -32,6 +32,13 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _TYPES = "bpy.types."
+# Defaults that are not told, by type: empty ones, and those that are no value to give, as of arrays of any length.
+_UNTOLD = {
+    "string": "''",
+    "list": "[]",
+    "enum": "...",
+    **dict.fromkeys(("boolean[1]", "float[1]", "int[1]"), "..."),
+}
 _INDEXABLE = re.compile(r"[\[*?]")
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
@@ -229,8 +236,8 @@ def call_text(name: str, parameters: Iterable[Parameter]) -> str:
     for parameter in parameters:
         if parameter.required:
             shown.append(parameter.name)
-        elif parameter.is_open and parameter.default is None:
-            shown.append(f"{parameter.name}=...")
+        elif parameter.default is None and (untold := _UNTOLD.get(parameter.type.partition(" ")[0])):
+            shown.append(f"{parameter.name}={untold}")
         elif isinstance(parameter.default, list) and parameter.type == "enum":
             chosen = ", ".join(map(repr, parameter.default))  # a list in order, which a set would lose
             shown.append(f"{parameter.name}={{{chosen}}}" if chosen else f"{parameter.name}=set()")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.panels.formulas import TRUE_VALUE, Clause, Need, follows
 from kb_build.records import PanelCondition
 from kb_build.schema import TEST_OFF, TEST_ON
+from kb_build.symbol_lines import fillers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -44,16 +45,30 @@ def panel_conditions(found: Mapping[str, Gating], symbols: Symbols) -> Iterator[
             if clause and all(_says_something(need, symbols) for need in clause)
         ]
         own = {*_lineage(symbol.owner, symbols)}
-        # Where another class's setting hides a property, other places may show it that are not read. What an operator
-        # works on is of another class.
+        # Where another class's setting hides a property, other places may show it that are not read, unless it is a
+        # part of that class. What an operator works on is of another class.
         is_operator = symbol.kind == "operator"
         told = [
-            row for row in clauses if is_operator or not row[1] or all(_owner(need) in own for need in row[0])
+            row
+            for row in clauses
+            if is_operator or not row[1] or all(_is_of(need, own, symbols) for need in row[0])
         ]
-        told.sort(key=_rank)
+        told.sort(key=lambda row: (not all(_owner(need) in own for need in row[0]), *_rank(row)))
         for number, (clause, hides) in enumerate(told[:_MOST_CLAUSES]):
             for need in sorted(clause, key=lambda one: (_owner(one) not in own, one.gate)):
                 yield PanelCondition(path, number, need.gate, _test(need, symbols), hides)
+
+
+def _is_of(need: Need, own: set[str], symbols: Symbols) -> bool:
+    """Whether a need is one of the classes ``own``, or of one that has them as a part, which it does not make: what
+    makes a part is told with the part.
+    """
+    owner, name = _owner(need), need.gate.rpartition(".")[2]
+    return owner in own or any(
+        f"bpy.types.{member.target}" in own and not any(f".{name} = " in call for call in fillers(member))
+        for member in symbols.members(owner)
+        if member.type == "pointer" and "readonly" in member.flags
+    )
 
 
 def _rank(row: tuple[Clause, bool]) -> tuple[int, bool, bool, list[str]]:

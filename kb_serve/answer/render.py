@@ -367,14 +367,15 @@ class MarkdownRenderer:
 
     def _empty_before(self, cls: Symbol) -> str:
         """Where a pointer that leads to instances of a class is None on new things: that, and what fills it."""
-        name = cls.reached.rpartition(".")[2]
+        before, _, name = cls.reached.rpartition(".")
         if not name.isidentifier():
             return ""
-        holders = map(self.reader.symbol, self.reader.pointers_called(name, cls.name))
-        empty = next(
-            (holder for holder in holders if holder and empty_when_new(holder) and fillers(holder)), None
-        )
-        return f"; `{name}` is {default_text(empty)}" if empty else ""
+        for path in self.reader.pointers_called(name, cls.name):
+            holder = self.reader.symbol(path)
+            owner = self.reader.symbol(holder.owner) if holder else None
+            if holder and owner and owner.reached == before and empty_when_new(holder) and fillers(holder):
+                return f"; `{name}` is {default_text(holder)}"
+        return ""
 
     def _assigned(self, symbol: Symbol) -> str:
         """The call that makes the one kind of node tree that a pointer takes which is None on a new thing."""

@@ -332,6 +332,8 @@ class Observer:
             if name not in UNVARIED and self._varied.get(name, 0) < VARIED:
                 self._varied[name] = self._varied.get(name, 0) + 1
                 self.vary(struct, label, place, self.restored(struct, before), is_new)
+                if self._varied[name] == 1:
+                    self.vary_beside(struct, label, parts)
 
     def read(self, struct):
         """field → value of each comparable property, arrays and sets as lists."""
@@ -432,6 +434,35 @@ class Observer:
                 if has_changed_others:
                     before = self.restored(struct, before)
             before = self.restored(struct, before)
+
+    def vary_beside(self, struct, label, parts):
+        """Puts the instance into each mode and notes what that changes in what belongs to the same owner.
+
+        ``parts`` are (instance, its values) of all that was looked at.
+        """
+        same = {
+            part.as_pointer()
+            for owner, _ in parts
+            if struct in (belonging := self.belonging(owner))
+            for part in belonging
+        }
+        beside = [
+            (part, self.restored(part, before))
+            for part, before in parts
+            if part != struct and part.as_pointer() in same
+        ]
+        start = self.read(struct) if beside else {}
+        for field in self.layout(struct).modes if beside else ():
+            mode = f"{declaring_class(struct.bl_rna, field.name)}.{field.name}"
+            for item in refused_value_items(struct, field.name):
+                try:
+                    setattr(struct, field.name, item)
+                except Exception:
+                    continue
+                for part, before in beside if item != start.get(field) else ():
+                    if self.compare(part, label, f"{mode}={item!r}", None, before):
+                        self.restored(part, before)
+            self.restored(struct, start)
 
     def note_filled(self, struct, paths, call):
         """Notes that a call filled pointers which were None.

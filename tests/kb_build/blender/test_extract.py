@@ -256,8 +256,13 @@ def test_a_call_shows_required_arguments_bare_and_the_others_with_defaults() -> 
         Parameter("d", "enum", default=[]),
         Parameter("e", "float[2]", default=[0, 1]),
         Parameter("g", "enum", enum_items=(EnumItem("X", where="of a kind"),)),
+        Parameter("h", "string"),
+        Parameter("i", "list of Mesh"),
+        Parameter("j", "int[1]"),
+        Parameter("k", "Mesh"),
     ]
-    assert call_text("f", parameters) == "f(a, b='X', c={'P'}, d=set(), e=(0, 1), g=...)"
+    told = "f(a, b='X', c={'P'}, d=set(), e=(0, 1), g=..., h='', i=[], j=..., k=None)"
+    assert call_text("f", parameters) == told
     assert call_text("f", []) == "f()"
 
 

@@ -678,7 +678,10 @@ def test_an_operator_says_what_it_wants(symbols: dict[str, Symbol], operator: st
 
 def test_a_choice_that_depends_on_the_instance_is_asked_of_instances(symbols: dict[str, Symbol]) -> None:
     new_socket = symbols["bpy.types.NodeTreeInterface.new_socket"]
-    assert new_socket.signature == "new_socket(name, description=None, in_out='INPUT', parent=None)"
+    assert (
+        new_socket.signature
+        == "new_socket(name, description='', in_out='INPUT', socket_type=..., parent=None)"
+    )
     (kind,) = [parameter for parameter in new_socket.parameters if parameter.name == "socket_type"]
     assert (kind.required, kind.default, kind.is_open) == (False, None, True)
     items = {item.identifier: item.where for item in kind.enum_items}

@@ -102,9 +102,7 @@ def test_an_operator_shows_its_call_with_defaults_and_every_argument(
 def test_what_an_operator_only_asks_of_the_file_browser_stands_last(kb: KnowledgeBase) -> None:
     text = kb.query("bpy.ops.wm.obj_export", max_tokens=10_000).text
     call = text.partition("```python\n")[2].partition("\n")[0]
-    assert call.startswith(
-        "bpy.ops.wm.obj_export(filepath=None, check_existing=True, export_animation=False,"
-    )
+    assert call.startswith("bpy.ops.wm.obj_export(filepath='', check_existing=True, export_animation=False,")
     assert "filter_" not in call
     browsers = text.partition("- of the file browser; a script leaves them out: ")[2].partition("\n")[0]
     assert browsers.startswith("`filter_blender`, `filter_backup`, ")
