@@ -139,7 +139,8 @@ class AnswerComposer:
             return _draft("none", (), notes, (told,))
         if ranking.named:
             asked = self._renderer.arguments(hits[0].id, ranking.recognition.arguments.get(hits[0].id, ()))
-            blocks = (*asked, *self._whole(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
+            sockets = self._renderer.sockets(hits[0].id, text)
+            blocks = (*asked, *sockets, *self._whole(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
         return _draft("candidates", hits, notes, self._found(hits, rows))
 

@@ -278,6 +278,14 @@ class MarkdownRenderer:
             lines = _parameter_lines(symbol, [item for item in symbol.parameters if item.name in names])
             yield AnswerBlock(f"**Asked for**, of `{path}`\n" + "\n".join(lines), "what was asked for")
 
+    def sockets(self, path: str, asked: str) -> Iterator[AnswerBlock]:
+        """The inputs or outputs of a node's class, where ``asked`` names the class and ``path`` is the list itself."""
+        side = path.removeprefix(f"{TYPES}Node.")
+        cls = TYPES + asked.removesuffix(f".{side}").removeprefix(TYPES)
+        members = self.reader.members(cls).values() if side in {"inputs", "outputs"} else ()
+        sockets = [entry for entry in members if entry.path.startswith(f"{cls}.{side}[")]
+        yield from _listed(f"{side.title()} of `{cls}`", sockets)
+
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section ``anchor`` comes first."""
         page, entry = self.reader.page(slug), self.reader.page_entry(slug)

@@ -475,6 +475,11 @@ def test_ways_and_modes_of_making_are_told_apart(symbols: dict[str, Symbol]) -> 
     assert energy[1].made == ("sun light by object.light_add(type='SUN')",)
     border = symbols["bpy.types.FluidDomainSettings.use_collision_border_back"]
     assert [(new.value, new.when) for new in border.new_values] == [(True, "domain_type='LIQUID'")]
+    codec = symbols["bpy.types.FFmpegSettings.codec"].new_values
+    assert [(new.value, new.when) for new in codec] == [
+        ("NONE", ""),
+        ("H264", "ImageFormatSettings.media_type='VIDEO'"),
+    ]
 
 
 @pytest.mark.parametrize(

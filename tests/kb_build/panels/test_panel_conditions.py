@@ -250,7 +250,7 @@ def panel(body: str, before: str = "", within: str = "") -> str:
          """, ["greyed unless Camera.show_limits on"]),
         # What only another class's setting hides may be shown elsewhere, by what is not read.
         ("""
-         if context.camera.show_limits:
+         if context.scene.use_gravity:
              layout.prop(dof, "focus_distance")
          """, []),
     ],
@@ -285,6 +285,12 @@ def test_a_place_in_a_panel(symbols: BaseSymbols, body: str, expected: list[str]
         ("if camera.type == 'PERSP':\n    layout.prop(camera, 'lens')\n"
          "elif camera.type != 'PERSP':\n    layout.prop(camera, 'lens')", "Camera.lens", []),
         ("layout.active = camera.name != 'X'\nlayout.prop(camera, 'lens')", "Camera.lens", []),
+        # Whose part it is may decide whether it is shown at all; a mode that makes the part is told with the part.
+        ("paint = context.object.modifiers['Dynamic Paint']\nif paint.ui_type == 'BRUSH':\n"
+         "    layout.prop(paint.brush_settings, 'paint_color')", "DynamicPaintBrushSettings.paint_color",
+         ["hidden unless DynamicPaintModifier.ui_type 'BRUSH'"]),
+        ("fluid = context.object.modifiers['Fluid']\nif fluid.fluid_type == 'DOMAIN':\n"
+         "    layout.prop(fluid.domain_settings, 'alpha')", "FluidDomainSettings.alpha", []),
         # The class follows from the type: that is no condition.
         ("light = context.light\nif light.type == 'SUN':\n    layout.prop(light, 'angle')", "SunLight.angle", []),
         # What leads to an object is no condition on it; what Blender itself sets is none to turn on.

@@ -227,6 +227,13 @@ def test_the_sockets_of_a_zone_are_those_of_a_pair(kb: KnowledgeBase) -> None:
     assert "once it is paired" not in kb.query("GeometryNodeMeshCube").text
 
 
+@pytest.mark.parametrize("query", ["ShaderNodeMath.inputs", "bpy.types.ShaderNodeMath.inputs"])
+def test_the_sockets_of_a_class_come_before_what_all_nodes_say_of_them(kb: KnowledgeBase, query: str) -> None:
+    text = kb.query(query).text
+    assert text.startswith("**Inputs of `bpy.types.ShaderNodeMath`**\n- `")
+    assert text.index("Value_001") < text.index("## `bpy.types.Node.inputs`")
+
+
 def test_a_page_shows_where_it_stands_and_every_section(kb: KnowledgeBase) -> None:
     page = kb.page("physics/cloth/settings/collisions")
     assert page is not None
