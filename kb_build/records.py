@@ -12,7 +12,7 @@ from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast, get_args
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
 
 Scalar = str | int | float | bool | None
 Default = Scalar | list[Any]
@@ -38,6 +38,11 @@ THEN = " then "  # between calls that fill it one after the other
 # How the names begin of what is there when Blender starts, among those of new things.
 STARTUP = "start-up "
 FACTORY = "factory "
+
+
+def last_name(path: str) -> str:
+    """What follows the last dot of a path."""
+    return path.rpartition(".")[2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -171,7 +176,7 @@ class Symbol:
         """The last part of the path: what a programmer writes after the dot (or between the brackets)."""
         if self.kind == "socket":
             return self.path[self.path.index('["') + 2 : -2]
-        return self.path.rpartition(".")[2]
+        return last_name(self.path)
 
     @property
     def socket_names(self) -> tuple[str, ...]:
@@ -326,14 +331,16 @@ _SYMBOL_FIELDS: dict[str, Callable[[Any], Any]] = {
 }
 
 
-def symbol_from_json(data: dict[str, Any]) -> Symbol:
+def symbol_fields(data: Mapping[str, Any]) -> dict[str, Any]:
+    """A symbol's fields as JSON has them, as those of a Symbol; unknown ones as they are."""
+    return {
+        name: _SYMBOL_FIELDS[name](value) if name in _SYMBOL_FIELDS else value for name, value in data.items()
+    }
+
+
+def symbol_from_json(data: Mapping[str, Any]) -> Symbol:
     """The inverse of :func:`to_json` for symbols. Raises TypeError on unknown fields."""
-    return Symbol(
-        **{
-            name: _SYMBOL_FIELDS[name](value) if name in _SYMBOL_FIELDS else value
-            for name, value in data.items()
-        }
-    )
+    return Symbol(**symbol_fields(data))
 
 
 def _section(row: dict[str, Any]) -> Section:

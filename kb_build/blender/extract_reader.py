@@ -24,12 +24,15 @@ from kb_build.records import (
     Parameter,
     Section,
     Symbol,
-    symbol_from_json,
+    last_name,
+    symbol_fields,
 )
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
     from pathlib import Path
+
+    from kb_build.blender.docstrings import Docstring
 
 _TYPES = "bpy.types."
 # Defaults that are not told, by type: empty ones, and those that are no value to give, as of arrays of any length.
@@ -273,28 +276,29 @@ def _with_sets(call: str, parameters: Iterable[Parameter]) -> str:
     return call
 
 
+def read_docstring(row: Mapping[str, Any]) -> Docstring:
+    """What the docstring of a line of the extract says; it is kept."""
+    return parse_docstring(row.get("docstring", ""), _BOUND.sub("(", row.get("signature", ""), count=1))
+
+
 def _symbol(row: dict[str, Any]) -> Symbol:
     """One line of the extract, its docstring read and its call spelled out."""
-    docstring = row.pop("docstring", "")
-    written = _BOUND.sub("(", row.get("signature", ""), count=1)
-    symbol = symbol_from_json(row)
-    if docstring or written:
-        parsed = parse_docstring(docstring, written)
-        parameters = _completed(parsed.parameters, symbol.parameters)
-        call = _with_sets(parsed.signature, symbol.parameters)
-        symbol = replace(
-            symbol,
-            description=parsed.description,
-            type=parsed.type or symbol.type,
-            signature=symbol.name + call[call.index("(") :] if "(" in call else "",
-            parameters=parameters,
-            returns=parsed.returns,
-        )
-    elif symbol.kind == "function":
-        symbol = replace(symbol, signature=call_text(symbol.name, symbol.parameters))
-    elif symbol.kind == "operator":
-        symbol = replace(symbol, signature=call_text(symbol.path, symbol.parameters))
-    return symbol
+    parsed = read_docstring(row) if row.get("docstring") or row.get("signature") else None
+    fields = symbol_fields(row)
+    fields.pop("docstring", None)
+    path, kind, parameters = row["path"], row["kind"], fields.get("parameters", ())
+    if parsed is not None:
+        call = _with_sets(parsed.signature, parameters)
+        fields["description"] = parsed.description
+        fields["type"] = parsed.type or row.get("type", "")
+        fields["signature"] = last_name(path) + call[call.index("(") :] if "(" in call else ""
+        fields["parameters"] = _completed(parsed.parameters, parameters)
+        fields["returns"] = parsed.returns
+    elif kind == "function":
+        fields["signature"] = call_text(last_name(path), parameters)
+    elif kind == "operator":
+        fields["signature"] = call_text(path, parameters)
+    return Symbol(**fields)
 
 
 def _with_shared_values(symbol: Symbol, symbols: Mapping[str, Symbol]) -> Symbol:
@@ -357,16 +361,15 @@ def manual_links(symbols: Iterable[Symbol], table: list[tuple[str, str]]) -> Ite
             continue
         path = symbol.path.lower()
         prefixes = known.of(path)
-        ranks = [starred[prefix] for prefix in prefixes if prefix in starred]
-        ranks += [
-            rank
-            for prefix in prefixes
-            if prefix in others
-            for rank in others[prefix]
-            if matcher(rank).match(path)
-        ]
-        if ranks:
-            page = table[min(ranks)][1]
+        first = min((starred[prefix] for prefix in prefixes if prefix in starred), default=len(table))
+        for prefix in prefixes:
+            for rank in others.get(prefix, ()):
+                if rank >= first:
+                    break
+                if matcher(rank).match(path):
+                    first = rank
+        if first < len(table):
+            page = table[first][1]
             yield Link(symbol.path, page.removesuffix(".html").replace(".html#", "#"), "manual")
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
 
+from kb_build.blender.docstrings_ahead import docstrings_ahead
 from kb_build.digests import Digests
 from kb_build.errors import ExtractError
 from kb_build.fingerprint import extractor_digest, runtime_digest
@@ -81,7 +82,8 @@ def _run(runtime: Runtime, part: Path, log: Path) -> None:
         while True:
             given.write_text(json.dumps({"former": former, "skipped": skipped}), encoding="utf-8")
             try:
-                run_program(runtime, _EXTRACTOR, [str(given), str(part)], timeout=_SECONDS, log=log)
+                with docstrings_ahead(part):
+                    run_program(runtime, _EXTRACTOR, [str(given), str(part)], timeout=_SECONDS, log=log)
                 break
             except ProgramFailed as error:
                 crashed = _maker_at_work(part)

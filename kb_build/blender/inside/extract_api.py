@@ -5,6 +5,7 @@ The first line names the Blender, the last one counts the lines before it: a fil
 A step that fails is a ``fault`` line with its traceback; the other steps still run.
 """
 
+import gc
 import json
 import os
 import sys
@@ -105,6 +106,7 @@ def main(arguments):
     crashed this Blender before.
     """
     given, output = arguments
+    gc.disable()  # what is read stays until the end, which is near
     write = Writer(output)
     with open(given, encoding="utf-8") as file:
         observer = Observer()

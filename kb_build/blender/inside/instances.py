@@ -6,6 +6,7 @@ empty, where the items depend on the instance. So whatever is made (see ``new_th
 that belong to it, and read again in each of its modes.
 """
 
+import functools
 import re
 
 import bpy
@@ -60,7 +61,13 @@ KINDS = frozenset({
 
 def refused_items(refusal):
     """The items that Blender names where it refuses a value."""
-    return re.findall(r"'([^']*)'", str(refusal).partition("not found in")[2])
+    return quoted(str(refusal).partition("not found in")[2])
+
+
+@functools.cache
+def quoted(text):
+    """What stands in quotes in a text: Blender often names the same items."""
+    return tuple(re.findall(r"'([^']*)'", text))
 
 
 def refused_value_items(owner, name, flag=False):
@@ -71,7 +78,7 @@ def refused_value_items(owner, name, flag=False):
         return refused_items(refusal)
     except (AttributeError, RuntimeError):
         pass
-    return []
+    return ()
 
 
 def declaring_class(rna, name):

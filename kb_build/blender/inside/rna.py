@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """RNA classes with their own properties and functions, and the methods that Python or C adds to them."""
 
+import functools
 import types
 
 import bpy
@@ -148,6 +149,7 @@ def group_of(rna):
     return "operator" if "_OT_" in rna.identifier else "data"
 
 
+@functools.cache
 def own(rna, kind):
     """The properties or functions that a class adds to its base, those that replace one of it included."""
     inherited = {item.as_pointer() for item in getattr(rna.base, kind)} if rna.base is not None else set()

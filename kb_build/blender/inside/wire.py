@@ -43,6 +43,7 @@ class Writer:
 
     def __init__(self, path):
         self._file = open(path, "w", encoding="utf-8", errors="replace")
+        self._encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
         self.count = 0
 
     def __call__(self, record, **values):
@@ -50,7 +51,7 @@ class Writer:
         row.update(
             (key, value) for key, value in values.items() if value is not None and value not in ("", [], ())
         )
-        self._file.write(json.dumps(row, ensure_ascii=False, separators=(",", ":")) + "\n")
+        self._file.write(self._encode(row) + "\n")
         self.count += 1
 
     def flush(self):
