@@ -82,6 +82,11 @@ class KnownNames:
             return self._removed(for_reading(removed) if reading else removed)
         return self._never(owner, name, self.reader.member_names(owner))
 
+    def path(self, path: str) -> Lacking | None:
+        """What another Blender has under exactly this path; None for what none has."""
+        removed = self._lookup.of_path(path)
+        return self._removed(removed) if removed else None
+
     def parameter(self, function: str, name: str, names: Iterable[str]) -> Lacking:
         """A keyword that a function or operator does not take; ``names`` are those that it takes."""
         if removed := self._lookup.of_part(function, f"({name})"):
@@ -120,7 +125,8 @@ class KnownNames:
         similar = [found for found, _ in nearest(name, names, _MOST_NAMED)]
         misspelt = [found for found in similar if is_misspelling(name, found, self._vocabulary)]
         instead = tuple(f"{owner}.{found}" for found in similar)
-        message = f"`{owner}` has no `{name}` in Blender {self.version}{self._span()}."
+        span = "" if self._lookup.paths_below(owner, name) else self._span()
+        message = f"`{owner}` has no `{name}` in Blender {self.version}{span}."
         return Lacking(
             f"{owner}.{name}", message + _closest(similar), instead,
             f"{owner}.{misspelt[0]}" if len(misspelt) == 1 else "",
