@@ -56,7 +56,10 @@ class KnownNames:
         return self._lookup.of_path(path) is not None
 
     def had(self, owner: str, name: str) -> bool:
-        """Whether a class or module, or one of its bases, has a member in another Blender that it lacks in this one."""
+        """Whether a class or module, or one of its bases, has a member in another Blender that it lacks in this one.
+
+        Modules themselves have no owner.
+        """
         return self._member(owner, name) is not None
 
     def successor(self, owner: str, name: str) -> str:
@@ -67,7 +70,7 @@ class KnownNames:
     def _member(self, owner: str, name: str) -> RemovedSymbol | None:
         key = owner, name
         if key not in self._members:
-            self._members[key] = self._lookup.of_member(owner, name)
+            self._members[key] = self._lookup.of_member(owner, name) if owner else self._lookup.of_path(name)
         return self._members[key]
 
     def is_nowhere(self, name: str) -> bool:
@@ -76,7 +79,7 @@ class KnownNames:
 
     def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
         """A member that a class or module lacks; ``reading`` unless it is assigned to."""
-        removed = self._lookup.of_member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
+        removed = self._member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
         removed = removed or self._lookup.below(owner, name)
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
