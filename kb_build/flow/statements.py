@@ -48,8 +48,15 @@ if TYPE_CHECKING:
 _MOST_CLASSES = 1_000  # of one script; which ones later classes are mixed into is not asked
 _FORGIVING = frozenset(
     {
-        "AttributeError", "Exception", "BaseException", "ImportError", "KeyError", "ModuleNotFoundError", "TypeError",
-        "RuntimeError", "ValueError",
+        "AttributeError",
+        "Exception",
+        "BaseException",
+        "ImportError",
+        "KeyError",
+        "ModuleNotFoundError",
+        "TypeError",
+        "RuntimeError",
+        "ValueError",
     }
 )
 _API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",

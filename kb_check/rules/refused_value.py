@@ -4,9 +4,11 @@ Some values are taken only while another setting has the right one, or only by t
 
 ```python
 settings = scene.render.image_settings
-settings.file_format = 'FFMPEG'  # reported since 5.0: settings.media_type = 'VIDEO' comes first
-tree = bpy.data.node_groups.new("Tree", 'CompositorNodeTree')
-tree.interface.new_socket("Mesh", socket_type='NodeSocketGeometry')  # reported: geometry node trees have it only
+settings.file_format = "FFMPEG"  # reported since 5.0: settings.media_type = 'VIDEO' comes first
+tree = bpy.data.node_groups.new("Tree", "CompositorNodeTree")
+tree.interface.new_socket(
+    "Mesh", socket_type="NodeSocketGeometry"
+)  # reported: geometry node trees have it only
 ```
 
 What a script sets before decides. Where it names the other setting nowhere, what a new scene has does, which a file
@@ -19,13 +21,14 @@ from __future__ import annotations
 
 import ast
 import re
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.types import Instance
 from kb_build.symbol_lines import usual_default
 from kb_check.calls import calls
 from kb_check.findings import Finding
-from kb_check.made_here import callee_path, called_operators, knows_all, named_words
+from kb_check.made_here import called_operators, callee_path, knows_all, named_words
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 
@@ -39,7 +42,9 @@ if TYPE_CHECKING:
 _WITH = re.compile(r"(only|not) with (\w+)=('[^'|]*'(?:\|'[^'|]*')*)")
 _BY = re.compile(r"(only|not) by ([^…]+)")
 _SCENE = "bpy.types.Scene"
-_OPENING = frozenset({"bpy.ops.wm.open_mainfile", "bpy.ops.wm.read_homefile", "bpy.ops.wm.read_factory_settings"})
+_OPENING = frozenset(
+    {"bpy.ops.wm.open_mainfile", "bpy.ops.wm.read_homefile", "bpy.ops.wm.read_factory_settings"}
+)
 
 
 class _Setting(NamedTuple):
@@ -56,7 +61,11 @@ class _Setting(NamedTuple):
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.resolutions("store"):
         node, statement = row.node, row.statement
-        if not _is_certain(row) or not isinstance(node, ast.Attribute) or not isinstance(statement, ast.Assign):
+        if (
+            not _is_certain(row)
+            or not isinstance(node, ast.Attribute)
+            or not isinstance(statement, ast.Assign)
+        ):
             continue
         symbol = script.api.symbols.symbol(row.symbols[0])
         item = _item(symbol.enum_items, statement.value) if symbol else None
@@ -64,15 +73,15 @@ def _check(script: Script) -> Iterator[Finding]:
             continue
         if setting := _setting(script, symbol, item):
             yield from _refused_by_setting(script, statement, node, setting, item)
-        elif _is_of_other_kind(script, node.value, item):
-            yield _finding(script, statement.value, item, symbol.path)
+        elif kind := _other_kind(script, node.value, item):
+            yield _finding(script, statement.value, item, symbol.path, f"this is a {kind}")
     for call in calls(script):
         function = call.node.func
         if isinstance(function, ast.Attribute) and call.callee.symbol.kind == "function":
             for parameter, given in call.arguments():
                 item = _item(parameter.enum_items, given)
-                if item and _is_of_other_kind(script, function.value, item):
-                    yield _finding(script, given, item, call.callee.symbol.path)
+                if item and (kind := _other_kind(script, function.value, item)):
+                    yield _finding(script, given, item, call.callee.symbol.path, f"this is a {kind}")
 
 
 def _is_certain(row: Resolution) -> bool:
@@ -85,9 +94,10 @@ def _item(items: Iterable[EnumItem], value: ast.expr) -> EnumItem | None:
     return next((item for item in items if item.where and item.identifier == text), None)
 
 
-def _finding(script: Script, node: ast.expr, item: EnumItem, path: str, told: str = "") -> Finding:
-    message = f"{item.identifier!r} is taken {item.where}{told or ', and this is another'}."
-    return Finding(RULE.id, "warning" if "new scene" in told else "error", script.span(node), message, path)
+def _finding(script: Script, node: ast.expr, item: EnumItem, path: str, why: str) -> Finding:
+    where = item.where.replace("only by", "only by a").replace(", ", " or a ")
+    taken = f"is not taken {where[4:]}" if where.startswith("not ") else f"is taken {where}"
+    return Finding(RULE.id, "error", script.span(node), f"{item.identifier!r} {taken}, and {why}.", path)
 
 
 # Other settings.
@@ -103,24 +113,22 @@ def _setting(script: Script, symbol: Symbol, item: EnumItem) -> _Setting | None:
 
 
 def _refused_by_setting(
-    script: Script, statement: ast.stmt, target: ast.Attribute, setting: _Setting, item: EnumItem
+    script: Script, statement: ast.Assign, target: ast.Attribute, setting: _Setting, item: EnumItem
 ) -> Iterator[Finding]:
-    assert isinstance(statement, ast.Assign)
     name = setting.symbol.name
     if before := _set_before(script, statement, target.value, name):
         if isinstance(before, ast.Constant) and setting.refuses(before.value):
             yield _finding(
-                script, statement.value, item, setting.symbol.path, f", and `{name}` is {before.value!r} here"
+                script, statement.value, item, setting.symbol.path, f"`{name}` is {before.value!r} here"
             )
     elif (
         name not in named_words(script)
         and all(map(setting.refuses, _values_of_new(setting.symbol)))
         and _works_on_a_scene(script, target.value)
     ):
-        yield _finding(
-            script, statement.value, item, setting.symbol.path,
-            f"; in a new scene `{name}` is {usual_default(setting.symbol)!r}, and this script does not set it",
-        )  # fmt: skip
+        usual = usual_default(setting.symbol)
+        why = f"in a new scene `{name}` is {usual!r}: this script does not set it"
+        yield replace(_finding(script, statement.value, item, setting.symbol.path, why), severity="warning")
 
 
 def _values_of_new(symbol: Symbol) -> list[object]:
@@ -128,7 +136,7 @@ def _values_of_new(symbol: Symbol) -> list[object]:
 
 
 def _set_before(script: Script, statement: ast.stmt, owner: ast.expr, name: str) -> ast.expr | None:
-    """What is assigned to a setting right before a statement, in the same body, with nothing between that may matter."""
+    """What is assigned to a setting before a statement, in the same body, with nothing between that may matter."""
     body, place = _places(script).get(statement, ([], 0))
     text = ast.unparse(owner)
     for earlier in reversed(body[:place]):
@@ -169,13 +177,19 @@ def _places(script: Script) -> dict[ast.stmt, tuple[list[ast.stmt], int]]:
 
 def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
     """Whether a script that is run by itself, with nothing hidden, sets something of a scene."""
-    is_add_on = any(isinstance(part, ast.FunctionDef) and part.name == "register" for part in script.tree.body)
+    is_add_on = any(
+        isinstance(part, ast.FunctionDef) and part.name == "register" for part in script.tree.body
+    )
     if is_add_on or not knows_all(script) or called_operators(script) & _OPENING:
         return False
     while isinstance(node, ast.Attribute):
         row = script.analysis.resolutions.get(node)
         symbol = script.api.symbols.symbol(row.symbols[0]) if row and len(row.symbols) == 1 else None
-        if symbol is None or symbol.type != "pointer" or script.api.descends(f"bpy.types.{symbol.target}", "bpy.types.ID"):
+        if (
+            symbol is None
+            or symbol.type != "pointer"
+            or script.api.descends(f"bpy.types.{symbol.target}", "bpy.types.ID")
+        ):
             break
         node = node.value
     return _class_of(script, node) == _SCENE
@@ -184,19 +198,21 @@ def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
 # Kinds of things.
 
 
-def _is_of_other_kind(script: Script, node: ast.expr, item: EnumItem) -> bool:
-    """Whether something, or what it belongs to, is of a kind that does not take an item."""
+def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
+    """The kind of something, or of what it belongs to, that does not take an item; empty where none is known."""
     found = _BY.fullmatch(item.where)
     kinds = set(found[2].split(", ")) if found else set[str]()
     while kinds:
         cls = _class_of(script, node)
         symbol = script.api.symbols.symbol(cls) if cls else None
         if symbol and symbol.base and kinds <= _labels_below(script, symbol.base):
-            return (symbol.label.lower() in kinds) != (found is not None and found[1] == "only")
+            label = symbol.label.lower()
+            is_refused = (label in kinds) != (found is not None and found[1] == "only")
+            return label if is_refused else ""
         if not isinstance(node, ast.Attribute):
             break
         node = node.value
-    return False
+    return ""
 
 
 def _labels_below(script: Script, base: str) -> set[str]:
