@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 _WITH = re.compile(r"(only|not) with (\w+)=('[^'|]*'(?:\|'[^'|]*')*)")
 _BY = re.compile(r"(only|not) by ([^…]+)")
 _SCENE = "bpy.types.Scene"
+_ACTIVE = frozenset({"bpy.types.Context.object", "bpy.types.Context.active_object"})
 _OPENING = frozenset(
     {"bpy.ops.wm.open_mainfile", "bpy.ops.wm.read_homefile", "bpy.ops.wm.read_factory_settings"}
 )
@@ -105,18 +106,41 @@ def _finding(script: Script, node: ast.expr, item: EnumItem, path: str, why: str
 
 def _setting(script: Script, symbol: Symbol, item: EnumItem) -> _Setting | None:
     """The setting of the same thing that decides whether it takes an item."""
-    found = _WITH.fullmatch(item.where)
-    other = script.api.symbols.symbol(f"{symbol.owner}.{found[2]}") if found else None
+    if found := _WITH.fullmatch(item.where):
+        other = script.api.symbols.symbol(f"{symbol.owner}.{found[2]}")
+        return (
+            _Setting(other, frozenset(found[3].strip("'").split("'|'")), found[1] == "only")
+            if other
+            else None
+        )
+    found = _BY.fullmatch(item.where)
+    other = script.api.symbols.symbol(f"{symbol.owner}.type")
     if found is None or other is None:
         return None
-    return _Setting(other, frozenset(found[3].strip("'").split("'|'")), found[1] == "only")
+    owner = script.api.symbols.symbol(symbol.owner)
+    what = owner.label.lower().split() if owner else []
+    values = [_value_of_kind(other, kind, what) for kind in found[2].split(", ")]
+    return _Setting(other, frozenset(values), found[1] == "only") if all(values) else None
+
+
+def _value_of_kind(kinds: Symbol, label: str, what: list[str]) -> str:
+    """The value that makes what is called so: ``VORTEX`` of a vortex force field; empty for none.
+
+    ``what`` are the words that may end the label.
+    """
+    if label.rpartition(" ")[2] not in what:
+        return ""
+    for item in kinds.enum_items:
+        if label.startswith((f"{item.name.lower()} ", f"{item.identifier.lower()} ")):
+            return item.identifier
+    return ""
 
 
 def _refused_by_setting(
     script: Script, statement: ast.Assign, target: ast.Attribute, setting: _Setting, item: EnumItem
 ) -> Iterator[Finding]:
     name = setting.symbol.name
-    if before := _set_before(script, statement, target.value, name):
+    if before := _set_before(script, statement, target.value, setting.symbol):
         if isinstance(before, ast.Constant) and setting.refuses(before.value):
             yield _finding(
                 script, statement.value, item, setting.symbol.path, f"`{name}` is {before.value!r} here"
@@ -135,18 +159,37 @@ def _values_of_new(symbol: Symbol) -> list[object]:
     return [usual_default(symbol), *(new.value for new in symbol.new_values)]
 
 
-def _set_before(script: Script, statement: ast.stmt, owner: ast.expr, name: str) -> ast.expr | None:
+def _set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Symbol) -> ast.expr | None:
     """What is assigned to a setting before a statement, in the same body, with nothing between that may matter."""
+    name = setting.name
     body, place = _places(script).get(statement, ([], 0))
     text = ast.unparse(owner)
     for earlier in reversed(body[:place]):
         match earlier:
             case ast.Assign(targets=[ast.Attribute(attr=set_name) as set_here]) if set_name == name:
                 return earlier.value if ast.unparse(set_here.value) == text else None
+            case ast.Expr(value=ast.Call() as call) if callee_path(script, call).startswith("bpy.ops."):
+                return _given_to_maker(script, call, owner, setting)
             case ast.Assign() | ast.AugAssign() | ast.Expr() if _leaves_alone(script, earlier, text, name):
                 pass
             case _:
                 return None
+    return None
+
+
+def _given_to_maker(script: Script, call: ast.Call, owner: ast.expr, setting: Symbol) -> ast.expr | None:
+    """What an operator that makes the active object is given for a setting of what belongs to that."""
+    row = script.analysis.resolutions.get(owner.value) if isinstance(owner, ast.Attribute) else None
+    if row is None or not row.symbols or not _ACTIVE.issuperset(row.symbols):
+        return None
+    items = {item.identifier for item in setting.enum_items}
+    for site in calls(script):
+        if site.node is call and site.callee.symbol.name.endswith("_add"):
+            for parameter, given in site.arguments():
+                own = {item.identifier for item in parameter.enum_items}
+                # A few values are called otherwise there.
+                if parameter.name == setting.name and len(own & items) > len(own) / 2:
+                    return given
     return None
 
 

@@ -63,6 +63,9 @@ WRONG = {
         _PARTICLES + "hair.render_type = 'HALO'",
         _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketShader')",
         _TREE + "tree.color_tag = 'SHADER'",
+        "bpy.ops.object.effector_add(type='VORTEX')\nbpy.context.object.field.shape = 'LINE'",
+        "bpy.ops.object.effector_add(type='WIND')\nfield = bpy.context.object.field\nfield.type = 'VORTEX'\n"
+        "field.shape = 'LINE'",
         "tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\n"
         "tree.interface.new_socket('x', socket_type='NodeSocketGeometry')",
         "curve = bpy.data.curves.new('x', 'CURVE')\ncurve.dimensions = '3D'\ncurve.fill_mode = 'BOTH'",
@@ -85,6 +88,10 @@ RIGHT = [
     "images.file_format = 'PNG'",
     _IMAGES + "def still():\n    images.media_type = 'IMAGE'\nimages.media_type = 'VIDEO'\nstill()\n"
     "images.file_format = 'PNG'",
+    "bpy.ops.object.effector_add(type='WIND')\nbpy.context.object.field.shape = 'LINE'",
+    _CUBE + "bpy.ops.object.forcefield_toggle()\nfield = bpy.context.object.field\nfield.type = 'WIND'\n"
+    "field.shape = 'POINTS'",
+    "bpy.ops.object.effector_add(type='GUIDE')\nbpy.context.object.field.shape = 'SURFACE'",
     _PARTICLES + "hair.type = 'EMITTER'\nhair.render_type = 'HALO'",
     _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketGeometry')",
     "bpy.context.scene.view_settings.look = 'AgX - High Contrast'",
