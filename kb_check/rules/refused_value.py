@@ -115,7 +115,7 @@ def _setting(script: Script, symbol: Symbol, item: EnumItem) -> _Setting | None:
         )
     found = _BY.fullmatch(item.where)
     other = script.api.symbols.symbol(f"{symbol.owner}.type")
-    if found is None or other is None:
+    if found is None or other is None or "readonly" in other.flags:
         return None
     owner = script.api.symbols.symbol(symbol.owner)
     what = owner.label.lower().split() if owner else []
