@@ -56,7 +56,10 @@ class KnownNames:
         return self._lookup.of_path(path) is not None
 
     def had(self, owner: str, name: str) -> bool:
-        """Whether a class or module, or one of its bases, has a member in another Blender that it lacks in this one."""
+        """Whether a class or module, or one of its bases, has a member in another Blender that it lacks in this one.
+
+        Modules themselves have no owner.
+        """
         return self._member(owner, name) is not None
 
     def successor(self, owner: str, name: str) -> str:
@@ -67,7 +70,7 @@ class KnownNames:
     def _member(self, owner: str, name: str) -> RemovedSymbol | None:
         key = owner, name
         if key not in self._members:
-            self._members[key] = self._lookup.of_member(owner, name)
+            self._members[key] = self._lookup.of_member(owner, name) if owner else self._lookup.of_path(name)
         return self._members[key]
 
     def is_nowhere(self, name: str) -> bool:
@@ -76,11 +79,16 @@ class KnownNames:
 
     def member(self, owner: str, name: str, *, reading: bool = True) -> Lacking:
         """A member that a class or module lacks; ``reading`` unless it is assigned to."""
-        removed = self._lookup.of_member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
+        removed = self._member(owner, name) or self._lookup.of_path(f"{owner}.{name}")
         removed = removed or self._lookup.below(owner, name)
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
         return self._never(owner, name, self.reader.member_names(owner))
+
+    def path(self, path: str) -> Lacking | None:
+        """What another Blender has under exactly this path; None for what none has."""
+        removed = self._lookup.of_path(path)
+        return self._removed(removed) if removed else None
 
     def parameter(self, function: str, name: str, names: Iterable[str]) -> Lacking:
         """A keyword that a function or operator does not take; ``names`` are those that it takes."""
@@ -120,7 +128,8 @@ class KnownNames:
         similar = [found for found, _ in nearest(name, names, _MOST_NAMED)]
         misspelt = [found for found in similar if is_misspelling(name, found, self._vocabulary)]
         instead = tuple(f"{owner}.{found}" for found in similar)
-        message = f"`{owner}` has no `{name}` in Blender {self.version}{self._span()}."
+        span = "" if self._lookup.paths_below(owner, name) else self._span()
+        message = f"`{owner}` has no `{name}` in Blender {self.version}{span}."
         return Lacking(
             f"{owner}.{name}", message + _closest(similar), instead,
             f"{owner}.{misspelt[0]}" if len(misspelt) == 1 else "",

@@ -204,7 +204,7 @@ class Api:
         return found
 
     def had(self, cls: str, name: str) -> bool:
-        """Whether a class had, or gets, a member in another Blender that it lacks in this one."""
+        """Whether a class had, or gets, a member in another Blender that it lacks in this one; "" has modules."""
         return self._former is not None and self._former.had(cls, name)
 
     def successor_type(self, owner: str, name: str) -> Type:

@@ -121,7 +121,8 @@ class Members(Core):
             return
         if (
             not _is_pythons(name)
-            and not self.is_open(kind.cls)
+            # What scripts may add to is not told of, but for what it had in another Blender.
+            and (not self.is_open(kind.cls) or self.api.had(kind.cls, name))
             and not self.is_there_at_times(f"{kind.cls}.{name}")
         ):
             found.missing.append(kind.cls)

@@ -47,7 +47,17 @@ if TYPE_CHECKING:
 
 _MOST_CLASSES = 1_000  # of one script; which ones later classes are mixed into is not asked
 _FORGIVING = frozenset(
-    {"AttributeError", "Exception", "BaseException", "KeyError", "TypeError", "RuntimeError", "ValueError"}
+    {
+        "AttributeError",
+        "Exception",
+        "BaseException",
+        "ImportError",
+        "KeyError",
+        "ModuleNotFoundError",
+        "TypeError",
+        "RuntimeError",
+        "ValueError",
+    }
 )
 _API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",
                           "bl_math", "idprop", "imbuf"})  # fmt: skip
@@ -406,11 +416,18 @@ class Statements(Calls):
                 self.resolve(alias, "name", alias.name, (alias.name,))
             if not known:
                 whole = self.local_module(alias.name)
+                self._tell_lost(alias, alias.name)
             if alias.asname:
                 self.scope.bind(alias.asname, whole)
             else:
                 self.scope.bind(top, self._module(top) if known else self.local_module(top))
         return True
+
+    def _tell_lost(self, node: ast.AST, module: str) -> None:
+        """Records an imported module that other Blenders bring and this one does not, unless the files have it."""
+        top = module.partition(".")[0]
+        if self.api.had("", top) and self.local_module(top) is UNKNOWN:
+            self.resolve(node, "name", top, missing=("",))
 
     def _module(self, path: str) -> Type:
         symbol = self.api.symbols.symbol(path)
@@ -424,6 +441,8 @@ class Statements(Calls):
         module = node.module or ""
         known = not node.level and module.partition(".")[0] in _API_MODULES
         owner = self._module(module) if known else self.local_module(self.file.imported(node.level, module))
+        if not known and not node.level:
+            self._tell_lost(node, module)
         for alias in node.names:
             name = alias.asname or alias.name
             if alias.name == "*":

@@ -2,12 +2,17 @@
 """Finds the operators that run only in an area: run by a Blender with a file for its answer as the last argument.
 
 Every operator is asked whether it can run (``poll``) with an object of every type in every mode, once without an area,
-as in a Blender without a window, and once in an area of every type. Those that say yes only in areas need one. Each
-line of the answer is ``VIEW_3D IMAGE_EDITOR: mesh.loopcut paint.sample_color``; ``any`` stands for most types.
+as in a Blender without a window, and once in an area of every type. Those that say yes only in areas need one, or what
+areas put into the context: without an area they are asked once more with each of those things. Some say yes to these
+and end Blender all the same, so each is then called in a process of its own.
+
+Each line of the answer is ``VIEW_3D IMAGE_EDITOR: mesh.loopcut paint.sample_color``; ``any`` stands for most types,
+``id=`` for what can be given instead of an area.
 """
 
 from __future__ import annotations
 
+import os
 import sys
 from collections import defaultdict
 from contextlib import suppress
@@ -118,6 +123,31 @@ def show(area, editor):
     return True
 
 
+def members():
+    """Members of the context that areas give, with something for each."""
+    data = bpy.data
+    whole = data.objects["mesh"]
+    return {
+        "id": whole, "selected_ids": [whole], "edit_image": data.images["image"], "edit_text": data.texts["text"],
+        "edit_mask": data.masks["mask"], "material": data.materials["material"], "mesh": whole.data,
+        "material_slot": whole.material_slots[0], "modifier": whole.modifiers[0], "light": data.lights["light"],
+        "camera": data.cameras["cameras"], "armature": data.armatures["armatures"],
+        "world": bpy.context.scene.world, "node": data.materials["material"].node_tree.nodes[0],
+        "particle_system": data.objects["particles"].particle_systems[0],
+    }  # fmt: skip
+
+
+def works(operator, member, thing):
+    """Whether an operator does its work, and Blender goes on, with one member of the context and no area."""
+    process = os.fork()
+    if not process:
+        done = set()
+        with suppress(BaseException), bpy.context.temp_override(area=None, region=None, **{member: thing}):
+            done = operator()
+        os._exit("FINISHED" not in done)
+    return os.waitpid(process, 0)[1] == 0
+
+
 def states(objects):
     """Goes through every object in every mode; yields in each."""
     layer = bpy.context.view_layer
@@ -145,9 +175,13 @@ def main(path):
     known = operators()
     window = bpy.context.window_manager.windows[0]
     area = max(window.screen.areas, key=lambda one: one.width * one.height)
-    without, within = set(), defaultdict(set)
+    without, within, given = set(), defaultdict(set), {}
     for _ in states(objects):
         without |= polled(known)
+        for member, thing in members().items():
+            with bpy.context.temp_override(area=None, region=None, **{member: thing}):
+                for name in polled(known):
+                    given.setdefault(name, member)
         for editor in EDITORS:
             if not show(area, editor):
                 continue
@@ -158,7 +192,10 @@ def main(path):
     lines = defaultdict(list)
     for name, areas in sorted(within.items()):
         if name not in without:
-            lines["any" if len(areas) > MOST_AREAS else " ".join(sorted(areas))].append(name)
+            where = "any" if len(areas) > MOST_AREAS else " ".join(sorted(areas))
+            member = given.get(name, "")
+            instead = f" {member}=" if member and works(known[name], member, members()[member]) else ""
+            lines[where + instead].append(name)
     with open(path, "w", encoding="utf-8") as file:
         file.writelines(f"{areas}: {' '.join(names)}\n" for areas, names in sorted(lines.items()))
 

@@ -45,7 +45,7 @@ def absent_paths(row: Resolution) -> tuple[str, ...]:
     if row.kind == "button" and row.value.startswith("bpy.ops."):
         return (row.value,)
     form = {"keyword": "{}({})", "value": "{}:{}", "item": ""}.get(row.kind, "{}.{}")
-    return tuple(form.format(owner, row.value) for owner in row.missing) if form else ()
+    return tuple(form.format(owner, row.value).lstrip(".") for owner in row.missing) if form else ()
 
 
 def _split(path: str) -> tuple[str, str]:

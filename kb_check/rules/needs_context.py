@@ -41,7 +41,10 @@ _BACKGROUND = "bpy.app.background"
 
 @cache
 def operator_areas() -> Table[str, str]:
-    """Operator (``mesh.loopcut``) → the types of areas in which it runs, or ``any``."""
+    """Operator (``mesh.loopcut``) → the types of areas in which it runs, or ``any``.
+
+    A last ``id=`` is the member of the context that can be given instead of an area.
+    """
     lines = (line.partition(": ") for line in TABLE.read_text(encoding="utf-8").splitlines())
     return {name: areas for areas, _, names in lines for name in names.split()}
 
@@ -62,13 +65,24 @@ def _check(script: Script) -> Iterator[Finding]:
         line = call.node.lineno
         if path in asked or isinstance(first, Mapping) or any(start <= line <= end for start, end in given):
             continue
-        where = "an area" if areas == "any" else f"an area of type {areas.replace(' ', ' or ')}"
         yield Finding(
-            RULE.id, "note", script.span(call.node),
-            f"`{path}` runs in {where}, which a Blender without a window (`--background`) does not have: give it one "
-            "with `bpy.context.temp_override(window=…, area=…, region=…)`.",
-            path, ("bpy.types.Context.temp_override",),
+            RULE.id, "note", script.span(call.node), f"`{path}` runs in {_advice(areas)}", path,
+            ("bpy.types.Context.temp_override",),
         )  # fmt: skip
+
+
+def _advice(areas: str) -> str:
+    """What an operator runs in, and what to give it where there is no window."""
+    types = [word for word in areas.split() if not word.endswith("=")]
+    where = "an area" if types == ["any"] else f"an area of type {' or '.join(types)}"
+    lacking = "which a Blender without a window (`--background`) does not have"
+    if areas.endswith("="):
+        member = areas.rpartition(" ")[2]
+        return (
+            f"{where}, {lacking}, or with what it works on: give it that with "
+            f"`bpy.context.temp_override({member}…)`, which needs no window."
+        )
+    return f"{where}, {lacking}: give it one with `bpy.context.temp_override(window=…, area=…, region=…)`."
 
 
 def _is_ready(script: Script) -> bool:

@@ -15,14 +15,17 @@ version (``if bpy.app.version < (2, 80, 0)``).
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import OBJECT_DATA
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_build.flow.types import Resolution
     from kb_check.findings import Finding
     from kb_check.script import Script
 
@@ -33,8 +36,18 @@ def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "store", "text", "button"):
         owner = _class_of(script, row.missing[0])
         if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != _CONTEXT:
-            lacking = script.names.member(owner, row.value, reading=row.kind != "store")
+            had = _owner_that_had(script, row, owner)
+            lacking = script.names.member(had, row.value, reading=row.kind != "store")
             yield lacking_finding(script, RULE.id, row, lacking)
+
+
+def _owner_that_had(script: Script, row: Resolution, owner: str) -> str:
+    """Of an object's data, which is of a class for each type of object, the class that had the name; or the owner."""
+    read = script.analysis.resolutions.get(row.node.value) if isinstance(row.node, ast.Attribute) else None
+    if read is None or read.symbols != ("bpy.types.Object.data",):
+        return owner
+    kinds = (f"bpy.types.{name}" for name in OBJECT_DATA.values())
+    return next((kind for kind in kinds if script.names.had(kind, row.value)), owner)
 
 
 def _class_of(script: Script, owner: str) -> str:

@@ -12,6 +12,7 @@ bpy.ops.object.select_pattern(pattern="Cube*")
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
 from kb_check.rule import Rule
@@ -20,7 +21,9 @@ from kb_check.rules.lacking import lacking_finding
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_build.flow.types import Resolution
     from kb_check.findings import Finding
+    from kb_check.known_names import Lacking
     from kb_check.script import Script
 
 
@@ -29,7 +32,16 @@ def _check(script: Script) -> Iterator[Finding]:
         owner = row.missing[0]
         if owner.startswith("bpy.ops"):
             name = row.value.removeprefix("bpy.ops.") if row.kind == "button" else row.value
-            yield lacking_finding(script, RULE.id, row, script.names.member(owner, name))
+            lacking = _of_lost_module(script, row) or script.names.member(owner, name)
+            yield lacking_finding(script, RULE.id, row, lacking)
+
+
+def _of_lost_module(script: Script, row: Resolution) -> Lacking | None:
+    """What became of an operator whose module is gone, where the script names one that was in it."""
+    for node in script.nodes:
+        if isinstance(node, ast.Attribute) and node.value is row.node:
+            return script.names.path(f"{row.missing[0]}.{row.value}.{node.attr}")
+    return None
 
 
 RULE = Rule("unknown-operator", "error", "An operator that does not exist", _check)

@@ -1,26 +1,39 @@
-"""A socket that a node does not have.
+"""A socket that a node does not have, or does not find by what it is asked for.
 
-Sockets are asked for by identifier or by the name that the node shows; what the running Blender still takes by a
-former name is no finding.
+Sockets are asked for by the name that the node shows, or by identifier; a few nodes take names only. What the running
+Blender still takes by a former name is no finding.
 
 ```python
 principled = nodes.new("ShaderNodeBsdfPrincipled")
 principled.inputs["Specular"]  # reported since 4.0: Specular IOR Level
+mix = nodes.new("ShaderNodeMix")
+mix.inputs["A_Color"]  # reported: an identifier; mix.inputs["A"] while colours are mixed, or mix.inputs[6]
 ```
 """
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
+from kb_build.symbol_lines import subscripts_text
+from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.findings import Finding
+    from kb_build.flow.types import Resolution
+    from kb_build.records import Symbol
     from kb_check.script import Script
+
+# Nodes with a set of sockets for each type of data, which Blender finds by the names of the set that is shown only.
+_BY_NAME_ONLY = frozenset(
+    f"bpy.types.{name}"
+    for name in ("FunctionNodeCompare", "FunctionNodeRandomValue", "ShaderNodeMapRange", "ShaderNodeMix")
+)
+_SIDES = ("inputs", "outputs")
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -28,14 +41,39 @@ def _check(script: Script) -> Iterator[Finding]:
         if any(_still_works(script, node, row.value) for node in row.missing):
             continue
         node = row.missing[0]
-        names = [s.name for side in ("inputs", "outputs") for s in script.api.sockets(node, side)]
+        names = [_asked_by(s) for side in _sides(row) for s in script.api.sockets(node, side)]
         yield lacking_finding(
             script, RULE.id, row, script.names.socket(node, row.value, dict.fromkeys(names))
         )
+    for row in script.resolutions("item"):
+        sockets = [symbol for path in row.symbols if (symbol := script.api.symbols.symbol(path))]
+        certain = sockets and row.sure and not row.guarded and not row.missing
+        if certain and all(_is_only_identifier(socket, row.value) for socket in sockets):
+            first = sockets[0]
+            yield Finding(
+                RULE.id, "error", script.span(row.node),
+                f"`{first.owner}` finds its sockets by the names that it shows, not by identifiers as {row.value!r}: "
+                f"{subscripts_text(first)}.", first.path,
+            )  # fmt: skip
+
+
+def _sides(row: Resolution) -> tuple[str, ...]:
+    """The side of a node that is asked; both where that is not to be seen."""
+    asked = row.node.value if isinstance(row.node, ast.Subscript) else None
+    return (asked.attr,) if isinstance(asked, ast.Attribute) and asked.attr in _SIDES else _SIDES
+
+
+def _asked_by(socket: Symbol) -> str:
+    """What a socket is asked for by."""
+    return socket.label if socket.owner in _BY_NAME_ONLY else socket.name
+
+
+def _is_only_identifier(socket: Symbol, key: str) -> bool:
+    return socket.owner in _BY_NAME_ONLY and key == socket.name and key not in socket.socket_names
 
 
 def _still_works(script: Script, node: str, name: str) -> bool:
-    return any(script.names.still_works(f'{node}.{side}["{name}"]') for side in ("inputs", "outputs"))
+    return any(script.names.still_works(f'{node}.{side}["{name}"]') for side in _SIDES)
 
 
 RULE = Rule("unknown-socket", "error", "A socket that the node does not have", _check)

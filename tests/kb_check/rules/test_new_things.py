@@ -22,6 +22,9 @@ _POINTS = _TREE + "points = tree.nodes.new('GeometryNodeDistributePointsOnFaces'
 _ZONE = _TREE + "first = tree.nodes.new('GeometryNodeSimulationInput')\n"
 _GLARE = "tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\nglare = tree.nodes.new('CompositorNodeGlare')\n"
 _ARMATURE = "armature = bpy.data.armatures.new('x')\nob = bpy.data.objects.new('x', armature)\n"
+_MIX = "mix = bpy.data.node_groups.new('x', 'ShaderNodeTree').nodes.new('ShaderNodeMix')\nmix.data_type = 'RGBA'\n"
+_IMAGES = "images = bpy.context.scene.render.image_settings\n"
+_PARTICLES = "hair = bpy.data.particles.new('x')\nhair.type = 'HAIR'\n"
 _ACTION = "action = bpy.data.actions.new('x')\n" + _OBJECT + "ob.animation_data_create().action = action\n"
 WRONG = {
     "empty-pointer": [
@@ -48,9 +51,52 @@ WRONG = {
         _OBJECT + "curve = ob.driver_add('scale')\ncurve.driver.expression = '1'",
     ],
     "not-animated": [_ACTION + "ob.animation_data.action_slot = action.slots.new('ACTION', 'x')"],
+    "unknown-socket": [
+        _MIX + "mix.inputs['A_Color']",
+        _MIX + "mix.outputs['Result_Color']",
+        _MIX + "mix.inputs['Fac']",
+        _TREE + "tree.nodes.new('FunctionNodeRandomValue').inputs['Max_001']",
+    ],
+    "refused-value": [
+        "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
+        _IMAGES + "images.media_type = 'VIDEO'\nimages.color_mode = 'RGB'\nimages.file_format = 'PNG'",
+        _PARTICLES + "hair.render_type = 'HALO'",
+        _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketShader')",
+        _TREE + "tree.color_tag = 'SHADER'",
+        "bpy.ops.object.effector_add(type='VORTEX')\nbpy.context.object.field.shape = 'LINE'",
+        "bpy.ops.object.effector_add(type='WIND')\nfield = bpy.context.object.field\nfield.type = 'VORTEX'\n"
+        "field.shape = 'LINE'",
+        "tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\n"
+        "tree.interface.new_socket('x', socket_type='NodeSocketGeometry')",
+        "curve = bpy.data.curves.new('x', 'CURVE')\ncurve.dimensions = '3D'\ncurve.fill_mode = 'BOTH'",
+    ],
+    "unknown-name": ["import bgl", "from bgl import glEnable"],
+    "unknown-attribute": [
+        "bpy.context.scene.cycles.use_square_samples = True",
+        "bpy.data.lights.new('x', 'POINT').cycles.cast_shadow = True",
+        _CUBE + "bpy.context.object.data.face_maps",
+    ],
+    "unknown-operator": ["bpy.ops.import_mesh.stl(filepath='/x.stl')"],
     "not-in-edit-mode": [_ARMATURE + "armature.edit_bones.new('x')"],
 }
 RIGHT = [
+    _MIX + "mix.inputs['A'].default_value = (1, 0, 0, 1)\nmix.inputs[6]\nmix.outputs['Result']",
+    _TREE + "tree.nodes.new('FunctionNodeRandomValue').inputs['Max']",
+    _IMAGES + "images.media_type = 'VIDEO'\nimages.file_format = 'FFMPEG'",
+    _IMAGES + "images.media_type = 'VIDEO'\nimages.media_type = 'IMAGE'\nimages.file_format = 'PNG'",
+    _IMAGES + "images.media_type = 'VIDEO'\nimages = bpy.data.scenes.new('x').render.image_settings\n"
+    "images.file_format = 'PNG'",
+    _IMAGES + "def still():\n    images.media_type = 'IMAGE'\nimages.media_type = 'VIDEO'\nstill()\n"
+    "images.file_format = 'PNG'",
+    "bpy.ops.object.effector_add(type='WIND')\nbpy.context.object.field.shape = 'LINE'",
+    _CUBE + "bpy.ops.object.forcefield_toggle()\nfield = bpy.context.object.field\nfield.type = 'WIND'\n"
+    "field.shape = 'POINTS'",
+    "bpy.ops.object.effector_add(type='GUIDE')\nbpy.context.object.field.shape = 'SURFACE'",
+    _PARTICLES + "hair.type = 'EMITTER'\nhair.render_type = 'HALO'",
+    _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketGeometry')",
+    "bpy.context.scene.view_settings.look = 'AgX - High Contrast'",
+    "try:\n    import bgl\nexcept ImportError:\n    bgl = None",
+    "if bpy.app.version < (3, 5, 0):\n    import bgl",
     _OBJECT + "ob.driver_add('location', -1)[0].driver",
     _OBJECT + "place = -1\nob.driver_add('location', place)[0].driver",
     _POINTS + "if 'Density Max' in points.inputs:\n    points.inputs['Density Max'].default_value = 1",

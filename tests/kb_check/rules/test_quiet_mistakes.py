@@ -249,6 +249,13 @@ def test_table_of_areas_is_what_this_blender_answers(tmp_path: Path) -> None:
     assert operator_areas()["view3d.view_selected"] == "VIEW_3D"
 
 
+def test_what_can_be_given_instead_of_an_area_is_told(check: Check) -> None:
+    [finding] = check("needs-context", "import bpy\nbpy.ops.ed.lib_id_generate_preview()\n")
+    assert "temp_override(id=…)" in finding.message
+    [finding] = check("needs-context", "import bpy\nbpy.ops.text.select_all()\n")  # would end Blender
+    assert "area=…" in finding.message
+
+
 def test_handlers_that_add_up_are_found(check: Check) -> None:
     code = "import bpy\ndef follow(scene):\n    pass\nbpy.app.handlers.frame_change_pre.append(follow)\n"
     [finding] = check("runs-twice", code)

@@ -1,0 +1,272 @@
+"""A value that an enumeration has, but refuses as things stand.
+
+Some values are taken only while another setting has the right one, or only by things of some kind.
+
+```python
+settings = scene.render.image_settings
+settings.file_format = "FFMPEG"  # reported since 5.0: settings.media_type = 'VIDEO' comes first
+tree = bpy.data.node_groups.new("Tree", "CompositorNodeTree")
+tree.interface.new_socket(
+    "Mesh", socket_type="NodeSocketGeometry"
+)  # reported: geometry node trees have it only
+```
+
+What a script sets before decides. Where it names the other setting nowhere, what a new scene has does, which a file
+that is open may have otherwise: that is a warning.
+
+Not reported: what follows calls that may change the other setting out of sight, and add-ons.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_build.flow.types import Instance
+from kb_build.symbol_lines import usual_default
+from kb_check.calls import calls
+from kb_check.findings import Finding
+from kb_check.made_here import called_operators, callee_path, knows_all, named_words
+from kb_check.rule import Rule
+from kb_check.script import once_per_script
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kb_build.flow.types import Resolution
+    from kb_build.records import EnumItem, Symbol
+    from kb_check.script import Script
+
+_WITH = re.compile(r"(only|not) with (\w+)=('[^'|]*'(?:\|'[^'|]*')*)")
+_BY = re.compile(r"(only|not) by ([^…]+)")
+_SCENE = "bpy.types.Scene"
+_ACTIVE = frozenset({"bpy.types.Context.object", "bpy.types.Context.active_object"})
+_OPENING = frozenset(
+    {"bpy.ops.wm.open_mainfile", "bpy.ops.wm.read_homefile", "bpy.ops.wm.read_factory_settings"}
+)
+
+
+class _Setting(NamedTuple):
+    """A setting beside a property, and the values with which an item of that is taken."""
+
+    symbol: Symbol
+    values: frozenset[str]
+    is_taken: bool
+
+    def refuses(self, value: object) -> bool:
+        return (value in self.values) != self.is_taken
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for row in script.resolutions("store"):
+        node, statement = row.node, row.statement
+        if (
+            not _is_certain(row)
+            or not isinstance(node, ast.Attribute)
+            or not isinstance(statement, ast.Assign)
+        ):
+            continue
+        symbol = script.api.symbols.symbol(row.symbols[0])
+        item = _item(symbol.enum_items, statement.value) if symbol else None
+        if symbol is None or item is None or len(statement.targets) > 1:
+            continue
+        if setting := _setting(script, symbol, item):
+            yield from _refused_by_setting(script, statement, node, setting, item)
+        elif kind := _other_kind(script, node.value, item):
+            yield _finding(script, statement.value, item, symbol.path, f"this is a {kind}")
+    for call in calls(script):
+        function = call.node.func
+        if isinstance(function, ast.Attribute) and call.callee.symbol.kind == "function":
+            for parameter, given in call.arguments():
+                item = _item(parameter.enum_items, given)
+                if item and (kind := _other_kind(script, function.value, item)):
+                    yield _finding(script, given, item, call.callee.symbol.path, f"this is a {kind}")
+
+
+def _is_certain(row: Resolution) -> bool:
+    return row.sure and not row.guarded and not row.missing and not row.possible and len(row.symbols) == 1
+
+
+def _item(items: Iterable[EnumItem], value: ast.expr) -> EnumItem | None:
+    """The item that a literal names, if it is not taken everywhere."""
+    text = value.value if isinstance(value, ast.Constant) else None
+    return next((item for item in items if item.where and item.identifier == text), None)
+
+
+def _finding(script: Script, node: ast.expr, item: EnumItem, path: str, why: str) -> Finding:
+    where = item.where.replace("only by", "only by a").replace(", ", " or a ")
+    taken = f"is not taken {where[4:]}" if where.startswith("not ") else f"is taken {where}"
+    return Finding(RULE.id, "error", script.span(node), f"{item.identifier!r} {taken}, and {why}.", path)
+
+
+# Other settings.
+
+
+def _setting(script: Script, symbol: Symbol, item: EnumItem) -> _Setting | None:
+    """The setting of the same thing that decides whether it takes an item."""
+    if found := _WITH.fullmatch(item.where):
+        other = script.api.symbols.symbol(f"{symbol.owner}.{found[2]}")
+        return (
+            _Setting(other, frozenset(found[3].strip("'").split("'|'")), found[1] == "only")
+            if other
+            else None
+        )
+    found = _BY.fullmatch(item.where)
+    other = script.api.symbols.symbol(f"{symbol.owner}.type")
+    if found is None or other is None or "readonly" in other.flags:
+        return None
+    owner = script.api.symbols.symbol(symbol.owner)
+    what = owner.label.lower().split() if owner else []
+    values = [_value_of_kind(other, kind, what) for kind in found[2].split(", ")]
+    return _Setting(other, frozenset(values), found[1] == "only") if all(values) else None
+
+
+def _value_of_kind(kinds: Symbol, label: str, what: list[str]) -> str:
+    """The value that makes what is called so: ``VORTEX`` of a vortex force field; empty for none.
+
+    ``what`` are the words that may end the label.
+    """
+    if label.rpartition(" ")[2] not in what:
+        return ""
+    for item in kinds.enum_items:
+        if label.startswith((f"{item.name.lower()} ", f"{item.identifier.lower()} ")):
+            return item.identifier
+    return ""
+
+
+def _refused_by_setting(
+    script: Script, statement: ast.Assign, target: ast.Attribute, setting: _Setting, item: EnumItem
+) -> Iterator[Finding]:
+    name = setting.symbol.name
+    if before := _set_before(script, statement, target.value, setting.symbol):
+        if isinstance(before, ast.Constant) and setting.refuses(before.value):
+            yield _finding(
+                script, statement.value, item, setting.symbol.path, f"`{name}` is {before.value!r} here"
+            )
+    elif (
+        name not in named_words(script)
+        and all(map(setting.refuses, _values_of_new(setting.symbol)))
+        and _works_on_a_scene(script, target.value)
+    ):
+        usual = usual_default(setting.symbol)
+        why = f"in a new scene `{name}` is {usual!r}: this script does not set it"
+        yield replace(_finding(script, statement.value, item, setting.symbol.path, why), severity="warning")
+
+
+def _values_of_new(symbol: Symbol) -> list[object]:
+    return [usual_default(symbol), *(new.value for new in symbol.new_values)]
+
+
+def _set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Symbol) -> ast.expr | None:
+    """What is assigned to a setting before a statement, in the same body, with nothing between that may matter."""
+    name = setting.name
+    body, place = _places(script).get(statement, ([], 0))
+    text = ast.unparse(owner)
+    for earlier in reversed(body[:place]):
+        match earlier:
+            case ast.Assign(targets=[ast.Attribute(attr=set_name) as set_here]) if set_name == name:
+                return earlier.value if ast.unparse(set_here.value) == text else None
+            case ast.Expr(value=ast.Call() as call) if callee_path(script, call).startswith("bpy.ops."):
+                return _given_to_maker(script, call, owner, setting)
+            case ast.Assign() | ast.AugAssign() | ast.Expr() if _leaves_alone(script, earlier, text, name):
+                pass
+            case _:
+                return None
+    return None
+
+
+def _given_to_maker(script: Script, call: ast.Call, owner: ast.expr, setting: Symbol) -> ast.expr | None:
+    """What an operator that makes the active object is given for a setting of what belongs to that."""
+    row = script.analysis.resolutions.get(owner.value) if isinstance(owner, ast.Attribute) else None
+    if row is None or not row.symbols or not _ACTIVE.issuperset(row.symbols):
+        return None
+    items = {item.identifier for item in setting.enum_items}
+    for site in calls(script):
+        if site.node is call and site.callee.symbol.name.endswith("_add"):
+            for parameter, given in site.arguments():
+                own = {item.identifier for item in parameter.enum_items}
+                # A few values are called otherwise there.
+                if parameter.name == setting.name and len(own & items) > len(own) / 2:
+                    return given
+    return None
+
+
+def _leaves_alone(script: Script, statement: ast.stmt, owner: str, name: str) -> bool:
+    """Whether a statement changes neither what an expression stands for nor its setting."""
+    for node in ast.walk(statement):
+        if isinstance(node, ast.Call) and (callee_path(script, node) or "bpy.ops.").startswith("bpy.ops."):
+            return False
+        if isinstance(node, (ast.Name, ast.Attribute)) and isinstance(node.ctx, ast.Store):
+            written = ast.unparse(node)
+            is_part = owner == written or owner.startswith((f"{written}.", f"{written}["))
+            if is_part or (isinstance(node, ast.Attribute) and node.attr == name):
+                return False
+    return True
+
+
+@once_per_script
+def _places(script: Script) -> dict[ast.stmt, tuple[list[ast.stmt], int]]:
+    """Statement → the body that it is in, and its place there."""
+    found: dict[ast.stmt, tuple[list[ast.stmt], int]] = {}
+    for node in script.nodes:
+        for field in ("body", "orelse", "finalbody"):
+            body = getattr(node, field, None)
+            if isinstance(body, list):
+                found.update((statement, (body, place)) for place, statement in enumerate(body))
+    return found
+
+
+def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
+    """Whether a script that is run by itself, with nothing hidden, sets something of a scene."""
+    is_add_on = any(
+        isinstance(part, ast.FunctionDef) and part.name == "register" for part in script.tree.body
+    )
+    if is_add_on or not knows_all(script) or called_operators(script) & _OPENING:
+        return False
+    while isinstance(node, ast.Attribute):
+        row = script.analysis.resolutions.get(node)
+        symbol = script.api.symbols.symbol(row.symbols[0]) if row and len(row.symbols) == 1 else None
+        if (
+            symbol is None
+            or symbol.type != "pointer"
+            or script.api.descends(f"bpy.types.{symbol.target}", "bpy.types.ID")
+        ):
+            break
+        node = node.value
+    return _class_of(script, node) == _SCENE
+
+
+# Kinds of things.
+
+
+def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
+    """The kind of something, or of what it belongs to, that does not take an item; empty where none is known."""
+    found = _BY.fullmatch(item.where)
+    kinds = set(found[2].split(", ")) if found else set[str]()
+    while kinds:
+        cls = _class_of(script, node)
+        symbol = script.api.symbols.symbol(cls) if cls else None
+        if symbol and symbol.base and kinds <= _labels_below(script, symbol.base):
+            label = symbol.label.lower()
+            is_refused = (label in kinds) != (found is not None and found[1] == "only")
+            return label if is_refused else ""
+        if not isinstance(node, ast.Attribute):
+            break
+        node = node.value
+    return ""
+
+
+def _labels_below(script: Script, base: str) -> set[str]:
+    below = (script.api.symbols.symbol(path) for path in script.api.descendants(base))
+    return {symbol.label.lower() for symbol in below if symbol}
+
+
+def _class_of(script: Script, node: ast.expr) -> str:
+    """The class that something surely is of; empty where it may be of several."""
+    kind = script.type_of(node)
+    return kind.cls if isinstance(kind, Instance) and kind.sure else ""
+
+
+RULE = Rule("refused-value", "error", "A value that is refused as things stand", _check)
