@@ -7,6 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
+from kb_build.records import NOT_TAKEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -21,6 +22,14 @@ _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
 _MOST_COMPARED = 20  # enumerations of which as many items are listed
 _FITTING = 0.5  # how well the words around a bare value must fit its property
+_ONLY, _NOT = "only ", "not "  # … what tells where an item is taken begins with
+
+
+def _is_taken(item: EnumItem, mode: str) -> bool:
+    """Whether an item is taken in a mode: ``with media_type='VIDEO'``, or "" for none of those named."""
+    if item.where.startswith(_NOT):
+        return item.where.removeprefix(_NOT) != mode
+    return item.where.removeprefix(_ONLY) in {"", mode}
 
 
 class EnumValues:
@@ -91,21 +100,21 @@ class EnumValues:
     def _difference(self, owner: str, values: set[str]) -> int:
         """How many items an enumeration has more or less than some, in that of its modes in which that is fewest."""
         items = self._items(owner)
-        always = {item.identifier for item in items if not item.where}
-        modes = {item.where for item in items if item.where} or {""}
+        modes = {item.where.removeprefix(_ONLY).removeprefix(_NOT) for item in items}
         return min(
-            len(values ^ (always | {item.identifier for item in items if item.where == mode}))
-            for mode in modes
+            (len(values ^ {item.identifier for item in items if _is_taken(item, mode)}) for mode in modes),
+            default=len(values),
         )
 
     def _items(self, owner: str) -> tuple[EnumItem, ...]:
-        """The items of a property, or of a function's parameter."""
+        """The items that a property, or a function's parameter, takes somewhere."""
         path, _, parameter = owner.partition("(")
         symbol = self._reader.symbol(path)
-        if symbol is None or not parameter:
-            return symbol.enum_items if symbol else ()
-        found = (p.enum_items for p in symbol.parameters if p.name == parameter.rstrip(")"))
-        return next(found, ())
+        if symbol is None:
+            return ()
+        named = (given.enum_items for given in symbol.parameters if given.name == parameter.rstrip(")"))
+        items = next(named, ()) if parameter else symbol.enum_items
+        return tuple(item for item in items if item.where != NOT_TAKEN)
 
     def _is_class(self, value: str) -> bool:
         """Whether a label, ``Matrix``, is the name of a class: then it is hardly meant as an item."""

@@ -253,7 +253,8 @@ class Messages:
             if removed:
                 recognition.add_removed(removed)
             elif owners and (where := self._enum_values.where(owners[0], match["name"])):
-                recognition.notes.append(f"`{owners[0]}` takes `{match['name']}` {where}: set that first.")
+                taken = f"not taken {where[4:]}" if where.startswith("not ") else f"taken {where}"
+                recognition.notes.append(f"`{owners[0]}` = '{match['name']}' is {taken}.")
             elif similar := [f"`{name}`" for name, _ in nearest(match["name"], items)]:
                 recognition.notes.append(
                     f"`{match['name']}` is not an item of this enum; closest: {', '.join(similar)}."
@@ -333,7 +334,7 @@ class Messages:
         name = written.rpartition(".")[2]
         cls = next((entry.path for entry in self._reader.by_name(name) if entry.kind == "class"), "")
         creation = self._reader.creations([cls]).get(cls)
-        makers = [creation.maker] if creation else self._returning(cls) if cls else []
+        makers = [creation.maker] if creation else self._returning(cls)
         if makers:
             calls = [creation.call] if creation else [f"{maker}()" for maker in makers[:_FEW]]
             listed = ", ".join(f"`{call}`" for call in calls)
@@ -342,8 +343,13 @@ class Messages:
             recognition.add(maker, 0.98 - 0.01 * rank, "error message")
 
     def _returning(self, cls: str) -> list[str]:
-        """The functions of a class's package that return an instance of it, most used first."""
+        """The functions of a class's package that return an instance of it, most used first; not those of ``bpy``.
+
+        The thousands of that one would take seconds, and what makes its classes is known.
+        """
         package = cls.partition(".")[0]
+        if package in {"", "bpy"}:
+            return []
         sql = "SELECT path FROM symbols WHERE kind = 'function' AND path GLOB ? AND owner != ? ORDER BY path"
         symbols = filter(
             None, (self._reader.symbol(row[0]) for row in self._reader.rows(sql, f"{package}.*", cls))

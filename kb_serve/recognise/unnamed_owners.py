@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
@@ -17,9 +18,7 @@ if TYPE_CHECKING:
 
 _FEW = 3
 _MANY = 8  # where more properties may be None, none is likely enough to be named
-_ANY = frozenset(
-    {STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup"}
-)  # what pointers lead to that tell nothing of the class
+_ANY = frozenset({STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup"})  # pointers to these may lead to anything
 _IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
 
 
@@ -52,7 +51,7 @@ class UnnamedOwners:
         if few and len(holders) <= _MANY:
             likely = likely or holders
         self._tell(name, owners, holders, recognition)
-        for rank, entry in enumerate(self._most_used(likely)[:_FEW]):
+        for rank, entry in enumerate(self._weightiest(likely)[:_FEW]):
             recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
             if not gone:
                 recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
@@ -66,7 +65,7 @@ class UnnamedOwners:
         of = may_be = ""
         if len(owners) == 1:
             of = f", a `{TYPES}{next(iter(owners))}`,"
-            listed = ", ".join(f"`{entry.path}`" for entry in self._most_used(holders)[:_FEW])
+            listed = ", ".join(f"`{entry.path}`" for entry in self._weightiest(holders)[:_FEW])
             may_be = f" One is reached by {listed}." if listed else ""
         recognition.notes.append(_IS_NONE.format(name=name, of=of) + may_be)
 
@@ -98,32 +97,32 @@ class UnnamedOwners:
         return next((flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix)), None)
 
     def of_a_collection(self, name: str, recognition: Recognition) -> None:
-        """A member that a collection lacks: the one that lost it, and the collections that have it, most used first.
+        """A member that a collection lacks: the one that lost it, and the collections that have it, weightiest first.
 
         Messages do not name a collection's own class.
         """
-        paths = self._removed.paths_named(name)
-        had = self._collections_of(path.rpartition(".")[0] for path in paths)
-        lost = [path for path in paths if path.rpartition(".")[0] in had]
+        lost = [
+            path for path in self._removed.paths_named(name) if path.rpartition(".")[0] in self._collections
+        ]
         removed = self._removed.of_path(lost[0]) if len(lost) == 1 else None
         if removed:
             recognition.add_removed(removed)
         else:
             recognition.add(COLLECTION, 0.6, "error message")
         members = [entry for entry in self._reader.by_name(name) if entry.kind in {"property", "function"}]
-        has = self._collections_of(entry.owner for entry in members)
-        having = self._most_used(entry for entry in members if entry.owner in has)
+        having = self._weightiest(entry for entry in members if entry.owner in self._collections)
         for rank, entry in enumerate(having[:_FEW]):
             recognition.add(entry.path, 0.86 - 0.01 * rank, "same name")
         if having:
-            listed = ", ".join(f"`{has[entry.owner]}.{name}`" for entry in having[:_FEW])
+            listed = ", ".join(f"`{self._collections[entry.owner]}.{name}`" for entry in having[:_FEW])
             more = f" and {len(having) - _FEW} more" if len(having) > _FEW else ""
             recognition.notes.append(f"This collection has no `{name}`; others have: {listed}{more}.")
 
-    def _collections_of(self, classes: Iterable[str]) -> dict[str, str]:
-        """Class → the most used property that is a collection of that class, for classes of collections."""
-        names = {cls.removeprefix(TYPES) for cls in classes}
-        rows = self._reader.rows_of("SELECT path, collection FROM symbols WHERE collection", names, "path")
+    @cached_property
+    def _collections(self) -> dict[str, str]:
+        """Class of collections → the weightiest property that is one: ``LayerObjects`` → ``ViewLayer.objects``."""
+        sql = "SELECT path, collection FROM symbols WHERE target != '' AND collection != '' ORDER BY path"
+        rows = self._reader.rows(sql)
         weights = self._reader.weights([path for path, _ in rows])
         found: dict[str, str] = {}
         for path, cls in sorted(rows, key=lambda row: -weights.get(row[0], 0)):
@@ -143,9 +142,9 @@ class UnnamedOwners:
             ]
             if member and member.owner != STRUCT
         }
-        return [(found[member], member) for member in self._most_used(found)]
+        return [(found[member], member) for member in self._weightiest(found)]
 
-    def _most_used(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
+    def _weightiest(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
         listed = list(entries)
         weights = self._reader.weights([entry.path for entry in listed])
         return sorted(listed, key=lambda entry: -weights.get(entry.path, 0))

@@ -238,7 +238,7 @@ def test_a_list_of_items_tells_the_mode_of_the_property(kb: KnowledgeBase) -> No
     message = f"TypeError: item.attr = val: enum \"FFMPEG\" not found in ({IMAGES}, 'TARGA_RAW', 'TIFF')"
     answer = kb.query(message)
     assert answer.hits[0].id == "bpy.types.ImageFormatSettings.file_format"
-    assert any("takes `FFMPEG` only with media_type='VIDEO'" in note for note in answer.notes)
+    assert any("= 'FFMPEG' is taken only with media_type='VIDEO'." in note for note in answer.notes)
 
 
 def test_what_became_an_operator_is_no_argument(kb: KnowledgeBase) -> None:
