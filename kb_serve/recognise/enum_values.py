@@ -7,10 +7,12 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
+from kb_build.records import NOT_TAKEN
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
+    from kb_build.records import EnumItem
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
@@ -18,7 +20,16 @@ _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _CAPITALS = re.compile(r"(?<![\w.])(?=[0-9]*[A-Z])[A-Z0-9_]{3,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
+_MOST_COMPARED = 20  # enumerations of which as many items are listed
 _FITTING = 0.5  # how well the words around a bare value must fit its property
+_ONLY, _NOT = "only ", "not "  # … what tells where an item is taken begins with
+
+
+def _is_taken(item: EnumItem, mode: str) -> bool:
+    """Whether an item is taken in a mode: ``with media_type='VIDEO'``, or "" for none of those named."""
+    if item.where.startswith(_NOT):
+        return item.where.removeprefix(_NOT) != mode
+    return item.where.removeprefix(_ONLY) in {"", mode}
 
 
 class EnumValues:
@@ -69,6 +80,41 @@ class EnumValues:
             held, key=lambda o: (-len(held[o]), -self._owner_fit(o, around or set()), len(o), o)
         ):
             yield owner, len(held[owner]) / max(1, len(wanted))
+
+    def taking(self, items: Sequence[str], called: str) -> list[str]:
+        """The owners of the items that a message lists, likeliest first: of the function that was called; those that
+        have most of them; those that take just these, in one of their modes.
+        """
+        shares = list(self.owners(items))
+        most = [(owner, share) for owner, share in shares if share == shares[0][1]][:_MOST_COMPARED]
+        beyond = {owner: self._difference(owner, set(items)) for owner, _ in most}
+        shares.sort(
+            key=lambda row: (not (called and row[0].startswith(called)), -row[1], beyond.get(row[0], 0))
+        )
+        return [owner for owner, _ in shares]
+
+    def where(self, owner: str, value: str) -> str:
+        """Where an enumeration takes a value, ``only with media_type='VIDEO'``; "" for everywhere, or nowhere."""
+        return next((item.where for item in self._items(owner) if item.identifier == value), "")
+
+    def _difference(self, owner: str, values: set[str]) -> int:
+        """How many items an enumeration has more or less than some, in that of its modes in which that is fewest."""
+        items = self._items(owner)
+        modes = {item.where.removeprefix(_ONLY).removeprefix(_NOT) for item in items}
+        return min(
+            (len(values ^ {item.identifier for item in items if _is_taken(item, mode)}) for mode in modes),
+            default=len(values),
+        )
+
+    def _items(self, owner: str) -> tuple[EnumItem, ...]:
+        """The items that a property, or a function's parameter, takes somewhere."""
+        path, _, parameter = owner.partition("(")
+        symbol = self._reader.symbol(path)
+        if symbol is None:
+            return ()
+        named = (given.enum_items for given in symbol.parameters if given.name == parameter.rstrip(")"))
+        items = next(named, ()) if parameter else symbol.enum_items
+        return tuple(item for item in items if item.where != NOT_TAKEN)
 
     def _is_class(self, value: str) -> bool:
         """Whether a label, ``Matrix``, is the name of a class: then it is hardly meant as an item."""

@@ -11,6 +11,7 @@ _QUOTED = re.compile(r"(?<!\w)(['\"])[^'\"\n]{0,60}\1")
 
 HAS_NO = re.compile(r"['\"](?P<owner>[\w.]+)['\"] object has no attribute ['\"](?P<name>\w+)['\"]")
 MODULE_HAS_NO = re.compile(r"module ['\"](?P<owner>[\w.]+)['\"] has no attribute ['\"](?P<name>\w+)['\"]")
+NOT_IN_COLLECTION = re.compile(r"\bbpy_prop_collection: attribute \"(?P<name>\w+)\" not found")
 NO_KEY = re.compile(r"\b(?P<on>bpy_\w+)\[key\]: key \"(?P<name>[^\"]+)\" not found")
 NO_INDEX = re.compile(r"\w+\[index\](?: = value)?: index (?P<index>-?\d+) out of range, size (?P<size>\d+)")
 SUBSCRIPTED = re.compile(r"\b([a-z]\w*)\[-?\d+\]")
@@ -40,11 +41,14 @@ PRODUCT = re.compile(
 NO_WRITING = re.compile(r"Writing to ID classes in this context is not allowed")
 POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
+NOT_MADE = re.compile(r"cannot create '(?P<type>[\w.]+)' instances")
+NO_DRAWING = re.compile(r"GPU functions for drawing are not available")
 NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w+) undefined")
 
 # The wording of messages that looks like code, or like names of classes and members.
 _WORDING = re.compile(
     r"""bpy_struct:\ item\.attr\s*=\s*val:|bpy_\w+\[(?:key|index|slice)\](?:\ =\ value)?:|BMElemSeq\[index\]:
+    |bpy_prop_collection:\ attribute\ "\w+"\ not\ found|cannot\ create\ '[\w.]+'\ instances
     |(?:object\ )?has\ no\ attribute\ '\w+'|and\ no\ __dict__\ for\ setting\ new\ attributes
     |Converting\ py\ args\ to\ operator\ properties::?|keyword\ "\w+"\ (?:is\ invalid|unrecognized)
     |(?:got\ an\ )?unexpected\ keyword\ argument|is\ an\ invalid\ keyword\ argument\ for(?:\ this\ function)?

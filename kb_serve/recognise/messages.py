@@ -8,14 +8,15 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.symbol_lines import operator_needs
-from kb_serve.reader import COLLECTION, TYPES
+from kb_serve.reader import TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import unknown_keywords
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.products import CLASSES, WITH_AT
 from kb_serve.recognise.recognition import MissingName
-from kb_serve.recognise.removed_symbols import socket_node
+from kb_serve.recognise.removed_symbols import plain_path, socket_node
+from kb_serve.recognise.unnamed_owners import UnnamedOwners
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +24,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
     from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
@@ -42,6 +43,12 @@ _FREED = (
 _FREED_MESH = (
     "`bm.free()`, a removal (`bm.verts.remove(v)`) or an operator deleted it; `v.is_valid` tells. Keep `bm` until the "
     "work is done, and take elements anew: `bm.verts.ensure_lookup_table()`, then `bm.verts[index]`."
+)
+_BEGIN_DRAWING = "gpu.init"
+_NO_DRAWING = (
+    "Blender runs without a window (`bpy.app.background` is True: started with `--background`, or as a Python module): "
+    "shaders, batches and off-screen buffers of `gpu` work only in a Blender with a window. Images are rendered "
+    "without one: `bpy.ops.render.render(write_still=True)`."
 )
 _READS_ONLY = (
     "`draw()` and `poll()` of panels, menus, headers, lists and operators only read: nothing may be written there. "
@@ -65,6 +72,7 @@ class Messages:
         self._resolver = resolver
         self._removed = removed
         self._enum_values = enum_values
+        self._owners = UnnamedOwners(reader, removed)
 
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what a message is about: a class without an attribute, an operator, the owner of an enum."""
@@ -92,9 +100,13 @@ class Messages:
         for pattern in (forms.HAS_NO, forms.MODULE_HAS_NO):
             for match in _matches(pattern, query):
                 if match["owner"] == "NoneType":
-                    self._none(match["name"], query, recognition)
+                    self._owners.of_none(match["name"], query, recognition)
+                elif match["owner"] == "bpy_prop_collection":
+                    self._owners.of_a_collection(match["name"], recognition)
                 else:
                     self._no_attribute(match["owner"], match["name"], recognition)
+        for match in _matches(forms.NOT_IN_COLLECTION, query):
+            self._owners.of_a_collection(match["name"], recognition)
         for match in _matches(forms.NO_MODULE, query):
             self._gone(match["module"], recognition)
         for match in _matches(forms.NO_IMPORT, query):
@@ -109,64 +121,25 @@ class Messages:
             if match["path"] and (entry := self._named(*match["path"].rpartition(".")[::2])):
                 recognition.add(entry.path, 0.98, "error message")
 
-    def _none(self, name: str, query: str, recognition: Recognition) -> None:
-        """What may have been None before ``.name``: the pointers to classes that have the name."""
-        recognition.notes.append(
-            f"The object before `.{name}` is None: it does not exist (yet), or was not found."
-        )
-        owners = {
-            entry.owner.removeprefix(TYPES)
-            for entry in self._reader.by_name(name)
-            if entry.kind in {"property", "function"}
-            and entry.owner.startswith(TYPES)
-            and entry.group != "ui"
-        }
-        holders = [
-            entry
-            for owner in sorted(owners)[:_MANY]
-            for entry in self._reader.pointing_at(owner)
-            if entry.group != "ui" and not self._is_never_none(entry)
-        ]
-        around = set(terms(query))
-        likely = [
-            entry for entry in holders if set(terms(f"{entry.owner} {entry.name}")) <= around | {"type"}
-        ]
-        if len(owners) <= _FEW and len(holders) <= _MANY:
-            likely = likely or holders
-        for rank, entry in enumerate(likely[:_FEW]):
-            recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
-            recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
-
-    def _is_never_none(self, entry: SymbolEntry) -> bool:
-        symbol = self._reader.symbol(entry.path)
-        return symbol is not None and "never-none" in symbol.flags
-
     def _no_attribute(self, written: str, name: str, recognition: Recognition) -> None:
         """A class or module without an attribute that other versions may have, or that never was."""
         owner = _INSTANCES.get(written) or self._class_path(written)
-        if owner == COLLECTION:
-            removed = self._of_a_collection(name)
-        else:
-            removed = (
-                self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
-            )
+        removed = self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
         if removed is None and not self._reader.entry(TYPES + written):
             members = self._removed.spelled(f"{written}.{name}")
             removed = next(members, None) or (None if owner else next(self._removed.spelled(written), None))
         if removed:
             recognition.add_removed(removed)
         elif owner and not self._resolver.member(owner, name):
-            recognition.missing.append(MissingName(name, owner, sure=owner != COLLECTION))
+            recognition.missing.append(MissingName(name, owner, sure=True))
             recognition.add(owner, 0.6, "error message")
+            self._within(owner, name, recognition)
 
-    def _of_a_collection(self, name: str) -> RemovedSymbol | None:
-        """The removed member of a collection's own class (``SceneObjects.link``); messages do not name that class."""
-        paths = [path for path in self._removed.paths_named(name) if self._holds_collection(path)]
-        return self._removed.of_path(paths[0]) if len(paths) == 1 else None
-
-    def _holds_collection(self, path: str) -> bool:
-        cls = path.rpartition(".")[0].removeprefix(TYPES)
-        return bool(self._reader.rows("SELECT 1 FROM symbols WHERE collection = ? LIMIT 1", cls))
+    def _within(self, owner: str, name: str, recognition: Recognition) -> None:
+        """A member that a class lacks, and that something has which it points to."""
+        for rank, (pointer, member) in enumerate(self._owners.within(owner, name)[:_FEW]):
+            recognition.add(member.path, 0.96 - 0.01 * rank, "error message")
+            recognition.notes.append(f"Its `.{pointer}` has it: `.{pointer}.{name}` (`{member.path}`).")
 
     def _gone(self, path: str, recognition: Recognition) -> None:
         """A module, or a name in one, that cannot be imported."""
@@ -237,15 +210,20 @@ class Messages:
             listed = ", ".join(f"`{path}`" for path in taking)
             recognition.notes.append(f"`{name}` is an argument of {listed}.")
         once = [path for path in self._reader.removed_named(name) if path.endswith(f"({name})")]
+        uses = self._reader.use_counts([plain_path(path) for path in once])
+        once.sort(key=lambda path: -uses.get(plain_path(path), 0))
         for removed in filter(None, map(self._removed.of_path, once[:_FEW])):
             recognition.add_removed(removed)
         recognition.is_open = len(recognition.removed) > 1
         words = {
-            target.rpartition("(")[2].rstrip(")") for old in recognition.removed for target in old.targets
+            target.rpartition("(")[2].rstrip(")")
+            for old in recognition.removed
+            for target in old.targets
+            if target.endswith(")")
         }
         for word in sorted(words - {name}):
             others = self._reader.operators_taking(word)
-            if len(others) <= _MOST_TAKING:
+            if 0 < len(others) <= _MOST_TAKING:
                 listed = ", ".join(f"`{path}`" for path in others)
                 recognition.notes.append(f"`{word}` is the argument of {listed}.")
 
@@ -262,14 +240,11 @@ class Messages:
     def _values(self, query: str, recognition: Recognition) -> None:
         for match in _matches(forms.BAD_ENUM, query):
             items = re.findall(r"'([^']+)'", match["items"])
-            removed = None
             function = forms.IN_FUNCTION.search(query)
             called = self._function(function["method"]) if function else ""
-            owners = sorted(
-                (owner for owner, _ in self._enum_values.owners(items)),
-                key=lambda owner: not (called and owner.startswith(called)),
-            )
-            for rank, owner in enumerate(owners[:_MANY]):
+            owners = self._enum_values.taking(items, called)[:_MANY]
+            removed = None
+            for rank, owner in enumerate(owners):
                 path, _, parameter = owner.partition("(")
                 if rank < 2:
                     recognition.add(path, 0.95 - 0.02 * rank, "error message")
@@ -277,6 +252,9 @@ class Messages:
                 removed = removed or self._removed.of_part(path, f"{part}{match['name']}")
             if removed:
                 recognition.add_removed(removed)
+            elif owners and (where := self._enum_values.where(owners[0], match["name"])):
+                taken = f"not taken {where[4:]}" if where.startswith("not ") else f"taken {where}"
+                recognition.notes.append(f"`{owners[0]}` = '{match['name']}' is {taken}.")
             elif similar := [f"`{name}`" for name, _ in nearest(match["name"], items)]:
                 recognition.notes.append(
                     f"`{match['name']}` is not an item of this enum; closest: {', '.join(similar)}."
@@ -332,12 +310,53 @@ class Messages:
                     remove := self._resolver.member(TYPES + entry.collection, "remove")
                 ):
                     recognition.add(remove.path, 0.84, "error message")
+        for match in _matches(forms.NOT_MADE, query):
+            self._not_made(match["type"], recognition)
+        if forms.NO_DRAWING.search(query):
+            self._no_drawing(recognition)
         for match in _matches(forms.NO_NODE_TYPE, query):
             if entry := self._reader.entry(TYPES + match["type"]):
                 recognition.add(entry.path, 0.95, "error message")
             else:
                 for removed in self._removed.spelled(match["type"]):
                     recognition.add_removed(removed)
+
+    def _no_drawing(self, recognition: Recognition) -> None:
+        """Blender without a window: what begins drawing there, where this version has it."""
+        if self._reader.entry(_BEGIN_DRAWING):
+            recognition.add(_BEGIN_DRAWING, 0.95, "error message")
+        else:
+            recognition.notes.append(_NO_DRAWING)
+            recognition.add("bpy.app.background", 0.9, "error message")
+
+    def _not_made(self, written: str, recognition: Recognition) -> None:
+        """A class that is not made by calling it: what makes one."""
+        name = written.rpartition(".")[2]
+        cls = next((entry.path for entry in self._reader.by_name(name) if entry.kind == "class"), "")
+        creation = self._reader.creations([cls]).get(cls)
+        makers = [creation.maker] if creation else self._returning(cls)
+        if makers:
+            calls = [creation.call] if creation else [f"{maker}()" for maker in makers[:_FEW]]
+            listed = ", ".join(f"`{call}`" for call in calls)
+            recognition.notes.append(f"`{cls}` is not made by calling it, but by {listed}.")
+        for rank, maker in enumerate(makers[:_FEW]):
+            recognition.add(maker, 0.98 - 0.01 * rank, "error message")
+
+    def _returning(self, cls: str) -> list[str]:
+        """The functions of a class's package that return an instance of it, most used first; not those of ``bpy``.
+
+        The thousands of that one would take seconds, and what makes its classes is known.
+        """
+        package = cls.partition(".")[0]
+        if package in {"", "bpy"}:
+            return []
+        sql = "SELECT path FROM symbols WHERE kind = 'function' AND path GLOB ? AND owner != ? ORDER BY path"
+        symbols = filter(
+            None, (self._reader.symbol(row[0]) for row in self._reader.rows(sql, f"{package}.*", cls))
+        )
+        paths = [s.path for s in symbols if any(returned.type == cls for returned in s.returns)]
+        uses = self._reader.use_counts(paths)
+        return sorted(paths, key=lambda path: -uses.get(path, 0))
 
     @staticmethod
     def _products(query: str, recognition: Recognition) -> None:

@@ -89,4 +89,5 @@ class Notes:
         if not missing.sure or not self._reader.history_versions:
             return ""
         first, last = self._reader.history_versions[0], self._reader.history_versions[-1]
+        first = self._reader.since(missing.owner) or first
         return f", and never had it from {first} to {last} (add-ons and custom properties aside)"

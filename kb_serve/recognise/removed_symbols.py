@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_serve.reader import TYPES
+from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.variables import usual_classes
 
 if TYPE_CHECKING:
@@ -83,8 +84,18 @@ class RemovedSymbolLookup:
         if span is None or self._reader.still_works(path):
             return None
         successors = tuple(self._reader.successors(path) or self._of_same_items(path, span))
-        similar = () if successors else tuple(self._reader.similar_names(path))
+        similar = () if successors else self._similar(path)
         return RemovedSymbol(path, *span, successors, similar)
+
+    def _similar(self, path: str) -> tuple[tuple[str, float], ...]:
+        """What resembles a symbol without known successor; of an argument, ``f(x)``, the others of its call."""
+        whole, mark, argument = path.removesuffix(")").partition("(")
+        symbol = self._reader.symbol(whole) if mark and argument.isidentifier() else None
+        if symbol is None:
+            return tuple(self._reader.similar_names(path))
+        names = [parameter.name for parameter in symbol.parameters]
+        alike = nearest(argument, names) if argument not in names else ()
+        return tuple((f"{whole}({name})", score) for name, score in alike)
 
     def _of_same_items(self, path: str, span: tuple[str, str, str]) -> Iterator[Successor]:
         """What took the place of an item of an argument, where that is known of a property with the same items."""

@@ -25,7 +25,16 @@ FIRST = {
     "TypeError: bpy_struct: item.attr = val: Object.data expected a Mesh type, not Object": "bpy.types.Object.data",
     'AttributeError: bpy_struct: attribute "type" from "Object" is read-only': "bpy.types.Object.type",
     "AttributeError: 'Context' object has no attribute 'active_objct'": "bpy.types.Context.active_object",
-    "AttributeError: 'NoneType' object has no attribute 'key_blocks'": "bpy.types.Curve.shape_keys",
+    "AttributeError: 'NoneType' object has no attribute 'key_blocks'": "bpy.types.Mesh.shape_keys",
+    "AttributeError: 'NoneType' object has no attribute 'bone_groups'": "bpy.types.Armature.collections",
+    'AttributeError: bpy_prop_collection: attribute "link" not found': "bpy.types.CollectionObjects.link",
+    'AttributeError: bpy_prop_collection: attribute "active" not found': "bpy.types.LayerObjects.active",
+    'AttributeError: bpy_prop_collection: attribute "append" not found': "bpy.types.IDMaterials.append",
+    "AttributeError: 'Scene' object has no attribute 'resolution_x'": "bpy.types.RenderSettings.resolution_x",
+    "AttributeError: 'Object' object has no attribute 'mass'": "bpy.types.RigidBodyObject.mass",
+    "TypeError: cannot create 'GPUShader' instances": "gpu.shader.from_builtin",
+    "TypeError: cannot create 'BMVert' instances": "bmesh.types.BMVertSeq.new",
+    "SystemError: GPU functions for drawing are not available in background mode": "bpy.app.background",
     "TypeError: bpy_struct: item.attr = val: enum \"CYCLE\" not found in ('BLENDER_EEVEE', 'BLENDER_WORKBENCH', "
     "'CYCLES')": "bpy.types.RenderSettings.engine",
     "ValueError: edges.new(): this edge exists": "bmesh.types.BMEdgeSeq.new",
@@ -67,6 +76,33 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "mode_set(mode='EDIT')",
         ),
         ("AttributeError: 'NoneType' object has no attribute 'mass'", "`.mass` is None"),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'nodes'",
+            "`.nodes`, a `bpy.types.NodeTree`, is None: it does not exist (yet), or was not found. One is reached by "
+            "`bpy.types.Material.node_tree`, ",
+        ),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'show_only_render'",
+            "One is reached by `bpy.types.Context.space_data`, `bpy.types.AreaSpaces.active`.",
+        ),
+        (
+            'AttributeError: bpy_prop_collection: attribute "unlink" not found',
+            "has no `unlink`; others have: `bpy.types.Collection.objects.unlink`, "
+            "`bpy.types.Collection.children.unlink`.",
+        ),
+        (
+            "AttributeError: 'GreasePencilFrame' object has no attribute 'strokes'",
+            "never had it from 4.3 to 5.2 (add-ons and custom properties aside).\nIts `.drawing` has it: "
+            "`.drawing.strokes` (`bpy.types.GreasePencilDrawing.strokes`).",
+        ),
+        (
+            "TypeError: cannot create 'GPUShader' instances",
+            "is not made by calling it, but by `gpu.shader.from_builtin()`, `gpu.shader.create_from_info()`.",
+        ),
+        (
+            'Converting py args to operator properties:: keyword "export_textures" unrecognized',
+            "Similar names: `bpy.ops.wm.usd_export(export_textures_mode)`",
+        ),
         ("ReferenceError: StructRNA of type Object has been removed", "data was removed, freed"),
         ("ReferenceError: BMesh data of type BMVert has been removed", "`v.is_valid` tells"),
         (
@@ -191,3 +227,26 @@ def test_an_unknown_keyword_alone_names_the_operators_that_know_it(kb: Knowledge
         "`bpy.ops.wm.stl_export`." in notes
     )
     assert answer.kind == "candidates"
+
+
+IMAGES = (
+    "'AVIF', 'JPEG', 'OPEN_EXR', 'PNG', 'WEBP', 'BMP', 'CINEON', 'DPX', 'IRIS', 'JPEG2000', 'HDR', 'TARGA'"
+)
+
+
+def test_a_list_of_items_tells_the_mode_of_the_property(kb: KnowledgeBase) -> None:
+    message = f"TypeError: item.attr = val: enum \"FFMPEG\" not found in ({IMAGES}, 'TARGA_RAW', 'TIFF')"
+    answer = kb.query(message)
+    assert answer.hits[0].id == "bpy.types.ImageFormatSettings.file_format"
+    assert any("= 'FFMPEG' is taken only with media_type='VIDEO'." in note for note in answer.notes)
+
+
+def test_what_became_an_operator_is_no_argument(kb: KnowledgeBase) -> None:
+    notes = kb.query('keyword "use_auto_smooth" unrecognized').notes
+    assert notes
+    assert not any(" of ." in note for note in notes)
+
+
+def test_of_many_operators_that_lost_an_argument_the_most_used_are_named(kb: KnowledgeBase) -> None:
+    answer = kb.query('Converting py args to operator properties:: keyword "view_align" unrecognized')
+    assert "bpy.ops.mesh.primitive_cube_add" in [hit.id for hit in answer.hits[:3]]

@@ -1,0 +1,150 @@
+"""Finds whose a member is that a message tells of without its class: of None, of some collection, of a thing within."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import terms
+from kb_build.records import FILLED_BY
+from kb_serve.reader import COLLECTION, STRUCT, TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+
+_FEW = 3
+_MANY = 8  # where more properties may be None, none is likely enough to be named
+_ANY = frozenset({STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup"})  # pointers to these may lead to anything
+_IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
+
+
+class UnnamedOwners:
+    """Finds owners of members against one base."""
+
+    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup) -> None:
+        self._reader = reader
+        self._removed = removed
+
+    def of_none(self, name: str, query: str, recognition: Recognition) -> None:
+        """What may have been None before ``.name``: the pointers to classes that have the name, or once had it."""
+        owners = {
+            entry.owner.removeprefix(TYPES)
+            for entry in self._reader.by_name(name)
+            if entry.kind in {"property", "function"}
+            and entry.owner.startswith(TYPES)
+            and entry.group != "ui"
+        }
+        gone = [] if owners else self._once(name)
+        for removed in gone:
+            recognition.add_removed(removed)
+            owners.add(removed.path.rpartition(".")[0].removeprefix(TYPES))
+        holders = [entry for owner in sorted(owners)[:_MANY] for entry in self._holders(owner)]
+        around = set(terms(query))
+        likely = [
+            entry for entry in holders if set(terms(f"{entry.owner} {entry.name}")) <= around | {"type"}
+        ]
+        few = len(owners) <= _FEW
+        if few and len(holders) <= _MANY:
+            likely = likely or holders
+        self._tell(name, owners, holders, recognition)
+        for rank, entry in enumerate(self._weightiest(likely)[:_FEW]):
+            recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
+            if not gone:
+                recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
+            if few and (call := self._flag(entry, FILLED_BY)):
+                recognition.notes.append(f"`{entry.path}` is None before `{call}`.")
+
+    def _tell(
+        self, name: str, owners: set[str], holders: list[SymbolEntry], recognition: Recognition
+    ) -> None:
+        """Notes that something was None, and where only one class has the name, of which class, held by what."""
+        of = may_be = ""
+        if len(owners) == 1:
+            of = f", a `{TYPES}{next(iter(owners))}`,"
+            listed = ", ".join(f"`{entry.path}`" for entry in self._weightiest(holders)[:_FEW])
+            may_be = f" One is reached by {listed}." if listed else ""
+        recognition.notes.append(_IS_NONE.format(name=name, of=of) + may_be)
+
+    def _holders(self, cls: str) -> list[SymbolEntry]:
+        """The pointers that may lead to an instance of a class, and may be None; those to itself only if no others."""
+        below = self._reader.subclasses(TYPES + cls)
+        kinds = [entry.name for entry in self._reader.lineage(TYPES + cls) if entry.path not in _ANY]
+        kinds += [entry.name for entry in below] if len(below) <= _MANY else []
+        holders = [
+            entry
+            for kind in kinds
+            for entry in self._reader.pointing_at(kind)
+            if entry.group != "ui" and self._flag(entry, "never-none") is None
+        ]
+        return [entry for entry in holders if entry.owner != TYPES + cls] or holders
+
+    def _once(self, name: str) -> list[RemovedSymbol]:
+        """The removed data members of that name, if few: those with a successor first."""
+        paths = [path for path in self._removed.paths_named(name) if path.startswith(TYPES)]
+        if len(paths) > _MANY:
+            return []
+        found = list(filter(None, map(self._removed.of_path, paths)))
+        return sorted(found, key=lambda removed: not removed.successors) if len(found) <= _FEW else []
+
+    def _flag(self, entry: SymbolEntry, prefix: str) -> str | None:
+        """What follows the prefix in a symbol's flags; None where no flag begins with it."""
+        symbol = self._reader.symbol(entry.path)
+        flags = symbol.flags if symbol else ()
+        return next((flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix)), None)
+
+    def of_a_collection(self, name: str, recognition: Recognition) -> None:
+        """A member that a collection lacks: the one that lost it, and the collections that have it, weightiest first.
+
+        Messages do not name a collection's own class.
+        """
+        lost = [
+            path for path in self._removed.paths_named(name) if path.rpartition(".")[0] in self._collections
+        ]
+        removed = self._removed.of_path(lost[0]) if len(lost) == 1 else None
+        if removed:
+            recognition.add_removed(removed)
+        else:
+            recognition.add(COLLECTION, 0.6, "error message")
+        members = [entry for entry in self._reader.by_name(name) if entry.kind in {"property", "function"}]
+        having = self._weightiest(entry for entry in members if entry.owner in self._collections)
+        for rank, entry in enumerate(having[:_FEW]):
+            recognition.add(entry.path, 0.86 - 0.01 * rank, "same name")
+        if having:
+            listed = ", ".join(f"`{self._collections[entry.owner]}.{name}`" for entry in having[:_FEW])
+            more = f" and {len(having) - _FEW} more" if len(having) > _FEW else ""
+            recognition.notes.append(f"This collection has no `{name}`; others have: {listed}{more}.")
+
+    @cached_property
+    def _collections(self) -> dict[str, str]:
+        """Class of collections → the weightiest property that is one: ``LayerObjects`` → ``ViewLayer.objects``."""
+        sql = "SELECT path, collection FROM symbols WHERE target != '' AND collection != '' ORDER BY path"
+        rows = self._reader.rows(sql)
+        weights = self._reader.weights([path for path, _ in rows])
+        found: dict[str, str] = {}
+        for path, cls in sorted(rows, key=lambda row: -weights.get(row[0], 0)):
+            found.setdefault(TYPES + cls, path)
+        return found
+
+    def within(self, owner: str, name: str) -> list[tuple[str, SymbolEntry]]:
+        """(pointer, member) for the members of that name which a class's pointers lead to: ``drawing``, ``strokes``."""
+        found = {
+            member: pointer.name
+            for cls in self._reader.lineage(owner)
+            if cls.path != STRUCT
+            for pointer in self._reader.members(cls.path).values()
+            if pointer.type == "pointer" and pointer.target
+            for member in [
+                self._reader.member([e.path for e in self._reader.lineage(TYPES + pointer.target)], name)
+            ]
+            if member and member.owner != STRUCT
+        }
+        return [(found[member], member) for member in self._weightiest(found)]
+
+    def _weightiest(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
+        listed = list(entries)
+        weights = self._reader.weights([entry.path for entry in listed])
+        return sorted(listed, key=lambda entry: -weights.get(entry.path, 0))
