@@ -23,8 +23,11 @@ _NO_NODES = frozenset(
         "tag",
         "conversion",
         "is_async",
+        "simple",
+        "ctx",
+        "op",
+        "ops",
     }
-    | {"simple", "ctx", "op", "ops"}
 )
 
 

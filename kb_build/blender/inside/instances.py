@@ -81,6 +81,15 @@ def refused_value_items(owner, name, flag=False):
     return ()
 
 
+def put(struct, name, value):
+    """Gives a setting a value. Returns whether it has it now."""
+    try:
+        setattr(struct, name, value)
+        return getattr(struct, name) == value
+    except Exception:
+        return False
+
+
 def declaring_class(rna, name):
     """The class whose own property it is, seen from one of its descendants."""
     pointer = rna.properties[name].as_pointer()
@@ -419,13 +428,7 @@ class Observer:
         for field in self.layout(struct).modes:
             start = before.get(field)
             for item in refused_value_items(struct, field.name):
-                if item == start:
-                    continue
-                try:
-                    setattr(struct, field.name, item)
-                except Exception:
-                    continue
-                if getattr(struct, field.name) != item:
+                if item == start or not put(struct, field.name, item):
                     continue
                 mode = f"{field.name}={item!r}"
                 has_changed_others = self.compare(struct, label, mode, field, before)
@@ -462,11 +465,9 @@ class Observer:
         for field in self.layout(struct).modes if beside else ():
             mode = f"{declaring_class(struct.bl_rna, field.name)}.{field.name}"
             for item in refused_value_items(struct, field.name):
-                try:
-                    setattr(struct, field.name, item)
-                except Exception:
+                if item == start.get(field) or not put(struct, field.name, item):
                     continue
-                for part, before in beside if item != start.get(field) else ():
+                for part, before in beside:
                     if self.compare(part, label, f"{mode}={item!r}", None, before):
                         self.restored(part, before)
             self.restored(struct, start)

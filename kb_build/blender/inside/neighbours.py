@@ -7,21 +7,12 @@ owner, into each of theirs. Where a neighbour's setting decides, its other setti
 
 import bpy
 
-from .instances import UNVARIED, declaring_class, refused_value_items
+from .instances import UNVARIED, declaring_class, put, refused_value_items
 
 
 def can_be_varied(struct):
     """Whether it may be put into modes, and is Blender's own: what Python registers is known to Python alone."""
     return struct.bl_rna.identifier not in UNVARIED and not isinstance(struct, bpy.types.PropertyGroup)
-
-
-def put(struct, name, value):
-    """Gives a setting a value. Returns whether it has it now."""
-    try:
-        setattr(struct, name, value)
-        return getattr(struct, name) == value
-    except Exception:
-        return False
 
 
 def values_of(struct, names):

@@ -9,7 +9,7 @@ import itertools
 
 import bpy
 
-from .instances import refused_items
+from .instances import put, refused_items
 from .rna import read_items
 from .wire import limit, plain
 
@@ -90,15 +90,6 @@ def found(sockets, spelling):
         return sockets[spelling].as_pointer()
     except (KeyError, IndexError):
         return 0
-
-
-def put(node, name, value):
-    """Sets a node's mode; False where this node does not take it."""
-    try:
-        setattr(node, name, value)
-    except (TypeError, AttributeError):
-        return False
-    return True
 
 
 class Sockets:
