@@ -51,8 +51,9 @@ def read_symbols(base: Path) -> tuple[str, list[Symbol]]:
 
 
 def stub_files(stubs: Stubs) -> Iterator[tuple[PurePosixPath, str]]:
-    """The files of stubs: (path, text)."""
-    for module, text in sorted(stubs.modules.items()):
+    """The files of stubs: (path, text). A package of which nothing is told but what is in it has its mark alone."""
+    tops = {module.partition(".")[0] for module in stubs.modules}
+    for module, text in sorted({**dict.fromkeys(tops, f"{MARK}\n"), **stubs.modules}.items()):
         top, *rest = module.split(".")
         folder = PurePosixPath(f"{top}-stubs", *rest)
         is_package = module in stubs.packages or not rest

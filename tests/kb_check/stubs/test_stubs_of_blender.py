@@ -126,6 +126,15 @@ def test_every_class_is_written(folder: Path, base: Path) -> None:
     }
 
 
+def test_every_package_is_marked_as_written_here(folder: Path) -> None:
+    packages = list(folder.glob("*-stubs"))
+    assert "_bpy_internal-stubs" in {
+        package.name for package in packages
+    }  # it has modules, and nothing itself
+    for package in packages:
+        assert (package / "__init__.pyi").read_text(encoding="utf-8").startswith(MARK), package.name
+
+
 def test_writes_again_over_its_own(small_base: Path, tmp_path: Path) -> None:
     write_folder(small_base, tmp_path)
     stale = tmp_path / "bpy-stubs" / "stale.pyi"
