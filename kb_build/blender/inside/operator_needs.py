@@ -18,8 +18,14 @@ MOST_CASES = 3
 MOST_MODIFIERS = 6
 MODIFIER = 'obj.modifiers.new("name", '
 THEN = " then "
-# It crashes Blender 5.0 where no object is active.
-NOT_ASKED = frozenset({"anim.slot_channels_move_to_new_action"})
+NOT_ASKED = frozenset(
+    {
+        # It crashes Blender 5.0 where no object is active.
+        "anim.slot_channels_move_to_new_action",
+        # It answers as far as Blender has read its asset libraries, which it does in the background.
+        "brush.asset_revert",
+    }
+)
 # Of bpy.data.
 CLEARED = (
     "scenes",
@@ -119,7 +125,14 @@ class Objects:
         self.unselected = set()
 
     def ask(self, known):
-        """Asks these operators."""
+        """Asks these operators, and those that can run again: what does not answer as before depends on more."""
+        self.passed = self.asked(known)
+        again = self.asked({path: known[path] for path in self.passed})
+        self.passed = {path: found for path, found in self.passed.items() if again.get(path) == found}
+
+    def asked(self, known):
+        """Path → {type: modes in which it can run}, of these operators."""
+        passed = {}
         for kind in choices("Object", "type"):
             try:
                 obj = typed_object(kind)
@@ -132,22 +145,13 @@ class Objects:
                 obj.select_set(False)
                 self.unselected.update(can_run(known))
             obj.select_set(True)
+            self.tried[kind] = []
             for mode in modes(obj):
-                self.tried.setdefault(kind, []).append(mode)
+                self.tried[kind].append(mode)
                 for path in can_run(known):
-                    self.passed.setdefault(path, {}).setdefault(kind, []).append(mode)
+                    passed.setdefault(path, {}).setdefault(kind, []).append(mode)
             remove(obj)
-        self.keep_repeated(known)
-
-    def keep_repeated(self, known):
-        """Forgets the operators that do not answer twice as they did: something else has its part in it."""
-        obj = mesh_object()
-        obj.select_set(True)
-        again = set(can_run(known))
-        for path in list(self.passed):
-            if (path in again) != ("OBJECT" in self.passed[path].get("MESH", ())):
-                del self.passed[path]
-        remove(obj)
+        return passed
 
     def needs(self, path):
         """What an operator wants, in words."""
