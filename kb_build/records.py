@@ -27,11 +27,17 @@ LinkKind = Literal["manual", "base", "pointer", "collection", "socket-of"]
 
 # Where an enum item is taken that RNA lists and every instance refused.
 NOT_TAKEN = "by none that was tried"
+# How the types of parameters end that are texts for which None can be given, too.
+OR_NONE = " or None"
 # How flags begin that say what fills a pointer that is None on a new thing, and on which new things it is not None.
 FILLED_BY = "filled-by:"
 FILLED_ON = "filled-on:"
 # How a flag begins that says what an operator's poll wants, of all that was tried.
 NEEDS = "needs:"
+# How flags begin that name the types of areas in which alone an operator runs (``any``), and the member of the context
+# that it takes instead.
+AREAS = "areas:"
+GIVEN = "given:"
 # The flag of a socket that a node of a zone has once it is paired with the other one.
 WHEN_PAIRED = "when-paired"
 THEN = " then "  # between calls that fill it one after the other
@@ -86,9 +92,9 @@ class NewValue:
 class Parameter:
     """One argument (or returned value) of a function or an operator.
 
-    ``type`` is text for people (``"float[3]"``, ``"enum"``, ``"Object"``); ``default`` is absent (None with
-    ``required``) when the caller must give the argument. ``values_asked`` are those that Blender named in a new file,
-    of an enumeration that it lists none of, or a stand-in: other files may have more.
+    ``type`` is text for people (``"float[3]"``, ``"enum"``, ``"Object"``, ``"string or None"``); ``default`` is absent
+    (None with ``required``) when the caller must give the argument. ``values_asked`` are those that Blender named in a
+    new file, of an enumeration that it lists none of, or a stand-in: other files may have more.
     """
 
     name: str

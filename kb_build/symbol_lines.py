@@ -7,7 +7,7 @@ from itertools import dropwhile, groupby, takewhile
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
-from kb_build.records import FACTORY, FILLED_BY, FILLED_ON, NEEDS, NOT_TAKEN, THEN
+from kb_build.records import AREAS, FACTORY, FILLED_BY, FILLED_ON, GIVEN, NEEDS, NOT_TAKEN, THEN
 from kb_build.schema import TEST_ON
 
 if TYPE_CHECKING:
@@ -85,7 +85,24 @@ def fillers(symbol: Symbol) -> list[str]:
 
 def operator_needs(symbol: Symbol) -> str:
     """What an operator's poll wants, of all that was tried; empty where that is not known."""
-    return "".join(symbol.flagged(NEEDS))
+    given = [f"`{member}` in the context (`temp_override({member}=…)`)" for member in symbol.flagged(GIVEN)]
+    areas = [area_text(operator_areas(symbol))] if operator_areas(symbol) else []
+    return "".join(symbol.flagged(NEEDS)) or ", or ".join(given + areas)
+
+
+def operator_areas(symbol: Symbol) -> tuple[str, ...]:
+    """The types of areas in which alone an operator runs; ``any`` where it is most of them."""
+    return symbol.flagged(AREAS)
+
+
+def operator_given(symbol: Symbol) -> str:
+    """The member of the context that an operator takes instead of an area, or of what an area puts there."""
+    return "".join(symbol.flagged(GIVEN))
+
+
+def area_text(types: Sequence[str]) -> str:
+    """``an area of type VIEW_3D or IMAGE_EDITOR``."""
+    return "an area" if "any" in types else f"an area of type {' or '.join(types)}"
 
 
 def _made_by(symbol: Symbol) -> str:

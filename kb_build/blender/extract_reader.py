@@ -15,8 +15,10 @@ from kb_build.blender.enum_contexts import items_in_contexts
 from kb_build.errors import ExtractError
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
+    AREAS,
     FILLED_BY,
     FILLED_ON,
+    GIVEN,
     NEEDS,
     Default,
     Link,
@@ -147,6 +149,13 @@ def _add_needs(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
         row["flags"] = [*row.get("flags", ()), NEEDS + seen["needs"]]
 
 
+def _add_areas(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds in which areas an operator runs, and what it takes of the context instead."""
+    if row is not None:
+        given = [GIVEN + seen["given"]] if "given" in seen else []
+        row["flags"] = [*row.get("flags", ()), *(AREAS + area for area in seen.get("areas", ())), *given]
+
+
 def _add_argument_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
     """Adds the items that a function's argument takes; a default that is none of them is no value to give."""
     for parameter in (row or {}).get("parameters", ()):
@@ -163,6 +172,7 @@ _ADDED = {
     "new_values": _add_values,
     "new_pointer": _add_pointer,
     "operator_needs": _add_needs,
+    "operator_areas": _add_areas,
 }
 
 

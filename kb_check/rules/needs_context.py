@@ -14,75 +14,62 @@ a function ``register``), modules that only define, functions that the script do
 ``bpy.app.background`` or for the operator's ``poll``.
 
 Which operators those are was found by asking each whether it can run, with objects of all types in all modes, in every
-area and in none (``kb_check/inside/operator_areas.py``).
+area and in none (``kb_build/blender/inside/operator_areas.py``).
 """
 
 from __future__ import annotations
 
 import ast
-from functools import cache
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Builtin, Mapping, Operator
+from kb_build.symbol_lines import area_text, operator_areas, operator_given
 from kb_check.calls import calls
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
-    from collections.abc import Mapping as Table
 
+    from kb_build.records import Symbol
     from kb_check.script import Script
 
-TABLE = Path(__file__).parent.parent / "operator_areas.txt"
 _BACKGROUND = "bpy.app.background"
 
 
-@cache
-def operator_areas() -> Table[str, str]:
-    """Operator (``mesh.loopcut``) → the types of areas in which it runs, or ``any``.
-
-    A last ``id=`` is the member of the context that can be given instead of an area.
-    """
-    lines = (line.partition(": ") for line in TABLE.read_text(encoding="utf-8").splitlines())
-    return {name: areas for areas, _, names in lines for name in names.split()}
-
-
 def _check(script: Script) -> Iterator[Finding]:
-    table = operator_areas()
-    found = [
-        (call, areas) for call in calls(script)
-        if (areas := table.get(call.callee.symbol.path.removeprefix("bpy.ops.")))
-    ]  # fmt: skip
+    found = [call for call in calls(script) if _wants(call.callee.symbol)]
     if not found or _is_ready(script):
         return
     asked = set(_asked(script))
     given = [*_given_context(script), *_uncalled(script)]
-    for call, areas in found:
+    for call in found:
         path = call.callee.symbol.path
         first = script.type_of(call.node.args[0]) if call.node.args else None
         line = call.node.lineno
         if path in asked or isinstance(first, Mapping) or any(start <= line <= end for start, end in given):
             continue
         yield Finding(
-            RULE.id, "note", script.span(call.node), f"`{path}` runs in {_advice(areas)}", path,
+            RULE.id, "note", script.span(call.node), f"`{path}` {_advice(call.callee.symbol)}", path,
             ("bpy.types.Context.temp_override",),
         )  # fmt: skip
 
 
-def _advice(areas: str) -> str:
-    """What an operator runs in, and what to give it where there is no window."""
-    types = [word for word in areas.split() if not word.endswith("=")]
-    where = "an area" if types == ["any"] else f"an area of type {' or '.join(types)}"
-    lacking = "which a Blender without a window (`--background`) does not have"
-    if areas.endswith("="):
-        member = areas.rpartition(" ")[2]
-        return (
-            f"{where}, {lacking}, or with what it works on: give it that with "
-            f"`bpy.context.temp_override({member}…)`, which needs no window."
-        )
-    return f"{where}, {lacking}: give it one with `bpy.context.temp_override(window=…, area=…, region=…)`."
+def _wants(operator: Symbol) -> bool:
+    """Whether an operator wants what the context of a script does not have."""
+    return bool(operator_areas(operator) or operator_given(operator))
+
+
+def _advice(operator: Symbol) -> str:
+    """How an operator runs where there is no window."""
+    areas, member = operator_areas(operator), operator_given(operator)
+    given = f"give it that with `bpy.context.temp_override({member}=…)`"
+    if not areas:
+        return f"runs with `{member}` in the context, which is there in its panel alone: {given}."
+    where = f"runs in {area_text(areas)}, which a Blender without a window (`--background`) does not have"
+    if member:
+        return f"{where}, or with what it works on: {given}, which needs no window."
+    return f"{where}: give it one with `bpy.context.temp_override(window=…, area=…, region=…)`."
 
 
 def _is_ready(script: Script) -> bool:

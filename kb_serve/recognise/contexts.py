@@ -6,7 +6,10 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbol_lines import operator_areas, operator_given, operator_needs
+
 if TYPE_CHECKING:
+    from kb_build.records import Symbol
     from kb_serve.recognise.chains import Chain
 
 OVERRIDE = "bpy.types.Context.temp_override"
@@ -28,6 +31,13 @@ _EDITORS = {
     "outliner": "OUTLINER", "file": "FILE_BROWSER", "text": "TEXT_EDITOR", "console": "CONSOLE", "info": "INFO",
     "spreadsheet": "SPREADSHEET",
 }  # fmt: skip
+# A name for what a member of the context is taken from.
+_THINGS = {"id": "ob", "point_cache": "modifier.point_cache", "edit_image": "image", "edit_text": "text"}
+# Without it, it bakes nothing and says that it did.
+_ARGUMENTS = {"bpy.ops.ptcache.bake": "bake=True"}
+_INSTEAD = {
+    "bpy.ops.ptcache.bake": "`bpy.ops.ptcache.bake_all(bake=True)` needs none, and bakes all of the scene."
+}
 _OF_OBJECTS = frozenset(
     {
         "object",
@@ -44,28 +54,19 @@ _OF_OBJECTS = frozenset(
 )
 
 
-def context_for(path: str, needs: str = "") -> str:
-    """What lets an operator run whose ``poll()`` failed; ``needs`` is what it wants, of all that was tried."""
+def context_for(operator: Symbol) -> str:
+    """What lets an operator run whose ``poll()`` failed."""
+    path = operator.path
     _, _, module, name = path.split(".", 3)
     failed = f"`{path}.poll()` failed: "
-    if needs:
-        return f"{failed}of all that was tried, it takes {needs}. {_giving(path, needs)}".rstrip()
+    if needs := operator_needs(operator):
+        return f"{failed}of all that was tried, it takes {needs}. {_giving(operator, needs)}".rstrip()
     if module in _EDITORS:
-        return (
-            f"{failed}it runs in an area of type {_EDITORS[module]}. `area = next(a for a in "
-            f"bpy.context.window.screen.areas if a.type == '{_EDITORS[module]}')`; `region = next(r for r in "
-            f"area.regions if r.type == 'WINDOW')`; `{_WITH}(area=area, region=region): {path}()`."
-        )
+        return f"{failed}it runs in an area of type {_EDITORS[module]}. {_in_area(path, _EDITORS[module])}"
     if mode := "" if name.endswith("_add") else _MODES.get(module):
         return (
             f"{failed}it needs an active object of a fitting type in another mode: "
             f"`{_ACTIVE}`, then `bpy.ops.object.mode_set(mode='{mode}')`."
-        )
-    if module == "ptcache":
-        given = "bake=True" if name == "bake" else ""  # without, it bakes nothing and says that it did
-        return (
-            f"{failed}it needs the cache in the context: `{_WITH}(point_cache=modifier.point_cache): {path}({given})`. "
-            "`bpy.ops.ptcache.bake_all(bake=True)` needs none, and bakes all of the scene."
         )
     if module in _OF_OBJECTS or module in _MODES:
         return (
@@ -78,8 +79,24 @@ def context_for(path: str, needs: str = "") -> str:
     )
 
 
-def _giving(path: str, needs: str) -> str:
+def _in_area(path: str, area: str) -> str:
+    """Lines that give an operator an area; ``any`` for the first that there is."""
+    areas = "bpy.context.window.screen.areas"
+    found = f"{areas}[0]" if area == "any" else f"next(a for a in {areas} if a.type == '{area}')"
+    return (
+        f"`area = {found}`; `region = next(r for r in area.regions if r.type == 'WINDOW')`; "
+        f"`{_WITH}(area=area, region=region): {path}()`. Where there is no window, there is no area."
+    )
+
+
+def _giving(operator: Symbol, needs: str) -> str:
     """Lines that give an operator what it wants; empty where its needs say how."""
+    path = operator.path
+    if member := operator_given(operator):
+        given = f"`{_WITH}({member}={_THINGS.get(member, member)}): {path}({_ARGUMENTS.get(path, '')})`."
+        return f"{given} {_INSTEAD.get(path, '')}".rstrip()
+    if areas := operator_areas(operator):
+        return _in_area(path, areas[0])
     if not needs.startswith("an active"):
         return ""
     mode = _MODE.search(needs)

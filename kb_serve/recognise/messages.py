@@ -7,7 +7,6 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
-from kb_build.symbol_lines import operator_needs
 from kb_serve.reader import TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import unknown_keywords
@@ -166,7 +165,7 @@ class Messages:
         for match in _matches(forms.POLL, query):
             if symbol := self._reader.symbol(match["path"]):
                 recognition.add(symbol.path, 0.98, "error message")
-                recognition.notes.append(context_for(symbol.path, operator_needs(symbol)))
+                recognition.notes.append(context_for(symbol))
                 self._page(_ON_OPERATORS, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")
         for match in _matches(forms.WRONG_TYPE, query):

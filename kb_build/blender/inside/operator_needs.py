@@ -3,13 +3,14 @@
 
 Those that refuse in an empty scene are asked with an active object of every type in every mode. Those that refuse all
 of these are asked after everything was added to a mesh object and its scene that calls are known to add; and those
-that can run then, after each of these calls alone.
+that can run then, after each of these calls alone. The others may want an area (see operator_areas).
 """
 
 import traceback
 
 import bpy
 
+from . import operator_areas
 from .new_things import activate, add_object, attempts, choices, mesh_object, object_of, remove
 
 MOST_TYPES = 6
@@ -298,8 +299,12 @@ def find_all(write, observer, skipped):
     def with_parts():
         for path, calls in sorted(parts_needed(known, observer).items()):
             write("operator_needs", path=path, needs=added(path, calls))
+            del known[path]
 
-    for find in attempts(write, (with_objects, with_parts), skipped):
+    def with_areas():
+        operator_areas.find_all(write, known, empty_scene())
+
+    for find in attempts(write, (with_objects, with_parts, with_areas), skipped):
         try:
             find()
         except Exception:

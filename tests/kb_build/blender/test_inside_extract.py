@@ -673,7 +673,15 @@ def test_operators_can_run_with_what_they_are_said_to_want(
         ("object.vertex_group_remove", "an active object with what `obj.vertex_groups.new()` adds"),
         ("rigidbody.connect", "an active object with what `bpy.ops.rigidbody.object_add()` adds"),
         ("mesh.primitive_cube_add", ""),  # it runs in an empty scene
-        ("view3d.view_selected", ""),  # which an area decides about
+        ("view3d.view_selected", "an area of type VIEW_3D"),
+        ("anim.keyframe_insert", "an area"),
+        ("graph.clean", "an area of type DOPESHEET_EDITOR or GRAPH_EDITOR"),
+        (
+            "text.copy",
+            "`edit_text` in the context (`temp_override(edit_text=…)`), or an area of type TEXT_EDITOR",
+        ),
+        ("text.select_all", "an area of type TEXT_EDITOR"),  # with a text alone it ends Blender
+        ("ptcache.bake", "`point_cache` in the context (`temp_override(point_cache=…)`)"),
         ("anim.clear_useless_actions", ""),  # which wants what no object has
     ],
 )

@@ -3,14 +3,10 @@
 from __future__ import annotations
 
 import ast
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
 from statements_in_blender import run_statements
-
-from kb_check.rules.needs_context import operator_areas
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -235,23 +231,11 @@ def test_given_contexts_are_no_finding(check: Check, code: str) -> None:
     assert check("needs-context", f"import bpy\n{code}\n") == []
 
 
-@pytest.mark.whole
-def test_table_of_areas_is_what_this_blender_answers(tmp_path: Path) -> None:
-    """The whole table is made again, by the program that made it."""
-    from kb_check.rules import needs_context
-
-    table = tmp_path / "areas.txt"
-    program = needs_context.TABLE.parent / "inside" / "operator_areas.py"
-    subprocess.run(
-        [sys.executable, "-P", str(program), str(table)], check=True, timeout=280, capture_output=True
-    )
-    assert table.read_text(encoding="utf-8") == needs_context.TABLE.read_text(encoding="utf-8")
-    assert operator_areas()["view3d.view_selected"] == "VIEW_3D"
-
-
 def test_what_can_be_given_instead_of_an_area_is_told(check: Check) -> None:
     [finding] = check("needs-context", "import bpy\nbpy.ops.ed.lib_id_generate_preview()\n")
     assert "temp_override(id=…)" in finding.message
+    [finding] = check("needs-context", "import bpy\nbpy.ops.ptcache.bake(bake=True)\n")
+    assert "temp_override(point_cache=…)" in finding.message
     [finding] = check("needs-context", "import bpy\nbpy.ops.text.select_all()\n")  # would end Blender
     assert "area=…" in finding.message
 

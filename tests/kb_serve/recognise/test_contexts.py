@@ -24,6 +24,9 @@ if TYPE_CHECKING:
         ("mesh.subdivide", "mode_set(mode='EDIT')"),
         ("mesh.primitive_cube_add", "mode_set(mode='OBJECT')"),
         ("view3d.snap_cursor_to_center", "a.type == 'VIEW_3D'"),
+        ("mesh.loop_select", "a.type == 'VIEW_3D'"),
+        ("anim.keyframe_insert", "`area = bpy.context.window.screen.areas[0]`"),
+        ("asset.mark", "`with bpy.context.temp_override(id=ob): bpy.ops.asset.mark()`."),
         (
             "ptcache.bake",
             "with bpy.context.temp_override(point_cache=modifier.point_cache): bpy.ops.ptcache.bake(bake=True)",
