@@ -138,6 +138,12 @@ def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
     return found
 
 
+def alias(script: Script, node: ast.expr) -> ast.expr:
+    """What a name is another name of: the member that it is bound to, and to nothing else; else the node itself."""
+    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
+    return values[0] if len(values) == 1 and isinstance(values[0], ast.Attribute) else node
+
+
 @once_per_script
 def _handed_on(script: Script) -> frozenset[str]:
     """The names whose values are passed to functions that are neither the API's nor the script's own."""

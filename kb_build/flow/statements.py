@@ -227,7 +227,7 @@ class Statements(Calls):
         # Only another version's code is left out: a switch may be set by whoever reads the script.
         truth = literal(test) if is_decided(test) else None
         before = self.scope.state
-        asks = truth is None and self._asks_version(node.test)
+        asks = truth is None and (self._asks_version(node.test) or _is_for_type_checkers(node.test))
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
             if isinstance(truth, bool) and truth is not holds:
@@ -738,6 +738,12 @@ def _reads_version(function: ast.AST) -> bool:
         and (node.value.attr if isinstance(node.value, ast.Attribute) else node.value.id) == "app"
         for node in walk(function)
     )
+
+
+def _is_for_type_checkers(test: ast.expr) -> bool:
+    """Whether what follows a condition never runs: it may name what only stubs have."""
+    name = test.attr if isinstance(test, ast.Attribute) else test.id if isinstance(test, ast.Name) else ""
+    return name == "TYPE_CHECKING"
 
 
 def _differs(before: State, after: State) -> bool:

@@ -28,7 +28,7 @@ from kb_build.flow.types import Instance
 from kb_build.symbol_lines import usual_default
 from kb_check.calls import calls
 from kb_check.findings import Finding
-from kb_check.made_here import called_operators, callee_path, knows_all, named_words
+from kb_check.made_here import alias, called_operators, callee_path, knows_all, named_words
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 
@@ -246,6 +246,7 @@ def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
     found = _BY.fullmatch(item.where)
     kinds = set(found[2].split(", ")) if found else set[str]()
     while kinds:
+        node = alias(script, node)
         cls = _class_of(script, node)
         symbol = script.api.symbols.symbol(cls) if cls else None
         if symbol and symbol.base and kinds <= _labels_below(script, symbol.base):

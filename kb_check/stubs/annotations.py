@@ -21,6 +21,7 @@ from kb_build.flow.types import (
     Type,
     Union,
 )
+from kb_build.records import OR_NONE
 from kb_check.stubs.enums import Enums, values_of
 from kb_check.stubs.python_protocols import GENERIC
 
@@ -232,12 +233,12 @@ class Annotations:
             if isinstance(parameter.default, list) or parameter.type.startswith("set") or _is_set(parameter):
                 text = f"set[{text}]"
         else:
-            text = self.text(parameter.type, scope, taken=True)
+            text = self.text(parameter.type.removesuffix(OR_NONE), scope, taken=True)
             if self._is_callback(scope) and text.startswith(T):
                 text = self.instance(text)
             elif self._may_be_none(parameter, text, scope):
                 text += " | None"
-        is_none = parameter.default is None and not parameter.required
+        is_none = parameter.default is None and not parameter.required and parameter.type != "string"
         return f"{text} | None" if is_none and text != ANY and not text.endswith("None") else text
 
     @staticmethod
@@ -248,10 +249,10 @@ class Annotations:
 
     @staticmethod
     def _may_be_none(parameter: Parameter, text: str, scope: str) -> bool:
-        """Whether None can be given for a pointer or a text: RNA does not tell for which it cannot."""
+        """Whether None can be given for a text, or for a pointer, of which RNA does not tell."""
         if text.startswith(T):
             return not parameter.required or (scope.startswith(T) and text not in _ALWAYS_GIVEN)
-        return parameter.type == "string" and scope.startswith(T)
+        return parameter.type.endswith(OR_NONE)
 
     def results(self, symbol: Symbol, absent: str) -> str:
         """What a function returns; ``absent`` where the records tell nothing."""

@@ -68,8 +68,11 @@ WRONG = {
         "field.shape = 'LINE'",
         "tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\n"
         "tree.interface.new_socket('x', socket_type='NodeSocketGeometry')",
+        "tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\nitems = tree.interface\n"
+        "items.new_socket('x', socket_type='NodeSocketGeometry')",
         "curve = bpy.data.curves.new('x', 'CURVE')\ncurve.dimensions = '3D'\ncurve.fill_mode = 'BOTH'",
     ],
+    "wrong-type": [_TREE + "tree.interface.new_socket('x', description=None)"],
     "unknown-name": ["import bgl", "from bgl import glEnable"],
     "unknown-attribute": [
         "bpy.context.scene.cycles.use_square_samples = True",
@@ -97,6 +100,7 @@ RIGHT = [
     "bpy.context.scene.view_settings.look = 'AgX - High Contrast'",
     "try:\n    import bgl\nexcept ImportError:\n    bgl = None",
     "if bpy.app.version < (3, 5, 0):\n    import bgl",
+    "from typing import TYPE_CHECKING\nif TYPE_CHECKING:\n    import bgl",
     _OBJECT + "ob.driver_add('location', -1)[0].driver",
     _OBJECT + "place = -1\nob.driver_add('location', place)[0].driver",
     _POINTS + "if 'Density Max' in points.inputs:\n    points.inputs['Density Max'].default_value = 1",
