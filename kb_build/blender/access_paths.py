@@ -40,6 +40,8 @@ _ACTIVE_GAIN = 1.1  # the active element is what scripts begin with; any other o
 _OBJECT_DATA = ("Mesh", "Armature")
 # A driver is on a curve of its own kind, which RNA does not tell from others.
 _TOLD = {"Driver": 'bpy.context.object.animation_data.drivers.find("location", index=0).driver'}
+# Objects have them too, but only chains of bones are moved by them.
+_OF_BONES = ("KinematicConstraint", "SplineIKConstraint")
 _TOLD_COST = 5  # of what Blender tells how to reach: the preferences of an add-on
 
 
@@ -182,6 +184,9 @@ def reached_expressions(
                 if cls in graph.trees.get(child, (cls,)):
                     by_chance = 0 if step.many and child in graph.names else _KIND_BY_CHANCE
                     offer(reached + 1 + by_chance, child, here, many=step.many)
+    for cls in _OF_BONES:
+        if cls in expressions and "PoseBone" in expressions:
+            expressions[cls] = f"{expressions['PoseBone']}.constraints{_key(cls, graph)}"
     # A shader's nodes live in a material, where there are others like it; some in the tree of another data-block.
     for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
         holder = (places or {}).get(cls, "Material")

@@ -43,6 +43,12 @@ POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
 NOT_MADE = re.compile(r"cannot create '(?P<type>[\w.]+)' instances")
 NO_DRAWING = re.compile(r"GPU functions for drawing are not available")
+# Of Mantaflow's own classes: its solver ends with these.
+NO_FLUIDS = re.compile(
+    r"\bManta::Error\b"
+    r"|'(?:Levelset|MAC|Flag|Real|Vec|Int)Grid\w*' object has no attribute"
+    r"|'(?:BasicParticle|Turbulence)System' object has no attribute"
+)
 NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w+) undefined")
 
 # The wording of messages that looks like code, or like names of classes and members.

@@ -49,6 +49,12 @@ _NO_DRAWING = (
     "shaders, batches and off-screen buffers of `gpu` work only in a Blender with a window. Images are rendered "
     "without one: `bpy.ops.render.render(write_still=True)`."
 )
+_BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
+_NO_FLUIDS = (
+    "Mantaflow, which simulates fluids, is not set up wholly where Blender is a Python module (`import bpy` in a Python "
+    "of one's own): every bake of a fluid ends the process there. Run the script with Blender itself: "
+    "`blender --background scene.blend --python script.py`."
+)
 _READS_ONLY = (
     "`draw()` and `poll()` of panels, menus, headers, lists and operators only read: nothing may be written there. "
     "Write in an operator's `execute()` (a button calls it), in a handler of `bpy.app.handlers`, or later, by "
@@ -313,6 +319,9 @@ class Messages:
             self._not_made(match["type"], recognition)
         if forms.NO_DRAWING.search(query):
             self._no_drawing(recognition)
+        if forms.NO_FLUIDS.search(query):
+            recognition.notes.append(_NO_FLUIDS)
+            recognition.add(_BAKES_FLUIDS, 0.95, "error message")
         for match in _matches(forms.NO_NODE_TYPE, query):
             if entry := self._reader.entry(TYPES + match["type"]):
                 recognition.add(entry.path, 0.95, "error message")

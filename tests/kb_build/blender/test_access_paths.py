@@ -162,6 +162,8 @@ def reached(base: Path) -> dict[str, str]:
         ("GeometryNodeTree", 'bpy.context.object.modifiers["GeometryNodes"].node_group'),
         ("NodeTree", "bpy.data.node_groups[0]"),
         ("PoseBone", 'bpy.context.object.pose.bones["Bone"]'),
+        ("KinematicConstraint", 'bpy.context.object.pose.bones["Bone"].constraints["IK"]'),
+        ("TrackToConstraint", 'bpy.context.object.constraints["Track To"]'),
         ("NlaStrip", 'bpy.context.object.animation_data.nla_tracks["NlaTrack"].strips[0]'),
     ],
 )

@@ -34,6 +34,8 @@ FIRST = {
     "AttributeError: 'Object' object has no attribute 'mass'": "bpy.types.RigidBodyObject.mass",
     "TypeError: cannot create 'GPUShader' instances": "gpu.shader.from_builtin",
     "TypeError: cannot create 'BMVert' instances": "bmesh.types.BMVertSeq.new",
+    "AttributeError: 'LevelsetGrid' object has no attribute 'setConst'": "bpy.ops.fluid.bake_all",
+    "terminate called after throwing an instance of 'Manta::Error'": "bpy.ops.fluid.bake_all",
     "SystemError: GPU functions for drawing are not available in background mode": "bpy.app.background",
     "TypeError: bpy_struct: item.attr = val: enum \"CYCLE\" not found in ('BLENDER_EEVEE', 'BLENDER_WORKBENCH', "
     "'CYCLES')": "bpy.types.RenderSettings.engine",
