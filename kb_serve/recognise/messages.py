@@ -51,8 +51,8 @@ _NO_DRAWING = (
 )
 _BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
 _NO_FLUIDS = (
-    "Mantaflow, which simulates fluids, is not set up wholly where Blender is a Python module (`import bpy` in a Python "
-    "of one's own): every bake of a fluid ends the process there. Run the script with Blender itself: "
+    "Mantaflow, which simulates fluids, is not set up wholly where Blender is a Python module (`import bpy` in another "
+    "Python): every bake of a fluid ends the process there. Run the script with Blender itself: "
     "`blender --background scene.blend --python script.py`."
 )
 _READS_ONLY = (
