@@ -19,18 +19,23 @@ from .new_things import activate, choices
 # Of area types; those that run in more run in any.
 MOST_AREAS = 8
 SECONDS = 5
-# (object, mode) → what is asked in every area: most operators of editors want no more.
-MANY = (("mesh", "EDIT"), ("grease_pencils", "OBJECT"))
+# What is asked in every area: most operators of editors want no more.
+MANY = (("mesh", "EDIT"), ("grease_pencils", "OBJECT"), ("grease_pencils_v3", "OBJECT"))
+# What is asked with things of the context: object and mode.
 THINGS = (("mesh", "OBJECT"), ("mesh", "EDIT"))
 EDITORS = (
     "VIEW_3D", "IMAGE_EDITOR", "UV", "ShaderNodeTree", "CompositorNodeTree", "GeometryNodeTree", "TextureNodeTree",
     "SEQUENCE_EDITOR", "CLIP_EDITOR", "DOPESHEET", "TIMELINE", "FCURVES", "DRIVERS", "NLA_EDITOR", "TEXT_EDITOR",
     "CONSOLE", "INFO", "OUTLINER", "PROPERTIES", "FILES", "ASSETS", "SPREADSHEET", "PREFERENCES",
 )  # fmt: skip
+# What people do to an interface: asked in an area that shows none, they end some of 3.4 to 4.5.
+NOT_ASKED = (
+    "object.modifier_copy_to_selected", "outliner.data_operation", "ui.view_drop", "view2d.scroller_activate",
+)  # fmt: skip
 CURVES = ("CURVE", "SURFACE", "FONT")
 COLLECTIONS = (
-    "armatures", "lattices", "metaballs", "hair_curves", "grease_pencils", "cameras", "speakers", "pointclouds",
-    "volumes",
+    "armatures", "lattices", "metaballs", "hair_curves", "grease_pencils", "grease_pencils_v3", "cameras", "speakers",
+    "pointclouds", "volumes",
 )  # fmt: skip
 TRIED = (AttributeError, TypeError, RuntimeError, ValueError, KeyError)
 
@@ -49,7 +54,10 @@ class Stage:
         self.material = bpy.data.materials.new("material")
         if hasattr(self.material, "use_nodes") and self.material.node_tree is None:
             self.material.use_nodes = True
-        self.objects = {name: self.linked(name, data) for name, data in self.contents()}
+        self.objects = {}
+        for name, data in self.contents():
+            with suppress(RuntimeError):  # of annotations, before 5.0
+                self.objects[name] = self.linked(name, data)
         self.fill()
 
     def contents(self):
@@ -186,7 +194,7 @@ def find_all(write, known, scene):
     stage = Stage(scene)
     things = stage.things()
     given = {}
-    known = dict(known)
+    known = {path: operator for path, operator in known.items() if not path.endswith(NOT_ASKED)}
     for state in stage.states():
         for path in polled(known):
             del known[path]
