@@ -125,18 +125,20 @@ class Stage:
             obj.select_set(False)
 
     def things(self):
-        """Members of the context that areas give, with something for each."""
+        """(member of the context that areas give, something for it). An operator is tried with the first it takes."""
         mesh, hair = self.objects["mesh"], self.objects["particles"]
-        found = {
-            "id": mesh, "selected_ids": [mesh], "edit_image": self.image, "edit_text": self.text,
-            "edit_mask": self.mask, "material": self.material, "mesh": mesh.data,
-            "material_slot": mesh.material_slots[0], "modifier": mesh.modifiers[0],
-            "point_cache": mesh.modifiers[0].point_cache, "light": self.objects["lights"].data,
-            "camera": self.objects["cameras"].data, "armature": self.objects["armatures"].data,
-            "world": self.scene.world, "node": self.material.node_tree.nodes[0],
-            "particle_system": hair.particle_systems[0] if hair.particle_systems else None,
-        }  # fmt: skip
-        return {member: thing for member, thing in found.items() if thing is not None}
+        group = bpy.data.node_groups.new("group", "GeometryNodeTree")
+        found = (
+            # An asset that takes no time to be drawn, and something that has a preview.
+            ("id", group), ("id", self.image), ("selected_ids", [group]), ("edit_image", self.image),
+            ("edit_text", self.text), ("edit_mask", self.mask), ("material", self.material), ("mesh", mesh.data),
+            ("material_slot", mesh.material_slots[0]), ("modifier", mesh.modifiers[0]),
+            ("point_cache", mesh.modifiers[0].point_cache), ("light", self.objects["lights"].data),
+            ("camera", self.objects["cameras"].data), ("armature", self.objects["armatures"].data),
+            ("world", self.scene.world), ("node", self.material.node_tree.nodes[0]),
+            ("particle_system", next(iter(hair.particle_systems), None)),
+        )  # fmt: skip
+        return [(member, thing) for member, thing in found if thing is not None]
 
     def show(self, editor):
         """Makes the area an editor that shows something; whether there is such an editor."""
@@ -193,26 +195,24 @@ def find_all(write, known, scene):
     """
     stage = Stage(scene)
     things = stage.things()
-    given = {}
+    given, areas = {}, defaultdict(set)
     known = {path: operator for path, operator in known.items() if not path.endswith(NOT_ASKED)}
     for state in stage.states():
         for path in polled(known):
             del known[path]
         if state in THINGS:
-            for member, thing in things.items():
+            for member, thing in things:
                 with bpy.context.temp_override(area=None, region=None, **{member: thing}):
                     for path in polled(known):
-                        given.setdefault(path, member)
-    areas = defaultdict(set)
-    for state in stage.states():
+                        given.setdefault(path, (member, thing))
         for editor in EDITORS if state in MANY else EDITORS[:1]:
             if stage.show(editor):
                 with stage.within():
                     for path in polled(known):
                         areas[path].add(stage.area.type)
     for path, operator in sorted(known.items()):
-        member = given.get(path, "")
-        if member and not works(operator, member, things[member]):
+        member, thing = given.get(path, ("", None))
+        if member and not works(operator, member, thing):
             member = ""
         if areas[path] or member:
             types = ["any"] if len(areas[path]) > MOST_AREAS else sorted(areas[path])
