@@ -110,6 +110,16 @@ class Parameter:
     values_asked: tuple[str, ...] = ()
 
     @property
+    def plain_type(self) -> str:
+        """The type without whether None can be given, too."""
+        return self.type.removesuffix(OR_NONE)
+
+    @property
+    def takes_none(self) -> bool:
+        """Whether None can be given for a text."""
+        return self.type.endswith(OR_NONE)
+
+    @property
     def is_open(self) -> bool:
         """Whether the values depend on the instance: one that was not asked may take others."""
         return any(item.where for item in self.enum_items)

@@ -133,7 +133,7 @@ def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
     ):
         return False
     marked = "*" in symbol.signature or "/" in symbol.signature
-    return not marked and all(_RNA_TYPE.fullmatch(parameter.type) for parameter in parameters)
+    return not marked and all(_RNA_TYPE.fullmatch(parameter.plain_type) for parameter in parameters)
 
 
 @lru_cache(maxsize=4096)

@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
-from kb_build.records import OR_NONE
 from kb_check.calls import calls
 from kb_check.script import once_per_script
 
@@ -139,7 +138,7 @@ def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_
     if not is_rna:
         documented = "" if path in _MISDOCUMENTED else parameter.type
         return Taker(path, "", symbol, documented=documented, is_parameter=True)
-    kind, _, rest = parameter.type.removesuffix(OR_NONE).partition("[")
+    kind, _, rest = parameter.plain_type.partition("[")
     target, sizes = "", tuple(int(size) for size in _SIZES.findall(f"[{rest}")) if rest else ()
     if any(size not in _FIXED for size in sizes):
         sizes = tuple(0 for _ in sizes)
@@ -153,6 +152,6 @@ def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_
         kind = "pointer" if known else ""
     return Taker(
         path, kind, symbol, target, sizes, "", "", parameter.unit,
-        kind == "pointer" or parameter.type.endswith(OR_NONE),
+        kind == "pointer" or parameter.takes_none,
         parameter.hard_min, parameter.hard_max, is_parameter=True, is_operator=is_operator,
     )  # fmt: skip

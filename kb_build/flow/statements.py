@@ -673,7 +673,7 @@ class Statements(Calls):
             if member is not None and isinstance(member.type, Function):
                 symbol = member.symbol
                 rest = [p for p in symbol.parameters if p.name not in {"self", "cls"}]
-                return first + [self.api.read_type(parameter.type, symbol.path) for parameter in rest]
+                return first + [self.api.read_type(parameter.plain_type, symbol.path) for parameter in rest]
         return first
 
     _statement_readers: ClassVar[dict[type, Callable[..., bool]]] = {

@@ -48,9 +48,9 @@ def _check(script: Script) -> Iterator[Finding]:
 def _may_take(parameter: Parameter, node: ast.AST) -> bool:
     """Whether a parameter may take the literal that is given: what was a switch may have become a choice."""
     value = node.value if isinstance(node, ast.keyword) else None
-    if not isinstance(value, ast.Constant) or parameter.type not in _TAKES:
+    if not isinstance(value, ast.Constant) or parameter.plain_type not in _TAKES:
         return True
-    return type(value.value) in _TAKES[parameter.type]
+    return type(value.value) in _TAKES[parameter.plain_type]
 
 
 RULE = Rule("unknown-keyword", "error", "A keyword that the call does not take", _check)

@@ -21,7 +21,6 @@ from kb_build.flow.types import (
     Type,
     Union,
 )
-from kb_build.records import OR_NONE
 from kb_check.stubs.enums import Enums, values_of
 from kb_check.stubs.python_protocols import GENERIC
 
@@ -233,7 +232,7 @@ class Annotations:
             if isinstance(parameter.default, list) or parameter.type.startswith("set") or _is_set(parameter):
                 text = f"set[{text}]"
         else:
-            text = self.text(parameter.type.removesuffix(OR_NONE), scope, taken=True)
+            text = self.text(parameter.plain_type, scope, taken=True)
             if self._is_callback(scope) and text.startswith(T):
                 text = self.instance(text)
             elif self._may_be_none(parameter, text, scope):
@@ -252,7 +251,7 @@ class Annotations:
         """Whether None can be given for a text, or for a pointer, of which RNA does not tell."""
         if text.startswith(T):
             return not parameter.required or (scope.startswith(T) and text not in _ALWAYS_GIVEN)
-        return parameter.type.endswith(OR_NONE)
+        return parameter.takes_none
 
     def results(self, symbol: Symbol, absent: str) -> str:
         """What a function returns; ``absent`` where the records tell nothing."""

@@ -144,7 +144,7 @@ class Functions:
         if owner and symbol.name in SAME_CLASS and self._annotations.api.descends(owner, declared):
             return "typing_extensions.Self"
         is_told = symbol.path.startswith(_DOCUMENTED) or any(
-            parameter.type in RNA_TYPES and parameter.type not in {"int", "float"}
+            parameter.plain_type in RNA_TYPES and parameter.type not in {"int", "float"}
             for parameter in symbol.parameters
         )
         text = self._annotations.results(symbol, "None" if is_told or symbol.name == "__init__" else ANY)

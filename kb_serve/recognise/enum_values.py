@@ -22,6 +22,7 @@ _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
 _MOST_COMPARED = 20  # enumerations of which as many items are listed
 _FITTING = 0.5  # how well the words around a bare value must fit its property
+_FITTING_WORD = 1.0  # the same for one that people write in capitals, too: EEVEE, PNG
 _ONLY, _NOT = "only ", "not "  # … what tells where an item is taken begins with
 
 
@@ -57,7 +58,8 @@ class EnumValues:
         for rank, (owner, share) in enumerate(self.owners(values, around)):
             if rank >= 5:
                 break
-            fits = alone or quoted or self._owner_fit(owner, around) >= _FITTING
+            least = _FITTING_WORD if self._is_word(owner, values) else _FITTING
+            fits = alone or quoted or self._owner_fit(owner, around) >= least
             sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
             recognition.add(owner.partition("(")[0], sure, "enum item")
 
@@ -115,6 +117,11 @@ class EnumValues:
         named = (given.enum_items for given in symbol.parameters if given.name == parameter.rstrip(")"))
         items = next(named, ()) if parameter else symbol.enum_items
         return tuple(item for item in items if item.where != NOT_TAKEN)
+
+    def _is_word(self, owner: str, values: Iterable[str]) -> bool:
+        """Whether the values that an enumeration has are those that it shows to people."""
+        held = [item for item in self._items(owner) if item.identifier in values]
+        return bool(held) and all(item.identifier == item.name for item in held)
 
     def _is_class(self, value: str) -> bool:
         """Whether a label, ``Matrix``, is the name of a class: then it is hardly meant as an item."""

@@ -271,7 +271,10 @@ class Expressions:
         return len(about & prose) - 0.05 * len(about) + usual
 
     def _class_with_member(self, chains: list[Chain], recognition: Recognition) -> None:
-        """Adds a class's member that stands beside the class: ``SoftBodySettings goal_spring``."""
+        """Adds a class's member that stands beside the class, ``SoftBodySettings goal_spring``.
+
+        It comes before the class, unless it may be a word of the question.
+        """
         bare = [chain.root for chain in chains if not chain.steps]
         self._reader.entry.load(TYPES + root for root in bare)
         named = (self._reader.entry(TYPES + root) for root in bare)
@@ -282,4 +285,4 @@ class Expressions:
                     continue
                 member = self._resolver.member(cls.path, root)
                 if member and ("_" in root or root not in STOP_WORDS):
-                    recognition.add(member.path, 0.96, "class and member")
+                    recognition.add(member.path, 0.98 if "_" in root else 0.96, "class and member")

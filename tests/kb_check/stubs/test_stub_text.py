@@ -50,7 +50,7 @@ def test_a_member_does_not_hide_a_type_from_its_neighbours() -> None:
 
 def test_a_parameter_keeps_its_name() -> None:
     take = function("take", "take(type)", Parameter("type", "string", required=True))
-    assert "def take(self, type: builtins.str | None)" in types_of(take, prop("type"), prop("str"))
+    assert "def take(self, type: builtins.str)" in types_of(take, prop("type"), prop("str"))
 
 
 def test_values_with_quotes_are_values() -> None:

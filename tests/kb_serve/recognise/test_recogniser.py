@@ -228,6 +228,27 @@ def test_names_with_one_key_are_told_apart_by_spelling(kb: KnowledgeBase) -> Non
         assert kb.query(name).hits[0].id == path
 
 
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("ShaderNodeTexNoise noise_dimensions default", "bpy.types.ShaderNodeTexNoise.noise_dimensions"),
+        ("SoftBodySettings goal_default range", "bpy.types.SoftBodySettings.goal_default"),
+        ("how the mass of a RigidBodyObject is set", "bpy.types.RigidBodyObject"),
+    ],
+)
+def test_a_member_beside_its_class_comes_first_unless_it_may_be_a_word(
+    kb: KnowledgeBase, query: str, first: str
+) -> None:
+    assert first_id(kb.query(query)) == first
+
+
+def test_a_value_that_people_write_so_too_is_one_where_its_property_is_named(kb: KnowledgeBase) -> None:
+    target = "bpy.types.ShaderNodeOutputMaterial.target"
+    assert first_id(kb.query("EEVEE material")) != target
+    assert first_id(kb.query("target EEVEE of the material output")) == target
+    assert first_id(kb.query("render_type HALO particles")) == "bpy.types.ParticleSettings.render_type"
+
+
 # A name without its owner
 
 
