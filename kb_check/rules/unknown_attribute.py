@@ -30,11 +30,15 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _CONTEXT = "bpy.types.Context"
+# Before, what is assigned to an unknown name of a property group is lost, and no error.
+_OF_SCRIPTS, _REFUSED = "bpy.types.PropertyGroup", (5, 0)
 
 
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "store", "text", "button"):
         owner = _class_of(script, row.missing[0])
+        if row.kind == "store" and script.version < _REFUSED and script.api.descends(owner, _OF_SCRIPTS):
+            continue
         if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != _CONTEXT:
             had = _owner_that_had(script, row, owner)
             lacking = script.names.member(had, row.value, reading=row.kind != "store")
