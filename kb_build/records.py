@@ -135,6 +135,31 @@ class Deprecation:
 
 
 @dataclass(frozen=True, slots=True)
+class Refusal:
+    """What Blender said to calls of a function whose arguments are those that the signature asks for.
+
+    ``message`` has … for what things are called and what was given; it is empty where the call returned None. Refused
+    were these ``values`` of the ``argument``, () for all; made of what ``by`` names, () for everything that was tried,
+    while ``taken_by`` names what takes them. ``given`` are the further arguments with which they were taken, ``mode``
+    the mode of the object. ``again``: only a call after another one was refused, ``any`` or the ``same``.
+    """
+
+    message: str
+    argument: str = ""
+    values: tuple[str, ...] = ()
+    by: tuple[str, ...] = ()
+    taken_by: tuple[str, ...] = ()
+    given: tuple[str, ...] = ()
+    mode: str = ""
+    again: str = ""
+
+    @property
+    def is_explained(self) -> bool:
+        """Whether it is known when the call is refused."""
+        return bool(self.values or self.by or self.given or self.mode or self.again)
+
+
+@dataclass(frozen=True, slots=True)
 class Symbol:
     """One public identifier of Blender's Python API.
 
@@ -153,7 +178,8 @@ class Symbol:
 
     A pointer that is None on new things has None as its new value; a flag ``filled-by:CALL`` then names what was seen
     to fill it, flags ``filled-on:THING`` the new things on which it leads to something. A flag ``needs:WORDS`` says
-    with what an operator can run, of all that was tried, where it is not in an empty scene.
+    with what an operator can run, of all that was tried, where it is not in an empty scene. ``refusals`` are what a
+    function refused, of all that was tried.
     """
 
     path: str
@@ -186,6 +212,7 @@ class Symbol:
     reached: str = ""
     new_values: tuple[NewValue, ...] = ()
     subscripts: tuple[str, ...] = ()
+    refusals: tuple[Refusal, ...] = ()
 
     @property
     def name(self) -> str:
@@ -336,6 +363,16 @@ def _new_values(rows: list[dict[str, Any]]) -> tuple[NewValue, ...]:
     )
 
 
+def _refusals(rows: list[dict[str, Any]]) -> tuple[Refusal, ...]:
+    refusals: list[Refusal] = []
+    for row in rows:
+        values: dict[str, Any] = {
+            name: tuple(row.get(name, ())) for name in ("values", "by", "taken_by", "given")
+        }
+        refusals.append(Refusal(**{**row, **values}))
+    return tuple(refusals)
+
+
 # How the fields that JSON has as lists or objects are read.
 _SYMBOL_FIELDS: dict[str, Callable[[Any], Any]] = {
     **dict.fromkeys(("array", "flags", "modes", "trees", "subscripts"), tuple),
@@ -344,6 +381,7 @@ _SYMBOL_FIELDS: dict[str, Callable[[Any], Any]] = {
     "returns": _parameters,
     "deprecation": lambda row: Deprecation(**row),
     "new_values": _new_values,
+    "refusals": _refusals,
 }
 
 

@@ -15,7 +15,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 6
+SCHEMA_VERSION = 7
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -137,6 +137,9 @@ CREATE TABLE panel_conditions (
     path TEXT NOT NULL, clause INTEGER NOT NULL, gate TEXT NOT NULL, test TEXT NOT NULL, hides INTEGER NOT NULL,
     PRIMARY KEY (path, clause, gate, test)
 ) WITHOUT ROWID;
+
+-- What functions say that refuse a call, with … for names and for what was given (records.Refusal).
+CREATE TABLE refusals (message TEXT NOT NULL, path TEXT NOT NULL, PRIMARY KEY (message, path)) WITHOUT ROWID;
 
 -- Page → symbols whose manual link leads there: classes and operators only.
 CREATE TABLE explained (slug TEXT NOT NULL, symbol TEXT NOT NULL, PRIMARY KEY (slug, symbol)) WITHOUT ROWID;

@@ -108,6 +108,13 @@ def _explained(symbols: Sequence[Symbol], links: Sequence[Link]) -> Iterator[tup
             yield link.target.partition("#")[0], link.source
 
 
+def _refusals(symbols: Sequence[Symbol]) -> Iterator[tuple[str, str]]:
+    for symbol in symbols:
+        for refusal in symbol.refusals:
+            if refusal.message:
+                yield refusal.message, symbol.path
+
+
 def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: RemovedSymbols) -> None:
     _insert(connection, "removed", removed_symbols.removed, 5)
     _insert(connection, "removed_names", sorted(removed_symbols.names), 2)
@@ -273,6 +280,7 @@ def _write(part: Path, contents: Contents) -> None:
             _write_usage(connection, tables.uses)
             weights = symbol_weights(contents.symbols, passages, expansions, tables.uses)
             _insert(connection, "weights", weights.items(), 2)
+            _insert(connection, "refusals", _refusals(contents.symbols), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3

@@ -13,7 +13,7 @@ from kb_build.schema import TEST_ON
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.records import Default, NewValue, PanelCondition, Symbol
+    from kb_build.records import Default, NewValue, PanelCondition, Refusal, Symbol
 
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
@@ -103,6 +103,64 @@ def operator_given(symbol: Symbol) -> str:
 def area_text(types: Sequence[str]) -> str:
     """``an area of type VIEW_3D or IMAGE_EDITOR``."""
     return "an area" if "any" in types else f"an area of type {' or '.join(types)}"
+
+
+def refusal_lines(symbol: Symbol) -> list[str]:
+    """Which calls of a function were refused although their arguments are those that it asks for, a line each.
+
+    Where both a value and what takes it decide, that is said with the value (see taken_where).
+    """
+    return [
+        _refusal_text(refusal)
+        for refusal in symbol.refusals
+        if refusal.is_explained and not (refusal.values and refusal.by)
+    ]
+
+
+def taken_where(symbol: Symbol, argument: str) -> dict[str, str]:
+    """Value of an argument → what alone takes it, as what follows the word "taken", where some things refuse it."""
+    return {
+        value: _by(refusal) for refusal in symbol.refusals if refusal.argument == argument and refusal.by
+        for value in refusal.values
+    }  # fmt: skip
+
+
+def _by(refusal: Refusal) -> str:
+    """``only by a MESH object``, or ``not by a sound strip``: whichever names fewer things."""
+    few_take = 0 < len(refusal.taken_by) <= len(refusal.by)
+    return f"{'only' if few_take else 'not'} by {_things(refusal.taken_by if few_take else refusal.by)}"
+
+
+def _things(labels: Sequence[str]) -> str:
+    """``a poly spline or nurbs spline``, ``a MESH, CURVE or FONT object``: what all end with is said once."""
+    shown = list(labels[:_SHOWN_VALUES])
+    last = {label.rpartition(" ")[2] for label in labels}
+    if len(last) == 1 and len(shown) > 1:
+        shown[:-1] = [label.rpartition(" ")[0] for label in shown[:-1]]
+    more = ", …" if len(shown) < len(labels) else ""
+    return with_article(" or ".join(filter(None, (", ".join(shown[:-1]), shown[-1])))) + more
+
+
+def with_article(thing: str) -> str:
+    """``a cloth modifier``, ``an action``."""
+    return f"{'an' if thing[0].lower() in 'aeiou' else 'a'} {thing}"
+
+
+def _refusal_text(refusal: Refusal) -> str:
+    """``type='COLOR'|'TEXT'`` without ``length``: “Strips.new_effect: invalid length”."""
+    parts: list[str] = []
+    if refusal.values:
+        parts.append(f"`{refusal.argument}={'|'.join(map(repr, refusal.values))}`")
+    if refusal.by:
+        parts.append(f"taken {_by(refusal)}")
+    if refusal.given:
+        parts.append("without " + " and ".join(f"`{name}`" for name in refusal.given))
+    if refusal.mode:
+        parts.append(f"outside of {refusal.mode.capitalize()} Mode")
+    if refusal.again:
+        parts.append("a second time" if refusal.again == "any" else "a second time with the same arguments")
+    said = f"“{refusal.message}”" if refusal.message else "returns `None`"
+    return f"{' '.join(parts)}: {'else ' if refusal.by else ''}{said}"
 
 
 def _made_by(symbol: Symbol) -> str:

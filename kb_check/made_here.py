@@ -138,6 +138,18 @@ def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
     return found
 
 
+@once_per_script
+def places(script: Script) -> dict[ast.stmt, tuple[list[ast.stmt], int]]:
+    """Statement → the body that it is in, and its place there."""
+    found: dict[ast.stmt, tuple[list[ast.stmt], int]] = {}
+    for node in script.nodes:
+        for field in ("body", "orelse", "finalbody"):
+            body = getattr(node, field, None)
+            if isinstance(body, list):
+                found.update((statement, (body, place)) for place, statement in enumerate(body))
+    return found
+
+
 def alias(script: Script, node: ast.expr) -> ast.expr:
     """What a name is another name of: the member that it is bound to, and to nothing else; else the node itself."""
     values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.enum_contexts import items_in_contexts
+from kb_build.blender.refused_calls import refusals
 from kb_build.errors import ExtractError
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
@@ -166,6 +167,12 @@ def _add_argument_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> No
                 parameter.pop("default", None)
 
 
+def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what a function refused."""
+    if row is not None:
+        row["refusals"] = refusals(seen["outcomes"])
+
+
 _ADDED = {
     "argument_items": _add_argument_items,
     "choices": _add_choices,
@@ -173,6 +180,7 @@ _ADDED = {
     "new_pointer": _add_pointer,
     "operator_needs": _add_needs,
     "operator_areas": _add_areas,
+    "refusals": _add_refusals,
 }
 
 

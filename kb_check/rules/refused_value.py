@@ -28,9 +28,8 @@ from kb_build.flow.types import Instance
 from kb_build.symbol_lines import usual_default
 from kb_check.calls import calls
 from kb_check.findings import Finding
-from kb_check.made_here import alias, called_operators, callee_path, knows_all, named_words
+from kb_check.made_here import alias, called_operators, callee_path, knows_all, named_words, places
 from kb_check.rule import Rule
-from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -162,7 +161,7 @@ def _values_of_new(symbol: Symbol) -> list[object]:
 def _set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Symbol) -> ast.expr | None:
     """What is assigned to a setting before a statement, in the same body, with nothing between that may matter."""
     name = setting.name
-    body, place = _places(script).get(statement, ([], 0))
+    body, place = places(script).get(statement, ([], 0))
     text = ast.unparse(owner)
     for earlier in reversed(body[:place]):
         match earlier:
@@ -204,18 +203,6 @@ def _leaves_alone(script: Script, statement: ast.stmt, owner: str, name: str) ->
             if is_part or (isinstance(node, ast.Attribute) and node.attr == name):
                 return False
     return True
-
-
-@once_per_script
-def _places(script: Script) -> dict[ast.stmt, tuple[list[ast.stmt], int]]:
-    """Statement → the body that it is in, and its place there."""
-    found: dict[ast.stmt, tuple[list[ast.stmt], int]] = {}
-    for node in script.nodes:
-        for field in ("body", "orelse", "finalbody"):
-            body = getattr(node, field, None)
-            if isinstance(body, list):
-                found.update((statement, (body, place)) for place, statement in enumerate(body))
-    return found
 
 
 def _works_on_a_scene(script: Script, node: ast.expr) -> bool:

@@ -17,7 +17,9 @@ from kb_build.symbol_lines import (
     new_subscript,
     operator_needs,
     passage_text,
+    refusal_lines,
     subscripts_text,
+    taken_where,
     type_text,
     version_meant,
 )
@@ -96,14 +98,16 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield "shown when " + " and ".join(symbol.modes)
 
 
-def _items(items: Sequence[EnumItem]) -> str:
+def _items(items: Sequence[EnumItem], taken: Mapping[str, str] | None = None) -> str:
+    """The values of an enumeration; ``taken``: where else than the items say."""
     lines: list[str] = []
     for item in items:
         if item.where == NOT_TAKEN:
             continue
         name = item.name if item.name != item.identifier else ""
         text = " — ".join(filter(None, (name, item.description)))
-        where = f" (taken {item.where})" if item.where else ""
+        where = item.where or (taken or {}).get(item.identifier, "")
+        where = f" (taken {where})" if where else ""
         lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else "") + where)
     if refused := [f"`{item.identifier!r}`" for item in items if item.where == NOT_TAKEN]:
         lines.append(f"- listed by RNA, taken {NOT_TAKEN}: {', '.join(refused)}")
@@ -214,13 +218,15 @@ def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))
         yield AnswerBlock(f"**Returns**\n{lines}", "returns")
+    if lines := "\n".join(f"- {line}" for line in refusal_lines(symbol)):
+        yield AnswerBlock(f"**Refused, of all that was tried**\n{lines}", "refused calls")
     for parameter in symbol.parameters:
         items = () if parameter.name in aside else parameter.enum_items
         if len(items) > _NAMED_ITEMS or (
             len(items) > 3 and any(item.description or item.where for item in items)
         ):
             yield AnswerBlock(
-                f"**Values of `{parameter.name}`**\n{_items(items)}",
+                f"**Values of `{parameter.name}`**\n{_items(items, taken_where(symbol, parameter.name))}",
                 f"values of {parameter.name}",
             )
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -86,6 +87,7 @@ class Messages:
         self._values(query, recognition)
         self._data(query, recognition)
         self._products(query, recognition)
+        self._refused(query, recognition)
 
     def explain(self, query: str, recognition: Recognition) -> None:
         """Adds notes that need the query's names: the right argument, a removed socket."""
@@ -374,6 +376,27 @@ class Messages:
                 recognition.notes.append(WITH_AT)
                 for rank, factor in enumerate(dict.fromkeys(factors)):
                     recognition.add(factor, 0.95 - 0.02 * rank, "error message")
+
+    # Refused calls
+
+    @cached_property
+    def _refusals(self) -> list[tuple[str, re.Pattern[str], str]]:
+        """(a part of the message, the whole of it, the function that says it) of each refused call."""
+        found: list[tuple[str, re.Pattern[str], str]] = []
+        for message, path in self._reader.rows("SELECT message, path FROM refusals"):
+            parts = message.split("…")
+            pattern = r"\S.{0,80}?".join(map(re.escape, parts))
+            found.append((max(parts, key=len), re.compile(pattern), path))
+        return found
+
+    def _refused(self, query: str, recognition: Recognition) -> None:
+        """What Blender says to calls that were tried while the base was built: the functions, the usual one first."""
+        paths = [path for part, whole, path in self._refusals if part in query and whole.search(query)]
+        if recognition.removed or any(match.sure >= 0.95 for match in recognition.matches):
+            return  # what the message names is known
+        weights = self._reader.weights(paths) if paths else {}
+        for rank, path in enumerate(sorted(paths, key=lambda path: -weights.get(path, 0.0))[:_FEW]):
+            recognition.add(path, 0.98 - 0.01 * rank, "error message")
 
     def _page(self, slug: str, recognition: Recognition) -> None:
         if self._reader.is_page(slug):

@@ -15,6 +15,7 @@ from kb_build.records import (
     NewValue,
     Page,
     Parameter,
+    Refusal,
     Section,
     Symbol,
     page_from_json,
@@ -35,6 +36,7 @@ FULL = Symbol(
     returns=(Parameter(""),), deprecation=Deprecation("gone", "5.0", "6.0"), modes=("m=A|B",), collection="C",
     trees=("ShaderNodeTree",), reached="bpy.context", subscripts=("inputs[1]",),
     new_values=(NewValue([1, 2], ("a", "b")), NewValue(0, when="m='A'")),
+    refusals=(Refusal("no", "type", ("A", "B"), ("a",), ("b", "c"), ("length",), "EDIT", "any"), Refusal("")),
 )  # fmt: skip
 
 

@@ -9,6 +9,7 @@ import gc
 import json
 import os
 import sys
+import tempfile
 import traceback
 
 import bpy
@@ -22,6 +23,7 @@ from . import (
     operators,
     own_names,
     pointer_fillers,
+    refusals,
     rna,
 )
 from .instances import Observer
@@ -89,6 +91,7 @@ STEPS = (
         ),
     ),
     ("pointers", lambda write, found: pointer_fillers.find_all(write, found["observer"], found["skipped"])),
+    ("refusals", lambda write, found: refusals.find_all(write, found["observer"])),
     ("own names", lambda write, found: own_names.find_all(write, found["observer"], found["skipped"])),
     (
         "needs",
@@ -111,6 +114,7 @@ def main(arguments):
     with open(given, encoding="utf-8") as file:
         observer = Observer()
         found = {"observer": observer, "neighbours": Neighbours(observer), **json.load(file)}
+    os.chdir(tempfile.gettempdir())  # some operators that are tried write files where they are
     write(
         "blender",
         version=bpy.app.version_string.split()[0],

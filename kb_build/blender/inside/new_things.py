@@ -290,6 +290,7 @@ def strips():
         all_strips.new_effect(name="new", type="COLOR", channel=channel, frame_start=1, **{end: 9})  # pyright: ignore[reportCallIssue]
         for channel in (1, 2)
     )
+    yield called(editor), editor
     yield called(first), first
     inputs = ("seq1", "seq2") if "seq1" in making else ("input1", "input2")
     for number, item in enumerate(making["type"].enum_items):

@@ -42,6 +42,11 @@ FIRST = {
     "ValueError: edges.new(): this edge exists": "bmesh.types.BMEdgeSeq.new",
     'AttributeError: BMeshOpsModule: operator "extrude" doesn\'t exist': "bmesh.ops.extrude_edge_only",
     "RuntimeError: Error: Node type ShaderNodeTexImageX undefined": None,
+    "RuntimeError: Error: Armature 'rig' not in edit mode, cannot add an editbone": "bpy.types.ArmatureEditBones.new",
+    "RuntimeError: Error: Bézier spline cannot have points added": "bpy.types.SplinePoints.add",
+    "RuntimeError: Error: Strips.new_effect: invalid length": "bpy.types.StripsTopLevel.new_effect",
+    "RuntimeError: Error: An Action may not have more than one layer": "bpy.types.ActionLayers.new",
+    "RuntimeError: Error: VertexGroups.new() is not supported for 'Light' objects": "bpy.types.VertexGroups.new",
     "ValueError: 1-2 args execution context is supported": "bpy.types.Context.temp_override",
     "ReferenceError: BMesh data of type BMesh has been removed": "bmesh.types.BMesh.free",
     "ReferenceError: StructRNA of type Object has been removed": "bpy.types.BlendDataObjects.remove",
@@ -53,6 +58,19 @@ def test_a_message_leads_to_the_api_at_hand(kb: KnowledgeBase, message: str) -> 
     hits = [hit.id for hit in kb.query(message).hits]
     named = [hit for hit in hits if not hit.startswith("info_")]
     assert FIRST[message] is None or named[0] == FIRST[message]
+
+
+def test_what_refused_a_call_says_when_it_does(kb: KnowledgeBase) -> None:
+    text = kb.query("RuntimeError: Error: Strips.new_effect: effect takes 2 input strips").text
+    assert "without `input1` and `input2`: “Strips.new_effect: effect takes 2 input strips”" in text
+    assert "'GREASEPENCIL object'" not in text
+    values = kb.query("ObjectModifiers.new").text
+    assert "(taken only by a MESH object)" in values
+    assert "(taken only by a MESH, CURVE, SURFACE or FONT object)" in values
+    assert (
+        "- `type='CLOTH'|'COLLISION'|'DYNAMIC_PAINT'|'FLUID'|'SOFT_BODY'` a second time: returns `None`"
+        in values
+    )
 
 
 def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:

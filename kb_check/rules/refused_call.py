@@ -1,0 +1,186 @@
+"""A call that Blender refuses although its arguments are those that the signature asks for.
+
+What is refused was tried: without arguments that may be left out and are wanted all the same, by what is of another
+kind, a second time.
+
+```python
+strips = scene.sequence_editor.strips
+strips.new_effect("Sky", "COLOR", channel=1, frame_start=1)  # reported: without `length`
+spline = curve.splines.new("BEZIER")
+spline.points.add(3)  # reported: a Bézier spline has `bezier_points`
+mesh.attributes.new("weight", "FLOAT", "CURVE")  # reported: meshes have no such domain
+```
+
+What returns None instead of raising an error is a warning. Not reported: what depends on the mode (see
+not-in-edit-mode).
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import Instance
+from kb_build.records import last_name
+from kb_build.symbol_lines import with_article
+from kb_check.calls import CallSite, calls
+from kb_check.findings import Finding
+from kb_check.made_here import bindings, callee_path, named_words, places
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Refusal
+    from kb_check.script import Script
+
+_OBJECT = "bpy.types.Object"
+_OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
+_LIGHT = "bpy.types.Light"
+_REMOVING = frozenset({"remove", "clear", "read_homefile", "open_mainfile", "read_factory_settings"})
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    earlier: dict[tuple[str, str, str], CallSite] = {}
+    for call in calls(script):
+        refusals = call.callee.symbol.refusals
+        if not refusals or call.has_unpacking or not isinstance(call.node.func, ast.Attribute):
+            continue
+        owner = call.node.func.value
+        for refusal in refusals:
+            if not _is_of(refusal, call) or (not refusal.given and not refusal.by and _gives_more(call)):
+                continue
+            if refusal.again:
+                before = earlier.setdefault((ast.unparse(owner), *_key(refusal, call)), call)
+                if refusal.again == "any" and before is not call and _follows(script, before, call, owner):
+                    yield _finding(script, call, refusal, "a second time")
+            elif refusal.given:
+                if not call.given & set(refusal.given):
+                    names = " and ".join(f"`{name}`" for name in refusal.given)
+                    yield _finding(script, call, refusal, f"without {names}")
+            elif refusal.by:
+                if thing := _refusing(script, owner, refusal):
+                    word = "to" if refusal.values else "by"
+                    yield _finding(script, call, refusal, f"{word} {with_article(thing)}")
+            elif refusal.values and refusal.message:
+                yield _finding(script, call, refusal, "")
+
+
+def _is_of(refusal: Refusal, call: CallSite) -> bool:
+    """Whether a call has one of the values that are refused, if only some are."""
+    if not refusal.values:
+        return True
+    given = next((node for name, node in call.arguments() if name.name == refusal.argument), None)
+    return isinstance(given, ast.Constant) and given.value in refusal.values
+
+
+def _gives_more(call: CallSite) -> bool:
+    """Whether a call has arguments that may be left out: with these it was not tried."""
+    return not call.given <= {parameter.name for parameter in call.callee.parameters if parameter.required}
+
+
+def _key(refusal: Refusal, call: CallSite) -> tuple[str, str]:
+    """The function, and the value that is refused the second time, if only some are."""
+    given = next((node for name, node in call.arguments() if name.name == refusal.argument), None)
+    return call.callee.symbol.path, ast.unparse(given) if given else ""
+
+
+def _follows(script: Script, before: CallSite, call: CallSite, owner: ast.expr) -> bool:
+    """Whether a call is surely made on the same thing as one before, and nothing is removed."""
+    root = owner
+    while isinstance(root, (ast.Attribute, ast.Subscript)):
+        root = root.value
+    if not isinstance(root, ast.Name) or named_words(script) & _REMOVING:
+        return False
+    rows = {
+        statement.value: (body, place)
+        for statement, (body, place) in places(script).items()
+        if isinstance(statement, (ast.Expr, ast.Assign)) and statement.value in {before.node, call.node}
+    }
+    if len(rows) < 2 or rows[before.node][0] is not rows[call.node][0]:
+        return False
+    body, place = rows[call.node]
+    return not any(_binds(statement, root.id) for statement in body[rows[before.node][1] : place])
+
+
+def _binds(statement: ast.stmt, name: str) -> bool:
+    return any(
+        isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
+        for node in ast.walk(statement)
+    )
+
+
+def _refusing(script: Script, owner: ast.expr, refusal: Refusal) -> str:
+    """What something is that refuses a call by what it is; empty where that is not known."""
+    thing = owner.value if isinstance(owner, ast.Attribute) else owner
+    labels = set(_labels(script, thing))
+    refusing = labels & set(refusal.by)
+    return next(iter(refusing)) if refusing and not labels & set(refusal.taken_by) else ""
+
+
+def _labels(script: Script, thing: ast.expr) -> Iterator[str]:
+    """What a thing is called as something that was tried: ``bezier spline``, ``LIGHT object``."""
+    kind = script.type_of(thing)
+    symbol = script.api.symbols.symbol(kind.cls) if isinstance(kind, Instance) else None
+    if symbol is None or not isinstance(kind, Instance):
+        return
+    if made_as := _made_as(script, thing):
+        yield f"{made_as} {symbol.label.lower()}"
+    if kind.sure:
+        yield symbol.label.lower()
+    data = dict(kind.traits).get("data") if kind.cls == _OBJECT else None
+    if kind.cls == _OBJECT and _has_no_data(script, thing):
+        yield "EMPTY object"
+    elif isinstance(data, Instance) and data.sure:
+        # A light is of a class for its type; curves of several classes are of several types.
+        cls = _LIGHT if script.api.descends(data.cls, _LIGHT) else data.cls
+        yield f"{last_name(cls).upper()} object"
+
+
+def _has_no_data(script: Script, node: ast.expr) -> bool:
+    """Whether the one object that a name stands for was made without data."""
+    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
+    match values:
+        case [ast.Call() as made] if callee_path(script, made) == _OBJECTS_NEW:
+            given = [*made.args[1:2], *(word.value for word in made.keywords if word.arg == "object_data")]
+            return [ast.unparse(node) for node in given] == ["None"]
+        case _:
+            return False
+
+
+def _made_as(script: Script, node: ast.expr) -> str:
+    """The kind that a name's one value is made with, where nothing changes it; empty where that is not known."""
+    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
+    made = values[0] if len(values) == 1 else None
+    if (
+        not isinstance(made, ast.Call)
+        or not callee_path(script, made).endswith(".new")
+        or _is_retyped(script)
+    ):
+        return ""
+    for call in calls(script):
+        if call.node is made:
+            for parameter, given in call.arguments():
+                if parameter.enum_items and isinstance(given, ast.Constant) and isinstance(given.value, str):
+                    return given.value.lower()
+    return ""
+
+
+def _is_retyped(script: Script) -> bool:
+    """Whether a script gives something another type."""
+    return any(
+        isinstance(node, ast.Attribute) and node.attr == "type" and isinstance(node.ctx, ast.Store)
+        for node in script.nodes
+    )
+
+
+def _finding(script: Script, call: CallSite, refusal: Refusal, why: str) -> Finding:
+    path = call.callee.symbol.path
+    what = f" {refusal.argument}={_key(refusal, call)[1]}" if refusal.values else ""
+    said = f"Blender says “{refusal.message}”" if refusal.message else "it returns None"
+    how = " ".join(filter(None, (f"`{path}`", f"refuses{what}" if what else "is refused", why)))
+    severity = "error" if refusal.message else "warning"
+    return Finding(RULE.id, severity, script.span(call.node), f"{how}: {said}.", path)
+
+
+RULE = Rule("refused-call", "error", "A call that is refused as things stand", _check)
