@@ -40,6 +40,8 @@ AREAS = "areas:"
 GIVEN = "given:"
 # The flag of a socket that a node of a zone has once it is paired with the other one.
 WHEN_PAIRED = "when-paired"
+# The flag of what Blender computes for evaluated objects, and leaves empty on the originals.
+EVALUATED = "evaluated-only"
 THEN = " then "  # between calls that fill it one after the other
 # How the names begin of what is there when Blender starts, among those of new things.
 STARTUP = "start-up "

@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
     from kb_build.records import Default, NewValue, PanelCondition, Refusal, Symbol
 
+_ACTIVE = "bpy.context.object"
+GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
 _SHOWN_OTHERS = 4
@@ -163,6 +165,13 @@ def _refusal_text(refusal: Refusal) -> str:
     return f"{' '.join(parts)}: {'else ' if refusal.by else ''}{said}"
 
 
+def of_evaluated(expression: str) -> str:
+    """An expression over the active object, as one over its evaluated object."""
+    if GET_EVALUATED in expression:
+        return expression
+    return expression.replace(_ACTIVE, f"{_ACTIVE}{GET_EVALUATED}", 1)
+
+
 def _made_by(symbol: Symbol) -> str:
     """``made by …`` of a pointer that something was seen to fill; empty for others."""
     return "made by " + ", then ".join(f"`{call}`" for call in fillers(symbol)) if fillers(symbol) else ""
@@ -210,7 +219,7 @@ def _whose(new: NewValue, made: Sequence[str]) -> str:
     if new.is_startup:
         return " in the factory preferences" if made[0].startswith(FACTORY) else " in the startup file"
     if new.when:
-        return f" (with {new.when})"
+        return f" (new {_labels(made)} with {new.when})" if made else f" (with {new.when})"
     return f" (made by `{new.by}`)" if new.by else f" (new {_labels(made)})"
 
 
@@ -281,9 +290,8 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
     default = usual_default(symbol)
     if default is not None and symbol.kind in {"property", "socket"}:
         notes.append(f"= {literal(default)}" + (" (RNA's)" if is_uncompared(symbol) else ""))
-        notes += [f"({literal(new.value)} with {new.when})" for new in symbol.new_values if new.when][
-            :_SHOWN_LABELS
-        ]
+        modal = [new for new in symbol.new_values if new.when and not new.made]
+        notes += [f"({literal(new.value)} with {new.when})" for new in modal[:_SHOWN_LABELS]]
     if (empty := empty_when_new(symbol)) and not empty.made:
         notes += ["= None", *([f"({made})"] if (made := _made_by(symbol)) else [])]
     if values := [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]:

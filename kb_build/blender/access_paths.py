@@ -9,6 +9,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import NARROWER
+from kb_build.records import EVALUATED
+from kb_build.symbol_lines import of_evaluated
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -47,13 +49,16 @@ _TOLD_COST = 5  # of what Blender tells how to reach: the preferences of an add-
 
 @dataclass(frozen=True, slots=True)
 class _Step:
-    """A property that leads to another class. ``container`` is the class of a collection, which may have ``active``."""
+    """A property that leads to another class. ``container`` is the class of a collection, which may have ``active``;
+    ``evaluated``: only evaluated objects have it filled.
+    """
 
     name: str
     target: str
     cost: float
     many: bool = False
     container: str = ""
+    evaluated: bool = False
 
 
 @dataclass(slots=True)
@@ -97,7 +102,9 @@ def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int], names: Mapping[st
             cost = 1.0 + detour + _rarity(symbol.path, uses)
             many = symbol.type == "collection"
             target = NARROWER.get(symbol.path, symbol.target)
-            graph.edges[owner].append(_Step(symbol.name, target, cost, many, symbol.collection))
+            graph.edges[owner].append(
+                _Step(symbol.name, target, cost, many, symbol.collection, EVALUATED in symbol.flags)
+            )
             if symbol.path == f"{TYPES}Object.data":
                 graph.edges[owner] += [_Step(symbol.name, name, cost) for name in _OBJECT_DATA]
     return graph
@@ -172,7 +179,7 @@ def reached_expressions(
             continue
         expressions[cls] = expression
         for step in _steps(cls, graph):
-            here = f"{expression}.{step.name}"
+            here = f"{of_evaluated(expression) if step.evaluated else expression}.{step.name}"
             reached = cost + step.cost + (1 if step.many else 0)
             offer(reached, step.target, here, many=step.many)
             active = _active(step, graph) if step.many else None

@@ -17,6 +17,7 @@ from kb_build.errors import ExtractError
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
     AREAS,
+    EVALUATED,
     FILLED_BY,
     FILLED_ON,
     GIVEN,
@@ -173,6 +174,12 @@ def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
         row["refusals"] = refusals(seen["outcomes"])
 
 
+def _add_evaluated(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that only evaluated objects have it filled."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), EVALUATED]
+
+
 _ADDED = {
     "argument_items": _add_argument_items,
     "choices": _add_choices,
@@ -181,6 +188,7 @@ _ADDED = {
     "operator_needs": _add_needs,
     "operator_areas": _add_areas,
     "refusals": _add_refusals,
+    "evaluated": _add_evaluated,
 }
 
 

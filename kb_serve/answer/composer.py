@@ -131,7 +131,7 @@ class AnswerComposer:
             return self._answer_each(parts, ranking, limit)
         rows = self._listed(ranking, limit)
         hits = self._hits(rows)
-        known = self._practice.of(hits[0].id) if hits else ()
+        known = self._practice.of(hits[0].id) if hits and not ranking.notes else ()
         notes = tuple(dict.fromkeys((*ranking.notes, *known, *self._source_notes(ranking, hits))))
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."

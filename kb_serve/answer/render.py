@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import NOT_TAKEN
+from kb_build.records import EVALUATED, NOT_TAKEN
 from kb_build.symbol_lines import (
     default_text,
     empty_when_new,
@@ -15,6 +15,7 @@ from kb_build.symbol_lines import (
     first_sentence,
     literal,
     new_subscript,
+    of_evaluated,
     operator_needs,
     passage_text,
     refusal_lines,
@@ -364,6 +365,9 @@ class MarkdownRenderer:
             if symbol.kind == "socket" and (subscript := new_subscript(symbol)):
                 last = f".{subscript}"
             tail = "(…)" if symbol.kind == "function" else ""
+            if EVALUATED in symbol.flags:
+                yield "filled on evaluated objects only: the original's stays empty, or None"
+                reached = of_evaluated(reached)
             yield f"reached as `{reached}{last}{tail}`" + (self._empty_before(cls) if cls else "")
         elif symbol.kind == "context":
             origin = [flag[5:] for flag in symbol.flags if flag.startswith("from:")]

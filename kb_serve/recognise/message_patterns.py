@@ -23,6 +23,10 @@ BAD_KEYWORD = re.compile(
     r"|(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): was called with invalid keyword argument\(s\) \((?P<several>[^)]*)\)"
 )
 IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): error with argument")
+TOO_MANY = re.compile(
+    r"(?<![\w.])(?P<function>\w++(?:\.\w++)*+)(?:\(\):? takes at most| expected at most) (?P<most>\d+) arguments?"
+    r"[,\s(]+(?:got )?(?P<given>\d+)"
+)
 NO_MODULE = re.compile(r"No module named ['\"](?P<module>[\w.]+)['\"]")
 NO_IMPORT = re.compile(r"cannot import name ['\"](?P<name>\w+)['\"] from ['\"](?P<module>[\w.]+)['\"]")
 POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")

@@ -8,6 +8,8 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
+from kb_build.records import EVALUATED
+from kb_build.symbol_lines import GET_EVALUATED
 from kb_serve.reader import TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import unknown_keywords
@@ -96,6 +98,8 @@ class Messages:
             several = re.findall(r"\w+", match["several"] or "")
             for name in several or [match["name"] or match["unexpected"] or match["invalid"]]:
                 self._keyword(name, function, recognition)
+        for match in _matches(forms.TOO_MANY, query):
+            self._too_many(match["function"], int(match["most"]), recognition)
         for match in _matches(forms.NO_INDEX, query):
             recognition.notes.append(self._index(match["index"], int(match["size"]), query, recognition))
         for match in _matches(forms.NO_KEY, query):
@@ -234,6 +238,17 @@ class Messages:
                 listed = ", ".join(f"`{path}`" for path in others)
                 recognition.notes.append(f"`{word}` is the argument of {listed}.")
 
+    def _too_many(self, function: str, most: int, recognition: Recognition) -> None:
+        """More arguments than a function or class takes: what it takes, one sequence perhaps."""
+        path = self._class_path(function) or self._function(function)
+        symbol = self._reader.symbol(path) if path else None
+        if symbol is None or not symbol.signature:
+            return
+        recognition.add(symbol.path, 0.95, "error message")
+        is_sequence = "=(" in symbol.signature.partition(",")[0]
+        how = f", the first a sequence: `{symbol.name}((…, …))`" if is_sequence else ""
+        recognition.notes.append(f"`{symbol.path}` takes at most {most} by position{how}.")
+
     def _function(self, written: str) -> str:
         """The path of a function that a message names: ``Object.ray_cast``, ``from_pydata``."""
         if "." in written:
@@ -272,6 +287,11 @@ class Messages:
         held = f"only {size}, counted from 0" if size else "no elements"
         note = f"The collection has {held}: there is no `[{index}]` yet."
         found = {match.id for match in recognition.matches}
+        for symbol in filter(None, map(self._reader.symbol, found)):
+            if EVALUATED in symbol.flags and symbol.name in forms.SUBSCRIPTED.findall(query):
+                return (
+                    f"{note} Blender fills `.{symbol.name}` on evaluated objects only: `obj{GET_EVALUATED}`."
+                )
         for name in forms.SUBSCRIPTED.findall(query):
             entries = [entry for entry in self._reader.by_name(name) if entry.type == "collection"]
             entries = [entry for entry in entries if entry.path in found] or entries

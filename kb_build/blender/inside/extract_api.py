@@ -16,6 +16,7 @@ import bpy
 
 from . import (
     context,
+    evaluated,
     modules,
     new_things,
     nodes,
@@ -91,6 +92,7 @@ STEPS = (
         ),
     ),
     ("pointers", lambda write, found: pointer_fillers.find_all(write, found["observer"], found["skipped"])),
+    ("evaluated", lambda write, found: evaluated.find_all(write, found["skipped"])),
     ("refusals", lambda write, found: refusals.find_all(write, found["observer"])),
     ("own names", lambda write, found: own_names.find_all(write, found["observer"], found["skipped"])),
     (

@@ -275,6 +275,8 @@ class Observer:
         self.calls = {}
         # path → [(value, mode, labels)]
         self.in_modes = {}
+        # mode → [(label, ancestry)] of all that was put into it
+        self.put_into = {}
         # path → {items: Contexts}
         self.items = {}
         # path → {identifier: (name, description)}
@@ -378,15 +380,21 @@ class Observer:
     def ask(self, struct, label, mode, enums=None):
         """Notes which items the instance's enumerations take now: all, or these."""
         enums = self.layout(struct).enums if enums is None else enums
-        state = (
-            {field.name: getattr(struct, field.name) for field in self.layout(struct).modes} if enums else {}
-        )
+        state = self.state(struct) if enums else {}
         for field in enums:
             items = refused_value_items(struct, field.name, field.is_flag)
             if items:
                 found = self.items.setdefault(field.path, {}).setdefault(tuple(items), Contexts())
                 found.add((label, mode), state)
                 self.keep_texts(struct, field, items)
+
+    def state(self, struct):
+        """What may decide which items an instance takes: its modes, and the type of its object."""
+        modes = {field.name: getattr(struct, field.name) for field in self.layout(struct).modes}
+        owner = struct.id_data
+        if isinstance(owner, bpy.types.Object):
+            modes["type" if struct == owner else "obj.type"] = owner.type
+        return modes
 
     def ask_choices(self, struct, label):
         """Notes which items an instance's functions take, of those that RNA does not list."""
@@ -487,6 +495,7 @@ class Observer:
     def compare(self, struct, label, mode, changed, before):
         """Notes the properties that the mode has changed. Returns whether there are any."""
         found = False
+        self.put_into.setdefault(mode, []).append((label, ancestry(struct.bl_rna)))
         for field, value in self.read(struct).items():
             known = field in before and not field.is_chosen
             if field is not changed and known and value != before[field] and not same(value, before[field]):
@@ -584,11 +593,13 @@ class Observer:
         return calls.pop() if len(calls) == 1 else ""
 
     def modal(self, path):
-        """The values that a mode gives: those of every instance that was put into it."""
-        return [
-            {"value": value, "when": mode, "made": labels}
-            for value, mode, labels in self.in_modes.get(path, ())
-        ]
+        """The values that a mode gives; ``made`` where it gives them to some instances only that were put into it."""
+        cls = path.split(".")[-2]
+        rows = []
+        for value, mode, labels in self.in_modes.get(path, ()):
+            others = {label for label, names in self.put_into[mode] if cls in names} - set(labels)
+            rows.append({"value": value, "when": mode, "made": list(dict.fromkeys(labels)) if others else []})
+        return rows
 
     def is_computed(self, field):
         """Whether an enumeration had other items than RNA lists, somewhere."""

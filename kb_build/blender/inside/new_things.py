@@ -200,14 +200,14 @@ def dynamic_paint(modifier):
 
 
 def constraints():
-    """Every constraint of objects, and of bones with a bone as target."""
+    """Every constraint of objects, also of an armature's, and of bones with a bone as target."""
     obj = add_object(None)
     bpy.ops.object.armature_add()
     armature = bpy.context.object
     bone = armature.pose.bones[0]
     for kind in choices("Constraint", "type"):
         label = ""
-        for owner in (obj, bone):
+        for owner in (obj, armature, bone):
             try:
                 constraint = owner.constraints.new(kind)
             except (TypeError, RuntimeError):
@@ -215,7 +215,7 @@ def constraints():
             if owner == bone and hasattr(constraint, "subtarget"):
                 constraint.target = armature
                 constraint.subtarget = bone.name
-            label = "constraint of a bone" if label else called(constraint)
+            label = "constraint of a bone" if owner == bone and label else called(constraint)
             yield label, constraint
 
 
@@ -251,11 +251,13 @@ def particles():
 
 
 def force_fields():
-    """Force fields of objects that have surfaces and points, which some shapes need."""
-    for kind in ("MESH", "CURVE"):
+    """Force fields of objects of every type: some shapes need surfaces or points."""
+    for kind in choices("Object", "type"):
         obj = object_of(kind)
-        bpy.ops.object.forcefield_toggle()
-        yield f"force field of a {kind.lower()} object", obj.field
+        if obj is not None:
+            bpy.ops.object.forcefield_toggle()
+            if obj.field is not None:
+                yield f"force field of a {kind.lower()} object", obj.field
 
 
 def rigid_bodies():

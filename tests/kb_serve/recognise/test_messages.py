@@ -73,6 +73,22 @@ def test_what_refused_a_call_says_when_it_does(kb: KnowledgeBase) -> None:
     )
 
 
+def test_too_many_arguments_are_answered_with_what_is_taken(kb: KnowledgeBase) -> None:
+    text = kb.query("TypeError: mathutils.Vector(): takes at most 1 argument (3 given)").text
+    assert "takes at most 1 by position, the first a sequence: `Vector((…, …))`" in text
+    assert "`a @ b`" not in text
+
+
+def test_what_only_evaluated_objects_have_is_reached_from_one(kb: KnowledgeBase) -> None:
+    evaluated = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
+    text = kb.query("Particle.location").text
+    assert f"`bpy.context.object{evaluated}.particle_systems" in text
+    assert "filled on evaluated objects only" in kb.query("ParticleSystem.particles").text
+    message = "IndexError: bpy_prop_collection[index]: index 0 out of range, size 0"
+    text = kb.query(f"{message}\nParticleSystem.particles[0].location").text
+    assert f"Blender fills `.particles` on evaluated objects only: `obj{evaluated}`" in text
+
+
 def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
     line = "AttributeError: 'Mesh' object has no attribute 'calc_loop_triangle'"
     pasted = (
