@@ -93,7 +93,8 @@ def test_a_socket_that_a_new_node_shows_is_reached_by_its_name() -> None:
 
 
 def test_a_line_shows_what_a_new_one_has_and_what_a_mode_changes() -> None:
-    values = (NewValue(False), NewValue(True, ("domain",), "domain_type='LIQUID'"))
+    of_some = NewValue(True, ("action constraint",), "mix_mode='BEFORE'")
+    values = (NewValue(False), NewValue(True, (), "domain_type='LIQUID'"), of_some)
     assert line(type="boolean", default=True, new_values=values, flags=("compared",)) == (
         "`x` boolean = False (True with domain_type='LIQUID')"
     )
@@ -133,7 +134,8 @@ def test_items_that_no_instance_takes_are_not_listed() -> None:
         ({"default": 0, "new_values": (NewValue(5, ("start-up a",)),)}, "`5` in the startup file; RNA says `0`"),
         ({"default": 5, "new_values": (NewValue(1, ("factory preferences",)),)},
          "`1` in the factory preferences; RNA says `5`"),
-        ({"default": 0, "new_values": (NewValue(1, ("a",), "m='X'"),)}, "`0`, `1` (with m='X')"),
+        ({"default": 0, "new_values": (NewValue(1, (), "m='X'"),)}, "`0`, `1` (with m='X')"),
+        ({"default": 0, "new_values": (NewValue(1, ("a",), "m='X'"),)}, "`0`, `1` (new a with m='X')"),
         ({"default": "NONE", "enum_items": (EnumItem("None"),), "new_values": (NewValue("None"),)},
          "`'None'` (new A)"),
         ({"default": None}, ""),
