@@ -26,9 +26,9 @@ TEST_ON, TEST_OFF = "on", "off"
 
 # The levels of the documents.
 UNITS, TOPICS = range(2)
-# What a document is to the search; index: of a page that only lists others.
-DocumentKind = Literal["data", "code", "node", "index", "rarely asked"]
-DOCUMENT_KINDS: tuple[DocumentKind, ...] = ("data", "code", "node", "index", "rarely asked")
+# What a document is to the search; index: of a page that only lists others, removing: of a function that does so.
+DocumentKind = Literal["data", "code", "node", "index", "rarely asked", "removing"]
+DOCUMENT_KINDS: tuple[DocumentKind, ...] = ("data", "code", "node", "index", "rarely asked", "removing")
 _JSON = json.JSONEncoder(ensure_ascii=False, separators=(",", ":"))
 POSTING_BYTES = 6  # a number as uint32, a weight as float16
 

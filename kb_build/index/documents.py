@@ -26,6 +26,7 @@ TYPES = "bpy.types."
 FIELDS = ("name", "heading", "context", "body", "related", "expansions")
 # How to write the manual, single add-ons, features kept for old files, the colours of Blender's own windows.
 _RARELY_ASKED = re.compile(r"contribute/|addons/|freestyle\.|legacy|bpy\.types\.(?:Theme|\w*ViewerPath)")
+_REMOVING = frozenset({"remove", "clear", "delete", "free", "unlink", "discard", "unassign"})
 _OF_NODES = re.compile(
     r".*/(?:geometry|shader)_nodes/|compositing/types/|bpy\.types\.\w*Node|bpy\.ops\.node\."
 )
@@ -223,6 +224,8 @@ def kind_of(document: Document) -> DocumentKind:
         return "index"
     if _RARELY_ASKED.search(document.ref):
         return "rarely asked"
+    if document.kind == "function" and not _REMOVING.isdisjoint(document.ref.rpartition(".")[2].split("_")):
+        return "removing"
     if _OF_NODES.match(document.ref):
         return "node"
     if document.kind == "class":

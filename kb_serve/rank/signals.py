@@ -34,6 +34,10 @@ CODE_WORDS = frozenset(
 NODE_WORDS = frozenset(
     "compositing compositor geometry node nodes nodetree shader shaders socket sockets".split()  # noqa: SIM905
 )
+REMOVAL_WORDS = frozenset(
+    """away clean clear cut delete deleted deleting detach discard drop empty erase forget free get hide kill lose off
+    purge remove removed removes removing reset rid strip unassign unbake undo unlink wipe without""".split()  # noqa: SIM905
+)
 _FEEDBACK = 100
 _FEEDBACK_POWER = 3  # the weaker half of the feedback units hardly votes
 
@@ -78,13 +82,17 @@ def counts(evidence: Evidence) -> Scores | None:
 
 def code(evidence: Evidence) -> Scores | None:
     """Whether the unit is about code, where the query asks for code."""
-    return None if evidence.words.isdisjoint(CODE_WORDS) else evidence.of_kind("code")
+    return None if evidence.words.isdisjoint(CODE_WORDS) else _of_code(evidence)
 
 
 def code_of_an_error(evidence: Evidence) -> Scores | None:
     """Whether the unit is about code, where the query is a message, which a setting may be to blame for too."""
     is_only_message = evidence.failed and evidence.words.isdisjoint(CODE_WORDS)
-    return evidence.of_kind("code") if is_only_message else None
+    return _of_code(evidence) if is_only_message else None
+
+
+def _of_code(evidence: Evidence) -> Scores:
+    return evidence.of_kind("code") + evidence.of_kind("removing")
 
 
 def unasked_node(evidence: Evidence) -> Scores | None:
@@ -97,6 +105,12 @@ def unasked_area(evidence: Evidence) -> Scores:
     of_area = np.zeros(NO_AREA + 1, np.float32)
     of_area[unasked(evidence.words)] = 1
     return of_area[evidence.areas]
+
+
+def unasked_removal(evidence: Evidence) -> Scores | None:
+    """Whether the unit is a function that removes something, where the query speaks of nothing of the kind."""
+    is_asked = evidence.failed or not evidence.words.isdisjoint(REMOVAL_WORDS)
+    return None if is_asked else evidence.of_kind("removing")
 
 
 def rarely_asked(evidence: Evidence) -> Scores:
@@ -117,6 +131,7 @@ SIGNALS: dict[str, Signal] = {
     "code of an error": code_of_an_error,
     "unasked node": unasked_node,
     "unasked area": unasked_area,
+    "unasked removal": unasked_removal,
     "rarely asked": rarely_asked,
     "index": index,
 }

@@ -11,6 +11,7 @@ WEIGHTS: dict[str, float] = {
     "code of an error": 0.25,
     "unasked node": -0.4,
     "unasked area": -0.25,
+    "unasked removal": -0.3,
     "rarely asked": -0.35,
     "index": -1.0,
     "chapter": 0.1,

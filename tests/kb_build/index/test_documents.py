@@ -99,6 +99,7 @@ def test_a_topic_holds_the_texts_of_its_units() -> None:
         ("bpy.types.Cloth", "class", "data"),
         ("mathutils.Vector", "class", "code"),
         ("bpy.types.Cloth.copy", "function", "code"),
+        ("bpy.types.Cloth.remove", "function", "removing"),
         ("info_gotchas", "guide", "code"),
         ("bpy.types.ShaderNodeMix", "class", "node"),
         ("modeling/geometry_nodes/mesh/cube", "manual", "node"),

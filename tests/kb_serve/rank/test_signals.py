@@ -53,6 +53,9 @@ def test_every_signal_has_a_weight_and_no_weight_is_without() -> None:
         ("bake cloth", True, "code", "data"),
         ("bake cloth", False, "data", "node"),
         ("bake cloth", False, "data", "rarely asked"),
+        ("driver with a variable in python", False, "code", "removing"),
+        ("remove a variable in python", False, "removing", "data"),
+        ("RuntimeError: variable", True, "removing", "data"),
         ("bake cloth", False, "rarely asked", "index"),
     ],
 )
