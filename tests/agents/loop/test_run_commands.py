@@ -103,7 +103,10 @@ def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> N
         (("make", "A crate", "--run", "/proc/nothing"), "cannot be used as the folder of a run"),
     ],
 )
-def test_errors_are_shown_without_a_traceback(alone: None, words: tuple[str, ...], says: str) -> None:
+def test_errors_are_shown_without_a_traceback(
+    alone: None, words: tuple[str, ...], says: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ANTHROPIC_API_KEY", "any")
     result = said(*words)
     assert result.exit_code == 2
     assert says in " ".join(result.output.split())
