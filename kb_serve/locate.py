@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_serve.errors import BaseMissing
 from simworlds.errors import UserError
 from simworlds.own_command import own_command
-from simworlds.releases import USUAL, minor_of, release, releases
+from simworlds.releases import USUAL, minor_of, release, releases, version_key
 from simworlds.settings import base_path, built_bases, home_folder
 
 if TYPE_CHECKING:
@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 _LONGEST_QUOTE = 40
+_OLDEST = (3, 1)  # the first Blender with Python 3.10, which what reads it needs
 
 
 def find_base(version: str | None, home: Path | None = None) -> Path:
@@ -74,12 +75,18 @@ def _how_to_get(*versions: str) -> str:
             f"first, 350 MB). Or fetch {one}: {command} kb fetch {fetched} --from URL|FILE."
         )
     known = ", ".join(row.minor for row in releases())
-    parts += [
-        f"Blender {version} has no bpy package to build a base from (only {known} have). If it is installed, give its "
-        f"program: {command} kb build {version} --blender-exe /path/to/blender."
-        for version in versions
-        if version not in usual
-    ]
+    for version in versions:
+        if version_key(version) < _OLDEST:
+            oldest = ".".join(map(str, _OLDEST))
+            parts.append(
+                f"No base can be built of Blender {version}: it is older than {oldest}. Bases of newer Blenders know "
+                "what became of its names: ask one of them."
+            )
+        elif version not in usual:
+            parts.append(
+                f"Blender {version} has no bpy package to build a base from (only {known} have). If it is installed, "
+                f"give its program: {command} kb build {version} --blender-exe /path/to/blender."
+            )
     return " ".join(parts)
 
 

@@ -250,12 +250,6 @@ def _attached(wanted: str, profile: Profile) -> _OwnBlenders:
     if wanted == AUTO and not found:
         click.echo("No open Blender listens: working in a Blender of its own.", err=True)
         return _OwnBlenders(profile)
-    if not found:
-        click.echo(
-            "No open Blender listens yet. In Blender's sidebar (N), in the tab SimWorlds, press Start (to have that "
-            "tab: simworlds extension install).",
-            err=True,
-        )
     versions = {blender.about.version for blender in found}
     return _OpenBlender(profile, wanted, minor_of(versions.pop()) if len(versions) == 1 else None)
 

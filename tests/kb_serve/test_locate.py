@@ -42,7 +42,7 @@ def test_a_version_that_was_not_built_is_missing_with_those_that_were(folder: Pa
     assert "4.2, 4.5, 4.10" in str(refused.value)
 
 
-@pytest.mark.parametrize("asked", ["4.20", "7.0", "0.0", "2.79"])
+@pytest.mark.parametrize("asked", ["4.20", "7.0", "3.4"])
 def test_a_version_without_a_package_can_only_be_built_from_an_installed_blender(
     folder: Path, asked: str
 ) -> None:
@@ -51,6 +51,15 @@ def test_a_version_without_a_package_can_only_be_built_from_an_installed_blender
     assert f"Blender {asked} has no bpy package to build a base from (only 4.2, 4.3," in str(refused.value)
     assert f"simworlds kb build {asked} --blender-exe /path/to/blender" in str(refused.value)
     assert "kb fetch" not in str(refused.value)
+
+
+@pytest.mark.parametrize("asked", ["0.0", "2.79", "3.0"])
+def test_no_build_is_advised_of_blenders_that_are_too_old(folder: Path, asked: str) -> None:
+    with pytest.raises(
+        BaseMissing, match=f"No base can be built of Blender {asked}: it is older than 3.1"
+    ) as refused:
+        find_base(asked, folder)
+    assert "kb build" not in str(refused.value)
 
 
 def test_of_several_versions_all_that_are_missing_are_named(folder: Path) -> None:
