@@ -56,7 +56,7 @@ test: $(STAMP) ## Run the tests, a file at a time on each core [PYTEST_ARGS=]
 test-whole: $(STAMP) ## Run them with every cell of the tables that `make test` takes a part of [PYTEST_ARGS=]
 	@SIMWORLDS_WHOLE=1 $(MAKE) --no-print-directory test PYTEST_ARGS="$(PYTEST_ARGS)"
 
-test-fast: $(STAMP) ## Run the tests that need no Blender, in under a minute [PYTEST_ARGS=]
+test-fast: $(STAMP) ## Run the tests that need no Blender [PYTEST_ARGS=]
 	@$(PY) -m pytest --numprocesses=2 --dist=loadfile -m "not blender and not corpora and not slow and not window" $(PYTEST_ARGS)
 
 serve: $(STAMP) ## Serve blender_docs and blender_check over MCP on stdio [SERVE_ARGS=]

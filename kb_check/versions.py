@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 from kb_check.configuration import Configuration
 from kb_check.project import Project
 from kb_check.run import Run
-from kb_serve.bases import Bases
+from kb_serve.locate import find_bases
 from kb_serve.reader import BaseReader
 from simworlds.errors import UserError
 from simworlds.releases import minor_of, version_key
@@ -189,11 +189,7 @@ def base_files(versions: Iterable[str], home: Path) -> dict[str, Path]:
     wanted = {minor_of(version) for version in versions if version.strip()}
     if not wanted:
         raise UserError("Give at least one version of Blender, as 4.2,5.1.")
-    bases = Bases(home)
-    try:
-        return {version: bases.file(version) for version in sorted(wanted, key=version_key)}
-    finally:
-        bases.close()
+    return find_bases(sorted(wanted, key=version_key), home)
 
 
 def _ranges(chosen: Sequence[str], known: Sequence[str]) -> str:

@@ -7,13 +7,15 @@ from typing import TYPE_CHECKING
 from kb_serve.errors import BaseMissing
 from simworlds.errors import UserError
 from simworlds.own_command import own_command
-from simworlds.releases import USUAL, minor_of
+from simworlds.releases import USUAL, minor_of, release, releases, version_key
 from simworlds.settings import base_path, built_bases, home_folder
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
     from pathlib import Path
 
 _LONGEST_QUOTE = 40
+_OLDEST = (3, 1)  # the first Blender with Python 3.10, which what reads it needs
 
 
 def find_base(version: str | None, home: Path | None = None) -> Path:
@@ -39,12 +41,53 @@ def find_base(version: str | None, home: Path | None = None) -> Path:
     return path
 
 
-def _how_to_get(version: str) -> str:
+def find_bases(versions: Iterable[str], home: Path | None = None) -> dict[str, Path]:
+    """Version → file, in the order given. Raises BaseMissing, which names all versions that have none."""
+    files: dict[str, Path] = {}
+    missing: list[BaseMissing] = []
+    lacking: list[str] = []
+    for version in versions:
+        try:
+            files[version] = find_base(version, home)
+        except BaseMissing as error:
+            missing.append(error)
+            lacking.append(version)
+    if len(missing) > 1:
+        built = _names(built_bases(home or home_folder()))
+        what = f"There are no knowledge bases for Blender {', '.join(lacking)}. Built are: {built}."
+        raise BaseMissing(what, _how_to_get(*lacking))
+    for error in missing:
+        raise error
+    return files
+
+
+def _how_to_get(*versions: str) -> str:
+    """How to get the bases of these versions: of those that have no bpy package, from an installed Blender alone."""
     command = own_command()
-    return (
-        f"Build it: {command} kb build {version} (a minute; without Blender in this environment, its bpy package is "
-        f"fetched first, 350 MB). Or fetch a ready one: {command} kb fetch {version} --from URL|FILE."
-    )
+    usual = [version for version in versions if release(version) is not None]
+    parts: list[str] = []
+    if usual:
+        builds = "; ".join(f"{command} kb build {version}" for version in usual)
+        it, one, each = ("it", "a ready one", "") if len(usual) == 1 else ("them", "ready ones", " each")
+        fetched = usual[0] if len(usual) == 1 else "VERSION"
+        parts.append(
+            f"Build {it}: {builds} (a minute{each}; without Blender in this environment, its bpy package is fetched "
+            f"first, 350 MB). Or fetch {one}: {command} kb fetch {fetched} --from URL|FILE."
+        )
+    known = ", ".join(row.minor for row in releases())
+    for version in versions:
+        if version_key(version) < _OLDEST:
+            oldest = ".".join(map(str, _OLDEST))
+            parts.append(
+                f"No base can be built of Blender {version}: it is older than {oldest}. Bases of newer Blenders know "
+                "what became of its names: ask one of them."
+            )
+        elif version not in usual:
+            parts.append(
+                f"Blender {version} has no bpy package to build a base from (only {known} have). If it is installed, "
+                f"give its program: {command} kb build {version} --blender-exe /path/to/blender."
+            )
+    return " ".join(parts)
 
 
 def _names(built: dict[str, Path]) -> str:

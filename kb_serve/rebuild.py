@@ -23,7 +23,7 @@ from kb_serve.in_use import minor
 from simworlds.errors import UserError
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
-from simworlds.releases import USUAL, minor_of, version_key
+from simworlds.releases import USUAL, minor_of, release, version_key
 from simworlds.settings import ready_base_source
 from simworlds.terminal.lines import write_line
 
@@ -104,14 +104,19 @@ class Upkeep:
         return f"This is Blender {have}'s knowledge base, but Blender {in_use} is in use. {then}"
 
     def offer(self, version: str | None) -> str:
-        """The query that has the base of a version built here, where this may do so; empty elsewhere."""
-        may = self.enabled and SYSTEM.limits_processes and self.state != "running"
-        return f"kb build {minor(version or self.bases.wanted_but_missing() or USUAL)}" if may else ""
+        """The query that has the base of a version built here, where this can be done; empty elsewhere."""
+        wanted = minor(version or self.bases.wanted_but_missing() or USUAL)
+        in_use = self.bases.in_use
+        can = release(wanted) is not None or (in_use is not None and minor(in_use) == wanted)
+        return f"kb build {wanted}" if can and self._may_build() else ""
+
+    def _may_build(self) -> bool:
+        return self.enabled and SYSTEM.limits_processes and self.state != "running"
 
     def accept(self, query: str) -> str:
         """Builds a base in the background if the query takes up the offer. Returns its version, or nothing."""
         match = _ACCEPTED.fullmatch(query.strip())
-        if match is None or not self.offer(match[1]) or minor_of(match[1]) in self.bases.built():
+        if match is None or not self._may_build() or minor_of(match[1]) in self.bases.built():
             return ""
         self._accepted = True
         self._job = job = self._building(minor_of(match[1]), {})

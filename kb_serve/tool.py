@@ -10,6 +10,7 @@ from mcp_types import CallToolResult, TextContent, Tool, ToolAnnotations
 from pydantic import BaseModel, ConfigDict, Field, ValidationError
 
 from kb_serve.errors import BadQuery
+from simworlds.schemas.faults import describe_faults
 from simworlds.schemas.json_schema import schema_of
 
 if TYPE_CHECKING:
@@ -112,11 +113,8 @@ def parsed(model: type[_Arguments], name: str, arguments: dict[str, Any] | None)
     try:
         return model.model_validate(arguments or {})
     except ValidationError as error:
-        wrong = "; ".join(
-            f"{'.'.join(str(part) for part in fault['loc'])}: {fault['msg']}"
-            for fault in error.errors(include_url=False, include_context=False)
-        )
-        raise BadQuery(f"The arguments do not fit {name}: {wrong[:500]}") from error
+        wrong = describe_faults(model, error, at_most=500)
+        raise BadQuery(f"The arguments do not fit {name}: {wrong}") from error
 
 
 def answer(service: Service, arguments: dict[str, Any] | None) -> CallToolResult:

@@ -190,10 +190,15 @@ def cache_faults(scene: FileContents, copy: FileContents | None) -> list[str]:
 
 def find_blend_file(name: str, folder: RunFolder, read: tuple[Path, ...]) -> ReadableFile:
     """The file of that name, relative to the run's folder or absolute. Raises Refusal if it is not a .blend."""
-    spelled = name if _BLEND.search(name) else f"{name}.blend"
+    spelled = name if is_blend_name(name) else f"{name}.blend"
     blend_file = find_readable(spelled, folder, read)
     _check(blend_file, spelled, folder)
     return blend_file
+
+
+def is_blend_name(name: str) -> bool:
+    """Whether a file's name is that of a .blend or of a backup of one."""
+    return _BLEND.search(name) is not None
 
 
 def _check(blend_file: ReadableFile, name: str, folder: RunFolder) -> None:

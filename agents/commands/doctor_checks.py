@@ -22,7 +22,7 @@ from agents.blender.launch import launch_in, runs_folder
 from agents.blender.run_folder import RunFolder
 from agents.blender.supervisor import Supervisor
 from simworlds.own_command import own_command
-from simworlds.releases import USUAL
+from simworlds.releases import USUAL, version_key
 from simworlds.sandbox.confined_command import best_sandbox, bubblewrap_fault
 from simworlds.sandbox.errors import BlenderError, CannotStart, NotInstalled
 from simworlds.sandbox.launch import find_blender
@@ -355,12 +355,13 @@ def _knowledge(version: str | None) -> DoctorResult:
     except (OSError, ValueError, subprocess.TimeoutExpired) as error:
         return DoctorResult("Knowledge", "poor", f"the list of bases cannot be read: {error}")
     minors = {".".join(str(base.get("blender", "")).split(".")[:2]): base for base in bases}
-    minor = ".".join((version or "").split(".")[:2])
+    # Where no Blender was found and none is asked for, answers come from the newest base.
+    minor = ".".join((version or "").split(".")[:2]) or max(minors, key=version_key, default="")
     data = {"built": sorted(minors), "wanted": minor}
     if (base := minors.get(minor)) is not None:
         text = f"for Blender {base['blender']}, {base.get('bytes', 0) / 1e6:,.0f} MB"
         return DoctorResult("Knowledge", "good", text, place=str(base.get("path", "")), data=data)
-    have = f", only for {', '.join(sorted(minors))}" if minors else ""
+    have = f", only for {', '.join(sorted(minors, key=version_key))}" if minors else ""
     advice = f"{own_command()} kb build {minor or USUAL}"
     return DoctorResult(
         "Knowledge",

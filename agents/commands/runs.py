@@ -26,6 +26,21 @@ _FILE = click.Path(exists=True, dir_okay=False, resolve_path=True, path_type=Pat
 _ROLES = ("planner", "coder", "reviewer", "final_reviewer")
 
 
+class _RunFolder(click.Path):
+    """The folder of a run: its path, or the name that ``simworlds runs`` lists it by."""
+
+    def __init__(self) -> None:
+        super().__init__(file_okay=False, resolve_path=True, path_type=Path)
+
+    def convert(
+        self, value: Any, param: click.Parameter | None, ctx: click.Context | None
+    ) -> Any:  # as of click.Path
+        """The path; of a bare name that is no run in the current folder, that of the run of this name."""
+        from agents.views.run_list import run_named  # noqa: PLC0415 - not for --help
+
+        return super().convert(run_named(str(value)) or value, param, ctx)
+
+
 def _options(*options: Callable[[Command], Command]) -> Callable[[Command], Command]:
     def add(command: Command) -> Command:
         for option in reversed(options):
@@ -156,7 +171,7 @@ def demo(name: str | None, **given: Any) -> None:
 
 
 @click.command()
-@click.argument("run", type=_FOLDER)
+@click.argument("run", type=_RunFolder())
 @_limits
 @_blender
 def replay(run: Path, **given: Any) -> None:
@@ -175,7 +190,7 @@ def replay(run: Path, **given: Any) -> None:
 
 
 @click.command()
-@click.argument("run", type=_FOLDER)
+@click.argument("run", type=_RunFolder())
 @_limits
 @_options(*_RENDER)
 def resume(run: Path, **given: Any) -> None:
@@ -190,15 +205,20 @@ def resume(run: Path, **given: Any) -> None:
 
 @click.command()
 def runs() -> None:
-    """List the runs, newest first."""
+    """List the runs, newest first. 'resume', 'show' and 'replay' take the names from any folder."""
+    from agents.blender.launch import runs_folder  # noqa: PLC0415 - not for --help
     from agents.views.run_list import list_runs  # noqa: PLC0415
     from simworlds.terminal.console import Console  # noqa: PLC0415 - not for --help
 
-    Console(sys.stdout).print(list_runs())
+    found = list_runs()
+    if found.row_count:
+        Console(sys.stdout).print(found)
+        click.echo("To continue one: simworlds resume NAME. To look at one: simworlds show NAME.")
+    click.echo(f"{'The runs are' if found.row_count else 'There are no runs'} in {runs_folder()}.")
 
 
 @click.command()
-@click.argument("run", type=_FOLDER)
+@click.argument("run", type=_RunFolder())
 @click.option("--report", is_flag=True, help="Write report.html again.")
 def show(run: Path, *, report: bool) -> None:
     """Show the state or the outcome of a run."""

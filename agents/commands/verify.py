@@ -198,7 +198,12 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
     """A Blender with the file open, in a temporary run folder. Raises _CannotCheckError and BlenderError."""
     from agents.blender.launch import make_launch  # noqa: PLC0415 - not for --help
     from agents.blender.run_folder import RunFolder  # noqa: PLC0415
-    from agents.blender.saved_files import LoadedFile, caches_folder, find_blend_file  # noqa: PLC0415
+    from agents.blender.saved_files import (  # noqa: PLC0415
+        LoadedFile,
+        caches_folder,
+        find_blend_file,
+        is_blend_name,
+    )
     from agents.blender.supervisor import Supervisor  # noqa: PLC0415
 
     real = scene.expanduser().resolve()
@@ -206,6 +211,8 @@ def _opened(scene: Path, choices: dict[str, Any], call: Call) -> Generator[Super
         folder = RunFolder.make(Path(temporary).resolve() / "run")
         if not real.exists():
             raise _CannotCheckError(f"There is no file {scene}.")
+        if not is_blend_name(real.name):
+            raise _CannotCheckError(f"{scene} is not a .blend file.")
         find_blend_file(str(real), folder, (real.parent,))
         launch = make_launch(
             folder.workspace,

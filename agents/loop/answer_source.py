@@ -39,6 +39,12 @@ class LiveOptions:
     closing: ExitStack
 
 
+def check_model(options: Options) -> None:
+    """Raises ModelError if a live model is to answer, and could not be asked: a key or a package is missing."""
+    if options.origin == "live":
+        connect(options.provider, Settings(prices=options.prices)).close()
+
+
 def make_model(root: Path, options: Options, journal: Journal, live: LiveOptions) -> Model:
     """The model of a session; its answers are journalled, and counted where they are paid for.
 

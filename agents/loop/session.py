@@ -13,7 +13,7 @@ from pydantic import ValidationError
 
 from agents.blender.blender_sessions import SessionSetup
 from agents.loop.algorithm import make
-from agents.loop.answer_source import LiveOptions, make_model
+from agents.loop.answer_source import LiveOptions, check_model, make_model
 from agents.loop.edit.edit_mode import edit
 from agents.loop.edit.inputs import check_inputs
 from agents.loop.errors import Aborted, NoRun, RunError, Stopping, Unusable
@@ -101,6 +101,10 @@ def begin(root: Path, options: Options, session: RunSession) -> Ended:
     """Begins a run in ``root``, a folder that is new or empty. Raises NoRun; Unusable, then there is no folder."""
     check_inputs(options)
     try:
+        check_model(options)
+    except ModelError as error:
+        raise Unusable(f"{error} What needs no key: simworlds demo.") from error
+    try:
         root.mkdir(parents=True, exist_ok=True)
         if any(root.iterdir()):
             raise NoRun(
@@ -114,7 +118,7 @@ def begin(root: Path, options: Options, session: RunSession) -> Ended:
 def resume(root: Path, session: RunSession) -> Ended:
     """Continues the run in ``root``. Raises NoRun."""
     if not (root / NAME).is_file():
-        raise NoRun(f"{root} is not a run: it has no {NAME}.")
+        raise NoRun(f"{root} is not a run: it has no {NAME}. 'simworlds runs' lists the runs.")
     ending = read_run_state(root).ending
     if ending and ending.outcome == "done":
         return Ended(

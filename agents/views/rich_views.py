@@ -108,11 +108,12 @@ def runs_table(runs: Iterable[tuple[str, RunState]]) -> Table:
     """A row for each run: its name, what it is, how it stands, what it cost, when it was worked on last."""
     table = Table(box=box.SIMPLE_HEAD, pad_edge=False)
     table.add_column("Run", no_wrap=True)
-    table.add_column("What", ratio=1, overflow="ellipsis", no_wrap=True)
+    # The columns that wrap in a narrow terminal, so that names and outcomes stay whole.
+    table.add_column("What", min_width=12)
     table.add_column("Outcome", no_wrap=True)
     table.add_column("Stage", no_wrap=True)
-    table.add_column("Cost", justify="right", no_wrap=True)
-    table.add_column("When", no_wrap=True)
+    table.add_column("Cost", justify="right")
+    table.add_column("When", min_width=10)
     for name, run_state in runs:
         table.add_row(*run_row(name, run_state))
     return table

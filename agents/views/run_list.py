@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from pathlib import Path
 from typing import TYPE_CHECKING
 
 from agents.blender.launch import runs_folder
@@ -14,8 +15,6 @@ from agents.loop.run_state import RunState
 from agents.views.rich_views import run_summary, runs_table
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from rich.console import RenderableType
     from rich.table import Table
 
@@ -34,6 +33,13 @@ def list_runs() -> Table:
     return runs_table((path.parent.name, _known_of(path.parent)) for path in found)
 
 
+def run_named(name: str) -> Path | None:
+    """The run that is listed by this name, unless the name is the path of a run; None if there is no such run."""
+    path = runs_folder() / name
+    is_listed = path.parent == runs_folder() and (path / NAME).is_file()
+    return path if is_listed and not (Path(name) / NAME).is_file() else None
+
+
 def _known_of(run: Path) -> RunState:
     try:
         return read_run_state(run)
@@ -44,7 +50,7 @@ def _known_of(run: Path) -> RunState:
 def shown(run: Path) -> RenderableType:
     """How a run stands. Raises NoRun."""
     if not (run / NAME).is_file():
-        raise NoRun(f"{run} is not a run: it has no {NAME}.")
+        raise NoRun(f"{run} is not a run: it has no {NAME}. 'simworlds runs' lists the runs.")
     state = read_run_state(run)
     frames = run / "blender" / "frames" / FILM
     return run_summary(state, sum(1 for _ in frames.glob("*.png")) if state.film else 0)

@@ -9,7 +9,7 @@ from agents.blender import plan_check
 from agents.blender.attached.tool_catalogue import TOOLS as ATTACHED_TOOLS
 from agents.blender.team import PROMPTS
 from agents.blender.tool_catalogue import FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSETS
-from agents.blender.tool_profiles import DEFAULT, PROFILES, first_profile
+from agents.blender.tool_profiles import DEFAULT, PROFILES, first_profile, is_offered
 from agents.plan.scene import ScenePlan
 from docs.generate.markdown import GENERATED, page, schema_table, table
 from kb_serve.served_tools import TOOL_NAMES, listing
@@ -119,14 +119,19 @@ def _profiles() -> Iterator[str]:
         f"results are in the resource `{SCHEMAS.uri}`, the plan's is in `{plan_check.SCHEMA.uri}`; `--tools all` "
         "lists tools with their bounds."
     )
-    names = [*TOOL_NAMES, *(tool.name for tool in TOOLS), plan_check.NAME]
+    names = [*TOOL_NAMES, *(tool.name for tool in (*TOOLS, *FOR_CLIENTS)), plan_check.NAME]
     yield table(
-        ("profile", "tools that it adds"),
+        ("profile", "tools", "those that it adds"),
         [
-            (f"`{profile}`" + (" (default)" if profile == DEFAULT else ""), _added(names, profile))
+            (
+                f"`{profile}`" + (" (default)" if profile == DEFAULT else ""),
+                str(sum(is_offered(name, profile) for name in names)),
+                _added(names, profile),
+            )
             for profile in PROFILES
         ],
     )
+    yield f"`--assets` adds `{WITH_ASSETS.name}`, `--online` also `{ONLINE.name}`."
 
 
 def _added(names: Iterable[str], profile: Profile) -> str:

@@ -57,7 +57,7 @@ def _finding(file: FileReport, finding: Finding) -> Iterator[Line]:
             ("^" * max(_width(marked), 1), _STYLES[finding.severity]),
         ]
     if finding.fix is not None:
-        option = "--fix" if finding.fix.sure else "--unsafe-fixes"
+        option = "--fix" if finding.fix.sure else "--fix --unsafe-fixes"
         how = f" ({option})" if file.can_change else ""
         yield [("  help: ", "bold green"), (f"{finding.fix.title}{how}", "")]
 
@@ -103,12 +103,11 @@ def _summary(report: Report) -> Iterator[Line]:
     affected = sum(bool(file.findings) for file in report.files)
     kinds = ", ".join(_many(severities[kind], kind) for kind in _STYLES if severities[kind])
     yield [(f"{checked}: {kinds} in {_many(affected, 'file')}.", "bold")]
-    for option, count in (
-        ("--fix", report.fixable(unsafe=False)),
-        ("--unsafe-fixes", report.fixable(unsafe=True)),
-    ):
-        if count:
-            yield [(f"{option} mends {_many(count, 'finding')}.", "")]
+    sure, unsure = report.fixable(unsafe=False), report.fixable(unsafe=True)
+    if sure:
+        yield [(f"--fix mends {_many(sure, 'finding')}.", "")]
+    if unsure:
+        yield [(f"--fix --unsafe-fixes mends {_many(unsure, 'finding')}{' more' if sure else ''}.", "")]
 
 
 def _many(count: int, noun: str) -> str:

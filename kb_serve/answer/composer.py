@@ -191,7 +191,8 @@ class AnswerComposer:
             yield f"These pages are from the documentation of Blender {version}, not {minor}."
         missing = [row["role"] for row in json.loads(meta.get("missing", "[]"))]
         if missing and not ranking.named:
-            yield f"This base was built without the {' and the '.join(missing)}; `simworlds kb info` says why."
+            without = " and the ".join(missing)
+            yield f"This base was built without the {without}; `simworlds kb info {minor}` says why."
 
     def _hits(self, rows: Sequence[RankedId]) -> tuple[Hit, ...]:
         pages = [row.id for row in rows if self._reader.is_page(row.id)]

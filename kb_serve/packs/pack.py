@@ -72,6 +72,13 @@ def _of_all(reader: BaseReader) -> list[Section]:
 def _of_topic(reader: BaseReader, topic: str) -> list[Section]:
     topics = TopicLines(reader)
     slug = topics.find(topic)
+    if not slug and not reader.rows("SELECT 1 FROM pages WHERE source = 'manual' LIMIT 1"):
+        minor = reader.meta["minor"]
+        raise BadQuery(
+            "This base was built without the manual, whose chapters are the topics. `simworlds kb info "
+            f"{minor}` says why. To build it with the manual: simworlds kb build {minor} --manual PATH. A pack without "
+            "--topic can be had from this base, too."
+        )
     if not slug:
         raise BadQuery(
             f"The base has no topic {topic[:60]!r}. A topic is the name of a chapter of the manual, as 'rigid body', "

@@ -137,7 +137,8 @@ def _client(settings: Settings) -> Anthropic:
     token = "" if key else os.environ.get("ANTHROPIC_AUTH_TOKEN", "").strip()
     if not key and not token:
         raise Rejected(
-            "There is no key for the model: set ANTHROPIC_API_KEY (to any word for a server that needs none)."
+            "There is no key for the model: set the environment variable ANTHROPIC_API_KEY. For a server of your own "
+            "(ANTHROPIC_BASE_URL) that checks no key, any text will do."
         )
     if not (key + token).isascii() or not (key + token).isprintable():
         raise Rejected(

@@ -15,10 +15,12 @@ from places import REPO
 from agents.blender import plan_check
 from agents.blender.team import PROMPTS
 from agents.blender.tool_catalogue import FOR_CLIENTS, TOOLS
+from agents.blender.tool_profiles import first_profile
 from agents.protocol.rules.catalogue import RULES
 from agents.protocol.tolerances import TOLERANCES
 from docs.generate.pages import outdated, pages, write
 from kb_check.rule import all_rules
+from kb_serve.served_tools import TOOL_NAMES
 from kb_serve.tool import DESCRIPTION, tool
 
 
@@ -93,6 +95,29 @@ def test_every_tool_of_the_suite_has_its_description_and_arguments() -> None:
         assert entry.description in text
         for name in entry.arguments.model_json_schema().get("properties", ()):  # what clients are told of
             assert f"| `{name}` |" in text
+
+
+def test_the_profiles_list_every_tool_and_count_them() -> None:
+    text = pages()["blender-tools.md"].partition("## Profiles")[2].partition("\n## ")[0]
+    everywhere = [*TOOL_NAMES, *(entry.name for entry in (*TOOLS, *FOR_CLIENTS)), plan_check.NAME]
+    for name in everywhere:
+        assert f"`{name}`" in text
+    assert f"| `all` | {len(everywhere)} | `blender_tag_object`, `blender_import`, `blender_export` |" in text
+
+
+def test_the_readme_says_which_tools_are_only_in_the_largest_profile() -> None:
+    readme = (REPO / "README.md").read_text(encoding="utf-8")
+    rows = [line.split("|")[1] for line in readme.splitlines() if line.startswith("| `blender_")]
+    named = {name: "--tools all" in row for row in rows for name in re.findall(r"`(blender_\w+)`", row)}
+    previews = {"blender_scene_layout_preview"}  # whose other sizes stand abbreviated beside it
+    for name in (*(entry.name for entry in (*TOOLS, *FOR_CLIENTS)), plan_check.NAME):
+        if not name.endswith(("_layout_preview", "_object_preview", "_mesh_preview")) or name in previews:
+            assert named[name] is (first_profile(name) == "all"), name
+
+
+@pytest.mark.parametrize("page", ["index.md", "for-researchers.md"])
+def test_pages_by_hand_have_the_number_of_rules(page: str) -> None:
+    assert f"{len(RULES)} rules" in (REPO / "docs" / page).read_text(encoding="utf-8")
 
 
 def test_the_plan_check_and_the_prompts_have_sections() -> None:

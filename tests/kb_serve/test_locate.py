@@ -9,7 +9,7 @@ import pytest
 
 from kb_serve.errors import BaseMissing
 from kb_serve.knowledge_base import KnowledgeBase
-from kb_serve.locate import find_base
+from kb_serve.locate import find_base, find_bases
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -34,12 +34,45 @@ def test_a_version_is_found_however_it_is_written(folder: Path, asked: str | Non
     assert find_base(asked, folder) == folder / "kb" / f"blender-{name}.sqlite"
 
 
-@pytest.mark.parametrize("asked", ["5.1", "4.20", "7.0", "0.0"])
+@pytest.mark.parametrize("asked", ["5.1", "5.0"])
 def test_a_version_that_was_not_built_is_missing_with_those_that_were(folder: Path, asked: str) -> None:
     with pytest.raises(BaseMissing) as refused:
         find_base(asked, folder)
     assert f"simworlds kb build {asked}" in str(refused.value)
     assert "4.2, 4.5, 4.10" in str(refused.value)
+
+
+@pytest.mark.parametrize("asked", ["4.20", "7.0", "3.4"])
+def test_a_version_without_a_package_can_only_be_built_from_an_installed_blender(
+    folder: Path, asked: str
+) -> None:
+    with pytest.raises(BaseMissing) as refused:
+        find_base(asked, folder)
+    assert f"Blender {asked} has no bpy package to build a base from (only 4.2, 4.3," in str(refused.value)
+    assert f"simworlds kb build {asked} --blender-exe /path/to/blender" in str(refused.value)
+    assert "kb fetch" not in str(refused.value)
+
+
+@pytest.mark.parametrize("asked", ["0.0", "2.79", "3.0"])
+def test_no_build_is_advised_of_blenders_that_are_too_old(folder: Path, asked: str) -> None:
+    with pytest.raises(
+        BaseMissing, match=f"No base can be built of Blender {asked}: it is older than 3.1"
+    ) as refused:
+        find_base(asked, folder)
+    assert "kb build" not in str(refused.value)
+
+
+def test_of_several_versions_all_that_are_missing_are_named(folder: Path) -> None:
+    assert list(find_bases(["4.2", "4.10"], folder)) == ["4.2", "4.10"]
+    with pytest.raises(BaseMissing) as refused:
+        find_bases(["4.2", "4.4", "5.1", "7.0"], folder)
+    said = str(refused.value)
+    assert said.startswith(
+        "There are no knowledge bases for Blender 4.4, 5.1, 7.0. Built are: 4.2, 4.5, 4.10. Build them: "
+    )
+    assert "simworlds kb build 4.4; " in said
+    assert "simworlds kb build 5.1 (a minute each; " in said
+    assert "simworlds kb fetch VERSION --from URL|FILE. Blender 7.0 has no bpy package" in said
 
 
 @pytest.mark.parametrize(

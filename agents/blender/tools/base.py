@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, Protocol
 from pydantic import BaseModel, ConfigDict, ValidationError
 
 from simworlds.sandbox.errors import Refusal
+from simworlds.schemas.faults import describe_faults
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -160,11 +161,8 @@ def parse(tool: BlenderTool, arguments: dict[str, Any] | None) -> Arguments:
     try:
         return tool.arguments.model_validate(arguments or {})
     except ValidationError as error:
-        wrong = "; ".join(
-            f"{'.'.join(str(part) for part in fault['loc']) or 'arguments'}: {fault['msg']}"
-            for fault in error.errors(include_url=False, include_context=False)
-        )
-        raise Refusal(f"Wrong arguments for {tool.name}: {wrong[:800]}") from error
+        wrong = describe_faults(tool.arguments, error, at_most=800)
+        raise Refusal(f"Wrong arguments for {tool.name}: {wrong}") from error
 
 
 def perform(tool: BlenderTool, context: ToolContext, arguments: Arguments, call: Call) -> Result:

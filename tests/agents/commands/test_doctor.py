@@ -242,6 +242,7 @@ def test_a_knowledge_base_that_is_there_is_found(base: Path, monkeypatch: pytest
     found = doctor_checks._knowledge(installed_bpy())
     assert found.state == "good"
     assert found.place == str(base)
+    assert doctor_checks._knowledge(None) == found  # no Blender was found, none was asked for
     other = doctor_checks._knowledge("3.4.1")
     assert other.state == "poor"
     assert other.advice == f"{own_command()} kb build 3.4"

@@ -70,7 +70,12 @@ def test_a_stage_that_cannot_be_closed_is_exit_code_1(home: Path, tmp_path: Path
 def test_without_a_key_make_fails_with_exit_code_2_and_says_what_to_do(alone: None, tmp_path: Path) -> None:
     result = said("make", "A crate", "--run", tmp_path / "run")
     assert result.exit_code == 2
-    assert "ANTHROPIC_API_KEY" in result.stderr
+    assert (
+        "Error: There is no key for the model: set the environment variable ANTHROPIC_API_KEY."
+        in result.stderr
+    )
+    assert "resume" not in result.output
+    assert not (tmp_path / "run").exists()
 
 
 def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> None:
@@ -98,7 +103,10 @@ def test_a_limit_that_is_reached_is_exit_code_3(home: Path, tmp_path: Path) -> N
         (("make", "A crate", "--run", "/proc/nothing"), "cannot be used as the folder of a run"),
     ],
 )
-def test_errors_are_shown_without_a_traceback(alone: None, words: tuple[str, ...], says: str) -> None:
+def test_errors_are_shown_without_a_traceback(
+    alone: None, words: tuple[str, ...], says: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("ANTHROPIC_API_KEY", "any")
     result = said(*words)
     assert result.exit_code == 2
     assert says in " ".join(result.output.split())
@@ -161,6 +169,28 @@ def test_runs_lists_good_and_broken_runs(mended: Played, base: Path, tmp_path: P
         assert "no-run" not in result.stdout
         assert "A crate on a floor" in result.stdout
         assert result.stdout.count("unreadable") == 2
+        assert f"The runs are in {tmp_path / 'runs'}." in result.stdout
+
+
+def test_a_listed_name_is_taken_from_any_folder(
+    mended: Played, base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "kb").symlink_to(base.parent)
+    run = shutil.copytree(mended.root, tmp_path / "runs" / "2026-11-23-064530-12")
+    monkeypatch.chdir(base.parent)
+    with at_home(tmp_path):
+        narrow = CliRunner().invoke(main, ["runs"], env={"COLUMNS": "80"}).stdout
+        assert run.name in narrow
+        assert " done " in narrow
+        shown = said("show", run.name)
+        assert shown.exit_code == 0
+        assert "A crate stands on a floor" in shown.stdout
+        resumed = said("resume", run.name)
+        assert resumed.exit_code == 0
+        assert str(run / "scene.blend") in resumed.stdout
+        other = said("show", "2026-11-23")
+        assert other.exit_code == 2
+        assert "'simworlds runs' lists the runs" in " ".join(other.output.split())
 
 
 @pytest.mark.parametrize("name", BROKEN)

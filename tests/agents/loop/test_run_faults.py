@@ -11,10 +11,12 @@ import crates
 import pytest
 import teams
 from fake_messages_api import Reply, Status
-from run_sessions import MESSAGES, answered, asked_of, go_on, sit
+from run_sessions import MESSAGES, answered, asked_of, go_on, seat, sit
 from team import ABORT, DONE, Team, calls, last_words, reply, run, turn_of, use, whose, words_of
 
 from agents.loop import run as run_module
+from agents.loop.errors import Unusable
+from agents.loop.options import RunLimits
 from agents.roles.base import RoleContext
 from simworlds.llm.context import ContextLimits as Kept
 
@@ -185,12 +187,21 @@ def test_a_server_that_takes_no_request_ends_the_sitting_at_once(
     assert says in played.ended.why
 
 
-def test_without_a_key_a_run_fails_and_goes_on_once_there_is_one(
+@pytest.mark.usefixtures("api")
+def test_without_a_key_no_run_is_made(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.delenv("ANTHROPIC_API_KEY")
+    with pytest.raises(Unusable, match="ANTHROPIC_API_KEY"):
+        sit(tmp_path / "run")
+    assert not (tmp_path / "run").exists()
+
+
+def test_a_run_whose_key_is_gone_fails_and_goes_on_once_there_is_one(
     api: FakeMessagesAPI, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    assert sit(tmp_path / "run", seat(RunLimits(max_cost=0))).ended.how == "stopped"
     with monkeypatch.context() as patch:
         patch.delenv("ANTHROPIC_API_KEY")
-        played = sit(tmp_path / "run")
+        played = go_on(tmp_path / "run")
     assert played.ended.how == "failed"
     assert "ANTHROPIC_API_KEY" in played.ended.why
     api.answer = Team(decisions={"modeling": (ABORT,)})

@@ -193,6 +193,8 @@ def test_signals_stop_a_run_gently_then_at_once_and_it_can_be_gone_on_with(
         assert becomes(lambda: hangs.items() <= read_rows(root / NAME)[-1].items(), 120)
         with pytest.raises(NoRun, match="in use by another"):
             go_on(root)
+        # The call is journalled before its code runs, and code that did not run yet would hang the next time.
+        assert becomes(lambda: any((root / "blender").rglob("hung")), 120)
         last.send(signal.SIGINT)
         last.until("Stopping at the next safe point")
         last.send(signal.SIGINT)

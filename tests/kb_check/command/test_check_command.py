@@ -277,7 +277,7 @@ def test_a_diff_changes_nothing(command: Command) -> None:
 
 def test_unsure_fixes_are_applied_only_when_wanted(command: Command) -> None:
     command.write("a.py", "import bpy\nbpy.context.object.locatoin.x = 1\n")
-    assert "--unsafe-fixes mends 1 finding." in command("--fix").out
+    assert "\n--fix --unsafe-fixes mends 1 finding." in command("--fix").out
     assert b"locatoin" in command.read("a.py")
     assert command("--fix", "--unsafe-fixes").code == 0
     assert b"object.location.x" in command.read("a.py")

@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import re
-from typing import TYPE_CHECKING
+import shutil
+import sqlite3
+from contextlib import closing
+from pathlib import Path
 
 import pytest
 from bpe_openai import get_encoding
@@ -12,12 +15,8 @@ from click.testing import CliRunner
 from kb_serve.errors import BadQuery
 from kb_serve.packs.changes import Changes, owner_of
 from kb_serve.packs.pack import write_pack
+from kb_serve.reader import BaseReader
 from simworlds.cli import main
-
-if TYPE_CHECKING:
-    from pathlib import Path
-
-    from kb_serve.reader import BaseReader
 
 TYPES = "bpy.types."
 NAME = re.compile(r"`([^`]+)`")
@@ -133,6 +132,19 @@ def test_a_topic_has_its_own_names_and_no_others(reader: BaseReader) -> None:
 def test_what_cannot_be_packed_is_refused(reader: BaseReader, budget: int, topic: str, reason: str) -> None:
     with pytest.raises(BadQuery, match=reason):
         write_pack(reader, budget, topic)
+
+
+def test_a_topic_of_a_base_without_the_manual_is_refused_with_what_is_missing(
+    base: Path, tmp_path: Path
+) -> None:
+    bare = Path(shutil.copy(base, tmp_path))
+    with closing(sqlite3.connect(bare)) as file, file:
+        file.execute("DELETE FROM pages WHERE source = 'manual'")
+    with (
+        closing(BaseReader(bare)) as reader,
+        pytest.raises(BadQuery, match=r"built without the manual.*kb info \d.*kb build \d\.\d --manual PATH"),
+    ):
+        write_pack(reader, 2000, "rigid body")
 
 
 def test_the_command_writes_a_file_and_refuses_a_version_without_base(base: Path, tmp_path: Path) -> None:

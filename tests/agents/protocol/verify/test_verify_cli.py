@@ -192,6 +192,7 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(session: LiveSession,
     [
         (["absent.blend"], "There is no file absent.blend."),
         (["text.blend"], "text.blend is not a .blend file."),
+        (["door.py"], "door.py is not a .blend file."),
         (["empty.blend"], "empty.blend is empty."),
         (["folder.blend"], "it is a link or not a regular file"),
         (["text.blend", "--rules", "X"], "--rules: There is no rule 'X'. The rules are: C1"),
@@ -209,6 +210,7 @@ def test_numbered_meshes_that_are_in_no_object_are_one_row(session: LiveSession,
 )
 def test_what_cannot_be_checked_is_2_with_a_sentence(tmp_path: Path, words: list[str], why: str) -> None:
     (tmp_path / "text.blend").write_text("not a scene")
+    (tmp_path / "door.py").write_text("import bpy")
     (tmp_path / "empty.blend").write_bytes(b"")
     (tmp_path / "folder.blend").mkdir()
     wrong = {**PLAN, "relations": [{"kind": "OnTopOf", "a": "Lmap", "b": "Table"}]}
