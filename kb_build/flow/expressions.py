@@ -417,8 +417,8 @@ class Expressions(Members):
             name = f"{path}({parameter})" if parameter else path
             is_listed = any(item.identifier == value for item in items) or value in MORE_VALUES.get(name, ())
             are_classes = bool(items) and all(self.api.is_class(T + item.identifier) for item in items)
-            # Of classes, those of add-ons are taken as well; for what is none, RNA lists none or a stand-in.
-            is_listed = is_listed or self.api.is_class(T + value) != are_classes
+            # Of classes, those of add-ons are taken as well.
+            is_listed = is_listed or (are_classes and not self.api.is_class(T + value))
             if len(items) < _FEWEST_VALUES or is_listed:
                 having.append(name)
             elif are_classes or not computed:

@@ -69,7 +69,9 @@ _OWN = ("Group", "Switch", "Input", "Output", "Bake", "CaptureAttribute", "Forma
 
 
 @pytest.fixture(scope="module")
-def rows(tmp_path_factory: pytest.TempPathFactory) -> list[tuple[str, str, str, str, list[tuple[str, str, bool]]]]:
+def rows(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> list[tuple[str, str, str, str, list[tuple[str, str, bool]]]]:
     folder = tmp_path_factory.mktemp("keys")
     file = folder / "keys.json"
     done = [sys.executable, "-P", "-c", _ASK, str(file)]
