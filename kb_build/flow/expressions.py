@@ -6,8 +6,8 @@ import ast
 import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.flow.core import DEEPEST, StepsExhausted
-from kb_build.flow.facts import MORE_VALUES, PRODUCTS, VERSION, T
+from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, MORE_VALUES, PRODUCTS, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import State, chain_text
 from kb_build.flow.types import (
@@ -384,6 +384,24 @@ class Expressions(Members):
         for constant in filter(self.types.__contains__, _constants(node)):
             self.resolve_value(constant, source, use=use)
 
+    def check_possible(self, owner: Type, name: str, paths: list[str], node: ast.expr) -> None:
+        """Records literals given to a property that only classes below the owner's have, enumerations all of them."""
+        if any(registered in {name, ANY} for _, registered in self.registered):
+            return
+        if any(
+            not isinstance(kind, Instance) or self.is_open(kind.cls) or kind.cls in DERIVED_BY_SCRIPTS
+            for kind in members(owner)
+            if kind is not NONE
+        ):
+            return
+        symbols = [self.api.symbols.symbol(path) for path in paths]
+        if all(
+            symbol and symbol.type == "enum" and len(symbol.enum_items) >= _FEWEST_VALUES
+            for symbol in symbols
+        ):
+            for constant in filter(self.types.__contains__, _constants(node)):
+                self.resolve_value(constant, tuple(paths))
+
     @staticmethod
     def source_of(kind: Type) -> tuple[str, ...]:
         """The enumerations that a value was read from."""
@@ -405,6 +423,7 @@ class Expressions(Members):
             return
         having: list[str] = []
         lacking: list[str] = []
+        unsure = False
         for path in sources:
             symbol = self.api.symbols.symbol(path)
             if symbol is None:
@@ -423,7 +442,9 @@ class Expressions(Members):
                 having.append(name)
             elif are_classes or not computed:
                 lacking.append(name)
-        if having or lacking:
+            else:
+                unsure = True
+        if having or (lacking and not unsure):
             self.resolve(node, use, value, having, lacking)
 
     def with_state(self, state: State, read: Callable[[], None]) -> State:

@@ -151,6 +151,8 @@ class Statements(Calls):
             self._forget_kinds(owner)
         if found.symbols and value is not None:
             self.check_value(found.type, value)
+        elif found.possible and found.sure and not found.missing and value is not None:
+            self.check_possible(owner, target.attr, found.possible, value)
         converts = is_math(kind) and is_math(found.type)  # a vector, given to a colour, becomes a colour
         holds = (
             isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts

@@ -1,4 +1,4 @@
-"""A socket that a new node does not show, asked for by its name or identifier while nothing in the script sets the mode.
+"""A socket that a new node does not show, asked for by name or identifier while nothing in the script sets the mode.
 
 Blender finds sockets by these only while the node shows them.
 

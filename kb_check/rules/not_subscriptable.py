@@ -10,8 +10,8 @@ bpy.data.objects[::2]  # reported: bpy.data.objects[:][::2]
 bpy.types["Object"]  # reported: getattr(bpy.types, "Object")
 ```
 
-Reported too: an index beyond a vector, or beyond the sockets of a node whose sockets are always the same. Not reported:
-names that may be there or not.
+Reported too: what is assigned to an item of a collection by name, and items that are deleted; an index beyond a vector,
+or beyond the sockets of a node whose sockets are always the same. Not reported: names that may be there or not.
 """
 
 from __future__ import annotations
@@ -92,7 +92,7 @@ def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:
         case Plain(kind="int" | "float" | "bool") if node.value in script.analysis.resolutions:
             return f"{_subject(script, node)} is one {kind.kind}: it has no items."
         case Collection():
-            return _of_collection(script, kind, key, step)
+            return _of_changed(node, kind, key) or _of_collection(script, kind, key, step)
         case Instance() if kind.sure:
             return _of_instance(script, node, kind, key, step)
         case Sequence(kind="list") if (
@@ -101,6 +101,16 @@ def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:
             return f"{_subject(script, node)} is a list: its items are found by index, not by name."
         case _:
             return ""
+
+
+def _of_changed(node: ast.Subscript, kind: Collection, key: Type | None) -> str:
+    """What is wrong with assigning to an item of a collection, or with deleting it."""
+    path = kind.path or kind.container
+    if isinstance(node.ctx, ast.Del):
+        return f"Items of `{path}` are not deleted with `del`: call what the collection has for it, `remove` or `pop`."
+    if isinstance(node.ctx, ast.Store) and _is_text(key):
+        return f"Items of `{path}` are assigned to by index, not by name."
+    return ""
 
 
 def _of_collection(script: Script, kind: Collection, key: Type | None, step: ast.expr | None) -> str:

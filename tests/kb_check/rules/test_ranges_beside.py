@@ -25,6 +25,6 @@ ob.data.shape_keys.key_blocks['b'].value = 6
 
 
 def test_a_range_that_is_set_beside_a_value_is_what_holds(rule_checker: Checker, tmp_path: Path) -> None:
-    answers = run_statements(tmp_path, _LINES.splitlines(), {at: "key.value" for at in (6, 7, 8)})
+    answers = run_statements(tmp_path, _LINES.splitlines(), dict.fromkeys((6, 7, 8), "key.value"))
     assert [after for _, _, after in answers[6:]] == ["5.0", "-1.0", "6.0"]
     assert rule_checker.check(_LINES, rules=["out-of-range"]) == []

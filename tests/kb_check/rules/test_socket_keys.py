@@ -10,8 +10,6 @@ from typing import TYPE_CHECKING
 import pytest
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kb_check.checker import Checker
 
 # For each node in each of its modes: how it is made, and what its identifiers that are not names give as keys.
