@@ -58,6 +58,11 @@ _WORDS = {
 _ITEM_WORDS = {"boolean": "bool", "int": "int", "float": "float"}
 # Documented types that surely refuse others: what each takes. ``bool`` takes anything, as Python does.
 _DOCUMENTED = {"str": frozenset({"str"}), "string": frozenset({"str"}), "float": _NUMBERS, "int": _NUMBERS}
+# The operators of bmesh convert nothing: every parameter of each was given the others.
+_OF_BMESH = {
+    **_DOCUMENTED, "enum": frozenset({"str"}), "int": frozenset({"int", "bool"}), "bool": frozenset({"bool", "int"}),
+}  # fmt: skip
+_BMESH_WORDS = {"int": "an int", "bool": "True or False"}
 # Arrays whose size is not the one that RNA declares.
 CHANGING_ARRAYS = frozenset({"bpy.types.FModifierGenerator.coefficients", "bpy.types.MeshPolygon.vertices"})
 
@@ -191,10 +196,12 @@ def _whole_misfit(script: Script, node: ast.expr, kind: Type, length: int, takes
 
 def _documented_misfit(taker: Taker, kind: Type) -> Misfit | None:
     """A value that no reading of the reference allows: text for a number, a number for text."""
-    fits = _DOCUMENTED.get(taker.documented)
+    strict = _OF_BMESH if taker.path.startswith("bmesh.ops.") else _DOCUMENTED
+    fits = strict.get(taker.documented)
     if fits is None or not isinstance(kind, Plain) or kind.kind in fits:
         return None
-    return Misfit("a str" if "str" in fits else "a number", describe(kind))
+    takes = _BMESH_WORDS.get(taker.documented, "") if strict is _OF_BMESH else ""
+    return Misfit(takes or ("a str" if "str" in fits else "a number"), describe(kind))
 
 
 def _takes(taker: Taker) -> str:
