@@ -7,7 +7,7 @@ import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, MORE_VALUES, PRODUCTS, VERSION, T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, MORE_VALUES, PRODUCTS, SUMS, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import State, chain_text
 from kb_build.flow.types import (
@@ -51,6 +51,7 @@ _MATH = frozenset(
     {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
 )
 _VECTOR = "mathutils.Vector"
+_SUMS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
 _NUMBERS = frozenset({"bool", "int", "float"})
 _LONGEST_LITERAL = 64
 _COMPARISONS: dict[type[ast.cmpop], Callable[[list[int], list[int]], bool]] = {
@@ -215,6 +216,12 @@ class Expressions(Members):
                 if pair not in PRODUCTS["@"]:
                     return UNKNOWN
                 operator = ast.MatMult()  # which is meant
+        elif (sign := _SUMS.get(type(operator), "")) and (is_math(left) or is_math(right)):
+            self.resolutions.pop(node, None)
+            pair = _operand(left), _operand(right)
+            if all(pair) and pair not in SUMS[sign]:
+                sure = all(kind.sure for kind in (left, right) if isinstance(kind, Instance))
+                self.resolve(node, "sum", sign, missing=pair, sure=sure)
         return _operation(left, right, operator)
 
     def _unary(self, node: ast.UnaryOp) -> Type:
@@ -517,6 +524,15 @@ def _compared(left: Rows[Type], right: Rows[Type], operator: ast.cmpop) -> Type:
 def is_math(kind: Type) -> bool:
     """Whether a type is one of mathutils' values that can be multiplied."""
     return isinstance(kind, Instance) and kind.cls in _MATH
+
+
+def _operand(kind: Type) -> str:
+    """What a value is in a sum of mathutils': a class, ``number``, or what no sum takes; empty if it may be any."""
+    if isinstance(kind, Plain):
+        return "number" if kind.kind in _NUMBERS else kind.kind
+    if isinstance(kind, Tuple):
+        return "a sequence"
+    return kind.cls if isinstance(kind, Instance) and kind.cls in _MATH else ""
 
 
 def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa: PLR0911, PLR0912 - one return a rule
