@@ -67,3 +67,32 @@ def test_a_call_of_a_property_is_mended(rule_checker: Checker) -> None:
     assert found.fix is not None
     assert found.fix.sure
     assert [edit.text for edit in found.fix.edits] == [""]
+
+
+_RESULTS = """\
+import bpy, bmesh
+bm = bmesh.new()
+cube = bmesh.ops.create_cube(bm, size=1)
+cube['verts']
+cube['faces']
+result = bmesh.ops.extrude_face_region(bm, geom=bm.faces[:])
+result['geom']
+result['verts']
+result.get('verts')
+bmesh.ops.extrude_discrete_faces(bm, faces=bm.faces[:])['faces']
+bmesh.ops.extrude_discrete_faces(bm, faces=bm.faces[:])['geom']
+own = bmesh.ops.create_cube(bm)
+own['mine'] = 1
+own['mine']
+try:
+    cube['edges']
+except KeyError:
+    pass
+"""
+
+
+def test_keys_that_results_of_bmesh_lack_are_found(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _RESULTS.splitlines()[:14]
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    found = rule_checker.check(_RESULTS, rules=["not-subscriptable"])
+    assert [one.span.line for one in found] == refused == [5, 8, 11]
