@@ -176,7 +176,8 @@ class Symbol:
 
     ``default`` is RNA's, which a new instance need not have: ``new_values`` are what new ones had where some differed.
     The flag ``compared`` says that new ones were read. ``subscripts`` give a socket in every mode in which its node
-    has it, best first; with the flag ``name-when-shown`` its name does only while the node shows it.
+    has it, best first; with the flag ``name-when-shown`` its name does only while the node shows it. So it is with
+    ``identifier-when-shown`` of its identifier, which with ``identifier-never`` gives it in none of its node's modes.
 
     A pointer that is None on new things has None as its new value; a flag ``filled-by:CALL`` then names what was seen
     to fill it, flags ``filled-on:THING`` the new things on which it leads to something. A flag ``needs:WORDS`` says

@@ -21,6 +21,7 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.types import (
     NONE,
     Collection,
@@ -34,12 +35,16 @@ from kb_build.flow.types import (
     members,
 )
 from kb_check.literals import items, number, written
+from kb_check.made_here import alias
 
 if TYPE_CHECKING:
     from kb_check.given import Taker
     from kb_check.script import Script
 
 _LENGTHS = {"mathutils.Color": 3, "mathutils.Euler": 3, "mathutils.Quaternion": 4}
+_OBJECTS_DATA = f"{T}Object.data"
+_ID = f"{T}ID"
+_DATA = tuple(f"{T}{name}" for name in (*OBJECT_DATA.values(), "Image"))  # an empty shows images
 _NUMBERS = frozenset({"bool", "int", "float"})
 _TAKES = {
     "boolean": frozenset({"bool", "int"}), "int": frozenset({"int", "bool"}), "float": _NUMBERS,
@@ -53,6 +58,11 @@ _WORDS = {
 _ITEM_WORDS = {"boolean": "bool", "int": "int", "float": "float"}
 # Documented types that surely refuse others: what each takes. ``bool`` takes anything, as Python does.
 _DOCUMENTED = {"str": frozenset({"str"}), "string": frozenset({"str"}), "float": _NUMBERS, "int": _NUMBERS}
+# The operators of bmesh convert nothing: every parameter of each was given the others.
+_OF_BMESH = {
+    **_DOCUMENTED, "enum": frozenset({"str"}), "int": frozenset({"int", "bool"}), "bool": frozenset({"bool", "int"}),
+}  # fmt: skip
+_BMESH_WORDS = {"int": "an int", "bool": "True or False"}
 # Arrays whose size is not the one that RNA declares.
 CHANGING_ARRAYS = frozenset({"bpy.types.FModifierGenerator.coefficients", "bpy.types.MeshPolygon.vertices"})
 
@@ -93,6 +103,8 @@ def _scalar_misfit(  # noqa: PLR0911 - one return a type
     if not given:
         return None
     if taker.kind == "pointer":
+        if _is_other_data(script, taker, node, kind):
+            return Misfit(_takes(taker), "the data of an object")
         return _pointer_misfit(script, taker, kind, given)
     if isinstance(kind, Plain):
         if taker.kind == "set":
@@ -105,6 +117,16 @@ def _scalar_misfit(  # noqa: PLR0911 - one return a type
     if isinstance(kind, Sequence) and kind.kind == "set" and taker.kind in {"set", "enum or set"}:
         return None
     return Misfit(_takes(taker), given)
+
+
+def _is_other_data(script: Script, taker: Taker, node: ast.expr, kind: Type) -> bool:
+    """Whether a value is an object's data, declared as any data-block, where none of those that objects have fits."""
+    row = script.analysis.resolutions.get(alias(script, node))
+    if row is None or row.symbols != (_OBJECTS_DATA,) or not row.sure or row.missing or kind != Instance(_ID):
+        return False
+    api, target = script.api, taker.target
+    related = any(api.descends(cls, target) or api.descends(target, cls) for cls in _DATA)
+    return not related and api.is_class(target) and api.descends(target, _ID)
 
 
 def _pointer_misfit(script: Script, taker: Taker, kind: Type, given: str) -> Misfit | None:
@@ -174,10 +196,12 @@ def _whole_misfit(script: Script, node: ast.expr, kind: Type, length: int, takes
 
 def _documented_misfit(taker: Taker, kind: Type) -> Misfit | None:
     """A value that no reading of the reference allows: text for a number, a number for text."""
-    fits = _DOCUMENTED.get(taker.documented)
+    strict = _OF_BMESH if taker.path.startswith("bmesh.ops.") else _DOCUMENTED
+    fits = strict.get(taker.documented)
     if fits is None or not isinstance(kind, Plain) or kind.kind in fits:
         return None
-    return Misfit("a str" if "str" in fits else "a number", describe(kind))
+    takes = _BMESH_WORDS.get(taker.documented, "") if strict is _OF_BMESH else ""
+    return Misfit(takes or ("a str" if "str" in fits else "a number"), describe(kind))
 
 
 def _takes(taker: Taker) -> str:

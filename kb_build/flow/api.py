@@ -103,6 +103,7 @@ class Api:
         self._named: dict[tuple[str, str], str] = {}
         self._returns: dict[str, Type] = {}
         self._value_classes: dict[str, dict[str, str]] = {}
+        self._settable_kinds: dict[str, str] = {}
         self._labels: dict[str, dict[str, list[str]]] = {}
 
     # Classes.
@@ -391,6 +392,22 @@ class Api:
             if self.is_class(T + name):
                 found[value] = T + name
         return found
+
+    def settable_kind(self, cls: str) -> str:
+        """The base of a class whose instances become one of another class below it by a setting; empty for none."""
+        if cls not in self._settable_kinds:
+            self._settable_kinds[cls] = self._settable_kind(cls) if self.is_class(cls) else ""
+        return self._settable_kinds[cls]
+
+    def _settable_kind(self, cls: str) -> str:
+        for name in DISCRIMINANTS:
+            member = self.member(cls, name)
+            if member is not None and "readonly" not in member.symbol.flags and member.symbol.type == "enum":
+                base = member.symbol.owner
+                values = (item.identifier for item in member.symbol.enum_items)
+                if any(self.class_of_value(base, value) for value in values):
+                    return base
+        return ""
 
     def classes_by_label(self, base: str, text: str) -> list[str]:
         """The classes below ``base`` whose instances are called ``text`` unless somebody renames them."""

@@ -6,8 +6,8 @@ import ast
 import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.flow.core import DEEPEST, StepsExhausted
-from kb_build.flow.facts import MORE_VALUES, PRODUCTS, VERSION, T
+from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, MORE_VALUES, PRODUCTS, SUMS, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import State, chain_text
 from kb_build.flow.types import (
@@ -51,6 +51,7 @@ _MATH = frozenset(
     {"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion", "mathutils.Matrix"}
 )
 _VECTOR = "mathutils.Vector"
+_SUMS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
 _NUMBERS = frozenset({"bool", "int", "float"})
 _LONGEST_LITERAL = 64
 _COMPARISONS: dict[type[ast.cmpop], Callable[[list[int], list[int]], bool]] = {
@@ -215,6 +216,12 @@ class Expressions(Members):
                 if pair not in PRODUCTS["@"]:
                     return UNKNOWN
                 operator = ast.MatMult()  # which is meant
+        elif (sign := _SUMS.get(type(operator), "")) and (is_math(left) or is_math(right)):
+            self.resolutions.pop(node, None)
+            pair = _operand(left), _operand(right)
+            if all(pair) and pair not in SUMS[sign]:
+                sure = all(kind.sure for kind in (left, right) if isinstance(kind, Instance))
+                self.resolve(node, "sum", sign, missing=pair, sure=sure)
         return _operation(left, right, operator)
 
     def _unary(self, node: ast.UnaryOp) -> Type:
@@ -384,6 +391,24 @@ class Expressions(Members):
         for constant in filter(self.types.__contains__, _constants(node)):
             self.resolve_value(constant, source, use=use)
 
+    def check_possible(self, owner: Type, name: str, paths: list[str], node: ast.expr) -> None:
+        """Records literals given to a property that only classes below the owner's have, enumerations all of them."""
+        if any(registered in {name, ANY} for _, registered in self.registered):
+            return
+        if any(
+            not isinstance(kind, Instance) or self.is_open(kind.cls) or kind.cls in DERIVED_BY_SCRIPTS
+            for kind in members(owner)
+            if kind is not NONE
+        ):
+            return
+        symbols = [self.api.symbols.symbol(path) for path in paths]
+        if all(
+            symbol and symbol.type == "enum" and len(symbol.enum_items) >= _FEWEST_VALUES
+            for symbol in symbols
+        ):
+            for constant in filter(self.types.__contains__, _constants(node)):
+                self.resolve_value(constant, tuple(paths))
+
     @staticmethod
     def source_of(kind: Type) -> tuple[str, ...]:
         """The enumerations that a value was read from."""
@@ -405,6 +430,7 @@ class Expressions(Members):
             return
         having: list[str] = []
         lacking: list[str] = []
+        unsure = False
         for path in sources:
             symbol = self.api.symbols.symbol(path)
             if symbol is None:
@@ -417,13 +443,15 @@ class Expressions(Members):
             name = f"{path}({parameter})" if parameter else path
             is_listed = any(item.identifier == value for item in items) or value in MORE_VALUES.get(name, ())
             are_classes = bool(items) and all(self.api.is_class(T + item.identifier) for item in items)
-            # Of classes, those of add-ons are taken as well; for what is none, RNA lists none or a stand-in.
-            is_listed = is_listed or self.api.is_class(T + value) != are_classes
+            # Of classes, those of add-ons are taken as well.
+            is_listed = is_listed or (are_classes and not self.api.is_class(T + value))
             if len(items) < _FEWEST_VALUES or is_listed:
                 having.append(name)
             elif are_classes or not computed:
                 lacking.append(name)
-        if having or lacking:
+            else:
+                unsure = True
+        if having or (lacking and not unsure):
             self.resolve(node, use, value, having, lacking)
 
     def with_state(self, state: State, read: Callable[[], None]) -> State:
@@ -496,6 +524,15 @@ def _compared(left: Rows[Type], right: Rows[Type], operator: ast.cmpop) -> Type:
 def is_math(kind: Type) -> bool:
     """Whether a type is one of mathutils' values that can be multiplied."""
     return isinstance(kind, Instance) and kind.cls in _MATH
+
+
+def _operand(kind: Type) -> str:
+    """What a value is in a sum of mathutils': a class, ``number``, or what no sum takes; empty if it may be any."""
+    if isinstance(kind, Plain):
+        return "number" if kind.kind in _NUMBERS else kind.kind
+    if isinstance(kind, Tuple):
+        return "a sequence"
+    return kind.cls if isinstance(kind, Instance) and kind.cls in _MATH else ""
 
 
 def _operation(left: Type, right: Type, operator: ast.operator) -> Type:  # noqa: PLR0911, PLR0912 - one return a rule

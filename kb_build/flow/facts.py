@@ -144,6 +144,13 @@ PRODUCTS = {
     },
 }  # fmt: skip
 
+# What mathutils adds, subtracts and divides; it refuses the other pairs, tuples among them.
+_ADDED = frozenset((f"mathutils.{name}",) * 2 for name in ("Color", "Matrix", "Quaternion", "Vector"))
+SUMS = {
+    "+": _ADDED, "-": _ADDED,
+    "/": frozenset({("mathutils.Vector", "number"), ("mathutils.Color", "number")}),
+}  # fmt: skip
+
 # Members of ``bpy.context`` whose class only an editor tells: name → class; with brackets, a list of them.
 CONTEXT_MEMBERS = {
     "active_editable_fcurve": "FCurve", "cloth": "ClothModifier", "collision": "CollisionModifier",

@@ -44,6 +44,7 @@ from kb_build.flow.types import (
     literal_text,
     union,
 )
+from kb_build.symbol_lines import identifier_of
 
 if TYPE_CHECKING:
     import ast
@@ -107,7 +108,8 @@ class Members(Core):
         member = self.api.member(kind.cls, name)
         if member is not None:
             found.symbols.append(member.symbol.path)
-            found.types.append(kind.trait(name) or self._held(member.type, kind, name))
+            trait = kind.trait(name)
+            found.types.append(self._as_found(trait) if trait else self._held(member.type, kind, name))
             return
         if (extra := self._registered(kind.cls, name)) is not None:
             found.types.append(extra)
@@ -353,8 +355,16 @@ class Members(Core):
                 return found
         element = kind.element
         if text and isinstance(element, Instance) and text not in self.file.given_names:
-            return union(map(Instance, self.api.classes_by_label(element.cls, text) or [element.cls]))
+            classes = self.api.classes_by_label(element.cls, text) or [element.cls]
+            return union(self._as_found(Instance(cls)) for cls in classes)
         return element
+
+    def _as_found(self, kind: Type) -> Type:
+        """What is looked up anew: another class, as soon as something may have set what it is. Names keep theirs."""
+        if isinstance(kind, Instance) and any(file.sets_types for file in self.sources):
+            base = self.api.settable_kind(kind.cls)
+            return replace(kind, cls=base) if base else kind
+        return kind
 
     def _socket(self, owner: Instance, side: str, key: Type, node: ast.AST) -> Type | None:
         """The type of a node's socket, which is recorded; None where the node's class is not known."""
@@ -369,7 +379,7 @@ class Members(Core):
         else:
             # Of several with one name the node's mode decides.
             found = [socket for socket in sockets if value in socket.socket_names]
-            found = found or [socket for socket in sockets if socket.name == value]
+            found = found or [socket for socket in sockets if value in {socket.name, identifier_of(socket)}]
         if not found:
             if isinstance(value, str) and not _has_sockets_of_its_own(owner.cls):
                 self.resolve(node, "item", value, missing=(owner.cls,), sure=owner.sure)

@@ -8,6 +8,7 @@ from functools import cached_property
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.scopes import Scope
 from kb_build.flow.types import Readings
 
@@ -47,6 +48,11 @@ class SourceFile:
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in sought
         )
 
+    @cached_property
+    def sets_types(self) -> bool:
+        """Whether it may set what a thing is of: an attribute that tells classes apart, or a computed one."""
+        return any(map(_sets_type, ast.walk(self.tree))) if self.tree else False
+
     def imported(self, level: int, module: str) -> str:
         """The dotted name of what ``from ..module import`` means here, with ``level`` dots; empty for nothing."""
         if not level:
@@ -67,6 +73,16 @@ def _sought(node: ast.AST) -> list[ast.expr]:
             return [node.left]
         case _:
             return []
+
+
+def _sets_type(node: ast.AST) -> bool:
+    match node:
+        case ast.Attribute(attr=name, ctx=ast.Store()):
+            return name in DISCRIMINANTS
+        case ast.Call(func=ast.Name(id="setattr"), args=[_, name, _]):
+            return not isinstance(name, ast.Constant) or name.value in DISCRIMINANTS
+        case _:
+            return False
 
 
 def keeps_annotations(tree: ast.Module) -> bool:

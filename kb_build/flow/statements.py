@@ -11,7 +11,7 @@ from kb_build.flow.calls import Calls
 from kb_build.flow.core import ANY
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.expressions import is_decided, is_math
-from kb_build.flow.facts import PARAMETERS, T
+from kb_build.flow.facts import DISCRIMINANTS, PARAMETERS, T
 from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
 from kb_build.flow.trees import walk
 from kb_build.flow.types import (
@@ -147,14 +147,29 @@ class Statements(Calls):
                 target, "store", target.attr, found.symbols, missing, found.possible,
                 sure=found.sure, guarded=self.scope.state.doubts(chain_text(target.value)),
             )  # fmt: skip
+        if target.attr in DISCRIMINANTS:
+            self._forget_kinds(owner)
         if found.symbols and value is not None:
             self.check_value(found.type, value)
+        elif found.possible and found.sure and not found.missing and value is not None:
+            self.check_possible(owner, target.attr, found.possible, value)
         converts = is_math(kind) and is_math(found.type)  # a vector, given to a colour, becomes a colour
         holds = (
             isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts
         )
         if text and holds:
             self.scope.state.chains[text] = kind
+
+    def _forget_kinds(self, owner: Type) -> None:
+        """Something becomes of another class: what is read anew from a chain may be that."""
+        bases = {
+            self.api.settable_kind(kind.cls) for kind in members(owner) if isinstance(kind, Instance)
+        } - {""}
+        chains = self.scope.state.chains
+        for text, kind in [*chains.items()] if bases else ():
+            if any(self.api.descends(one.cls, base) for one in members(kind) for base in bases
+                   if isinstance(one, Instance)):  # fmt: skip
+                del chains[text]
 
     def _store_on_instance(self, owner: LocalInstance, name: str, kind: Type) -> None:
         if self.class_attribute(owner.number, name) is None:

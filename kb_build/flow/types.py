@@ -302,7 +302,7 @@ class Resolution:
     one is compared with), ``item`` (ast.Subscript, or the literal key
     of a call to ``get``), ``text`` (a literal that names a property: ``keyframe_insert("location")``), ``button`` (a
     literal that names the property or the operator that a layout shows), ``product`` (a multiplication that mathutils
-    refuses: ``missing`` are the classes of its two sides).
+    refuses: ``missing`` are the classes of its two sides), ``sum`` (a sum or a quotient that it refuses, alike).
     """
 
     node: ast.AST

@@ -18,7 +18,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import T
 from kb_build.symbol_lines import empty_when_new, fillers
 from kb_check.findings import Finding
-from kb_check.made_here import bindings, called_operators, is_new, knows_all, named_words
+from kb_check.made_here import bindings, called_operators, callee_path, is_new, knows_all, named_words
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 
@@ -39,6 +39,7 @@ _PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
 _DOTS = 3  # of the path of an operator; that of a module has fewer
 _WORD = re.compile(r"\w+")
 _GENERAL = frozenset({"object", "mesh", "scene", "anim"})  # modules whose operators fill many things
+_MAKING_MODIFIERS = ("Modifiers.new", "modifier_add")
 _MAKING = frozenset({"new", "modifier_add"})
 
 
@@ -95,7 +96,8 @@ def _stays_empty(script: Script, symbol: Symbol) -> bool:
         if call.startswith("bpy.ops."):
             module = named[2]
             if named[3] in words or (
-                module not in _GENERAL and any(word.startswith(module) for word in words)
+                module not in _GENERAL
+                and any(word.startswith(module) and word != symbol.name for word in words)
             ):
                 return False
         elif ".modifiers.new(" in call:
@@ -111,6 +113,9 @@ def _computes_kinds(script: Script) -> bool:
     """Whether the script makes modifiers of a kind that it computes."""
     for node in script.nodes:
         if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _MAKING:
+            path = callee_path(script, node)
+            if path and not path.endswith(_MAKING_MODIFIERS):
+                continue
             given = [*node.args[1:], *(keyword.value for keyword in node.keywords)]
             if not all(isinstance(value, (ast.Constant, ast.Attribute)) for value in given):
                 return True

@@ -1,6 +1,6 @@
-"""A socket that a new node does not show, asked for by its name while nothing in the script sets the node's mode.
+"""A socket that a new node does not show, asked for by name or identifier while nothing in the script sets the mode.
 
-Blender finds sockets by name only while the node shows them.
+Blender finds sockets by these only while the node shows them.
 
 ```python
 points = tree.nodes.new("GeometryNodeDistributePointsOnFaces")
@@ -19,6 +19,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.records import WHEN_PAIRED
+from kb_build.symbol_lines import identifier_of
 from kb_check.findings import Finding
 from kb_check.made_here import is_new, knows_all, named_words
 from kb_check.rule import Rule
@@ -70,17 +71,19 @@ def _hidden(script: Script, sockets: list[Symbol], row: Resolution) -> str:
         return ""
     for socket in sockets:
         side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
-        is_by_name = row.value in socket.socket_names and f'{side}["{row.value}"]' not in socket.subscripts
+        is_name = row.value in socket.socket_names
+        needed = {"hidden-by-default", "name-when-shown" if is_name else "identifier-when-shown"}
         if (
-            not is_by_name
+            not (is_name or row.value == identifier_of(socket))
+            or f'{side}["{row.value}"]' in socket.subscripts
             or not socket.modes
-            or not {"hidden-by-default", "name-when-shown"}.issubset(socket.flags)
+            or not needed.issubset(socket.flags)
         ):
             return ""
     first = sockets[0]
     wanted = " and ".join(first.modes)
     return (
-        f"A new `{first.owner}` shows no socket {row.value!r}, and finds only what it shows by name: it is there "
+        f"A new `{first.owner}` shows no socket {row.value!r}, and finds only what it shows: it is there "
         f"with {wanted}."
     )
 

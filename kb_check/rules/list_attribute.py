@@ -1,8 +1,11 @@
-"""An attribute of the items, read from the list that a call returns.
+"""An attribute that a list does not have.
+
+Read from the list that a call returns, and meant for its items, or from a list of handlers, which has Python's methods.
 
 ```python
 obj.driver_add("location").driver  # reported: a list of three curves, for there is no index
 obj.driver_add("location", 0).driver
+bpy.app.handlers.load_post.add(follow)  # reported: append
 ```
 """
 
@@ -13,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance, Sequence
 from kb_check.findings import Finding
-from kb_check.made_here import bindings, callee_path
+from kb_check.made_here import alias, bindings, callee_path
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -21,12 +24,20 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
+_HANDLERS = "bpy.app.handlers."
 _ADDING = "bpy.types.bpy_struct.driver_add"
 
 
 def _check(script: Script) -> Iterator[Finding]:
     for node in script.nodes:
         if not isinstance(node, ast.Attribute) or hasattr(list, node.attr):
+            continue
+        if name := _handlers(script, node.value):
+            yield Finding(
+                RULE.id, "error", script.name_span(node),
+                f"`{name}` is a list, which has no `{node.attr}`: `append` adds a function, `remove` takes one out.",
+                name,
+            )  # fmt: skip
             continue
         kind = script.type_of(node.value)
         if (
@@ -41,6 +52,14 @@ def _check(script: Script) -> Iterator[Finding]:
             )  # fmt: skip
 
 
+def _handlers(script: Script, node: ast.expr) -> str:
+    """The path of the list of handlers that an expression surely is; empty if it is none."""
+    row = script.analysis.resolutions.get(alias(script, node))
+    path = row.symbols[0] if row and row.sure and not row.guarded and len(row.symbols) == 1 else ""
+    symbol = script.api.symbols.symbol(path) if path.startswith(_HANDLERS) else None
+    return path if symbol and symbol.type.startswith("list") else ""
+
+
 def _is_added(script: Script, node: ast.expr) -> bool:
     if isinstance(node, ast.Name):
         values = bindings(script).get(node.id, [])
@@ -48,4 +67,4 @@ def _is_added(script: Script, node: ast.expr) -> bool:
     return isinstance(node, ast.Call) and callee_path(script, node) == _ADDING
 
 
-RULE = Rule("list-attribute", "error", "An attribute of the items, read from their list", _check)
+RULE = Rule("list-attribute", "error", "An attribute that a list does not have", _check)

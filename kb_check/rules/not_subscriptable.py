@@ -8,10 +8,11 @@ scene[0]  # reported
 mesh.vertices["Corner"]  # reported: vertices have no names
 bpy.data.objects[::2]  # reported: bpy.data.objects[:][::2]
 bpy.types["Object"]  # reported: getattr(bpy.types, "Object")
+bmesh.ops.extrude_face_region(bm, geom=faces)["verts"]  # reported: it gives `geom`
 ```
 
-Reported too: an index beyond a vector, or beyond the sockets of a node whose sockets are always the same. Not reported:
-names that may be there or not.
+Reported too: what is assigned to an item of a collection by name, and items that are deleted; an index beyond a vector,
+or beyond the sockets of a node whose sockets are always the same. Not reported: names that may be there or not.
 """
 
 from __future__ import annotations
@@ -25,6 +26,7 @@ from kb_build.flow.types import (
     NONE,
     Collection,
     Instance,
+    Mapping,
     Module,
     NoneValue,
     Operator,
@@ -37,6 +39,7 @@ from kb_build.flow.types import (
 from kb_check.conversions import CHANGING_ARRAYS
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.literals import number
+from kb_check.made_here import bindings, callee_path
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -58,6 +61,9 @@ _NO_CUSTOM_PROPERTIES = frozenset(
     {"bpy.types.Context", "bpy.types.BlendData", "bpy.types.RenderSettings", "bpy.types.MeshVertex"}
 )
 _T = "bpy.types."
+_BMESH = "bmesh.ops."
+_FILLING = frozenset({"update", "setdefault"})
+_PARTS = {"verts": "BMVert", "edges": "BMEdge", "faces": "BMFace"}
 # What the classes of collections have, which annotations name: ``nodes: bpy.types.Nodes``.
 _OF_COLLECTIONS = frozenset(
     {"active", "add", "append", "clear", "create", "get", "link", "load", "new", "remove"}
@@ -69,6 +75,8 @@ def _check(script: Script) -> Iterator[Finding]:
         if not isinstance(node, ast.Subscript) or (kind := script.type_of(node.value)) is None:
             continue
         told = {_refusal(script, node, member) for member in members(kind) if member != NONE}
+        if (missing := _of_result(script, node)) and isinstance(kind, Mapping):
+            told = {missing}
         if len(told) == 1 and (message := told.pop()) and not _is_guarded(script, node):
             yield Finding(RULE.id, "error", script.span(node), message, "", (), _fix(script, node))
 
@@ -92,7 +100,7 @@ def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:
         case Plain(kind="int" | "float" | "bool") if node.value in script.analysis.resolutions:
             return f"{_subject(script, node)} is one {kind.kind}: it has no items."
         case Collection():
-            return _of_collection(script, kind, key, step)
+            return _of_changed(node, kind, key) or _of_collection(script, kind, key, step)
         case Instance() if kind.sure:
             return _of_instance(script, node, kind, key, step)
         case Sequence(kind="list") if (
@@ -101,6 +109,66 @@ def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:
             return f"{_subject(script, node)} is a list: its items are found by index, not by name."
         case _:
             return ""
+
+
+def _of_result(script: Script, node: ast.Subscript) -> str:
+    """What is wrong with a key of what an operator of bmesh gives."""
+    call = node.value
+    if isinstance(call, ast.Name):
+        values = bindings(script).get(call.id, [])
+        call = (
+            values[0]
+            if len(values) == 1 and values[0] is not None and not _is_filled(script, call.id)
+            else call
+        )
+    path = callee_path(script, call) if isinstance(call, ast.Call) else ""
+    symbol = (
+        script.api.symbols.symbol(path)
+        if path.startswith(_BMESH) and isinstance(node.ctx, ast.Load)
+        else None
+    )
+    names = [result.name for result in symbol.returns] if symbol else []
+    key = node.slice.value if isinstance(node.slice, ast.Constant) else None
+    if not names or not isinstance(key, str) or key in names or _is_tried(script, node):
+        return ""
+    advice = ""
+    if cls := _PARTS.get(key) if "geom" in names else None:
+        advice = (
+            f" Choose from its `geom`: `[e for e in result['geom'] if isinstance(e, bmesh.types.{cls})]`."
+        )
+    return f"`{path}` gives {', '.join(f'`{name}`' for name in names)}, and no {key!r}.{advice}"
+
+
+def _is_tried(script: Script, node: ast.expr) -> bool:
+    """Whether an error here may be caught: that of a key."""
+    return any(
+        (isinstance(outer, ast.Try) and outer.lineno <= node.lineno <= (outer.body[-1].end_lineno or 0))
+        or (isinstance(outer, ast.With) and outer.lineno <= node.lineno <= (outer.end_lineno or 0))
+        for outer in script.nodes
+    )
+
+
+def _is_filled(script: Script, name: str) -> bool:
+    """Whether a script may give a dictionary keys of its own."""
+    return any(
+        (isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store) and _is_name(node.value, name))
+        or (isinstance(node, ast.Attribute) and node.attr in _FILLING and _is_name(node.value, name))
+        for node in script.nodes
+    )
+
+
+def _is_name(node: ast.expr, name: str) -> bool:
+    return isinstance(node, ast.Name) and node.id == name
+
+
+def _of_changed(node: ast.Subscript, kind: Collection, key: Type | None) -> str:
+    """What is wrong with assigning to an item of a collection, or with deleting it."""
+    path = kind.path or kind.container
+    if isinstance(node.ctx, ast.Del):
+        return f"Items of `{path}` are not deleted with `del`: call what the collection has for it, `remove` or `pop`."
+    if isinstance(node.ctx, ast.Store) and _is_text(key):
+        return f"Items of `{path}` are assigned to by index, not by name."
+    return ""
 
 
 def _of_collection(script: Script, kind: Collection, key: Type | None, step: ast.expr | None) -> str:

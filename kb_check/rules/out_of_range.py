@@ -8,7 +8,8 @@ material.roughness = 5  # reported: it becomes 1
 bpy.ops.mesh.primitive_circle_add(vertices=1)  # reported: it becomes 3
 ```
 
-Not reported: values of sockets, which the range of their slider does not bound, and arguments of functions.
+Not reported: values of sockets, which the range of their slider does not bound, values of shape keys, whose range is
+set beside them, and arguments of functions.
 """
 
 from __future__ import annotations
@@ -31,7 +32,8 @@ if TYPE_CHECKING:
 _LONGEST_INT = 2**31
 _ROUNDING = 1e-5  # of the limits, which Blender keeps as 32-bit floats
 # Properties whose values RNA's range does not bound: their setters, or ranges that other values decide, do. Found by
-# setting every number of some 900 instances just beyond its range.
+# setting every number of some 900 instances just beyond its range, and again with each other setting of the same thing
+# changed: only shape keys have a range that is set so.
 _BOUND_OTHERWISE = {
     "Brush": {"size", "unprojected_size"},
     "Camera": {"angle", "angle_x", "angle_y"},
@@ -58,7 +60,7 @@ _BOUND_OTHERWISE = {
     "RenderSettings": {"threads"},
     "RigidBodyWorld": {"solver_iterations"},
     "Scene": {"frame_current", "frame_float"},
-    "ShapeKey": {"slider_max", "slider_min"},
+    "ShapeKey": {"slider_max", "slider_min", "value"},
     "Spline": {"material_index", "order_u", "order_v"},
     "Strip": {"animation_offset_end", "animation_offset_start", "content_trim_end", "content_trim_start"},
     "TextCharacterFormat": {"material_index"},

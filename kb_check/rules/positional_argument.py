@@ -2,13 +2,15 @@
 
 Functions of Blender's classes take by place only what they need; since 2.80 the rest is given by name. Operators take
 by place nothing but an execution context and whether to push an undo step; until 3.6 a dictionary before them set the
-context, since 4.0 that is ``with bpy.context.temp_override(...)``.
+context, since 4.0 that is ``with bpy.context.temp_override(...)``. The classes of mathutils take one sequence.
 
 ```python
 ob.shape_key_add("Smile")  # reported
 ob.shape_key_add(name="Smile")
 bpy.ops.object.select_all("SELECT")  # reported
 bpy.ops.object.select_all(action="SELECT")
+Vector(0, 0, 1)  # reported
+Vector((0, 0, 1))
 ```
 """
 
@@ -43,7 +45,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for call in calls(script):
         if call.callee.symbol.kind == "operator":
             yield from _of_operator(script, call)
-        elif call.callee.symbol.kind == "function":
+        elif call.callee.symbol.kind == "function" or call.callee.symbol.owner == "mathutils":
             yield from _of_function(script, call)
 
 
@@ -117,9 +119,10 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     if not rest:
         count = len(callee.positional)
         takes = "no arguments" if not callee.parameters else f"{count} argument{'s' * (count != 1)} by place"
+        advice = " Its numbers are one sequence." if callee.symbol.kind == "class" else ""
         yield Finding(
             RULE.id, "error", script.span(extra),
-            f"`{path}` takes {takes}: `{callee.symbol.signature}`.", path,
+            f"`{path}` takes {takes}: `{callee.symbol.signature}`.{advice}", path,
         )  # fmt: skip
         return
     # RNA's functions took all by place once: the order is that of the parameters.

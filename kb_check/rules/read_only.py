@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_check.script import Script
 
+_HANDLERS = "bpy.app.handlers."
 _CONTEXT = "bpy.types.Context"
 _ACTIVE = "bpy.types.LayerObjects.active"
 # What to do instead: property → (paths, advice).
@@ -73,6 +74,11 @@ def _check(script: Script) -> Iterator[Finding]:
         if not paths or not row.sure or row.guarded or (row.missing and not row.possible):
             continue
         symbols = [script.api.symbols.symbol(path) for path in paths]
+        if row.kind == "store" and len(paths) == 1 and paths[0].startswith(_HANDLERS):
+            name = paths[0]
+            told = f"`{name}` is read-only. Change the list itself: `append`, `remove`, `clear`."
+            yield Finding(RULE.id, "error", script.name_span(row.node), told, name)
+            continue
         if not is_of_instance(script, row.node):
             continue
         if row.kind == "store" and script.package.has(_owners(symbols), row.value):

@@ -1,7 +1,7 @@
 """A call that Blender refuses although its arguments are those that the signature asks for.
 
 What is refused was tried: without arguments that may be left out and are wanted all the same, by what is of another
-kind, a second time.
+kind, a second time. So are calls of what is no function.
 
 ```python
 strips = scene.sequence_editor.strips
@@ -9,6 +9,7 @@ strips.new_effect("Sky", "COLOR", channel=1, frame_start=1)  # reported: without
 spline = curve.splines.new("BEZIER")
 spline.points.add(3)  # reported: a Bézier spline has `bezier_points`
 mesh.attributes.new("weight", "FLOAT", "CURVE")  # reported: meshes have no such domain
+vector.length()  # reported: a property
 ```
 
 What returns None instead of raising an error is a warning. Not reported: what depends on the mode (see
@@ -24,7 +25,7 @@ from kb_build.flow.types import Instance
 from kb_build.records import last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls
-from kb_check.findings import Finding
+from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.made_here import bindings, callee_path, named_words, places
 from kb_check.rule import Rule
 
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from kb_build.records import Refusal
     from kb_check.script import Script
 
+_WITH_PROPERTIES = ("bpy.types.", "mathutils.", "bmesh.types.")
 _OBJECT = "bpy.types.Object"
 _OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
 _LIGHT = "bpy.types.Light"
@@ -41,6 +43,7 @@ _REMOVING = frozenset({"remove", "clear", "read_homefile", "open_mainfile", "rea
 
 
 def _check(script: Script) -> Iterator[Finding]:
+    yield from _called_properties(script)
     earlier: dict[tuple[str, str, str], CallSite] = {}
     for call in calls(script):
         refusals = call.callee.symbol.refusals
@@ -64,6 +67,31 @@ def _check(script: Script) -> Iterator[Finding]:
                     yield _finding(script, call, refusal, f"{word} {with_article(thing)}")
             elif refusal.values and refusal.message:
                 yield _finding(script, call, refusal, "")
+
+
+def _called_properties(script: Script) -> Iterator[Finding]:
+    """Calls of what is a value: Blender says that it is not callable."""
+    for node in script.nodes:
+        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+            continue
+        row, owner = script.analysis.resolutions.get(node.func), script.type_of(node.func.value)
+        certain = row is not None and row.sure and not (row.guarded or row.missing or row.possible)
+        if row is None or not certain or len(row.symbols) != 1 or not isinstance(owner, Instance):
+            continue
+        symbol = script.api.symbols.symbol(row.symbols[0])
+        if symbol and symbol.kind == "property" and symbol.type and symbol.owner.startswith(_WITH_PROPERTIES):
+            yield Finding(
+                RULE.id, "error", script.name_span(node.func),
+                f"`{symbol.path}` is a property: it is read without `()`.", symbol.path, (), _uncalled(script, node),
+            )  # fmt: skip
+
+
+def _uncalled(script: Script, node: ast.Call) -> Fix | None:
+    if node.args or node.keywords:
+        return None
+    called, whole = script.span(node.func), script.span(node)
+    behind = Span(called.end_line, called.end_column, whole.end_line, whole.end_column)
+    return Fix("Read it", (Edit(behind, ""),), sure=True) if script.text(behind) == "()" else None
 
 
 def _is_of(refusal: Refusal, call: CallSite) -> bool:

@@ -1,4 +1,4 @@
-"""A product of two of mathutils' values that it refuses.
+"""A product, a sum or a quotient of mathutils' values that it refuses.
 
 Matrices, quaternions and vectors are multiplied with ``@``; ``*`` goes item by item, and only between two of a kind.
 Until 2.79 both were ``*``. A colour is multiplied by a number only, an Euler not at all: ``euler.to_matrix()`` is.
@@ -6,7 +6,11 @@ Until 2.79 both were ``*``. A colour is multiplied by a number only, an Euler no
 ```python
 ob.matrix_world * vertex.co  # reported
 ob.matrix_world @ vertex.co
+ob.location + (0, 0, 1)  # reported
+ob.location + Vector((0, 0, 1))
 ```
+
+A vector is added to a vector only, and divided by a number only.
 
 Not reported: ``matrix * matrix`` and the like, which both work, with different results.
 """
@@ -25,6 +29,8 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
+_MATH = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Matrix", "Quaternion", "Vector"))
+
 
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("product"):
@@ -36,6 +42,17 @@ def _check(script: Script) -> Iterator[Finding]:
         yield Finding(
             RULE.id, "error", script.span(row.node), f"`{left} {row.value} {right}` is refused. {advice}", left,
             (), _fix(script, row.node) if is_other and isinstance(row.node, ast.BinOp) else None,
+        )  # fmt: skip
+    for row in script.missing("sum"):
+        left, right = row.missing[0], row.missing[-1]
+        advice = "Convert one of them first."
+        if row.value == "/":
+            advice = "Vectors and colors are divided by a number, nothing else is divided."
+        elif _MATH.issuperset({left, right} - {"a sequence"}):
+            advice = f"Make one of the other: `{next(cls for cls in (left, right) if cls in _MATH)}(…)`."
+        yield Finding(
+            RULE.id, "error", script.span(row.node), f"`{left} {row.value} {right}` is refused. {advice}",
+            left if left in _MATH else right,
         )  # fmt: skip
 
 
@@ -49,4 +66,4 @@ def _fix(script: Script, node: ast.BinOp) -> Fix | None:
     return Fix("Write @", (Edit(where, text.replace("*", "@")),), sure=True)
 
 
-RULE = Rule("refused-product", "error", "A product that mathutils refuses", _check)
+RULE = Rule("refused-product", "error", "A product or a sum that mathutils refuses", _check)

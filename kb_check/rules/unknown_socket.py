@@ -16,7 +16,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import subscripts_text
+from kb_build.symbol_lines import identifier_of, subscripts_text
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
@@ -28,11 +28,8 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_check.script import Script
 
-# Nodes with a set of sockets for each type of data, which Blender finds by the names of the set that is shown only.
-_BY_NAME_ONLY = frozenset(
-    f"bpy.types.{name}"
-    for name in ("FunctionNodeCompare", "FunctionNodeRandomValue", "ShaderNodeMapRange", "ShaderNodeMix")
-)
+# Of nodes with a set of sockets for each type of data, which Blender finds by name only.
+_BY_NAME_ONLY = "identifier-never"
 _SIDES = ("inputs", "outputs")
 
 
@@ -65,11 +62,11 @@ def _sides(row: Resolution) -> tuple[str, ...]:
 
 def _asked_by(socket: Symbol) -> str:
     """What a socket is asked for by."""
-    return socket.label if socket.owner in _BY_NAME_ONLY else socket.name
+    return socket.label if _BY_NAME_ONLY in socket.flags else socket.name
 
 
 def _is_only_identifier(socket: Symbol, key: str) -> bool:
-    return socket.owner in _BY_NAME_ONLY and key == socket.name and key not in socket.socket_names
+    return _BY_NAME_ONLY in socket.flags and key == identifier_of(socket) and key not in socket.socket_names
 
 
 def _still_works(script: Script, node: str, name: str) -> bool:

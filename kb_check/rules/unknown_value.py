@@ -10,6 +10,8 @@ scene.render.engine = "BLENDER_EEVEE_NEXT"  # reported in 5.0: BLENDER_EEVEE
 
 from __future__ import annotations
 
+import ast
+from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
 from kb_check.rule import Rule
@@ -18,15 +20,34 @@ from kb_check.rules.lacking import lacking_finding
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_build.flow.types import Resolution
     from kb_check.findings import Finding
     from kb_check.script import Script
 
 
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("value"):
-        owner = row.missing[0]
+        if _may_be_of_another(script, row):
+            continue
+        # Of several classes that a thing may be of, the one with the value that may be meant.
+        owner = max(row.missing, key=lambda path: _likeness(script, path, row.value))
         values = script.api.values_of(owner)
         yield lacking_finding(script, RULE.id, row, script.names.value(owner, row.value, values))
+
+
+def _likeness(script: Script, owner: str, value: str) -> float:
+    return max((SequenceMatcher(None, value, one).ratio() for one in script.api.values_of(owner)), default=0)
+
+
+def _may_be_of_another(script: Script, row: Resolution) -> bool:
+    """Whether the class is not sure, and a file of the package registers a property of the name that is set."""
+    targets = row.statement.targets if isinstance(row.statement, ast.Assign) else []
+    for target in targets:
+        store = script.analysis.resolutions.get(target)
+        if store is not None and store.possible and not store.symbols:
+            owners = [cls for path in row.missing for cls in script.api.lineage(path.rpartition(".")[0])]
+            return script.package.has(owners, store.value)
+    return False
 
 
 RULE = Rule("unknown-value", "error", "A value that the enumeration does not have", _check)

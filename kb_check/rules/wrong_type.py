@@ -18,9 +18,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.api import GROUPS
 from kb_build.flow.facts import OBJECT_DATA, T
-from kb_build.flow.types import Instance, Plain
-from kb_check.conversions import misfit
+from kb_build.flow.types import Collection, Instance, Plain
+from kb_check.conversions import describe, misfit
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.given import given_values
 from kb_check.literals import items
@@ -51,6 +52,35 @@ def _check(script: Script) -> Iterator[Finding]:
             f"`{taker.path}` takes {wrong.takes}, not {wrong.given}.{_advice(script, taker, given.node)}",
             taker.path, (), _fix(script, taker, wrong, given.node) if len(given.takers) == 1 else None,
         )  # fmt: skip
+    yield from _items_given(script)
+
+
+def _items_given(script: Script) -> Iterator[Finding]:
+    """What is assigned to items of collections, which hold structures or nothing."""
+    for node in script.nodes:
+        if not isinstance(node, ast.Assign) or len(node.targets) != 1:
+            continue
+        target = node.targets[0]
+        if not isinstance(target, ast.Subscript) or isinstance(target.slice, ast.Slice):
+            continue
+        owner, kind = script.type_of(target.value), script.type_of(node.value)
+        row = script.analysis.resolutions.get(target.value)
+        certain = row is None or (row.sure and not row.guarded and not row.possible)
+        if (
+            isinstance(owner, Collection)
+            and owner.container != GROUPS
+            and isinstance(kind, Plain)
+            and certain
+        ):
+            path = owner.path or owner.container
+            yield Finding(
+                RULE.id, "error", script.span(node.value),
+                f"An item of `{path}` takes an instance of `{_element(owner)}` or None, not {describe(kind)}.", path,
+            )  # fmt: skip
+
+
+def _element(owner: Collection) -> str:
+    return owner.element.cls if isinstance(owner.element, Instance) else f"{T}bpy_struct"
 
 
 def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
@@ -58,7 +88,7 @@ def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
     kind = script.type_of(node)
     if not isinstance(kind, Instance):
         return ""
-    if taker.target == _OBJECT and any(script.api.descends(kind.cls, cls) for cls in _DATA):
+    if taker.target == _OBJECT and any(script.api.descends(kind.cls, cls) for cls in (*_DATA, f"{T}ID")):
         return " Give the object that has it: `bpy.data.objects.new(name, data)` makes one."
     if taker.target == f"{T}NodeSocket" and script.api.descends(kind.cls, f"{T}Node"):
         return " Give one of its sockets: `node.outputs[...]`, `node.inputs[...]`."

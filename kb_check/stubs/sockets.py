@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN, T
 from kb_build.flow.types import Instance
+from kb_build.symbol_lines import identifier_of
 
 if TYPE_CHECKING:
     from kb_build.flow.api import Api
@@ -45,8 +46,8 @@ class Sockets:
             kind = self._api.socket_type(symbol)
             text = kind.cls if isinstance(kind, Instance) else self._any
             keys = {
-                symbol.name,
                 *symbol.socket_names,
+                *(() if "identifier-never" in symbol.flags else (identifier_of(symbol),)),
                 *(_subscript(written, side) for written in symbol.subscripts),
             }
             for one in keys - {"", None}:

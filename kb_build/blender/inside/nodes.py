@@ -193,6 +193,15 @@ class Sockets:
             texts.append(f"{side}[{next(iter(self.places[key]))}]")
         return texts, by_name != present and bool(shown) and shown <= by_name
 
+    def of_identifier(self, key):
+        """What a socket's identifier does as a subscript where it does not always give the socket, as flags."""
+        present, shown, _, by_identifier = self.seen[key]
+        if not shown or by_identifier == present:
+            return []
+        if not by_identifier:
+            return ["identifier-never"]
+        return ["identifier-when-shown"] if by_identifier == shown else []
+
 
 def make(trees, identifier):
     """Tree type → the new node, for each that takes it."""
@@ -232,6 +241,7 @@ def write_node(write, owner, nodes, former, alone=None):
         flags = [f"identifier:{identifier}"]
         flags += ["hidden-by-default"] if key in sockets.hidden else []
         flags += ["name-when-shown"] if while_shown else []
+        flags += sockets.of_identifier(key)
         flags += [f"also-named:{name}" for name in sockets.names[key] if name not in {"", row["label"]}]
         flags += ["when-paired"] if alone is not None and key not in alone else []
         flags += [f"type-by:{name}" for name in sockets.deciding.get(key, ())]

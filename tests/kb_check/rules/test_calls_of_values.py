@@ -1,0 +1,98 @@
+"""Calls of what is no function, and arguments that bmesh and mathutils refuse."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+
+_LINES = """\
+import bpy, bmesh
+from mathutils import Color, Euler, Matrix, Quaternion, Vector
+bm = bmesh.new()
+bmesh.ops.create_cube(bm, size='a')
+bmesh.ops.create_cube(bm, size=True)
+bmesh.ops.create_cube(bm, size=1, calc_uvs=1)
+bmesh.ops.delete(bm, geom=[], context=1)
+bmesh.ops.delete(bm, geom=[], context='VERTS')
+bmesh.ops.triangulate(bm, faces=bm.faces[:], quad_method=0)
+bmesh.ops.bevel(bm, geom=[], segments=1.5)
+bmesh.ops.bevel(bm, geom=[], segments=True)
+bmesh.ops.bevel(bm, geom=[], segments=1, clamp_overlap='a')
+bmesh.ops.bevel(bm, geom=[], segments=1, clamp_overlap=1, offset=1)
+Vector(1, 2, 3)
+v = Vector((1, 2, 3))
+Vector()
+Euler(1, 2, 3)
+Euler((1, 2, 3), 'XYZ')
+Color(1, 2, 3)
+Quaternion(1, 2, 3, 4)
+Quaternion((1, 0, 0), 1.0)
+Matrix((1, 0), (0, 1))
+Matrix(((1, 0), (0, 1)))
+v.length()
+v.length
+v.xy()
+bm.verts()
+bm.verts.new()
+bpy.context.object.data()
+bpy.context.object.name()
+bpy.data.objects['Cube'].location()
+bpy.data.objects()
+bpy.context.scene.frame_current()
+bpy.context.scene.frame_set(1)
+bpy.data.objects['Cube'].modifiers.new('a', 'SUBSURF').levels()
+bpy.app.version()
+"""
+_RULES = ["refused-call", "positional-argument", "wrong-type"]
+# A module's member: its kind is not known.
+_LEFT = {36}
+
+
+def test_what_is_found_is_what_blender_refuses(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _LINES.splitlines()
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    found = rule_checker.check(_LINES, rules=_RULES)
+    assert [one.span.line for one in found] == [at for at in refused if at not in _LEFT]
+    assert len(refused) == 20
+
+
+def test_a_call_of_a_property_is_mended(rule_checker: Checker) -> None:
+    (found,) = rule_checker.check("import mathutils\nmathutils.Vector().length()\n", rules=["refused-call"])
+    assert found.fix is not None
+    assert found.fix.sure
+    assert [edit.text for edit in found.fix.edits] == [""]
+
+
+_RESULTS = """\
+import bpy, bmesh
+bm = bmesh.new()
+cube = bmesh.ops.create_cube(bm, size=1)
+cube['verts']
+cube['faces']
+result = bmesh.ops.extrude_face_region(bm, geom=bm.faces[:])
+result['geom']
+result['verts']
+result.get('verts')
+bmesh.ops.extrude_discrete_faces(bm, faces=bm.faces[:])['faces']
+bmesh.ops.extrude_discrete_faces(bm, faces=bm.faces[:])['geom']
+own = bmesh.ops.create_cube(bm)
+own['mine'] = 1
+own['mine']
+try:
+    cube['edges']
+except KeyError:
+    pass
+"""
+
+
+def test_keys_that_results_of_bmesh_lack_are_found(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _RESULTS.splitlines()[:14]
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    found = rule_checker.check(_RESULTS, rules=["not-subscriptable"])
+    assert [one.span.line for one in found] == refused == [5, 8, 11]

@@ -1,0 +1,48 @@
+"""Parts that new things do not have until something makes them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+
+_LINES = """\
+import bpy
+mesh = bpy.data.meshes.new('m')
+ob = bpy.data.objects.new('o', mesh)
+scene = bpy.data.scenes.new('s')
+ob.animation_data.action = None
+ob.soft_body.mass = 1
+ob.collision.damping = 1
+scene.rigidbody_world.enabled = True
+scene.render.fps = 25
+"""
+_FILLED = {
+    "ob.animation_data_create()\n": 5,
+    "ob.modifiers.new('x', 'SOFT_BODY')\n": 6,
+    "ob.modifiers.new('x', 'COLLISION')\n": 7,
+    "bpy.ops.rigidbody.world_add()\n": 8,
+}
+
+
+def test_what_new_things_lack_is_found(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _LINES.splitlines()
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    assert (
+        [one.span.line for one in rule_checker.check(_LINES, rules=["empty-pointer"])]
+        == refused
+        == [5, 6, 7, 8]
+    )
+
+
+def test_what_the_script_fills_is_not(rule_checker: Checker) -> None:
+    for call, line in _FILLED.items():
+        found = rule_checker.check(_LINES + call, rules=["empty-pointer"])
+        assert line not in {one.span.line for one in found}, call
+    computed = _LINES + "kind = input()\nob.modifiers.new('x', kind)\n"
+    assert {one.span.line for one in rule_checker.check(computed, rules=["empty-pointer"])} == {5, 8}

@@ -1,0 +1,66 @@
+"""Sums, differences and quotients of mathutils' values: found where Blender refuses them, and nowhere else."""
+
+from __future__ import annotations
+
+from itertools import product
+from typing import TYPE_CHECKING
+
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+
+_MADE = """\
+import bpy
+from mathutils import Color, Euler, Matrix, Quaternion, Vector
+ob = bpy.data.objects['Cube']
+light = bpy.data.lights['Light']
+vector = Vector((1, 2, 3))
+color = Color((1, 2, 3))
+euler = Euler((1, 2, 3))
+matrix = Matrix.Identity(4)
+quaternion = Quaternion((1, 2, 3, 4))
+items = (1, 2, 3)
+"""
+_OPERANDS = (
+    "vector", "color", "euler", "matrix", "quaternion", "ob.location", "ob.rotation_euler", "light.color",
+    "ob.rotation_quaternion", "ob.matrix_world", "items", "(1.0, 2.0, 3.0)", "2", "1.5", "True", "'text'",
+    "ob.data.vertices[0].co", "ob.data.vertices[0].normal", "ob.scale", "ob.dimensions", "ob.color",
+    "ob.location.x", "ob.location[:]", "ob.bound_box[0]", "[1, 2, 3]", "tuple(vector)", "list(vector)",
+    "vector.xy", "vector.normalized()", "matrix.to_translation()", "matrix.to_euler()", "matrix.col[0]", "None",
+)  # fmt: skip
+# As it is refused for another reason: the lengths of two vectors differ, or nothing is known of what it is.
+_OTHER = "vectors must have the same dimensions"
+
+
+def test_sums_that_blender_refuses_are_found(rule_checker: Checker, tmp_path: Path) -> None:
+    made = _MADE.splitlines()
+    lines = [f"{left} {sign} {right}" for left, sign, right in product(_OPERANDS, "+-/", _OPERANDS)]
+    lines += [
+        f"x = {left}\nx {sign}= {right}" for left, sign, right in product(_OPERANDS[:5], "+-/", _OPERANDS)
+    ]
+    answers = run_statements(tmp_path, [*made, *lines])[len(made) :]
+    code = "\n".join([*made, *(line.replace("\n", "; ") for line in lines)])
+    found = {one.span.line - len(made) for one in rule_checker.check(code, rules=["refused-product"])}
+    wrong = [line for at, (line, (error, *_)) in enumerate(zip(lines, answers, strict=True), 1)
+             if at in found and not error]  # fmt: skip
+    assert wrong == []
+    math = {
+        "vector",
+        "color",
+        "euler",
+        "matrix",
+        "quaternion",
+        "items",
+        "2",
+        "1.5",
+        "ob.location",
+        "light.color",
+    }
+    missed = [line for at, (line, (error, *_)) in enumerate(zip(lines, answers, strict=True), 1)
+              if error and at not in found and _OTHER not in error and {*line.split()[::2]} <= math
+              and "\n" not in line and not {*line.split()[::2]} <= {"items", "2", "1.5"}]  # fmt: skip
+    assert missed == []
+    assert len(found) > 1_000

@@ -1,0 +1,109 @@
+"""Identifiers of sockets as keys: found where Blender raises KeyError, and nowhere else."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from kb_check.checker import Checker
+
+# For each node in each of its modes: how it is made, and what its identifiers that are not names give as keys.
+_ASK = """
+import json, sys
+import bpy
+
+INHERITED = set(bpy.types.Node.bl_rna.properties.keys())
+
+def modes(node):
+    yield "", ""
+    for prop in node.bl_rna.properties:
+        if prop.type == 'ENUM' and prop.identifier not in INHERITED and not prop.is_readonly and not prop.is_enum_flag:
+            yield from ((prop.identifier, item.identifier) for item in prop.enum_items_static)
+
+def keys(node):
+    for side in ("inputs", "outputs"):
+        sockets = getattr(node, side)
+        names = {socket.name for socket in sockets}
+        for identifier in dict.fromkeys(socket.identifier for socket in sockets):
+            if identifier not in names:
+                try:
+                    sockets[identifier]
+                except KeyError:
+                    yield side, identifier, False
+                else:
+                    yield side, identifier, True
+
+rows = []
+for kind in ("ShaderNodeTree", "GeometryNodeTree", "CompositorNodeTree", "TextureNodeTree"):
+    tree = bpy.data.node_groups.new("tree", kind)
+    for name in sorted(dir(bpy.types)):
+        cls = getattr(bpy.types, name)
+        if not isinstance(cls, type) or not issubclass(cls, bpy.types.Node):
+            continue
+        try:
+            node = tree.nodes.new(name)
+        except RuntimeError:
+            continue
+        for mode, choice in modes(node):
+            before = getattr(node, mode) if mode else None
+            try:
+                if mode:
+                    setattr(node, mode, choice)
+            except TypeError:
+                continue
+            rows.append([kind, name, mode, choice, list(keys(node))])
+            if mode:
+                setattr(node, mode, before)
+        tree.nodes.remove(node)
+open(sys.argv[-1], "w").write(json.dumps(rows))
+"""
+# What a script cannot tell beforehand: their sockets are made by what is done to them.
+_OWN = ("Group", "Switch", "Input", "Output", "Bake", "CaptureAttribute", "Format", "List", "Grid")
+
+
+@pytest.fixture(scope="module")
+def rows(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> list[tuple[str, str, str, str, list[tuple[str, str, bool]]]]:
+    folder = tmp_path_factory.mktemp("keys")
+    file = folder / "keys.json"
+    done = [sys.executable, "-P", "-c", _ASK, str(file)]
+    subprocess.run(done, check=True, timeout=240, capture_output=True, cwd=folder)
+    return json.loads(file.read_text())
+
+
+def test_keys_that_blender_takes_are_no_finding_and_those_that_it_refuses_are(
+    rule_checker: Checker, rows: list[tuple[str, str, str, str, list[tuple[str, str, bool]]]]
+) -> None:
+    wrong: list[str] = []
+    missed: list[str] = []
+    taken = refused = 0
+    for kind, name, mode, choice, keys in rows:
+        if not keys:
+            continue
+        made = f"import bpy\nnode = bpy.data.node_groups.new('tree', {kind!r}).nodes.new({name!r})\n"
+        made += f"node.{mode} = {choice!r}\n" if mode else ""
+        start = made.count("\n") + 1
+        code = made + "".join(f"node.{side}[{key!r}]\n" for side, key, _ in keys)
+        found = {
+            one.span.line
+            for one in rule_checker.check(code, rules=["unknown-socket", "hidden-socket"])
+            if one.span.line >= start
+        }
+        for line, (side, key, works) in enumerate(keys, start):
+            text = f"{name}({mode}={choice}).{side}[{key!r}]"
+            if works:
+                taken += 1
+                wrong += [text] if line in found else []
+            elif not mode:  # which modes it is refused in is not what these rules look at
+                refused += 1
+                missed += [text] if line not in found and not name.endswith(_OWN) else []
+    assert taken > 165
+    assert refused > 45
+    assert wrong == []
+    assert missed == []
