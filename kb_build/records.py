@@ -230,6 +230,11 @@ class Symbol:
         return (self.label, *self.flagged("also-named:"))
 
     @property
+    def identifier(self) -> str:
+        """A socket's identifier, which its name need not be; empty for what is no socket."""
+        return "".join(self.flagged("identifier:")[:1])
+
+    @property
     def type_settings(self) -> tuple[str, ...]:
         """The settings of its node that choose a socket's type; none where it is always the same."""
         return self.flagged("type-by:")

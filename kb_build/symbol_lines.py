@@ -234,11 +234,6 @@ def version_meant(text: str) -> str:
     return f"{major}.{minor[0]}" if minor[1:] == "0" else text
 
 
-def identifier_of(socket: Symbol) -> str:
-    """A socket's identifier, which its name need not be."""
-    return next((flag[11:] for flag in socket.flags if flag.startswith("identifier:")), "")
-
-
 def new_subscript(socket: Symbol) -> str:
     """The subscript that gives a socket of a new node: its name where that works; empty for none."""
     if "name-when-shown" in socket.flags and "hidden-by-default" not in socket.flags:
@@ -257,7 +252,7 @@ def subscripts_text(socket: Symbol, most: int | None = None) -> str:
     if "name-when-shown" in socket.flags:
         by_name = f'`{side}["{socket.label}"]` while it is shown'
         shown = [*shown, by_name] if "hidden-by-default" in socket.flags else [by_name, *shown]
-    identifier = identifier_of(socket)
+    identifier = socket.identifier
     if identifier not in ("", socket.label):
         shown.append(f"identifier `{identifier}`")
     return ", ".join(shown)

@@ -12,7 +12,7 @@ from kb_build.base_file import read_meta
 from kb_build.live.values import compare_values, runtime_at_hand
 from kb_build.records import NOT_TAKEN, symbol_from_json
 from kb_build.schema import open_read_only, unpack
-from kb_build.symbol_lines import empty_when_new, fillers, identifier_of
+from kb_build.symbol_lines import empty_when_new, fillers
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import say
 
@@ -91,9 +91,7 @@ def _sockets(symbols: Sequence[Symbol], former: int) -> Table:
         "by name only while shown, else by place": sum(
             "name-when-shown" in symbol.flags for symbol in sockets
         ),
-        "whose identifier is not their name": sum(
-            identifier_of(symbol) != symbol.label for symbol in sockets
-        ),
+        "whose identifier is not their name": sum(symbol.identifier != symbol.label for symbol in sockets),
         "former names that Blender still takes": former,
     }
     return _table("Sockets", counts, "Every subscript was tried on the node.")

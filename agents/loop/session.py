@@ -101,15 +101,14 @@ def begin(root: Path, options: Options, session: RunSession) -> Ended:
     """Begins a run in ``root``, a folder that is new or empty. Raises NoRun; Unusable, then there is no folder."""
     check_inputs(options)
     try:
-        check_model(options)
-    except ModelError as error:
-        raise Unusable(f"{error} What needs no key: simworlds demo.") from error
-    try:
-        root.mkdir(parents=True, exist_ok=True)
-        if any(root.iterdir()):
+        if root.exists() and any(root.iterdir()):
             raise NoRun(
                 f"{root} is not empty. Choose another folder, or continue with 'simworlds resume {root}'."
             )
+        check_model(options)
+        root.mkdir(parents=True, exist_ok=True)
+    except ModelError as error:
+        raise Unusable(f"{error} What needs no key: simworlds demo.") from error
     except OSError as error:
         raise NoRun(f"{root} cannot be used as the folder of a run: {error.strerror or error}.") from error
     return _work(root, options, session)

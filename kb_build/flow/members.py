@@ -44,7 +44,6 @@ from kb_build.flow.types import (
     literal_text,
     union,
 )
-from kb_build.symbol_lines import identifier_of
 
 if TYPE_CHECKING:
     import ast
@@ -379,7 +378,7 @@ class Members(Core):
         else:
             # Of several with one name the node's mode decides.
             found = [socket for socket in sockets if value in socket.socket_names]
-            found = found or [socket for socket in sockets if value in {socket.name, identifier_of(socket)}]
+            found = found or [socket for socket in sockets if value in {socket.name, socket.identifier}]
         if not found:
             if isinstance(value, str) and not _has_sockets_of_its_own(owner.cls):
                 self.resolve(node, "item", value, missing=(owner.cls,), sure=owner.sure)

@@ -19,7 +19,6 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.records import WHEN_PAIRED
-from kb_build.symbol_lines import identifier_of
 from kb_check.findings import Finding
 from kb_check.made_here import is_new, knows_all, named_words
 from kb_check.rule import Rule
@@ -74,7 +73,7 @@ def _hidden(script: Script, sockets: list[Symbol], row: Resolution) -> str:
         is_name = row.value in socket.socket_names
         needed = {"hidden-by-default", "name-when-shown" if is_name else "identifier-when-shown"}
         if (
-            not (is_name or row.value == identifier_of(socket))
+            not (is_name or row.value == socket.identifier)
             or f'{side}["{row.value}"]' in socket.subscripts
             or not socket.modes
             or not needed.issubset(socket.flags)

@@ -16,7 +16,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import identifier_of, subscripts_text
+from kb_build.symbol_lines import subscripts_text
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
@@ -66,7 +66,7 @@ def _asked_by(socket: Symbol) -> str:
 
 
 def _is_only_identifier(socket: Symbol, key: str) -> bool:
-    return _BY_NAME_ONLY in socket.flags and key == identifier_of(socket) and key not in socket.socket_names
+    return _BY_NAME_ONLY in socket.flags and key == socket.identifier and key not in socket.socket_names
 
 
 def _still_works(script: Script, node: str, name: str) -> bool:

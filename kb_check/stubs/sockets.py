@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN, T
 from kb_build.flow.types import Instance
-from kb_build.symbol_lines import identifier_of
 
 if TYPE_CHECKING:
     from kb_build.flow.api import Api
@@ -47,7 +46,7 @@ class Sockets:
             text = kind.cls if isinstance(kind, Instance) else self._any
             keys = {
                 *symbol.socket_names,
-                *(() if "identifier-never" in symbol.flags else (identifier_of(symbol),)),
+                *(() if "identifier-never" in symbol.flags else (symbol.identifier,)),
                 *(_subscript(written, side) for written in symbol.subscripts),
             }
             for one in keys - {"", None}:

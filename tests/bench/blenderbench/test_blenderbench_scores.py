@@ -234,5 +234,5 @@ def test_the_judge_marks_the_chosen_round_and_failures_are_counted(
 def test_a_judge_without_a_key_is_an_error_before_anything_is_scored(out: Path) -> None:
     done = bench("score", out, "--judge", "anthropic")
     assert done.exit_code == 2
-    assert "set ANTHROPIC_API_KEY" in done.stderr
+    assert "set the environment variable ANTHROPIC_API_KEY" in done.stderr
     assert not task_folder(out, "level1/a1").scores.exists()

@@ -111,7 +111,7 @@ def test_without_a_key_it_says_why_frames_are_not_judged(
     monkeypatch.delenv("ANTHROPIC_API_KEY")
     found = judged(out, api)["one"]
     assert found.score is None
-    assert "set ANTHROPIC_API_KEY" in (found.why or "")
+    assert "set the environment variable ANTHROPIC_API_KEY" in (found.why or "")
 
 
 def test_keeps_a_judgement_when_no_judge_is_available(
