@@ -116,7 +116,12 @@ def _comment_tokens(code: str) -> Iterator[tuple[int, int, str]]:
             if token.type == tokenize.COMMENT:
                 yield *token.start, token.string
             last = token.end[0]
-    except (tokenize.TokenError, SyntaxError, ValueError, SystemError):  # the last by a fault of CPython 3.13.0's
+    except (
+        tokenize.TokenError,
+        SyntaxError,
+        ValueError,
+        SystemError,
+    ):  # the last by a fault of CPython 3.13.0's
         for number, line in enumerate(split_lines(code)[last:], last + 1):
             if "#" in line:
                 yield number, line.index("#"), line[line.index("#") :].rstrip("\r\n")
