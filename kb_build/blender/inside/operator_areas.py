@@ -7,18 +7,16 @@ into the context; and in an area of every type, in the 3D viewport in every mode
 area and end Blender all the same, so each is then called in a process of its own.
 """
 
-import os
-import signal
 from collections import defaultdict
 from contextlib import suppress
 
 import bpy
 
+from .apart import apart, can_work_apart
 from .new_things import activate, choices
 
 # Of area types; those that run in more run in any.
 MOST_AREAS = 8
-SECONDS = 5
 # What is asked in every area: most operators of editors want no more.
 MANY = (("mesh", "EDIT"), ("grease_pencils", "OBJECT"), ("grease_pencils_v3", "OBJECT"))
 # What is asked with things of the context: object and mode.
@@ -176,16 +174,14 @@ def polled(known):
 
 def works(operator, member, thing):
     """Whether an operator does its work, and Blender goes on, with one member of the context and no area."""
-    if not hasattr(os, "fork"):
+    if not can_work_apart():
         return False
-    process = os.fork()
-    if not process:
-        signal.alarm(SECONDS)
-        done = set()
-        with suppress(BaseException), bpy.context.temp_override(area=None, region=None, **{member: thing}):
-            done = operator()
-        os._exit("FINISHED" not in done)
-    return os.waitpid(process, 0)[1] == 0
+
+    def work():
+        with bpy.context.temp_override(area=None, region=None, **{member: thing}):
+            return "FINISHED" in operator()
+
+    return apart(work)
 
 
 def find_all(write, known, scene):

@@ -8,15 +8,14 @@ edit mode; one that is taken is made again.
 
 import itertools
 import json
-import os
 import re
-import signal
 import tempfile
 from collections import defaultdict
 from contextlib import suppress
 
 import bpy
 
+from .apart import apart, can_work_apart
 from .new_things import MAKERS, activate, added_by_operators, choices, object_of, scratch_scene
 from .pointer_fillers import ADDING
 
@@ -26,7 +25,6 @@ NAME = "plain"
 NUMBER = 7
 MOST_CALLS = 100
 MOST_ATTEMPTS = 4
-SECONDS = 5
 # What a refusal names: things and what was given.
 GIVEN = re.compile(r"'[^']*'|\"[^\"]*\"|\b" + NAME + r"\b|\b7(?:\.0+)?\b")
 NONE = "returned None"
@@ -127,22 +125,35 @@ def taken_with(owner, function, arguments, things):
     return []
 
 
-def is_taken_in_edit_mode(struct, owner, function, arguments):
-    """Whether a refused call is taken while the active object, whose data it changes, is in edit mode."""
-    data = struct.id_data
+def object_with(data):
+    """A new object of these data; None for what is no object's data."""
     if not isinstance(data, bpy.types.ID) or isinstance(data, bpy.types.Object):
-        return False
+        return None
     try:
-        obj = bpy.data.objects.new("new", data)
+        return bpy.data.objects.new("new", data)
+    except (TypeError, RuntimeError):
+        return None
+
+
+def is_taken_in_edit_mode(struct, owner, function, arguments):
+    """Whether a refused call is taken while the active object, whose data it changes, is in edit mode.
+
+    It is tried apart: leaving edit mode frees the parts of the data, this thing among them.
+    """
+    obj = object_with(struct.id_data)
+    if obj is None:
+        return False
+
+    def work():
         bpy.context.scene.collection.objects.link(obj)
         activate(obj)
         bpy.ops.object.mode_set(mode="EDIT")
-    except (TypeError, RuntimeError):
-        return False
-    try:
         return refusal(owner, function, arguments) == ""
+
+    try:
+        return apart(work)
     finally:
-        bpy.ops.object.mode_set(mode="OBJECT")
+        bpy.data.objects.remove(obj)
 
 
 def other_arguments(arguments, given):
@@ -224,18 +235,16 @@ def try_all(make, observer, trial):
 def attempt(make, observer, skipped):
     """(whether it came to its end, what was sent) of trying what one maker makes, in a process of its own."""
     with tempfile.TemporaryFile("w+", encoding="utf-8") as file:
-        process = os.fork()
-        if not process:
-            signal.alarm(SECONDS)
 
-            def send(row):
-                file.write(json.dumps(row) + "\n")
-                file.flush()
+        def send(row):
+            file.write(json.dumps(row) + "\n")
+            file.flush()
 
-            with suppress(Exception):
-                try_all(make, observer, Trial(send, skipped))
-            os._exit(0)
-        ended = os.waitpid(process, 0)[1] == 0
+        def work():
+            try_all(make, observer, Trial(send, skipped))
+            return True
+
+        ended = apart(work)
         file.seek(0)
         return ended, [json.loads(line) for line in file]
 
@@ -254,7 +263,7 @@ def tried_apart(make, observer):
 
 def find_all(write, observer):
     """One ``refusals`` record for each function of which a call was refused: all outcomes of the calls."""
-    if not hasattr(os, "fork"):
+    if not can_work_apart():
         return
     found = defaultdict(list)
     for make in (objects, *(make for make in MAKERS if make is not added_by_operators)):
