@@ -11,6 +11,7 @@ from collections import Counter
 from typing import TYPE_CHECKING
 
 import pytest
+from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
 from kb_build.records import NewValue
@@ -712,13 +713,26 @@ def test_names_that_the_maker_gives_and_times_are_not_defaults(symbols: dict[str
 def test_extracting_for_another_user_gives_the_same_bytes(
     base: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setenv(
-        "HOME", str(tmp_path / "home")
-    )  # without what Blender keeps there of its asset libraries
+    # Without what Blender keeps there of its asset libraries.
+    monkeypatch.setenv("HOME", str(tmp_path / "home"))
     again = extract_api(find_runtime(None, home=tmp_path), home=tmp_path)
     first = next((base.parent.parent / "extracts").glob("*.jsonl"))
     assert again.read_bytes() == first.read_bytes()
     assert not [line for line in first.read_text(encoding="utf-8").splitlines() if " at 0x" in line]
+
+
+def test_a_thing_is_as_it_was_after_edit_mode_was_tried(tmp_path: Path) -> None:
+    lines = [
+        "import bpy",
+        "from kb_build.blender.inside.refusals import is_taken_in_edit_mode",
+        "curve = bpy.data.curves.new('curve', 'CURVE')",
+        "spline = curve.splines.new('POLY')",
+        "add = spline.bezier_points.bl_rna.functions['add']",
+        "taken = is_taken_in_edit_mode(spline, spline.bezier_points, add, {'count': 1})",
+    ]
+    answers = run_statements(tmp_path, lines, {5: "[curve.splines[0] == spline, len(bpy.data.objects)]"})
+    assert not any(error for error, _, _ in answers), answers
+    assert answers[-1][1] == answers[-1][2]
 
 
 def test_what_python_code_returns_has_the_type_of_its_elements(symbols: dict[str, Symbol]) -> None:
