@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import textwrap
-from itertools import dropwhile, groupby, takewhile
+from itertools import dropwhile, groupby, islice, takewhile
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
@@ -148,6 +148,16 @@ def with_article(thing: str) -> str:
     return f"{'an' if thing[0].lower() in 'aeiou' else 'a'} {thing}"
 
 
+def _mode_text(refusal: Refusal) -> str:
+    return f"{refusal.mode.capitalize()} Mode"
+
+
+def mode_needed(symbol: Symbol) -> str:
+    """``Edit Mode``: where alone a function is taken, whatever it is given; empty for everywhere."""
+    whole = (refusal for refusal in symbol.refusals if refusal.mode and not (refusal.values or refusal.by))
+    return "".join(_mode_text(refusal) for refusal in islice(whole, 1))
+
+
 def _refusal_text(refusal: Refusal) -> str:
     """``type='COLOR'|'TEXT'`` without ``length``: “Strips.new_effect: invalid length”."""
     parts: list[str] = []
@@ -158,7 +168,7 @@ def _refusal_text(refusal: Refusal) -> str:
     if refusal.given:
         parts.append("without " + " and ".join(f"`{name}`" for name in refusal.given))
     if refusal.mode:
-        parts.append(f"outside of {refusal.mode.capitalize()} Mode")
+        parts.append(f"outside of {_mode_text(refusal)}")
     if refusal.again:
         parts.append("a second time" if refusal.again == "any" else "a second time with the same arguments")
     said = f"“{refusal.message}”" if refusal.message else "returns `None`"

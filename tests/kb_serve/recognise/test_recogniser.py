@@ -337,7 +337,7 @@ def test_a_misspelt_lone_name_is_corrected(kb: KnowledgeBase, reader: BaseReader
 def test_a_lone_name_is_said_to_be_none_only_if_it_is_none(kb: KnowledgeBase, reader: BaseReader) -> None:
     rows = reader.rows("SELECT DISTINCT name FROM symbols WHERE name LIKE '%\\_%' ESCAPE '\\'")
     names = [name for (name,) in rows if name.isidentifier() and not name.isupper()]
-    for name in random.Random(SEED).sample(names, examples(25)):
+    for name in random.Random(SEED).sample(names, examples(100)):
         turned = "_".join(reversed(name.split("_"))).strip("_")
         is_none = not reader.by_key(key(turned)) and not turned.isupper() and "_" in turned
         for written, expected in ((name, False), (turned, is_none)):
