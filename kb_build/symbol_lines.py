@@ -7,7 +7,7 @@ from itertools import dropwhile, groupby, islice, takewhile
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
-from kb_build.records import AREAS, FACTORY, FILLED_BY, FILLED_ON, GIVEN, NEEDS, NOT_TAKEN, THEN
+from kb_build.records import AREAS, ENDS_WITHOUT, FACTORY, FILLED_BY, FILLED_ON, GIVEN, NEEDS, NOT_TAKEN, THEN
 from kb_build.schema import TEST_ON
 
 if TYPE_CHECKING:
@@ -110,9 +110,13 @@ def area_text(types: Sequence[str]) -> str:
 def refusal_lines(symbol: Symbol) -> list[str]:
     """Which calls of a function were refused although their arguments are those that it asks for, a line each.
 
-    Where both a value and what takes it decide, that is said with the value (see taken_where).
+    Where both a value and what takes it decide, that is said with the value (see taken_where). What ends Blender comes
+    first.
     """
-    return [
+    fatal = [
+        f"while `{needed}` is None, which ends Blender: set it" for needed in symbol.flagged(ENDS_WITHOUT)
+    ]
+    return fatal + [
         _refusal_text(refusal)
         for refusal in symbol.refusals
         if refusal.is_explained and not (refusal.values and refusal.by)
