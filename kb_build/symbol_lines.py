@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from kb_build.records import Default, NewValue, PanelCondition, Refusal, Symbol
 
+NODE_FAMILIES = ("ShaderNode", "GeometryNode", "CompositorNode", "FunctionNode", "TextureNode")
 _ACTIVE = "bpy.context.object"
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
 _SHOWN_VALUES = 8
@@ -362,3 +363,11 @@ def _is_prose(paragraph: str) -> bool:
 
 def _depth(line: str) -> int:
     return len(line) - len(line.lstrip())
+
+
+def alike_nodes(name: str) -> list[str]:
+    """The paths of a node's class under the other families' names: ``ShaderNodeGamma`` for CompositorNodeGamma."""
+    family = next((family for family in NODE_FAMILIES if name.startswith(family) and name != family), None)
+    if family is None:
+        return []
+    return [f"bpy.types.{other}{name[len(family) :]}" for other in NODE_FAMILIES if other != family]

@@ -107,6 +107,9 @@ def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int], names: Mapping[st
             )
             if symbol.path == f"{TYPES}Object.data":
                 graph.edges[owner] += [_Step(symbol.name, name, cost) for name in _OBJECT_DATA]
+    for name in graph.below("Node") if graph.trees else ():
+        if not graph.derived.get(name):
+            graph.trees.setdefault(name, ())  # RNA has the class, and no tree takes it
     return graph
 
 

@@ -189,7 +189,7 @@ class Calls(Narrowing):
             if parameter := parameters.get(name):
                 self.resolve(keyword, "keyword", name, (f"{symbol.path}({name})",))
                 self._value(symbol, parameter, keyword.value)
-            elif not is_open and (symbol.parameters or symbol.kind == "operator"):
+            elif not is_open and (symbol.parameters or symbol.kind == "operator" or _takes_nothing(symbol)):
                 self.resolve(keyword, "keyword", name, missing=(symbol.path,))
 
     def _values(self, symbol: Symbol, node: ast.Call) -> None:
@@ -563,3 +563,8 @@ class Calls(Narrowing):
 def _is_open(parameter: Parameter) -> bool:
     """Whether a parameter takes any keyword."""
     return parameter.name.startswith("*") or parameter.type.startswith("**")
+
+
+def _takes_nothing(symbol: Symbol) -> bool:
+    """Whether a method of Blender's classes is known to have no parameters, and is not one whose are unknown."""
+    return symbol.owner.startswith(T) and symbol.signature == f"{symbol.name}()"

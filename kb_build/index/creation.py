@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 TYPES = "bpy.types."
 _MAKERS = ("new", "create", "add")
 _ADDS = ("_add", "add")
+_NODE = f"{TYPES}Node"
 # Names by which scripts hold what is reached from the context.
 _HELD = (
     ("bpy.context.object", "obj"),
@@ -117,6 +118,8 @@ class _Calls:
         by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"} or are_classes)
         block = next((name for name in _BLOCKS if head.startswith(f"{name}.")), "")
         for cls in self._descendants(base.path):
+            if base.path == _NODE and not cls.trees:
+                continue  # RNA has the class, and every tree refuses it
             if choice := cls.name if by_name else _choice(cls, base, items):
                 given = self._arguments(maker, cls, choice, block=block)
                 yield cls.path, Creation(f"{head}({given})", maker.path, choice)

@@ -1,4 +1,4 @@
-"""A node or a socket type that does not exist, given by its name.
+"""A node or a socket type that does not exist, given by its name, or a node that its tree does not take.
 
 Looked at where a literal is given to ``nodes.new`` or to ``interface.new_socket``. A name that only an add-on's node
 could have is left alone: reported is what another Blender had, and what begins as Blender's own nodes do.
@@ -6,6 +6,9 @@ could have is left alone: reported is what another Blender had, and what begins 
 ```python
 nodes.new("ShaderNodeTexMusgrave")  # reported since 4.1: ShaderNodeTexNoise
 nodes.new("ShaderNodeTexNoise")
+tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
+tree.nodes.new("ShaderNodeBsdfPrincipled")  # reported: geometry node trees take none
+tree.nodes.new("GeometryNode")  # reported: the class that the others derive from
 ```
 """
 
@@ -16,7 +19,10 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
-from kb_check.calls import calls
+from kb_build.flow.types import Collection, Instance
+from kb_build.records import last_name
+from kb_build.symbol_lines import NODE_FAMILIES, alike_nodes
+from kb_check.calls import CallSite, calls
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 
@@ -26,9 +32,8 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _TAKERS = {f"{T}Nodes.new": "type", f"{T}NodeTreeInterface.new_socket": "socket_type"}
-_BLENDERS_OWN = re.compile(
-    r"(ShaderNode|GeometryNode|CompositorNode|FunctionNode|TextureNode|NodeSocket)[A-Z]\w+"
-)
+_BLENDERS_OWN = re.compile(rf"({'|'.join(NODE_FAMILIES)}|NodeSocket)[A-Z]\w+")
+_NODE, _TREE = f"{T}Node", f"{T}NodeTree"
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -42,7 +47,10 @@ def _check(script: Script) -> Iterator[Finding]:
             ):
                 continue
             name = node.value
-            if script.api.is_class(f"{T}{name}") or name in script.own_identifiers:
+            if name in script.own_identifiers:
+                continue
+            if script.api.is_class(f"{T}{name}"):
+                yield from _refused(script, call, node, name)
                 continue
             if script.package.has(("bpy.types",), name):
                 continue
@@ -54,4 +62,35 @@ def _check(script: Script) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-RULE = Rule("unknown-node", "error", "A node or socket type that does not exist", _check)
+def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Iterator[Finding]:
+    """A class of nodes that no tree takes, or not the one that it is given to."""
+    symbol = script.api.symbols.symbol(f"{T}{name}")
+    if symbol is None or not script.api.descends(symbol.path, _NODE):
+        return
+    tree = _tree(script, call)
+    if not symbol.trees:
+        said = f"`{symbol.path}` is a class of nodes that no tree takes: `nodes.new` refuses it"
+    elif tree and tree not in symbol.trees:
+        said = f"`{symbol.path}` is a node of {' and '.join(symbol.trees)}: a `{tree}` refuses it"
+    else:
+        return
+    others = _others(script, name, tree) if tree else ()
+    instead = f" Use {' or '.join(f'`{other}`' for other in others)}." if others else ""
+    yield Finding(RULE.id, "error", script.span(node), f"{said}.{instead}", symbol.path, others)
+
+
+def _tree(script: Script, call: CallSite) -> str:
+    """The type of the tree whose nodes are added to; empty where that is not sure."""
+    nodes = script.type_of(call.node.func.value) if isinstance(call.node.func, ast.Attribute) else None
+    tree = nodes.owner if isinstance(nodes, Collection) else None
+    is_known = isinstance(tree, Instance) and tree.sure and tree.cls != _TREE
+    return last_name(tree.cls) if is_known and script.api.descends(tree.cls, _TREE) else ""
+
+
+def _others(script: Script, name: str, tree: str) -> tuple[str, ...]:
+    """The nodes of a tree that are called as another tree's: ``ShaderNodeMath`` for ``CompositorNodeMath``."""
+    symbols = map(script.api.symbols.symbol, alike_nodes(name))
+    return tuple(symbol.path for symbol in symbols if symbol and tree in symbol.trees)
+
+
+RULE = Rule("unknown-node", "error", "A node or socket type that does not exist, or not in that tree", _check)

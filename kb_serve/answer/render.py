@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.records import EVALUATED, NOT_TAKEN
 from kb_build.symbol_lines import (
+    alike_nodes,
     default_text,
     empty_when_new,
     fillers,
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
 
     from kb_build.records import EnumItem, Parameter, Section, Symbol
 
+_NODE = f"{TYPES}Node"
 _PAIRS = "pair_with_output"  # the method of a zone's first node, which has its sockets from the last one
 _NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
 _SHORT_PAGE = 80  # letters
@@ -398,10 +400,18 @@ class MarkdownRenderer:
             yield f"assign `{target}`"
         if symbol.trees:
             yield "node of: " + ", ".join(symbol.trees)
+        elif symbol.kind == "class" and self._is_node(symbol.path):
+            alike = (self.reader.symbol(path) for path in alike_nodes(symbol.name))
+            taken = _names(node.name for node in alike if node and node.trees)
+            yield "no node tree takes it: `nodes.new` refuses it" + (f"; it takes {taken}" if taken else "")
         if version := self.reader.since(symbol.path):
             yield f"since Blender {version}"
         if page := self.manual_page(symbol.path):
             yield f"manual: {page}"
+
+    def _is_node(self, path: str) -> bool:
+        """Whether a class is one of nodes, below the class of all of them."""
+        return path != _NODE and any(base.path == _NODE for base in self.reader.lineage(path))
 
     def _empty_before(self, cls: Symbol) -> str:
         """Where a pointer that leads to instances of a class is None on new things: that, and what fills it."""

@@ -169,6 +169,13 @@ def test_a_node_shows_its_sockets_and_its_trees(kb: KnowledgeBase) -> None:
     assert "node of: ShaderNodeTree" in text
 
 
+def test_a_node_that_no_tree_takes_is_not_said_to_be_made(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.CompositorNodeGamma").text
+    assert "no node tree takes it: `nodes.new` refuses it; it takes `ShaderNodeGamma`" in text
+    assert "made by" not in text
+    assert "reached as" not in text
+
+
 def test_a_module_lists_its_contents(kb: KnowledgeBase) -> None:
     text = kb.query("bpy.ops.rigidbody", max_tokens=ALL).text
     assert "**Contents**" in text

@@ -1,0 +1,64 @@
+"""Every class of nodes in every kind of tree: reported are those that the tree refuses, and no others."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from conftest import Check
+
+_TREES = ("ShaderNodeTree", "GeometryNodeTree", "CompositorNodeTree", "TextureNodeTree")
+_CLASSES = """
+import json
+import bpy
+kinds = [getattr(bpy.types, name) for name in dir(bpy.types)]
+nodes = [kind.__name__ for kind in kinds if isinstance(kind, type) and issubclass(kind, bpy.types.Node)]
+print(json.dumps(nodes))
+"""
+
+
+def test_nodes_that_a_tree_refuses_are_reported_and_no_others(check: Check, tmp_path: Path) -> None:
+    listed = subprocess.run([sys.executable, "-c", _CLASSES], capture_output=True, check=True, text=True)
+    names = json.loads(listed.stdout.splitlines()[-1])
+    lines = [
+        "import bpy",
+        *(f"{kind.lower()} = bpy.data.node_groups.new('tree', '{kind}')" for kind in _TREES),
+    ]
+    lines += [f"{kind.lower()}.nodes.new('{name}')" for kind in _TREES for name in names]
+    answers = run_statements(tmp_path, lines)
+    refused = {place for place, (error, *_) in enumerate(answers, 1) if error}
+    assert len(refused) > len(names)
+    assert {finding.span.line for finding in check("unknown-node", "\n".join(lines))} == refused
+
+
+def test_the_node_that_the_tree_has_instead_is_named(check: Check) -> None:
+    code = "import bpy\ntree = bpy.data.node_groups.new('tree', 'CompositorNodeTree')\n"
+    (found,) = check("unknown-node", code + "tree.nodes.new('CompositorNodeGamma')\n")
+    assert found.instead == ("bpy.types.ShaderNodeGamma",)
+
+
+def test_a_tree_of_another_kind_is_left_alone(check: Check) -> None:
+    code = "import bpy\ndef fill(tree):\n    tree.nodes.new('ShaderNodeMath')\n    tree.nodes.new('GeometryNodeBake')\n"
+    assert not check("unknown-node", code)
+
+
+def test_keywords_of_what_takes_nothing_are_reported(check: Check, tmp_path: Path) -> None:
+    lines = [
+        "import bpy",
+        "ob = bpy.data.objects.new('object', None)",
+        "ob.asset_mark(catalog='x')",
+        "ob.asset_mark()",
+        "ob.update_tag(refresh={'OBJECT'})",
+        "mesh = bpy.data.meshes.new('mesh')",
+        "mesh.calc_loop_triangles(split=True)",
+        "mesh.update(calc_edges=True)",
+    ]
+    refused = {place for place, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error}
+    assert {finding.span.line for finding in check("unknown-keyword", "\n".join(lines))} == refused == {3, 7}
