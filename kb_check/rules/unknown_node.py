@@ -83,8 +83,9 @@ def _tree(script: Script, call: CallSite) -> str:
     """The type of the tree whose nodes are added to; empty where that is not sure."""
     nodes = script.type_of(call.node.func.value) if isinstance(call.node.func, ast.Attribute) else None
     tree = nodes.owner if isinstance(nodes, Collection) else None
-    is_known = isinstance(tree, Instance) and tree.sure and tree.cls != _TREE
-    return last_name(tree.cls) if is_known and script.api.descends(tree.cls, _TREE) else ""
+    if not isinstance(tree, Instance) or not tree.sure or tree.cls == _TREE:
+        return ""
+    return last_name(tree.cls) if script.api.descends(tree.cls, _TREE) else ""
 
 
 def _others(script: Script, name: str, tree: str) -> tuple[str, ...]:
