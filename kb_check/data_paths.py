@@ -140,9 +140,3 @@ def item(symbol: Symbol, rest: str) -> int | None:
     letters = _LETTERS.get(symbol.subtype, _LETTERS_OF_VECTORS)
     index = letters.find(found[1]) if found[1] else int(found[2])
     return index if 0 <= index < (size(symbol) or 0) else None
-
-
-def first_name(path: str) -> str:
-    """The name that a path begins with; empty if it begins with a key."""
-    found = _PART.match(path)
-    return (found["name"] or "") if found else ""

@@ -13,8 +13,8 @@ obj.driver_add('modifiers["Array"].number')  # reported: no modifier has it
 obj.keyframe_insert("modifiers['Array'].count")  # reported: double quotes
 ```
 
-``driver_remove`` takes paths that lead nowhere, and refuses items too. Not reported: paths that a script puts together,
-and what stands in a ``try``.
+Not reported: paths that a script puts together, what stands in a ``try``, and ``driver_remove``, which takes paths that
+lead nowhere.
 """
 
 from __future__ import annotations
@@ -39,10 +39,8 @@ if TYPE_CHECKING:
     from kb_check.data_paths import Followed
     from kb_check.script import Script
 
-_REMOVING = f"{T}bpy_struct.driver_remove"
-_DRIVING = f"{T}bpy_struct.driver_add"
-_CALLS = frozenset({f"{T}bpy_struct.keyframe_insert", f"{T}bpy_struct.keyframe_delete", _DRIVING, _REMOVING})
-_BY_PLACE = frozenset({_DRIVING, _REMOVING})  # these take no keywords
+_DRIVING = f"{T}bpy_struct.driver_add"  # it takes no keywords
+_CALLS = frozenset({f"{T}bpy_struct.keyframe_insert", f"{T}bpy_struct.keyframe_delete", _DRIVING})
 _ALL = -1  # the index that stands for every item
 
 
@@ -59,11 +57,11 @@ def _check(script: Script) -> Iterator[Finding]:
         if path not in _CALLS or call.has_unpacking or not isinstance(call.node.func, ast.Attribute):
             continue
         given = {parameter.name: node for parameter, node in call.arguments()}
-        node, index = given.get("path" if path in _BY_PLACE else "data_path"), given.get("index")
+        node, index = given.get("path" if path == _DRIVING else "data_path"), given.get("index")
         if node is None or is_tried(script, call.node):
             continue
         fault = _of_text(script, call, node, index)
-        if fault is None and index is not None and path != _REMOVING:
+        if fault is None and index is not None:
             fault, node = _of_index(script, call, node, index), index
         if fault is not None:
             yield Finding(RULE.id, "error", script.span(node), *fault)
@@ -71,19 +69,13 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _of_text(script: Script, call: CallSite, node: ast.expr, index: ast.expr | None) -> _Fault | None:
     """What is wrong with a path, whatever the index."""
-    removes = call.callee.symbol.path == _REMOVING
-    text = written(script, node)
     if isinstance(node, (ast.Tuple, ast.List)):
         return _Fault(
             f"`{call.callee.symbol.name}` takes one path: call it for each.", call.callee.symbol.path
         )
     followed = _followed(script, call, node)
-    if followed is None or not isinstance(text, ast.Constant):
+    if followed is None:
         return None
-    if removes:
-        # It takes paths that lead nowhere.
-        is_plain = str(text.value).removesuffix(followed.rest).isidentifier()
-        return _of_item(script, call, followed, node, index) if is_plain else None
     return (
         _elsewhere(script, call, followed, node)
         or _of_item(script, call, followed, node, index)
@@ -131,8 +123,7 @@ def _of_item(
     places = {item(symbol, followed.rest) for symbol in followed.properties}
     place = places.pop() if len(places) == 1 else None
     if place is None:
-        removes = call.callee.symbol.path == _REMOVING
-        return None if removes else _Fault(f"`{first.path}` has no `{followed.rest}`.", first.path)
+        return _Fault(f"`{first.path}` has no `{followed.rest}`.", first.path)
     how = f"{call.callee.symbol.name}({whole!r}, {_index_text(call, place)})"
     return _Fault(
         f"`{path}` is an item of an array, which a path here does not name: give its index, `{how}`.",
@@ -200,7 +191,7 @@ def _indexed(script: Script, call: CallSite, node: ast.expr, whole: str, place: 
 
 
 def _index_text(call: CallSite, index: int) -> str:
-    return f"{index}" if call.callee.symbol.path in _BY_PLACE else f"index={index}"
+    return f"{index}" if call.callee.symbol.path == _DRIVING else f"index={index}"
 
 
 def _moved(script: Script, call: CallSite, node: ast.expr, before: str, behind: str) -> Fix | None:
