@@ -13,8 +13,8 @@ obj.driver_add('modifiers["Array"].number')  # reported: no modifier has it
 obj.keyframe_insert("modifiers['Array'].count")  # reported: double quotes
 ```
 
-Not reported: paths that a script puts together, what stands in a ``try``, and ``driver_remove``, which takes paths that
-lead nowhere.
+Not reported: paths that a script puts together, what stands in a ``try``, names that the script asks for
+(``hasattr(modifier, "number")``), and ``driver_remove``, which takes paths that lead nowhere.
 """
 
 from __future__ import annotations
@@ -41,6 +41,7 @@ if TYPE_CHECKING:
 
 _DRIVING = f"{T}bpy_struct.driver_add"  # it takes no keywords
 _CALLS = frozenset({f"{T}bpy_struct.keyframe_insert", f"{T}bpy_struct.keyframe_delete", _DRIVING})
+_UNBRACKETED = (ast.Name, ast.Attribute, ast.Subscript, ast.Call)  # a dot may stand behind these as they are
 _ALL = -1  # the index that stands for every item
 
 
@@ -106,10 +107,16 @@ def _elsewhere(script: Script, call: CallSite, followed: Followed, node: ast.exp
             "Keys in a path stand in double quotes: Blender finds nothing by others.", symbol.path, (),
             _requoted(script, node),
         )  # fmt: skip
-    if followed.lacking and not path.isidentifier():  # of a name alone unknown-attribute tells
+    # Of a name alone unknown-attribute tells.
+    if followed.lacking and not path.isidentifier() and not _is_asked_for(script, followed.name):
         lacking = script.names.member(followed.lacking[0], followed.name)
         return _Fault(lacking.message, lacking.symbol, lacking.instead)
     return None
+
+
+def _is_asked_for(script: Script, name: str) -> bool:
+    """Whether a name stands in the script as a text of its own, as in ``hasattr(ob, "name")``."""
+    return any(isinstance(node, ast.Constant) and node.value == name for node in script.nodes)
 
 
 def _of_item(
@@ -198,7 +205,7 @@ def _moved(script: Script, call: CallSite, node: ast.expr, before: str, behind: 
     """``lamp.keyframe_insert("data.energy")`` → ``lamp.data.keyframe_insert("energy")``."""
     quote = _quote(script, node)
     function = call.node.func
-    if not quote or not isinstance(function, ast.Attribute):
+    if not quote or not isinstance(function, ast.Attribute) or not isinstance(function.value, _UNBRACKETED):
         return None
     owner = script.span(function.value)
     end = Span(owner.end_line, owner.end_column, owner.end_line, owner.end_column)
