@@ -197,7 +197,8 @@ ob.keyframe_insert("show_axis")
 
 
 def test_what_is_refused_is_reported_and_nothing_else(check: Check, tmp_path: Path) -> None:
-    answers = run_statements(tmp_path, _CODE.splitlines())
+    lines: list[str] = [*_CODE.splitlines()]
+    answers = run_statements(tmp_path, lines)
     refused = {place for place, (error, _, _) in enumerate(answers, start=1) if error}
     assert {finding.span.line for finding in check("refused-path", _CODE)} == refused
 
