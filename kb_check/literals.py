@@ -58,13 +58,13 @@ def _once_bound(script: Script) -> dict[str, ast.expr]:
     times: Counter[str] = Counter()
     values: dict[str, ast.expr] = {}
     for node in script.nodes:
-        times.update(_bound(node))
+        times.update(bound_names(node))
         if isinstance(node, ast.Assign) and isinstance(node.value, _LITERALS):
             values |= {target.id: node.value for target in node.targets if isinstance(target, ast.Name)}
     return {name: value for name, value in values.items() if times[name] == 1}
 
 
-def _bound(node: ast.AST) -> list[str]:
+def bound_names(node: ast.AST) -> list[str]:
     """The names that a node binds, or makes another scope's."""
     match node:
         case ast.Name(ctx=ast.Store() | ast.Del()):
