@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 import ast
-from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject
-from kb_check.literals import bound_names
+from kb_check.literals import bound_names, times_bound
 from kb_check.registered_types import TYPES
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from kb_build.records import Symbol
     from kb_check.registered_types import RegisteredType
     from kb_check.script import Script
 
 # Name → the one statement of a body that gives it; None where several do, or one that may not be run.
 Body = dict[str, ast.stmt | None]
+FunctionDefinition = ast.FunctionDef | ast.AsyncFunctionDef
 
 _DEEPEST = 20
 _REGISTERING = frozenset({"register_class", "register_classes_factory"})
@@ -57,6 +58,14 @@ class OwnClass:
         """Whether nothing gives an attribute or a function."""
         return self.is_closed and not any(name in body for body in self.bodies)
 
+    def callbacks(self, script: Script) -> Iterator[tuple[Symbol, FunctionDefinition]]:
+        """The functions that Blender calls, as it knows them and as they are surely defined."""
+        for name in self.type.callbacks if self.is_final else ():
+            function, member = self.given(name), script.api.member(self.path, name)
+            is_function = member is not None and member.symbol.kind == "function"
+            if is_function and isinstance(function, (ast.FunctionDef, ast.AsyncFunctionDef)):
+                yield member.symbol, function
+
     def attributes(self) -> Iterator[tuple[str, ast.expr]]:
         """The attributes that are surely given, each with its value."""
         names = {name: None for body in self.bodies for name in body}
@@ -69,7 +78,7 @@ class OwnClass:
     def label(self) -> str:
         """The type in words: ``an Operator``."""
         name = self.path.rpartition(".")[2]
-        return f"{'an' if name[0] in 'AEIOU' else 'a'} `{name}`"
+        return f"{'an' if name[0] in 'AEIO' else 'a'} `{name}`"
 
 
 @once_per_script
@@ -139,7 +148,10 @@ def members_of(node: ast.ClassDef) -> Body:
         match statement:
             case ast.Expr():
                 continue
-            case ast.Assign(targets=[ast.Name(id=name)]) | ast.AnnAssign(target=ast.Name(id=name), value=ast.expr()):
+            case (
+                ast.Assign(targets=[ast.Name(id=name)])
+                | ast.AnnAssign(target=ast.Name(id=name), value=ast.expr())
+            ):
                 one: ast.stmt | None = statement
             case ast.AnnAssign():
                 continue
@@ -155,7 +167,7 @@ def members_of(node: ast.ClassDef) -> Body:
 def _class_names(script: Script, nodes: list[ast.ClassDef]) -> dict[str, ast.ClassDef]:
     """Name → class, of those that are bound nowhere else in the script."""
     names = {node.name: node for node in nodes}
-    times = Counter(name for node in script.nodes for name in bound_names(node) if name in names)
+    times = times_bound(script)
     return {name: node for name, node in names.items() if times[name] == 1}
 
 
@@ -169,9 +181,9 @@ def _registered_names(script: Script) -> frozenset[str]:
     registers = False
     for node in script.nodes:
         match node:
-            case ast.Call(func=ast.Name(id=called) | ast.Attribute(attr=called), args=[ast.Name(id=name)]) if (
-                called == "register_class"
-            ):
+            case ast.Call(
+                func=ast.Name(id=called) | ast.Attribute(attr=called), args=[ast.Name(id=name)]
+            ) if called == "register_class":
                 found.add(name)
                 registers = True
             case ast.Attribute(attr=name, ctx=ast.Store()) if name in _DEMANDED:

@@ -48,8 +48,10 @@ TYPES = {
         ("bl_space_type",), ("poll", "asset_poll", "get_active_asset", "draw_context_menu")
     ),
     f"{T}FileHandler": RegisteredType(("bl_label", "bl_file_extensions"), ("poll_drop",)),
-    f"{T}Gizmo": RegisteredType(("draw",), _GIZMO),
-    f"{T}GizmoGroup": RegisteredType(("bl_label", "bl_space_type", "bl_region_type", "setup"), _GIZMO_GROUP),
+    f"{T}Gizmo": RegisteredType(("draw",), _GIZMO, makes_properties=True),
+    f"{T}GizmoGroup": RegisteredType(
+        ("bl_label", "bl_space_type", "bl_region_type", "setup"), _GIZMO_GROUP, makes_properties=True
+    ),
     f"{T}Header": RegisteredType(("bl_space_type", "draw"), ("draw",)),
     f"{T}KeyingSetInfo": RegisteredType(
         ("bl_label", "poll", "iterator", "generate"), ("poll", "iterator", "generate")

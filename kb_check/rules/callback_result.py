@@ -14,7 +14,8 @@ class Grow(bpy.types.Operator):
 
 A `poll` that never returns a value is a warning: it says no each time.
 
-Not reported: a function that only may end without a return, and results of the script's own functions.
+Not reported: a function that only may end without a return, results of the script's own functions, and functions that
+the script calls itself without using what they return.
 """
 
 from __future__ import annotations
@@ -25,8 +26,9 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_check.calls import callee_of
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.made_here import callee_path
-from kb_check.own_classes import own_classes
+from kb_check.own_classes import FunctionDefinition, own_classes
 from kb_check.rule import Rule
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -35,9 +37,17 @@ if TYPE_CHECKING:
     from kb_check.own_classes import OwnClass
     from kb_check.script import Script
 
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
 _Scope = ast.FunctionDef | ast.AsyncFunctionDef | ast.ClassDef | ast.Lambda
-_SIMPLE = (ast.Expr, ast.Assign, ast.AugAssign, ast.AnnAssign, ast.Delete, ast.Pass, ast.Import, ast.ImportFrom)
+_SIMPLE = (
+    ast.Expr,
+    ast.Assign,
+    ast.AugAssign,
+    ast.AnnAssign,
+    ast.Delete,
+    ast.Pass,
+    ast.Import,
+    ast.ImportFrom,
+)
 _NO_SETS: dict[type[ast.expr], str] = {
     ast.JoinedStr: "a str", ast.Dict: "a dict", ast.DictComp: "a dict", ast.List: "a list", ast.ListComp: "a list",
     ast.Tuple: "a tuple", ast.Compare: "a truth value", ast.Lambda: "a function",
@@ -55,23 +65,33 @@ class _Ends(NamedTuple):
 def _check(script: Script) -> Iterator[Finding]:
     seen: set[ast.stmt] = set()
     for own in own_classes(script):
-        for name in own.type.callbacks if own.is_final else ():
-            function, member = own.given(name), script.api.member(own.path, name)
-            returned = member.symbol.returns[:1] if member else ()
-            if not returned or not isinstance(function, _Function) or function in seen:
+        for symbol, function in own.callbacks(script):
+            if function in seen or not symbol.returns:
                 continue
             seen.add(function)
-            symbol = member.symbol if member else None
-            if symbol is not None and returned[0].type == "enum" and returned[0].enum_items:
-                yield from _judged(script, own, function, symbol)
-            elif name == "poll" and _returns_nothing(_ends(function)):
+            if symbol.returns[0].enum_items:
+                if symbol.name not in _helpers(script):
+                    yield from _judged(script, own, function, symbol)
+            elif symbol.name == "poll" and _returns_nothing(_ends(function)):
                 yield Finding(
                     RULE.id, "warning", script.name_span(function),
                     f"`poll` of {own.label} returns nothing, which Blender takes for no each time.", f"{own.path}.poll",
                 )  # fmt: skip
 
 
-def _judged(script: Script, own: OwnClass, function: _Function, symbol: Symbol) -> Iterator[Finding]:
+@once_per_script
+def _helpers(script: Script) -> frozenset[str]:
+    """The methods that the script calls itself and whose results it drops: Blender need not call them."""
+    return frozenset(
+        node.value.func.attr
+        for node in script.nodes
+        if isinstance(node, ast.Expr)
+        and isinstance(node.value, ast.Call)
+        and isinstance(node.value.func, ast.Attribute)
+    )
+
+
+def _judged(script: Script, own: OwnClass, function: FunctionDefinition, symbol: Symbol) -> Iterator[Finding]:
     values = [item.identifier for item in symbol.returns[0].enum_items]
     example = "{'FINISHED'}" if "FINISHED" in values else f"{{{values[0]!r}}}"
     refusal = f"`{function.name}` of {own.label} must return a set such as {example}"
@@ -98,7 +118,7 @@ def _judged(script: Script, own: OwnClass, function: _Function, symbol: Symbol) 
         )  # fmt: skip
 
 
-def _ends(function: _Function) -> _Ends:
+def _ends(function: FunctionDefinition) -> _Ends:
     returns: list[ast.Return] = []
     yields = raises = False
     queue: list[ast.AST] = list(function.body)
@@ -151,7 +171,9 @@ def _no_set(script: Script, node: ast.expr | None) -> str:
         if symbol is None or symbol.kind != "function" or not callee_of(symbol).is_rna:
             return ""
         kind = symbol.returns[0].type if symbol.returns else "None"
-        return f"what `{path}` returns, {kind}" if kind in {"None", "boolean", "int", "float", "string"} else ""
+        return (
+            f"what `{path}` returns, {kind}" if kind in {"None", "boolean", "int", "float", "string"} else ""
+        )
     return _NO_SETS.get(type(node), "")
 
 

@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.own_classes import own_classes
+from kb_check.own_classes import FunctionDefinition, own_classes
 from kb_check.registered_types import FEWEST_ARGUMENTS
 from kb_check.rule import Rule
 
@@ -36,22 +36,23 @@ if TYPE_CHECKING:
     from kb_check.own_classes import OwnClass
     from kb_check.script import Script
 
-_Function = ast.FunctionDef | ast.AsyncFunctionDef
 _PASSES_TO_INIT = (4, 4)
 
 
 def _check(script: Script) -> Iterator[Finding]:
     seen: set[ast.stmt] = set()
     for own in own_classes(script):
-        for name in own.type.callbacks if own.is_final else ():
-            function, member = own.given(name), script.api.member(own.path, name)
-            if member is None or not isinstance(function, _Function) or function in seen:
-                continue
-            seen.add(function)
-            if finding := _judged(script, own, function, member.symbol):
+        for symbol, function in own.callbacks(script):
+            if function not in seen and (finding := _judged(script, own, function, symbol)):
                 yield finding
+            seen.add(function)
         init = own.given("__init__")
-        if isinstance(init, _Function) and init not in seen and own.path == f"{T}Operator" and own.is_final:
+        if (
+            isinstance(init, FunctionDefinition)
+            and init not in seen
+            and own.path == f"{T}Operator"
+            and own.is_final
+        ):
             seen.add(init)
             if script.version >= _PASSES_TO_INIT and _takes_nothing(init):
                 yield _finding(
@@ -61,7 +62,7 @@ def _check(script: Script) -> Iterator[Finding]:
                 )  # fmt: skip
 
 
-def _judged(script: Script, own: OwnClass, function: _Function, symbol: Symbol) -> Finding | None:
+def _judged(script: Script, own: OwnClass, function: FunctionDefinition, symbol: Symbol) -> Finding | None:
     decorators = [node.id if isinstance(node, ast.Name) else "" for node in function.decorator_list]
     if any(name not in {"classmethod", "staticmethod"} for name in decorators):
         return None
@@ -73,7 +74,9 @@ def _judged(script: Script, own: OwnClass, function: _Function, symbol: Symbol) 
         fix = None if decorators or len(written) != len(names) else _class_method(script, function)
         return _finding(script, own, function, f"must be a class method that takes {takes}", fix)
     if not of_class and decorators == ["classmethod"]:
-        return _finding(script, own, function, f"is called on an instance: it takes {takes}, and no @classmethod")
+        return _finding(
+            script, own, function, f"is called on an instance: it takes {takes}, and no @classmethod"
+        )
     fewest = FEWEST_ARGUMENTS.get(symbol.path, len(names))
     if not fewest <= len(written) <= len(names):
         fix = _completed(script, function, names)
@@ -83,7 +86,7 @@ def _judged(script: Script, own: OwnClass, function: _Function, symbol: Symbol) 
 
 
 def _finding(
-    script: Script, own: OwnClass, function: _Function, what: str, fix: Fix | None = None
+    script: Script, own: OwnClass, function: FunctionDefinition, what: str, fix: Fix | None = None
 ) -> Finding:
     refused = "" if function.name == "__init__" else ": Blender refuses to register the class"
     return Finding(
@@ -92,18 +95,18 @@ def _finding(
     )  # fmt: skip
 
 
-def _takes_nothing(function: _Function) -> bool:
+def _takes_nothing(function: FunctionDefinition) -> bool:
     arguments = function.args
     return not arguments.vararg and len(arguments.posonlyargs) + len(arguments.args) < 2
 
 
-def _class_method(script: Script, function: _Function) -> Fix:
+def _class_method(script: Script, function: FunctionDefinition) -> Fix:
     start = script.span(function)
     here = Span(start.line, start.column, start.line, start.column)
     return Fix("Write @classmethod", (Edit(here, f"@classmethod\n{' ' * start.column}"),), sure=True)
 
 
-def _completed(script: Script, function: _Function, names: tuple[str, ...]) -> Fix | None:
+def _completed(script: Script, function: FunctionDefinition, names: tuple[str, ...]) -> Fix | None:
     """Adds the arguments that lack behind those that are there, if these are plain and called as the others."""
     arguments = function.args
     plain = [argument.arg for argument in arguments.args]
