@@ -62,8 +62,7 @@ class OwnClass:
         """The functions that Blender calls, as it knows them and as they are surely defined."""
         for name in self.type.callbacks if self.is_final else ():
             function, member = self.given(name), script.api.member(self.path, name)
-            is_function = member is not None and member.symbol.kind == "function"
-            if is_function and isinstance(function, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            if member and member.symbol.kind == "function" and isinstance(function, FunctionDefinition):
                 yield member.symbol, function
 
     def attributes(self) -> Iterator[tuple[str, ast.expr]]:
@@ -172,28 +171,35 @@ def _class_names(script: Script, nodes: list[ast.ClassDef]) -> dict[str, ast.Cla
 
 
 def _registered_names(script: Script) -> frozenset[str]:
-    """The names of the classes that the script registers, one by one or out of a list.
+    """The names of the classes that the script registers, one by one or out of a list that it goes through.
 
     What attributes a script sets afterwards, or by names that it computes, is out of sight: then it registers none.
     """
-    found: set[str] = set()
-    listed: set[str] = set()
-    registers = False
+    lists: dict[str, ast.expr] = {}
+    given: list[ast.expr] = []
+    loops: list[ast.For] = []
     for node in script.nodes:
         match node:
-            case ast.Call(
-                func=ast.Name(id=called) | ast.Attribute(attr=called), args=[ast.Name(id=name)]
-            ) if called == "register_class":
-                found.add(name)
-                registers = True
+            case ast.Call(func=ast.Name(id=called) | ast.Attribute(attr=called), args=[one]) if (
+                called in _REGISTERING
+            ):
+                given.append(one)
+            case ast.For():
+                loops.append(node)
             case ast.Attribute(attr=name, ctx=ast.Store()) if name in _DEMANDED:
                 return frozenset()
-            case ast.Assign(value=ast.Tuple(elts=parts) | ast.List(elts=parts)):
-                listed.update(part.id for part in parts if isinstance(part, ast.Name))
-            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.alias(name=name):
-                if name in _COMPUTING:
-                    return frozenset()
-                registers = registers or name in _REGISTERING
+            case ast.FunctionDef(name="__init_subclass__"):
+                return frozenset()
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple() | ast.List() as value):
+                lists[name] = value
+            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.alias(name=name) if name in _COMPUTING:
+                return frozenset()
             case _:
                 pass
-    return frozenset(found | listed) if registers else frozenset(found)
+    names = {one.id for one in given if isinstance(one, ast.Name)}
+    given += [loop.iter for loop in loops if isinstance(loop.target, ast.Name) and loop.target.id in names]
+    for one in given:
+        whole = lists.get(one.id) if isinstance(one, ast.Name) else one
+        if isinstance(whole, (ast.Tuple, ast.List)):
+            names.update(part.id for part in whole.elts if isinstance(part, ast.Name))
+    return frozenset(names)

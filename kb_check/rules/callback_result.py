@@ -53,6 +53,9 @@ _NO_SETS: dict[type[ast.expr], str] = {
     ast.Tuple: "a tuple", ast.Compare: "a truth value", ast.Lambda: "a function",
 }  # fmt: skip
 
+# Calls that may not come back.
+_MAY_END = frozenset({"exit", "_exit", "quit", "quit_blender", "abort", "fail"})
+
 
 class _Ends(NamedTuple):
     """How a function ends: by its returns, ``yields`` values, or may run past its last statement."""
@@ -111,6 +114,8 @@ def _judged(script: Script, own: OwnClass, function: FunctionDefinition, symbol:
                     RULE.id, "error", script.span(node or statement), f"{refusal}, not {what}.", symbol.path, (),
                     _as_set(script, node, values),
                 )  # fmt: skip
+    if not (own.is_registered or own.given("bl_idname")):
+        return  # it may be there to be derived from, and this function to be replaced
     if _runs_past(function.body) or (_returns_nothing(ends) and not ends.returns and not ends.raises):
         yield Finding(
             RULE.id, "error", script.name_span(function),
@@ -146,7 +151,13 @@ def _returns_nothing(ends: _Ends) -> bool:
 
 def _runs_past(body: list[ast.stmt]) -> bool:
     """Whether a function's body surely can be run to its end: its last statement is no return, and none before is."""
-    return isinstance(body[-1], _SIMPLE) and not any(
+    last = body[-1]
+    if isinstance(last, ast.Expr) and isinstance(last.value, ast.Call):
+        called = last.value.func
+        name = called.attr if isinstance(called, ast.Attribute) else getattr(called, "id", "")
+        if name in _MAY_END:
+            return False
+    return isinstance(last, _SIMPLE) and not any(
         isinstance(statement, (ast.Return, ast.Raise, ast.While, ast.Try, ast.Match)) for statement in body
     )
 

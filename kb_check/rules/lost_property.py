@@ -56,14 +56,14 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _declares(script: Script, node: ast.expr | None) -> bool:
-    is_declared = isinstance(node, ast.Call) and callee_path(script, node).startswith(_PROPS)
-    return is_declared and not callee_path(script, node).startswith(f"{_PROPS}Remove")
+    path = callee_path(script, node) if isinstance(node, ast.Call) else ""
+    return path.startswith(_PROPS) and path != f"{_PROPS}RemoveProperty"
 
 
 def _annotated(
     script: Script, own: OwnClass, name: ast.Name, annotation: ast.expr, value: ast.expr | None
 ) -> Iterator[Finding]:
-    if isinstance(value, ast.Call) and _declares(script, value):
+    if isinstance(value, ast.Call) and _declares(script, value) and not _declares(script, annotation):
         yield _assigned(script, own, name, value)
         return
     kind = script.type_of(annotation)

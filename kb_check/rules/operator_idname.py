@@ -42,6 +42,8 @@ def _check(script: Script) -> Iterator[Finding]:
         if not isinstance(node, ast.Constant) or not isinstance(node.value, str) or node in seen:
             continue
         seen.add(node)
+        if not node.value and not own.is_registered:
+            continue  # it may be there to be derived from
         if not _TAKEN.fullmatch(node.value) or len(node.value) > _LONGEST:
             yield _finding(script, node, node.value, own.path)
 
