@@ -53,7 +53,7 @@ _NO_SETS: dict[type[ast.expr], str] = {
     ast.Tuple: "a tuple", ast.Compare: "a truth value", ast.Lambda: "a function",
 }  # fmt: skip
 
-# Calls that may not come back.
+# Functions that may not come back, by name.
 _MAY_END = frozenset({"exit", "_exit", "quit", "quit_blender", "abort", "fail"})
 
 
@@ -132,12 +132,21 @@ def _ends(function: FunctionDefinition) -> _Ends:
         if isinstance(node, _Scope):
             continue
         yields = yields or isinstance(node, (ast.Yield, ast.YieldFrom))
-        # A call may end the program, and a loop may have no end.
-        raises = raises or isinstance(node, (ast.Raise, ast.While))
+        # A loop may have no end.
+        raises = raises or isinstance(node, (ast.Raise, ast.While)) or _may_end(node)
         if isinstance(node, ast.Return):
             returns.append(node)
         queue.extend(ast.iter_child_nodes(node))
     return _Ends(sorted(returns, key=lambda node: node.lineno), yields, raises)
+
+
+def _may_end(node: ast.AST) -> bool:
+    """Whether a node is a call that may not come back."""
+    match node:
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
+            return name in _MAY_END
+        case _:
+            return False
 
 
 def _returns_nothing(ends: _Ends) -> bool:
@@ -152,13 +161,13 @@ def _returns_nothing(ends: _Ends) -> bool:
 def _runs_past(body: list[ast.stmt]) -> bool:
     """Whether a function's body surely can be run to its end: its last statement is no return, and none before is."""
     last = body[-1]
-    if isinstance(last, ast.Expr) and isinstance(last.value, ast.Call):
-        called = last.value.func
-        name = called.attr if isinstance(called, ast.Attribute) else getattr(called, "id", "")
-        if name in _MAY_END:
-            return False
-    return isinstance(last, _SIMPLE) and not any(
-        isinstance(statement, (ast.Return, ast.Raise, ast.While, ast.Try, ast.Match)) for statement in body
+    return (
+        isinstance(last, _SIMPLE)
+        and not (isinstance(last, ast.Expr) and _may_end(last.value))
+        and not any(
+            isinstance(statement, (ast.Return, ast.Raise, ast.While, ast.Try, ast.Match))
+            for statement in body
+        )
     )
 
 

@@ -9,8 +9,8 @@ class Settings(bpy.types.PropertyGroup):
     size: bpy.props.FloatProperty  # reported: it is not called
 ```
 
-Panels, menus and headers have no properties of their own: what is annotated there is dropped as well. A name that
-begins with an underscore is refused.
+Panels, menus and headers have no properties of their own: what is annotated there is dropped as well, which is a
+warning, as the class works without it. A name that begins with an underscore is refused.
 
 Not reported: scripts that change `__annotations__` themselves.
 """
@@ -29,6 +29,7 @@ from kb_check.rule import Rule
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_check.findings import Severity
     from kb_check.own_classes import OwnClass
     from kb_check.script import Script
 
@@ -84,7 +85,7 @@ def _annotated(
             yield _finding(
                 script, own, name,
                 f"makes no property: {own.label} has none of its own. Declare it in a PropertyGroup, or on a class "
-                "such as `bpy.types.Scene`",
+                "such as `bpy.types.Scene`", severity="warning",
             )  # fmt: skip
         elif name.id.startswith("_"):
             yield _finding(script, own, name, "is refused: a property's name cannot begin with an underscore")
@@ -103,9 +104,16 @@ def _assigned(script: Script, own: OwnClass, name: ast.Name, call: ast.Call) -> 
     )  # fmt: skip
 
 
-def _finding(script: Script, own: OwnClass, name: ast.Name, what: str, fix: Fix | None = None) -> Finding:
+def _finding(
+    script: Script,
+    own: OwnClass,
+    name: ast.Name,
+    what: str,
+    fix: Fix | None = None,
+    severity: Severity = "error",
+) -> Finding:
     return Finding(
-        RULE.id, "error", script.span(name), f"`{name.id}` of `{own.node.name}` {what}.", own.path, (), fix
+        RULE.id, severity, script.span(name), f"`{name.id}` of `{own.node.name}` {what}.", own.path, (), fix
     )
 
 

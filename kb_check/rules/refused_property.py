@@ -42,7 +42,7 @@ _CALLED_WITH = {
     "search": ("self", "context", "edit_text"), "get_transform": ("self", "value", "is_set"),
     "set_transform": ("self", "new_value", "value", "is_set"), "items": ("self", "context"),
 }  # fmt: skip
-_NUMBERS = ("default", "min", "max", "soft_min", "soft_max", "step", "precision")
+_NUMBERS = ("default", "min", "max", "soft_min", "soft_max", "step", "precision", "maxlen")
 _INTS = frozenset({"precision", "maxlen"})
 _OF_INTS = frozenset({"IntProperty", "IntVectorProperty"})
 _LONGEST_VECTOR = 32

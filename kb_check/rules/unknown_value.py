@@ -1,8 +1,8 @@
 """A value that an enumeration does not have.
 
 Looked at where a literal is assigned or given to a call, or is an attribute of a class that Blender registers; a
-comparison is the rule ``never-true``'s. Enumerations whose values Blender puts together while it runs (images, installed
-engines) are left out.
+comparison is the rule ``never-true``'s. Enumerations whose values Blender puts together while it runs (images,
+installed engines) are left out.
 
 ```python
 scene.render.engine = "BLENDER_EEVEE_NEXT"  # reported in 5.0: BLENDER_EEVEE
