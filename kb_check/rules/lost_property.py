@@ -104,7 +104,7 @@ def _assigned(script: Script, own: OwnClass, name: ast.Name, call: ast.Call) -> 
     )  # fmt: skip
 
 
-def _finding(
+def _finding(  # noqa: PLR0913, PLR0917 - what it says, and how it is mended
     script: Script,
     own: OwnClass,
     name: ast.Name,

@@ -87,7 +87,7 @@ def test_what_is_refused_is_reported_and_nothing_else(check: Check, tmp_path: Pa
     refused = refused_parts(tmp_path, parts, "bpy.ops.test._x_()")
     # What only some paths have wrong is reported although the one that is taken here is right.
     sometimes = {
-        part for part in parts if "else None" in part or "}\n        self" in part and "if context" in part
+        part for part in parts if "else None" in part or ("}\n        self" in part and "if context" in part)
     }
     assert found_parts(check, "callback-result", parts) == refused | sometimes
     assert len(refused) > 10

@@ -122,7 +122,7 @@ class X(MixinX, Menu):
 
 class X(RenderEngine):
     bl_label = "label"
-    def render(self): pass
+    def update(self): pass
 
 class X(RenderEngine):
     bl_label = "label"
