@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_check.calls import calls
+from kb_check.own_classes import own_classes
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ _T = "bpy.types."
 _MISDOCUMENTED = frozenset({"bpy.utils.resource_path(minor)"})  # an int, which references call a str
 _FIXED = frozenset({2, 3, 4})  # other sizes of a parameter are the most, or the least, that it takes
 _ANY = "bpy.types.AnyType"
+# What the reference calls an enum and takes a set, as RNA says (``is_enum_flag``) of these parameters without default.
+_FLAGS = frozenset(f"{_T}{name}.report(type)" for name in ("Macro", "Operator", "RenderEngine"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -63,6 +66,18 @@ class Given:
 def given_values(script: Script) -> list[Given]:
     """Every value that is surely assigned to a property that takes one, or passed to a function or an operator."""
     return [*_assignments(script), *_arguments(script)]
+
+
+@once_per_script
+def class_values(script: Script) -> list[Given]:
+    """The values that classes give to attributes which Blender reads when it registers them."""
+    found: dict[ast.expr, Given] = {}
+    for own in own_classes(script):
+        for name, value in own.attributes() if own.is_final else ():
+            member = script.api.member(own.path, name) if name.startswith("bl_") else None
+            if member and member.symbol.kind == "property" and "readonly" not in member.symbol.flags:
+                found.setdefault(value, Given(value, (property_taker(member.symbol),)))
+    return list(found.values())
 
 
 def _assignments(script: Script) -> Iterator[Given]:
@@ -142,7 +157,8 @@ def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_
     target, sizes = "", tuple(int(size) for size in _SIZES.findall(f"[{rest}")) if rest else ()
     if any(size not in _FIXED for size in sizes):
         sizes = tuple(0 for _ in sizes)
-    if parameter.type == "set[enum]" or (kind == "enum" and isinstance(parameter.default, list)):
+    has_flags = path in _FLAGS or isinstance(parameter.default, list)
+    if parameter.type == "set[enum]" or (kind == "enum" and has_flags):
         kind, sizes = "set", ()
     elif kind == "enum" and not isinstance(parameter.default, str):
         kind = "enum or set"  # what is required has no default to tell

@@ -53,18 +53,31 @@ def items(script: Script, node: ast.expr) -> list[ast.expr] | None:
 
 
 @once_per_script
+def functions(script: Script) -> dict[str, ast.FunctionDef]:
+    """Name → the function of the script that is called so, where nothing else is."""
+    found = {node.name: node for node in script.nodes if isinstance(node, ast.FunctionDef)}
+    times = times_bound(script)
+    return {name: node for name, node in found.items() if times[name] == 1}
+
+
+@once_per_script
+def times_bound(script: Script) -> Counter[str]:
+    """How often each name is bound, wherever."""
+    return Counter(name for node in script.nodes for name in bound_names(node))
+
+
+@once_per_script
 def _once_bound(script: Script) -> dict[str, ast.expr]:
     """Name → the literal that its only assignment gives it. A list is none: it may grow."""
-    times: Counter[str] = Counter()
+    times = times_bound(script)
     values: dict[str, ast.expr] = {}
     for node in script.nodes:
-        times.update(_bound(node))
         if isinstance(node, ast.Assign) and isinstance(node.value, _LITERALS):
             values |= {target.id: node.value for target in node.targets if isinstance(target, ast.Name)}
     return {name: value for name, value in values.items() if times[name] == 1}
 
 
-def _bound(node: ast.AST) -> list[str]:
+def bound_names(node: ast.AST) -> list[str]:
     """The names that a node binds, or makes another scope's."""
     match node:
         case ast.Name(ctx=ast.Store() | ast.Del()):

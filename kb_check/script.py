@@ -122,7 +122,7 @@ class Script:
         return Span(line, self._characters(line, column), end_line, self._characters(end_line, end))
 
     def name_span(self, node: ast.AST) -> Span:
-        """Where the name stands that a node ends with (an attribute's), or begins with (a keyword's)."""
+        """Where the name stands that a node ends with (an attribute's), begins with (a keyword's), or defines."""
         whole = self.span(node)
         if isinstance(node, ast.Attribute):
             return Span(whole.end_line, whole.end_column - len(node.attr), whole.end_line, whole.end_column)
@@ -130,6 +130,9 @@ class Script:
             return Span(whole.line, whole.column, whole.line, whole.column + len(node.arg))
         if isinstance(node, ast.alias):
             return Span(whole.line, whole.column, whole.line, whole.column + len(node.name))
+        if isinstance(node, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            start = self.lines[whole.line - 1].find(node.name, whole.column + len("def"))
+            return Span(whole.line, start, whole.line, start + len(node.name)) if start >= 0 else whole
         return whole
 
     def text(self, span: Span) -> str:

@@ -407,9 +407,7 @@ class Calls(Narrowing):
             return _PLAIN_RESULTS[name]
         first = arguments[0] if arguments else UNKNOWN
         if name in _ITERATORS:
-            return (
-                Sequence(_ITERATORS[name], self.iterated(first)) if arguments else Sequence("list", UNKNOWN)
-            )
+            return Sequence(_ITERATORS[name], self.iterated(first) if arguments else UNKNOWN)
         match name:
             case "next":
                 return (

@@ -1,7 +1,8 @@
 """A value that an enumeration does not have.
 
-Looked at where a literal is assigned or given to a call; a comparison is the rule ``never-true``'s. Enumerations whose
-values Blender puts together while it runs (images, installed engines) are left out.
+Looked at where a literal is assigned or given to a call, or is an attribute of a class that Blender registers; a
+comparison is the rule ``never-true``'s. Enumerations whose values Blender puts together while it runs (images,
+installed engines) are left out.
 
 ```python
 scene.render.engine = "BLENDER_EEVEE_NEXT"  # reported in 5.0: BLENDER_EEVEE
@@ -14,13 +15,15 @@ import ast
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
+from kb_build.flow.types import Resolution
+from kb_check.given import class_values
+from kb_check.literals import written
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Resolution
     from kb_check.findings import Finding
     from kb_check.script import Script
 
@@ -33,6 +36,20 @@ def _check(script: Script) -> Iterator[Finding]:
         owner = max(row.missing, key=lambda path: _likeness(script, path, row.value))
         values = script.api.values_of(owner)
         yield lacking_finding(script, RULE.id, row, script.names.value(owner, row.value, values))
+    yield from _of_classes(script)
+
+
+def _of_classes(script: Script) -> Iterator[Finding]:
+    """The values of the attributes that Blender reads when it registers a class."""
+    for given in class_values(script):
+        taker = given.takers[0]
+        values = () if taker.symbol.enum_computed else script.api.values_of(taker.path)
+        whole = written(script, given.node)
+        for node in whole.elts if isinstance(whole, ast.Set) and taker.kind == "set" else [whole]:
+            value = node.value if isinstance(node, ast.Constant) else None
+            if values and isinstance(value, str) and value not in values:
+                row = Resolution(node, "value", missing=(taker.path,), value=value)
+                yield lacking_finding(script, RULE.id, row, script.names.value(taker.path, value, values))
 
 
 def _likeness(script: Script, owner: str, value: str) -> float:

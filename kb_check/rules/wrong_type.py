@@ -10,6 +10,14 @@ material.diffuse_color = (1, 0, 0)  # reported: 4 floats
 scene.camera = bpy.data.cameras.new("Camera")  # reported: an Object that has it
 ```
 
+So are the attributes of classes, which it reads when they are registered:
+
+```python
+class Grow(bpy.types.Operator):
+    bl_label = "Grow"
+    bl_options = "REGISTER"  # reported: {"REGISTER"}
+```
+
 Not reported: values whose type is not sure, and what may be None only at times.
 """
 
@@ -23,7 +31,7 @@ from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.types import Collection, Instance, Plain
 from kb_check.conversions import describe, misfit
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.given import given_values
+from kb_check.given import class_values, given_values
 from kb_check.literals import items
 from kb_check.rule import Rule
 
@@ -41,7 +49,7 @@ _LONGEST_INT = 2**31
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for given in given_values(script):
+    for given in (*given_values(script), *class_values(script)):
         found = [misfit(script, taker, given.node) for taker in given.takers]
         if not found or not all(found):
             continue

@@ -1,0 +1,205 @@
+"""The classes of a script that Blender registers: what each derives from, and what its body gives it."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import ClassObject
+from kb_check.literals import bound_names, times_bound
+from kb_check.registered_types import TYPES
+from kb_check.script import once_per_script
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from kb_build.records import Symbol
+    from kb_check.registered_types import RegisteredType
+    from kb_check.script import Script
+
+# Name → the one statement of a body that gives it; None where several do, or one that may not be run.
+Body = dict[str, ast.stmt | None]
+FunctionDefinition = ast.FunctionDef | ast.AsyncFunctionDef
+
+_DEEPEST = 20
+_REGISTERING = frozenset({"register_class", "register_classes_factory"})
+_COMPUTING = frozenset({"setattr", "exec", "vars", "locals", "__dict__"})
+_DEMANDED = frozenset(name for kind in TYPES.values() for name in kind.needs)
+# Bases in Python that give what their reference lists, and nothing more.
+_HELPERS = "bpy_extras."
+
+
+@dataclass(frozen=True, slots=True)
+class OwnClass:
+    """A class of the script that derives from a type which Blender registers.
+
+    ``path`` is that type. ``bodies`` are its own body and those that it inherits from, in the order in which Python
+    looks; ``is_closed`` says that there are no others. ``is_final``: the script derives no class from it, or registers
+    it all the same; ``is_registered``: the script surely does.
+    """
+
+    node: ast.ClassDef
+    path: str
+    type: RegisteredType
+    bodies: tuple[Body, ...]
+    is_closed: bool
+    is_final: bool
+    is_registered: bool
+
+    def given(self, name: str) -> ast.stmt | None:
+        """The statement that surely gives an attribute or a function; None for none, and where that is not known."""
+        for body in self.bodies if self.is_closed else self.bodies[:1]:
+            if name in body:
+                return body[name]
+        return None
+
+    def lacks(self, name: str) -> bool:
+        """Whether nothing gives an attribute or a function."""
+        return self.is_closed and not any(name in body for body in self.bodies)
+
+    def callbacks(self, script: Script) -> Iterator[tuple[Symbol, FunctionDefinition]]:
+        """The functions that Blender calls, as it knows them and as they are surely defined."""
+        for name in self.type.callbacks if self.is_final else ():
+            function, member = self.given(name), script.api.member(self.path, name)
+            if member and member.symbol.kind == "function" and isinstance(function, FunctionDefinition):
+                yield member.symbol, function
+
+    def attributes(self) -> Iterator[tuple[str, ast.expr]]:
+        """The attributes that are surely given, each with its value."""
+        names = {name: None for body in self.bodies for name in body}
+        for name in names:
+            statement = self.given(name)
+            if isinstance(statement, (ast.Assign, ast.AnnAssign)) and statement.value is not None:
+                yield name, statement.value
+
+    @property
+    def label(self) -> str:
+        """The type in words: ``an Operator``."""
+        name = self.path.rpartition(".")[2]
+        return f"{'an' if name[0] in 'AEIO' else 'a'} `{name}`"
+
+
+@once_per_script
+def own_classes(script: Script) -> list[OwnClass]:
+    """The classes that derive from a type which Blender registers, where nothing changes them out of sight."""
+    nodes = [node for node in script.nodes if isinstance(node, ast.ClassDef)]
+    if not nodes:
+        return []
+    names = _class_names(script, nodes)
+    parents = {base.id for node in nodes for base in node.bases if isinstance(base, ast.Name)}
+    registered = _registered_names(script)
+    found: list[OwnClass] = []
+    for node in nodes:
+        if node.decorator_list or node.keywords:
+            continue
+        family = _Family(script, names)
+        family.add(node)
+        is_registered = node.name in registered and names.get(node.name) is node
+        if family.path:
+            found.append(
+                OwnClass(
+                    node, family.path, TYPES[family.path], tuple(reversed(family.bodies)), family.is_closed,
+                    is_registered or node.name not in parents, is_registered,
+                )
+            )  # fmt: skip
+    return found
+
+
+class _Family:
+    """A class and what it derives from. ``bodies`` begin with the last one in which Python looks."""
+
+    def __init__(self, script: Script, names: Mapping[str, ast.ClassDef]) -> None:
+        self._script = script
+        self._names = names
+        self._seen: set[ast.ClassDef] = set()
+        self.path = ""
+        self.bodies: list[Body] = []
+        self.is_closed = True
+
+    def add(self, node: ast.ClassDef, depth: int = 0) -> None:
+        """Adds a class behind its bases. Of several types the first is the one that counts."""
+        self._seen.add(node)
+        for base in reversed(node.bases):
+            kind = self._script.type_of(base)
+            parent = self._names.get(base.id) if isinstance(base, ast.Name) else None
+            if isinstance(kind, ClassObject):
+                self._add_api_class(kind.cls)
+            elif parent is None or depth > _DEEPEST or parent.keywords or parent.decorator_list:
+                self.is_closed = self.is_closed and isinstance(base, ast.Name) and base.id == "object"
+            elif parent not in self._seen:
+                self.add(parent, depth + 1)
+        self.bodies.append(members_of(node))
+
+    def _add_api_class(self, cls: str) -> None:
+        api = self._script.api
+        if cls.startswith(_HELPERS):
+            self.bodies.append(dict.fromkeys(api.own(cls)))
+            return
+        self.path = next((path for path in api.lineage(cls) if path in TYPES), self.path)
+        self.is_closed = self.is_closed and cls in TYPES
+
+
+def members_of(node: ast.ClassDef) -> Body:
+    """What the body of a class gives it."""
+    found: Body = {}
+    for statement in node.body:
+        match statement:
+            case ast.Expr():
+                continue
+            case (
+                ast.Assign(targets=[ast.Name(id=name)])
+                | ast.AnnAssign(target=ast.Name(id=name), value=ast.expr())
+            ):
+                one: ast.stmt | None = statement
+            case ast.AnnAssign():
+                continue
+            case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
+                one = statement
+            case _:
+                found.update((name, None) for part in ast.walk(statement) for name in bound_names(part))
+                continue
+        found[name] = None if name in found else one
+    return found
+
+
+def _class_names(script: Script, nodes: list[ast.ClassDef]) -> dict[str, ast.ClassDef]:
+    """Name → class, of those that are bound nowhere else in the script."""
+    names = {node.name: node for node in nodes}
+    times = times_bound(script)
+    return {name: node for name, node in names.items() if times[name] == 1}
+
+
+def _registered_names(script: Script) -> frozenset[str]:
+    """The names of the classes that the script registers, one by one or out of a list that it goes through.
+
+    What attributes a script sets afterwards, or by names that it computes, is out of sight: then it registers none.
+    """
+    lists: dict[str, ast.expr] = {}
+    given: list[ast.expr] = []
+    loops: list[ast.For] = []
+    for node in script.nodes:
+        match node:
+            case ast.Call(func=ast.Name(id=called) | ast.Attribute(attr=called), args=[one]) if (
+                called in _REGISTERING
+            ):
+                given.append(one)
+            case ast.For():
+                loops.append(node)
+            case ast.Attribute(attr=name, ctx=ast.Store()) if name in _DEMANDED:
+                return frozenset()
+            case ast.FunctionDef(name="__init_subclass__"):
+                return frozenset()
+            case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple() | ast.List() as value):
+                lists[name] = value
+            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.alias(name=name) if name in _COMPUTING:
+                return frozenset()
+            case _:
+                pass
+    names = {one.id for one in given if isinstance(one, ast.Name)}
+    given += [loop.iter for loop in loops if isinstance(loop.target, ast.Name) and loop.target.id in names]
+    for one in given:
+        whole = lists.get(one.id) if isinstance(one, ast.Name) else one
+        if isinstance(whole, (ast.Tuple, ast.List)):
+            names.update(part.id for part in whole.elts if isinstance(part, ast.Name))
+    return frozenset(names)

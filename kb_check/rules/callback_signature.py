@@ -1,0 +1,122 @@
+"""A function of a class that Blender calls otherwise than it is defined.
+
+When a class is registered, Blender counts the arguments of the functions that it calls: one too few or too many, and
+the class is refused. `*args` does not count. What it calls before there is an instance must be a class method.
+
+```python
+class Grow(bpy.types.Operator):
+    bl_idname = "object.grow"
+    bl_label = "Grow"
+
+    def poll(self, context):  # reported: without @classmethod
+        return context.object is not None
+
+    def execute(self):  # reported: (self, context)
+        return {"FINISHED"}
+```
+
+Since 4.4 an operator's `__init__` gets arguments as well, which it hands on: `super().__init__(*args, **kwargs)`.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.facts import T
+from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.own_classes import FunctionDefinition, own_classes
+from kb_check.registered_types import FEWEST_ARGUMENTS
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Symbol
+    from kb_check.own_classes import OwnClass
+    from kb_check.script import Script
+
+_PASSES_TO_INIT = (4, 4)
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    seen: set[ast.stmt] = set()
+    for own in own_classes(script):
+        for symbol, function in own.callbacks(script):
+            if function not in seen and (finding := _judged(script, own, function, symbol)):
+                yield finding
+            seen.add(function)
+        init = own.given("__init__")
+        if (
+            isinstance(init, FunctionDefinition)
+            and init not in seen
+            and own.path == f"{T}Operator"
+            and own.is_final
+        ):
+            seen.add(init)
+            if script.version >= _PASSES_TO_INIT and _takes_nothing(init):
+                yield _finding(
+                    script, own, init,
+                    "gets arguments from Blender since 4.4, and this one takes none: no such operator can run. Write "
+                    "`def __init__(self, *args, **kwargs)`, and `super().__init__(*args, **kwargs)` in it",
+                )  # fmt: skip
+
+
+def _judged(script: Script, own: OwnClass, function: FunctionDefinition, symbol: Symbol) -> Finding | None:
+    decorators = [node.id if isinstance(node, ast.Name) else "" for node in function.decorator_list]
+    if any(name not in {"classmethod", "staticmethod"} for name in decorators):
+        return None
+    of_class = "static" in symbol.flags
+    names = ("cls" if of_class else "self", *(parameter.name for parameter in symbol.parameters))
+    written = [*function.args.posonlyargs, *function.args.args]
+    takes = f"`({', '.join(names)})`"
+    if of_class and decorators != ["classmethod"]:
+        fix = None if decorators or len(written) != len(names) else _class_method(script, function)
+        return _finding(script, own, function, f"must be a class method that takes {takes}", fix)
+    if not of_class and decorators == ["classmethod"]:
+        return _finding(
+            script, own, function, f"is called on an instance: it takes {takes}, and no @classmethod"
+        )
+    fewest = FEWEST_ARGUMENTS.get(symbol.path, len(names))
+    if not fewest <= len(written) <= len(names):
+        fix = _completed(script, function, names)
+        count = f"{len(written)} argument{'' if len(written) == 1 else 's'}"
+        return _finding(script, own, function, f"takes {takes}, and this one has {count}", fix)
+    return None
+
+
+def _finding(
+    script: Script, own: OwnClass, function: FunctionDefinition, what: str, fix: Fix | None = None
+) -> Finding:
+    refused = "" if function.name == "__init__" else ": Blender refuses to register the class"
+    return Finding(
+        RULE.id, "error", script.name_span(function),
+        f"`{function.name}` of {own.label} {what}{refused}.", f"{own.path}.{function.name}", (), fix,
+    )  # fmt: skip
+
+
+def _takes_nothing(function: FunctionDefinition) -> bool:
+    arguments = function.args
+    return not arguments.vararg and len(arguments.posonlyargs) + len(arguments.args) < 2
+
+
+def _class_method(script: Script, function: FunctionDefinition) -> Fix:
+    start = script.span(function)
+    here = Span(start.line, start.column, start.line, start.column)
+    return Fix("Write @classmethod", (Edit(here, f"@classmethod\n{' ' * start.column}"),), sure=True)
+
+
+def _completed(script: Script, function: FunctionDefinition, names: tuple[str, ...]) -> Fix | None:
+    """Adds the arguments that lack behind those that are there, if these are plain and called as the others."""
+    arguments = function.args
+    plain = [argument.arg for argument in arguments.args]
+    others = arguments.posonlyargs or arguments.vararg or arguments.kwonlyargs or arguments.kwarg
+    if others or arguments.defaults or not plain or plain[1:] != list(names[1 : len(plain)]):
+        return None
+    last = script.span(arguments.args[-1])
+    end = Span(last.end_line, last.end_column, last.end_line, last.end_column)
+    missing = ", ".join(names[len(plain) :])
+    return Fix(f"Add {missing}", (Edit(end, f", {missing}"),), sure=True) if missing else None
+
+
+RULE = Rule("callback-signature", "error", "A function that Blender calls with other arguments", _check)

@@ -1,0 +1,120 @@
+"""A property of a class that Blender drops.
+
+Blender makes properties of a class's annotations, when it registers the class. What is assigned instead stays an
+attribute that holds the declaration: there is no property to set, to draw or to pass to the operator.
+
+```python
+class Settings(bpy.types.PropertyGroup):
+    count = bpy.props.IntProperty()  # reported: count: bpy.props.IntProperty()
+    size: bpy.props.FloatProperty  # reported: it is not called
+```
+
+Panels, menus and headers have no properties of their own: what is annotated there is dropped as well, which is a
+warning, as the class works without it. A name that begins with an underscore is refused.
+
+Not reported: scripts that change `__annotations__` themselves.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import Function
+from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.made_here import callee_path
+from kb_check.own_classes import own_classes
+from kb_check.rule import Rule
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.findings import Severity
+    from kb_check.own_classes import OwnClass
+    from kb_check.script import Script
+
+_PROPS = "bpy.props."
+_ANNOTATIONS = "__annotations__"
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    classes = own_classes(script)
+    if not classes or any(
+        isinstance(node, ast.Attribute) and node.attr == _ANNOTATIONS for node in script.nodes
+    ):
+        return
+    for own in classes:
+        for statement in own.node.body:
+            match statement:
+                case ast.Assign(targets=[ast.Name() as name], value=ast.Call() as call) if _declares(
+                    script, call
+                ):
+                    yield _assigned(script, own, name, call)
+                case ast.AnnAssign(target=ast.Name() as name, annotation=annotation, value=value):
+                    yield from _annotated(script, own, name, annotation, value)
+                case _:
+                    pass
+
+
+def _declares(script: Script, node: ast.expr | None) -> bool:
+    path = callee_path(script, node) if isinstance(node, ast.Call) else ""
+    return path.startswith(_PROPS) and path != f"{_PROPS}RemoveProperty"
+
+
+def _annotated(
+    script: Script, own: OwnClass, name: ast.Name, annotation: ast.expr, value: ast.expr | None
+) -> Iterator[Finding]:
+    if isinstance(value, ast.Call) and _declares(script, value) and not _declares(script, annotation):
+        yield _assigned(script, own, name, value)
+        return
+    kind = script.type_of(annotation)
+    if (
+        value is None
+        and isinstance(kind, Function)
+        and kind.path.startswith(_PROPS)
+        and own.type.makes_properties
+    ):
+        end = script.span(annotation)
+        behind = Span(end.end_line, end.end_column, end.end_line, end.end_column)
+        yield _finding(
+            script, own, name, f"makes no property: `{kind.path}` is not called",
+            Fix("Call it", (Edit(behind, "()"),)),
+        )  # fmt: skip
+    elif _declares(script, annotation):
+        if not own.type.makes_properties:
+            yield _finding(
+                script, own, name,
+                f"makes no property: {own.label} has none of its own. Declare it in a PropertyGroup, or on a class "
+                "such as `bpy.types.Scene`", severity="warning",
+            )  # fmt: skip
+        elif name.id.startswith("_"):
+            yield _finding(script, own, name, "is refused: a property's name cannot begin with an underscore")
+
+
+def _assigned(script: Script, own: OwnClass, name: ast.Name, call: ast.Call) -> Finding:
+    start, end = script.span(name), script.span(call)
+    between = Span(start.end_line, start.end_column, end.line, end.column)
+    can_be = own.type.makes_properties and not name.id.startswith("_")
+    fix = Fix("Write an annotation", (Edit(between, ": "),), sure=True) if can_be else None
+    return _finding(
+        script, own, name,
+        "makes no property: Blender takes annotations only"
+        + (f". Write `{name.id}: {ast.unparse(call.func)}(...)`" if can_be else ""),
+        fix,
+    )  # fmt: skip
+
+
+def _finding(  # noqa: PLR0913, PLR0917 - what it says, and how it is mended
+    script: Script,
+    own: OwnClass,
+    name: ast.Name,
+    what: str,
+    fix: Fix | None = None,
+    severity: Severity = "error",
+) -> Finding:
+    return Finding(
+        RULE.id, severity, script.span(name), f"`{name.id}` of `{own.node.name}` {what}.", own.path, (), fix
+    )
+
+
+RULE = Rule("lost-property", "error", "A property of a class that Blender drops", _check)
