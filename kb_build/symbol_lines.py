@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 NODE_FAMILIES = ("ShaderNode", "GeometryNode", "CompositorNode", "FunctionNode", "TextureNode")
 _ACTIVE = "bpy.context.object"
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
+_STAND_INS = frozenset({"NONE", "DEFAULT", "PLACEHOLDER", "UNSUPPORTED"})
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
 _SHOWN_OTHERS = 4
@@ -62,7 +63,7 @@ def _own_default(symbol: Symbol) -> Default:
     is_computed = "readonly" in symbol.flags or symbol.subtype == "MATRIX"
     if (is_computed and _is_of_struct(symbol) and "compared" not in symbol.flags) or not _is_listed(symbol):
         return None
-    return symbol.default
+    return None if is_stand_in(symbol) else symbol.default
 
 
 def _is_of_struct(symbol: Symbol) -> bool:
@@ -74,6 +75,17 @@ def _is_listed(symbol: Symbol) -> bool:
     items = {item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN}
     given = symbol.default if isinstance(symbol.default, list) else [symbol.default]
     return not items or symbol.default is None or items.issuperset(given)
+
+
+def is_stand_in(symbol: Symbol) -> bool:
+    """Whether RNA lists one value for those that Blender puts together while it runs, and no new one told another."""
+    items = [item.identifier for item in symbol.enum_items]
+    return (
+        symbol.type == "enum"
+        and items[:1] == items
+        and _STAND_INS.issuperset(items)
+        and is_uncompared(symbol)
+    )
 
 
 def is_uncompared(symbol: Symbol) -> bool:

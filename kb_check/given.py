@@ -86,7 +86,7 @@ def _assignments(script: Script) -> Iterator[Given]:
         sure = row.sure and not row.guarded and not row.missing and is_of_instance(script, row.node)
         if not sure or not paths or not isinstance(row.node, ast.Attribute):
             continue
-        value = _assigned(row.statement, row.node)
+        value = assigned(row.statement, row.node)
         symbols = [script.api.symbols.symbol(path) for path in paths]
         takers = tuple(property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property")
         refused = any("readonly" in taker.symbol.flags for taker in takers)
@@ -109,7 +109,7 @@ def is_of_instance(script: Script, node: ast.AST) -> bool:
     return bool(kinds) and all(isinstance(kind, (Instance, Collection)) for kind in kinds)
 
 
-def _assigned(statement: ast.stmt | None, target: ast.expr) -> ast.expr | None:
+def assigned(statement: ast.stmt | None, target: ast.expr) -> ast.expr | None:
     """What a statement assigns to a target; None where the value has no expression of its own."""
     if isinstance(statement, ast.AnnAssign):
         return statement.value if statement.target is target else None

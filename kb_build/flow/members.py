@@ -53,6 +53,8 @@ if TYPE_CHECKING:
 
 _GROUP_METHODS = frozenset({"add", "remove", "clear", "move"})
 _PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
+# The last socket of nodes whose items scripts add: it makes room for each.
+_MOVING = "NodeSocketVirtual"
 _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion"})
 
 
@@ -375,6 +377,8 @@ class Members(Core):
             return None
         if isinstance(value, int):
             found = [socket for socket in sockets if f"{side}[{value}]" in socket.subscripts]
+            if any(socket.target == _MOVING for socket in found):
+                return None
         else:
             # Of several with one name the node's mode decides.
             found = [socket for socket in sockets if value in socket.socket_names]

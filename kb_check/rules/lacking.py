@@ -5,7 +5,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_check.conversions import misfit
 from kb_check.findings import Finding, Fix
+from kb_check.given import assigned, property_taker
 
 if TYPE_CHECKING:
     from kb_build.flow.types import Resolution
@@ -37,7 +39,18 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     node = row.node.slice if isinstance(row.node, ast.Subscript) else row.node
     if not same_owner or not is_alike or not name or (edit := script.renamed(node, name)) is None:
         return None
+    if _is_refused(script, row, lacking.replacement):
+        return None
     return Fix(f"Write {name}", (edit,), sure=lacking.sure)
+
+
+def _is_refused(script: Script, row: Resolution, replacement: str) -> bool:
+    """Whether the right name surely does not take the value that is assigned: ``use_alpha = True`` is no alpha_mode."""
+    value = assigned(row.statement, row.node) if isinstance(row.node, ast.Attribute) else None
+    symbol = script.api.symbols.symbol(replacement)
+    if value is None or symbol is None or symbol.kind != "property":
+        return False
+    return misfit(script, property_taker(symbol), value) is not None
 
 
 def absent_paths(row: Resolution) -> tuple[str, ...]:

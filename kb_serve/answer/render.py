@@ -14,6 +14,7 @@ from kb_build.symbol_lines import (
     empty_when_new,
     fillers,
     first_sentence,
+    is_stand_in,
     literal,
     mode_needed,
     new_subscript,
@@ -36,6 +37,9 @@ if TYPE_CHECKING:
     from kb_build.records import EnumItem, Parameter, Section, Symbol
 
 _NODE = f"{TYPES}Node"
+_PUT_TOGETHER = (
+    "put together while Blender runs, and not known here: the error for any other value lists them"
+)
 _PAIRS = "pair_with_output"  # the method of a zone's first node, which has its sockets from the last one
 _NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
 _SHORT_PAGE = 80  # letters
@@ -271,7 +275,9 @@ class MarkdownRenderer:
             yield from self._module(symbol)
         elif symbol.collection:
             yield from self._functions(symbol)
-        if symbol.enum_items:
+        if is_stand_in(symbol):
+            yield AnswerBlock(f"**Values**\n{_PUT_TOGETHER}", "values")
+        elif symbol.enum_items:
             yield AnswerBlock(f"**Values**\n{_items(symbol.enum_items)}", "values")
         if symbol.kind == "socket":
             yield from _listed(f"Others called {symbol.label}", self._namesakes(symbol))

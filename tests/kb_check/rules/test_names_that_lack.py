@@ -215,3 +215,23 @@ def test_a_class_with_a_computed_name_is_hardly_one_that_is_gone(checker: Checke
         bpy.types.EffectSequence
     """
     assert errors(checker, code) == [(6, "unknown-name")]
+
+
+def test_a_name_whose_value_would_be_refused_is_not_fixed(checker: Checker) -> None:
+    code = "import bpy\nimage = bpy.data.images.new('image', 4, 4)\nimage.use_alpha = {}\n"
+    (found,) = checker.check(code.format("True"))
+    assert found.instead == ("bpy.types.Image.alpha_mode",)
+    assert found.fix is None
+    (found,) = checker.check(code.format("'NONE'"))
+    assert found.fix is not None
+
+
+def test_the_socket_that_makes_room_for_others_is_not_told_by_its_place(checker: Checker) -> None:
+    code = """
+        import bpy
+        tree = bpy.data.node_groups.new("tree", "GeometryNodeTree")
+        node = tree.nodes.new("GeometryNodeIndexSwitch")
+        node.index_switch_items.new()
+        node.inputs[3].default_value = 4.0
+    """
+    assert not checker.check(dedent(code))

@@ -8,7 +8,7 @@ import pytest
 from asking import classes, of_data, paths
 
 from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Section, Symbol
-from kb_build.symbol_lines import usual_default
+from kb_build.symbol_lines import is_stand_in, usual_default
 from kb_serve.answer.render import MarkdownRenderer, facts, outline, said_of, with_names
 
 if TYPE_CHECKING:
@@ -174,6 +174,12 @@ def test_a_node_that_no_tree_takes_is_not_said_to_be_made(kb: KnowledgeBase) -> 
     assert "no node tree takes it: `nodes.new` refuses it; it takes `ShaderNodeGamma`" in text
     assert "made by" not in text
     assert "reached as" not in text
+
+
+def test_values_that_are_put_together_at_run_time_are_not_told_by_a_stand_in(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.ColorManagedInputColorspaceSettings.name").text
+    assert "'NONE'" not in text
+    assert "put together while Blender runs" in text
 
 
 def test_a_module_lists_its_contents(kb: KnowledgeBase) -> None:
