@@ -74,14 +74,25 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _ending(script: Script, call: CallSite) -> Iterator[Finding]:
-    """A call that ends Blender while something is None that the script never sets."""
-    for needed in call.callee.symbol.flagged(ENDS_WITHOUT):
-        if last_name(needed) not in named_words(script) and knows_all(script):
+    """A call on what the script made that ends Blender while something is None that the script never sets."""
+    match call.node.func:
+        case ast.Attribute(value=ast.Attribute(value=thing)) if knows_all(script) and _is_made(script, thing):
             path = call.callee.symbol.path
-            yield Finding(
-                RULE.id, "warning", script.span(call.node),
-                f"`{path}` ends Blender while `{needed}` is None, as it is in a new file: set it before.", path,
-            )  # fmt: skip
+            for needed in call.callee.symbol.flagged(ENDS_WITHOUT):
+                if last_name(needed) not in named_words(script):
+                    yield Finding(
+                        RULE.id, "warning", script.span(call.node),
+                        f"`{path}` ends Blender while `{needed}` is None, as it is in a new file: set it before.", path,
+                    )  # fmt: skip
+        case _:
+            pass
+
+
+def _is_made(script: Script, thing: ast.expr) -> bool:
+    """Whether all that a name stands for was made by the script: ``strips.new_effect(…)``."""
+    values = bindings(script).get(thing.id, []) if isinstance(thing, ast.Name) else []
+    paths = [callee_path(script, value) for value in values if isinstance(value, ast.Call)]
+    return bool(paths) and len(paths) == len(values) and all(last_name(path)[:3] == "new" for path in paths)
 
 
 def _called_properties(script: Script) -> Iterator[Finding]:
