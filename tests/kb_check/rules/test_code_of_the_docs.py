@@ -20,7 +20,7 @@ import bpy
 obj = bpy.context.object
 scene = bpy.context.scene
 view_layer = bpy.context.view_layer
-tree = bpy.data.node_groups.new("tree", 'GeometryNodeTree')
+tree = bpy.data.node_groups[0]  # of any kind: each takes other nodes
 """
 _CODE = re.compile(r"`([^`]+)`")
 _AT_ONCE = 500
