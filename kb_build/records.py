@@ -227,6 +227,11 @@ class Symbol:
         return last_name(self.path)
 
     @property
+    def has_empty_signature(self) -> bool:
+        """Whether it is known to take no arguments, and is not one whose arguments are unknown."""
+        return self.signature == f"{self.name}()"
+
+    @property
     def socket_names(self) -> tuple[str, ...]:
         """The names that a socket has in the modes of its node, the usual one first."""
         return (self.label, *self.flagged("also-named:"))

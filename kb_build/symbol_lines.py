@@ -78,13 +78,10 @@ def _is_listed(symbol: Symbol) -> bool:
 
 
 def is_stand_in(symbol: Symbol) -> bool:
-    """Whether RNA lists one value for those that Blender puts together while it runs, and no new one told another."""
+    """Whether RNA lists no value, or a stand-in for those made while Blender runs, and no new one told any."""
     items = [item.identifier for item in symbol.enum_items]
     return (
-        symbol.type == "enum"
-        and items[:1] == items
-        and _STAND_INS.issuperset(items)
-        and is_uncompared(symbol)
+        symbol.type == "enum" and len(items) <= 1 and _STAND_INS.issuperset(items) and is_uncompared(symbol)
     )
 
 

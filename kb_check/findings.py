@@ -25,6 +25,16 @@ class Edit:
     span: Span
     text: str
 
+    @classmethod
+    def before(cls, span: Span, text: str) -> Edit:
+        """The edit that writes a text before a span, which stays."""
+        return cls(Span(span.line, span.column, span.line, span.column), text)
+
+    @classmethod
+    def behind(cls, span: Span, text: str) -> Edit:
+        """The edit that writes a text behind a span, which stays."""
+        return cls(Span(span.end_line, span.end_column, span.end_line, span.end_column), text)
+
 
 @dataclass(frozen=True, slots=True)
 class Fix:

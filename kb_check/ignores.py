@@ -16,6 +16,12 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
 
 UNUSED = "unused-ignore"
+_UNREADABLE = (
+    tokenize.TokenError,
+    SyntaxError,
+    ValueError,
+    SystemError,
+)  # the last by a fault of CPython 3.13.0's
 _MOST_TOP_LINES = 10  # among which a whole file can be ignored
 _COMMENT = re.compile(
     r"#\s*+simworlds:\s*+(?P<kind>ignore-file|ignore)(?![\w-])(?:\[(?P<rules>[\w\s,-]*+)\])?"
@@ -116,12 +122,7 @@ def _comment_tokens(code: str) -> Iterator[tuple[int, int, str]]:
             if token.type == tokenize.COMMENT:
                 yield *token.start, token.string
             last = token.end[0]
-    except (
-        tokenize.TokenError,
-        SyntaxError,
-        ValueError,
-        SystemError,
-    ):  # the last by a fault of CPython 3.13.0's
+    except _UNREADABLE:
         for number, line in enumerate(split_lines(code)[last:], last + 1):
             if "#" in line:
                 yield number, line.index("#"), line[line.index("#") :].rstrip("\r\n")

@@ -6,6 +6,7 @@ import ast
 from collections import Counter
 from typing import TYPE_CHECKING
 
+from kb_check.findings import Edit, Fix
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
@@ -50,6 +51,12 @@ def items(script: Script, node: ast.expr) -> list[ast.expr] | None:
     if not display or not isinstance(written_out, (ast.Tuple, ast.List)):
         return None
     return None if any(isinstance(item, ast.Starred) for item in written_out.elts) else written_out.elts
+
+
+def set_of(script: Script, node: ast.Constant) -> Fix:
+    """Writes a set in the place of the one value that is to be in it."""
+    span = script.span(node)
+    return Fix("Write a set", (Edit(span, f"{{{script.text(span)}}}"),), sure=True)
 
 
 @once_per_script

@@ -182,6 +182,7 @@ class Calls(Narrowing):
     def _keywords(self, symbol: Symbol, keywords: list[tuple[ast.keyword, Type]]) -> None:
         parameters = {parameter.name: parameter for parameter in symbol.parameters}
         is_open = symbol.path in OPEN_CALLS or any(_is_open(parameter) for parameter in symbol.parameters)
+        takes_nothing = symbol.owner.startswith(T) and symbol.has_empty_signature
         for keyword, _ in keywords:
             name = keyword.arg
             if name is None or (name == NAME_OF_PROPERTY and symbol.owner == "bpy.props"):
@@ -189,7 +190,7 @@ class Calls(Narrowing):
             if parameter := parameters.get(name):
                 self.resolve(keyword, "keyword", name, (f"{symbol.path}({name})",))
                 self._value(symbol, parameter, keyword.value)
-            elif not is_open and (symbol.parameters or symbol.kind == "operator" or _takes_nothing(symbol)):
+            elif not is_open and (symbol.parameters or symbol.kind == "operator" or takes_nothing):
                 self.resolve(keyword, "keyword", name, missing=(symbol.path,))
 
     def _values(self, symbol: Symbol, node: ast.Call) -> None:
@@ -561,8 +562,3 @@ class Calls(Narrowing):
 def _is_open(parameter: Parameter) -> bool:
     """Whether a parameter takes any keyword."""
     return parameter.name.startswith("*") or parameter.type.startswith("**")
-
-
-def _takes_nothing(symbol: Symbol) -> bool:
-    """Whether a method of Blender's classes is known to have no parameters, and is not one whose are unknown."""
-    return symbol.owner.startswith(T) and symbol.signature == f"{symbol.name}()"

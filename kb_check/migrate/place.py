@@ -199,8 +199,7 @@ class Place:
         for node in imports:
             if isinstance(node, ast.Import) and any(alias.name == "bpy" for alias in node.names):
                 last = node
-        end = self.script.span(last)
-        return (Edit(Span(end.end_line, end.end_column, end.end_line, end.end_column), f"\n{line}"),)
+        return (Edit.behind(self.script.span(last), f"\n{line}"),)
 
     # Changes.
 

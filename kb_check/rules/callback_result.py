@@ -24,7 +24,8 @@ import ast
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_check.calls import callee_of
-from kb_check.findings import Edit, Finding, Fix
+from kb_check.findings import Finding, Fix
+from kb_check.literals import set_of
 from kb_check.made_here import callee_path
 from kb_check.own_classes import FunctionDefinition, own_classes
 from kb_check.rule import Rule
@@ -201,8 +202,7 @@ def _as_set(script: Script, node: ast.expr | None, values: list[str]) -> Fix | N
     """Writes a set in the place of the one value in it."""
     if not isinstance(node, ast.Constant) or node.value not in values:
         return None
-    span = script.span(node)
-    return Fix("Write a set", (Edit(span, f"{{{script.text(span)}}}"),), sure=True)
+    return set_of(script, node)
 
 
 def _unknown(script: Script, node: ast.Set, symbol: Symbol, values: list[str]) -> Iterator[Finding]:

@@ -24,7 +24,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
-from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.findings import Edit, Finding, Fix
 from kb_check.own_classes import FunctionDefinition, own_classes
 from kb_check.registered_types import FEWEST_ARGUMENTS
 from kb_check.rule import Rule
@@ -102,8 +102,7 @@ def _takes_nothing(function: FunctionDefinition) -> bool:
 
 def _class_method(script: Script, function: FunctionDefinition) -> Fix:
     start = script.span(function)
-    here = Span(start.line, start.column, start.line, start.column)
-    return Fix("Write @classmethod", (Edit(here, f"@classmethod\n{' ' * start.column}"),), sure=True)
+    return Fix("Write @classmethod", (Edit.before(start, f"@classmethod\n{' ' * start.column}"),), sure=True)
 
 
 def _completed(script: Script, function: FunctionDefinition, names: tuple[str, ...]) -> Fix | None:
@@ -113,10 +112,9 @@ def _completed(script: Script, function: FunctionDefinition, names: tuple[str, .
     others = arguments.posonlyargs or arguments.vararg or arguments.kwonlyargs or arguments.kwarg
     if others or arguments.defaults or not plain or plain[1:] != list(names[1 : len(plain)]):
         return None
-    last = script.span(arguments.args[-1])
-    end = Span(last.end_line, last.end_column, last.end_line, last.end_column)
     missing = ", ".join(names[len(plain) :])
-    return Fix(f"Add {missing}", (Edit(end, f", {missing}"),), sure=True) if missing else None
+    edit = Edit.behind(script.span(arguments.args[-1]), f", {missing}")
+    return Fix(f"Add {missing}", (edit,), sure=True) if missing else None
 
 
 RULE = Rule("callback-signature", "error", "A function that Blender calls with other arguments", _check)

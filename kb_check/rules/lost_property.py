@@ -74,11 +74,9 @@ def _annotated(
         and kind.path.startswith(_PROPS)
         and own.type.makes_properties
     ):
-        end = script.span(annotation)
-        behind = Span(end.end_line, end.end_column, end.end_line, end.end_column)
         yield _finding(
             script, own, name, f"makes no property: `{kind.path}` is not called",
-            Fix("Call it", (Edit(behind, "()"),)),
+            Fix("Call it", (Edit.behind(script.span(annotation), "()"),)),
         )  # fmt: skip
     elif _declares(script, annotation):
         if not own.type.makes_properties:

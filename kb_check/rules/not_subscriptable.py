@@ -37,7 +37,7 @@ from kb_build.flow.types import (
     members,
 )
 from kb_check.conversions import CHANGING_ARRAYS
-from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
 from kb_check.made_here import bindings, callee_path
 from kb_check.rule import Rule
@@ -283,9 +283,7 @@ def _fix(script: Script, node: ast.Subscript) -> Fix | None:
     """``collection[::2]`` → ``collection[:][::2]``."""
     kind = script.type_of(node.value)
     if isinstance(kind, Collection) and isinstance(node.slice, ast.Slice) and isinstance(node.ctx, ast.Load):
-        end = script.span(node.value)
-        where = Span(end.end_line, end.end_column, end.end_line, end.end_column)
-        return Fix("Make a list of it first", (Edit(where, "[:]"),), sure=True)
+        return Fix("Make a list of it first", (Edit.behind(script.span(node.value), "[:]"),), sure=True)
     return None
 
 

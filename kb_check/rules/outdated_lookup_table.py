@@ -21,7 +21,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance, Plain
-from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -75,8 +75,7 @@ def _fix(script: Script, statement: ast.stmt | None, text: str) -> Fix | None:
     indent = script.lines[start.line - 1][: start.column]
     if indent.strip():
         return None
-    where = Span(start.line, start.column, start.line, start.column)
-    return Fix("Make the table", (Edit(where, f"{text}.ensure_lookup_table()\n{indent}"),), sure=True)
+    return Fix("Make the table", (Edit.before(start, f"{text}.ensure_lookup_table()\n{indent}"),), sure=True)
 
 
 RULE = Rule("outdated-lookup-table", "error", "An element of a BMesh by index, without the table", _check)

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Mapping, NoneValue, Plain, Sequence, Tuple, literal_text
 from kb_check.calls import calls
-from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -111,7 +111,7 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     starred = any(isinstance(argument, ast.Starred) for argument in arguments)
     if starred or callee.is_open or path.startswith(_UNRELIABLE) or len(arguments) <= len(callee.positional):
         return
-    if not callee.parameters and callee.symbol.signature != f"{callee.symbol.name}()":
+    if not callee.parameters and not callee.symbol.has_empty_signature:
         return
     extra = arguments[len(callee.positional)]
     by_name = {parameter.name: parameter for parameter in callee.parameters}
@@ -137,9 +137,8 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
 
 
 def _naming(script: Script, argument: ast.expr, parameter: Parameter, *, sure: bool) -> Fix:
-    start = script.span(argument)
-    where = Span(start.line, start.column, start.line, start.column)
-    return Fix(f"Write {parameter.name}=", (Edit(where, f"{parameter.name}="),), sure=sure)
+    edit = Edit.before(script.span(argument), f"{parameter.name}=")
+    return Fix(f"Write {parameter.name}=", (edit,), sure=sure)
 
 
 RULE = Rule("positional-argument", "error", "An argument without its name where Blender takes none", _check)

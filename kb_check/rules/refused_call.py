@@ -10,9 +10,7 @@ spline = curve.splines.new("BEZIER")
 spline.points.add(3)  # reported: a Bézier spline has `bezier_points`
 mesh.attributes.new("weight", "FLOAT", "CURVE")  # reported: meshes have no such domain
 vector.length()  # reported: a property
-strip.modifiers.new(
-    "Curves", "CURVES"
-)  # reported: ends Blender while the workspace has no scene for the sequencer
+strip.modifiers.new("Curves", "CURVES")  # reported: ends Blender in a new file
 ```
 
 What returns None instead of raising an error is a warning, and so is what ends Blender in a new file. Not reported:
@@ -75,17 +73,19 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _ending(script: Script, call: CallSite) -> Iterator[Finding]:
     """A call on what the script made that ends Blender while something is None that the script never sets."""
-    match call.node.func:
-        case ast.Attribute(value=ast.Attribute(value=thing)) if knows_all(script) and _is_made(script, thing):
-            path = call.callee.symbol.path
-            for needed in call.callee.symbol.flagged(ENDS_WITHOUT):
-                if last_name(needed) not in named_words(script):
-                    yield Finding(
-                        RULE.id, "warning", script.span(call.node),
-                        f"`{path}` ends Blender while `{needed}` is None, as it is in a new file: set it before.", path,
-                    )  # fmt: skip
-        case _:
-            pass
+    path, function = call.callee.symbol.path, call.node.func
+    for needed in call.callee.symbol.flagged(ENDS_WITHOUT):
+        owner = function.value if isinstance(function, ast.Attribute) else None
+        if (
+            last_name(needed) not in named_words(script)
+            and isinstance(owner, ast.Attribute)
+            and knows_all(script)
+            and _is_made(script, owner.value)
+        ):
+            yield Finding(
+                RULE.id, "warning", script.span(call.node),
+                f"`{path}` ends Blender while `{needed}` is None, as it is in a new file: set it before.", path,
+            )  # fmt: skip
 
 
 def _is_made(script: Script, thing: ast.expr) -> bool:

@@ -26,7 +26,7 @@ from kb_build.flow.facts import T
 from kb_build.records import last_name
 from kb_check.calls import calls
 from kb_check.data_paths import follow, item, size
-from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number, written
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
@@ -207,9 +207,10 @@ def _moved(script: Script, call: CallSite, node: ast.expr, before: str, behind: 
     function = call.node.func
     if not quote or not isinstance(function, ast.Attribute) or not isinstance(function.value, _UNBRACKETED):
         return None
-    owner = script.span(function.value)
-    end = Span(owner.end_line, owner.end_column, owner.end_line, owner.end_column)
-    edits = Edit(end, f".{before}"), Edit(script.span(node), f"{quote}{behind}{quote}")
+    edits = (
+        Edit.behind(script.span(function.value), f".{before}"),
+        Edit(script.span(node), f"{quote}{behind}{quote}"),
+    )
     return Fix(f"Call it on {last_name(before)}", edits, sure=True)
 
 

@@ -25,8 +25,8 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import T
 from kb_build.flow.types import ClassObject
 from kb_check.calls import calls
-from kb_check.findings import Edit, Finding, Fix
-from kb_check.literals import functions, number, times_bound, written
+from kb_check.findings import Finding, Fix
+from kb_check.literals import functions, number, set_of, times_bound, written
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -104,14 +104,8 @@ class _Declaration:
             if is_none and (not may_be_none or name == "items"):
                 yield self._finding(node, name, "cannot be None")
             elif name in _SETS and isinstance(node, _NO_SETS):
-                yield self._finding(node, name, "takes a set", fix=self._as_set(node))
-
-    def _as_set(self, node: ast.expr) -> Fix | None:
-        """Writes a set in the place of the one name that is to be in it."""
-        if not isinstance(node, ast.Constant):
-            return None
-        span = self._script.span(node)
-        return Fix("Write a set", (Edit(span, f"{{{self._script.text(span)}}}"),), sure=True)
+                fix = set_of(self._script, node) if isinstance(node, ast.Constant) else None
+                yield self._finding(node, name, "takes a set", fix=fix)
 
     def functions(self) -> Iterator[Finding]:
         """Functions that take other arguments than those that Blender calls them with. ``*args`` does not count."""

@@ -32,7 +32,7 @@ from kb_build.flow.types import Collection, Instance, Plain
 from kb_check.conversions import describe, misfit
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.given import class_values, given_values
-from kb_check.literals import items
+from kb_check.literals import items, set_of
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -122,7 +122,7 @@ def _literal_fix(script: Script, taker: Taker, node: ast.Constant) -> Fix | None
     if taker.kind == "int" and isinstance(value, float) and value.is_integer() and abs(value) < _LONGEST_INT:
         return Fix("Write an int", (Edit(span, str(int(value))),), sure=True)
     if taker.kind == "set" and isinstance(value, str):
-        return Fix("Write a set", (Edit(span, f"{{{script.text(span)}}}"),), sure=True)
+        return set_of(script, node)
     return None
 
 
@@ -133,8 +133,7 @@ def _color_fix(script: Script, taker: Taker, wrong: Misfit, parts: list[ast.expr
     if before is None:
         return None
     if (wrong.length, taker.sizes) == (3, (4,)):
-        end = Span(before.end_line, before.end_column, before.end_line, before.end_column)
-        return Fix("Add alpha", (Edit(end, ", 1.0"),), sure=True)
+        return Fix("Add alpha", (Edit.behind(before, ", 1.0"),), sure=True)
     if (wrong.length, taker.sizes) == (4, (3,)):
         last = script.span(parts[3])
         cut = Span(before.end_line, before.end_column, last.end_line, last.end_column)

@@ -274,7 +274,7 @@ class MarkdownRenderer:
         elif symbol.kind in {"module", "data"} and self.reader.members(symbol.path):
             yield from self._module(symbol)
         elif symbol.collection:
-            yield from self._functions(symbol)
+            yield from self._of_collection(symbol)
         if is_stand_in(symbol):
             yield AnswerBlock(f"**Values**\n{_PUT_TOGETHER}", "values")
         elif symbol.enum_items:
@@ -286,7 +286,7 @@ class MarkdownRenderer:
             if used.text:
                 yield used
 
-    def _functions(self, collection: Symbol) -> Iterator[AnswerBlock]:
+    def _of_collection(self, collection: Symbol) -> Iterator[AnswerBlock]:
         """What a collection adds and removes elements with, and in which mode alone."""
         entries = _functions(self.reader.members(TYPES + collection.collection).values())
         if lines := [f"- {entry.line}{self._mode(entry.path)}" for entry in entries]:

@@ -24,6 +24,8 @@ from hypothesis import HealthCheck, given, seed, settings  # noqa: E402
 from small_plan import small_plan  # noqa: E402
 from targets import Messages, Queries, Target, targets  # noqa: E402
 
+from kb_serve.errors import BaseUnreadable  # noqa: E402
+from kb_serve.knowledge_base import KnowledgeBase  # noqa: E402
 from simworlds.settings import built_bases, home_folder  # noqa: E402
 
 if TYPE_CHECKING:
@@ -77,6 +79,17 @@ def keep(target: str, data: bytes) -> Path:
     return path
 
 
+def newest_base(home: Path) -> Path | None:
+    """The usable base of the newest Blender; None without one."""
+    for base in reversed(built_bases(home).values()):
+        try:
+            with closing(KnowledgeBase(base)):
+                return base
+        except BaseUnreadable as error:
+            click.echo(f"{base.name} is left out. {error}")
+    return None
+
+
 @contextmanager
 def all_targets(base: Path | None, home: Path) -> Iterator[list[Target]]:
     """The targets; what they hold open is closed afterwards."""
@@ -96,13 +109,13 @@ def main(seconds: float, only: tuple[str, ...], first_seed: int | None) -> None:
 
         resource.setrlimit(resource.RLIMIT_AS, (_MOST_MEMORY, _MOST_MEMORY))
     first_seed = random.randrange(1 << 30) if first_seed is None else first_seed
-    bases = list(built_bases(home_folder()).values())
-    with all_targets(bases[-1] if bases else None, home_folder()) as found:
+    base = newest_base(home_folder())
+    with all_targets(base, home_folder()) as found:
         chosen = [target for target in found if not only or target.name in only]
         if not chosen:
             raise click.UsageError(f"There is no such target. They are: {', '.join(t.name for t in found)}.")
-        if not bases:
-            click.echo("query: left out, since there is no knowledge base here (make kb)")
+        if base is None:
+            click.echo("query: left out, since there is no usable knowledge base here (make kb)")
         click.echo(f"seed {first_seed}")
         failed = 0
         for target in chosen:

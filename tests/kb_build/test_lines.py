@@ -45,9 +45,15 @@ def line(kind: str = "property", **fields: object) -> str:
         ({"type": "collection", "target": "Modifier"}, "`x` collection of Modifier"),
         ({"type": "int", "flags": ("readonly",)}, "`x` int read-only"),
         (
-            {"type": "enum", "flags": ("enum-flag",), "default": ["A"]},
-            "`x` set of enum items = ('A') (RNA's)",
+            {
+                "type": "enum",
+                "flags": ("enum-flag",),
+                "default": ["A"],
+                "enum_items": (EnumItem("A"), EnumItem("B")),
+            },
+            "`x` set of enum items = ('A') (RNA's) A|B",
         ),
+        ({"type": "enum", "flags": ("enum-flag",), "default": ["A"]}, "`x` set of enum items"),
         ({"type": "int", "deprecation": Deprecation("Unused.")}, "`x` int deprecated"),
         ({"type": "int", "description": "One. Two."}, "`x` int — One"),
         ({"type": "int", "label": "Ex"}, "`x` int — Ex"),

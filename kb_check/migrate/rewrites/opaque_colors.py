@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.findings import Edit, Span
+from kb_check.findings import Edit
 from kb_check.migrate.change import Change
 from kb_check.migrate.rewrite import Rewrite
 
@@ -30,7 +30,7 @@ def _propose(place: Place) -> Iterator[Change]:
             and all(_has_alpha(place, path) for path in row.symbols)
         ):
             end = place.script.span(value.elts[-1])
-            edit = Edit(Span(end.end_line, end.end_column, end.end_line, end.end_column), ", 1.0")
+            edit = Edit.behind(end, ", 1.0")
             yield Change(REWRITE.id, (edit,), _REASON, _SOURCE, _SINCE)
 
 
