@@ -1,0 +1,337 @@
+"""In which mode the active object surely is where a script calls an operator, and of which type it is.
+
+A run is followed from statement to statement, through conditions, loops and the script's own functions. Whatever may
+change the mode out of sight ends what is known; an operator that runs in one mode only tells it again.
+"""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import re
+from contextlib import suppress
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from kb_build.flow.types import Mapping
+from kb_check.calls import calls
+from kb_check.made_here import bindings, knows_all, named_words
+from kb_check.modes import UNKNOWN, State, after_operator, has_to_do_with_modes, refusal
+from kb_check.script import once_per_script
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from kb_check.script import Script
+
+_ENTERING = re.compile(r"mode_set|mode_toggle|editmode|sculptmode|posemode|paint_toggle|edit_toggle")
+_OF_MODES = re.compile(r"mode|poll")
+_ACTIVE = "bpy.types.LayerObjects.active"
+_SWITCHED = frozenset({"scene", "view_layer", "workspace"})
+_REMOVING = frozenset(
+    {
+        "remove",
+        "batch_remove",
+        "unlink",
+        "clear",
+        "orphans_purge",
+        "user_clear",
+        "user_remap",
+        "hide_set",
+        "load",
+    }
+)
+_COMPUTING = frozenset(
+    {"exec", "eval", "getattr", "setattr", "compile", "__import__", "next", "map", "filter"}
+)
+_BUILTINS = frozenset(dir(builtins)) - _COMPUTING
+_MOST_VISITS = 2000
+
+_Function = ast.FunctionDef | ast.AsyncFunctionDef
+_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+_CONDITIONAL = (ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+
+
+@once_per_script
+def states(script: Script) -> dict[ast.Call, State]:
+    """Of each call of an operator that has something to do with modes: what is known before it."""
+    if not any(has_to_do_with_modes(call) for call in calls(script)):
+        return {}
+    with suppress(RecursionError):
+        return _Run(script).seen
+    return {}
+
+
+@once_per_script
+def enters_modes(script: Script) -> bool:
+    """Whether a script names anything that may enter a mode, or may do so out of sight."""
+    return not knows_all(script) or any(map(_ENTERING.search, named_words(script)))
+
+
+class _Run:
+    """Follows a script, and keeps what is known at each call, whichever way it is come to."""
+
+    def __init__(self, script: Script) -> None:
+        self.script = script
+        self.seen: dict[ast.Call, State] = {}
+        self._calls = {call.node: call for call in calls(script)}
+        self._functions = _own_functions(script)
+        self._names = {node.name for node in script.nodes if isinstance(node, (*_FUNCTIONS, ast.ClassDef))}
+        self._outcomes: dict[tuple[_Function, State], State] = {}
+        self._running: list[_Function] = []
+        self._returned: list[list[State]] = []
+        self._jumped: list[list[State]] = []
+        self._visits = 0
+        self._block(script.tree.body, UNKNOWN)
+        direct = {
+            node.func.id
+            for node in script.nodes
+            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+        }
+        handed_on = _handed_on(script)
+        for node in script.nodes:
+            if isinstance(node, _FUNCTIONS):
+                is_own = self._functions.get(node.name) is node and node.name in direct
+                if not is_own or node.name in handed_on:
+                    self._function(node, UNKNOWN)
+
+    def _block(self, statements: Sequence[ast.stmt], state: State | None) -> State | None:
+        """What is known after statements; None where a run does not get behind them."""
+        for statement in statements:
+            if state is None:
+                return None
+            self._visits += 1
+            state = self._statement(statement, state)
+        return state
+
+    def _statement(self, node: ast.stmt, state: State) -> State | None:
+        match node:
+            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
+                after = state
+            case ast.If():
+                after = self._if(node, self._expressions([node.test], state))
+            case ast.For() | ast.AsyncFor():
+                after = self._loop(node, self._expressions([node.iter], state))
+            case ast.While():
+                after = self._loop(node, state)
+            case ast.With() | ast.AsyncWith():
+                after = self._with(node, state)
+            case ast.Try() | ast.TryStar():
+                after = self._try(node, state)
+            case ast.Match():
+                subject = self._expressions([node.subject], state)
+                after = self._all_ways([case.body for case in node.cases], subject)
+            case _:
+                after = self._simple(node, self._stores(node, self._expressions([node], state)))
+        return after
+
+    def _simple(self, node: ast.stmt, state: State) -> State | None:
+        """What is known behind a statement that has none within it; a run may leave with it."""
+        if isinstance(node, ast.Return) and self._returned:
+            self._returned[-1].append(state)
+        if isinstance(node, (ast.Break, ast.Continue)) and self._jumped:
+            self._jumped[-1].append(state)
+        return None if isinstance(node, (ast.Return, ast.Raise, ast.Break, ast.Continue)) else state
+
+    def _if(self, node: ast.If, state: State) -> State | None:
+        words = {part.attr for part in ast.walk(node.test) if isinstance(part, ast.Attribute)}
+        asks = any(map(_OF_MODES.search, words))
+        inside = replace(state, mode="" if asks else state.mode, kind="" if words else state.kind)
+        ways = self._block(node.body, inside), self._block(node.orelse, inside) if node.orelse else state
+        after = _join(*ways)
+        return replace(after, mode="") if after and asks and None in ways else after
+
+    def _all_ways(self, bodies: Iterable[Sequence[ast.stmt]], state: State) -> State | None:
+        after: State | None = state
+        for body in bodies:
+            after = _join(after, self._block(body, state))
+        return after
+
+    def _loop(self, node: ast.For | ast.AsyncFor | ast.While, state: State) -> State | None:
+        while True:
+            self._jumped.append([])
+            at_test = self._expressions([node.test], state) if isinstance(node, ast.While) else state
+            after = self._block(node.body, at_test)
+            for jumped in self._jumped.pop():
+                after = _join(after, jumped)
+            again = _join(state, after) or state
+            if again == state:
+                return self._block(node.orelse, state)
+            state = again
+
+    def _with(self, node: ast.With | ast.AsyncWith, state: State) -> State | None:
+        items = [item.context_expr for item in node.items]
+        state = self._expressions(items, state)
+        if any("override" in ast.unparse(item) for item in items):
+            self._block(node.body, State(muted=True))
+            return State(muted=state.muted)
+        if any("suppress" in ast.unparse(item) for item in items):
+            after = self._block(node.body, replace(state, muted=True))
+            return replace(_join(State(), after) or State(), muted=state.muted)
+        return self._block(node.body, state)
+
+    def _try(self, node: ast.Try | ast.TryStar, state: State) -> State | None:
+        muted = bool(node.handlers)
+        after = self._block(node.body, replace(state, muted=muted or state.muted))
+        after = self._block(node.orelse, replace(after, muted=state.muted)) if after else None
+        for handler in node.handlers:
+            after = _join(after, self._block(handler.body, State(muted=state.muted)))
+        if not node.finalbody:
+            return after
+        known = self._block(node.finalbody, after or State(muted=state.muted))
+        return known if after else None
+
+    def _function(self, node: _Function, state: State) -> State:
+        """What is known after a call of one of the script's own functions."""
+        if node in self._running or self._visits > _MOST_VISITS:
+            return State(muted=state.muted)
+        if (known := self._outcomes.get((node, state))) is not None:
+            return known
+        self._running.append(node)
+        self._returned.append([])
+        jumped, self._jumped = self._jumped, []
+        after = self._block(node.body, state)
+        self._jumped = jumped
+        for returned in self._returned.pop():
+            after = _join(after, returned)
+        self._running.pop()
+        found = self._outcomes[node, state] = after or State(muted=state.muted)
+        return found
+
+    def _expressions(self, roots: Iterable[ast.AST], state: State) -> State:
+        """What is known after the calls within expressions, in the order in which they are made."""
+        for root in roots:
+            for call, is_sure in sorted(_made_calls(root), key=lambda pair: _end(pair[0])):
+                if is_sure:
+                    state = self._call(call, state)
+                else:
+                    self._call(call, State(muted=True))
+                    state = state if self._is_harmless(call) else State(muted=state.muted)
+        return state
+
+    def _call(self, node: ast.Call, state: State) -> State:
+        if _is_operator(node) and not self._is_harmless(node):
+            return self._operator(node, state)
+        if isinstance(node.func, ast.Name) and (function := self._functions.get(node.func.id)):
+            return self._function(function, state)
+        if self._is_harmless(node):
+            return state
+        removes = isinstance(node.func, ast.Attribute) and node.func.attr in _REMOVING
+        return State("OBJECT" if removes and state.mode == "OBJECT" else "", muted=state.muted)
+
+    def _operator(self, node: ast.Call, state: State) -> State:
+        call = self._calls.get(node)
+        given = self.script.type_of(node.args[0]) if node.args else None
+        if call is None or call.callee.symbol.kind != "operator" or isinstance(given, Mapping):
+            return State(muted=state.muted)
+        plain = all(isinstance(value, ast.Constant) for value in node.args)
+        before = state if plain else State(muted=True)
+        self.seen[node] = self.seen.get(node, before).joined(before)
+        if refusal(self.script, call, before):
+            return state
+        return replace(after_operator(call, before), muted=state.muted)
+
+    def _is_harmless(self, node: ast.Call) -> bool:
+        """Whether a call leaves the active object and its mode alone."""
+        if _is_operator(node):
+            return isinstance(node.func, ast.Attribute) and node.func.attr == "poll"
+        if isinstance(node.func, ast.Name):
+            name = node.func.id
+            known = name in _BUILTINS or (
+                node in self._calls and self._calls[node].callee.symbol.kind != "operator"
+            )
+            return name not in self._names and (
+                known or (name in _imported(self.script) and knows_all(self.script))
+            )
+        if not isinstance(node.func, ast.Attribute) or node.func.attr in _REMOVING:
+            return False
+        if call := self._calls.get(node):
+            return call.callee.symbol.kind != "operator"
+        return knows_all(self.script) and node.func.attr not in self._names
+
+    def _stores(self, statement: ast.stmt, state: State) -> State:
+        """What is known after what a statement assigns."""
+        for node in ast.walk(statement):
+            if not isinstance(node, ast.Attribute) or isinstance(node.ctx, ast.Load):
+                continue
+            if node.attr in _SWITCHED:
+                state = State(muted=state.muted)
+            elif node.attr == "active":
+                row = self.script.analysis.resolutions.get(node)
+                if row is None or _ACTIVE in row.symbols or not row.symbols:
+                    stays = state.mode == "OBJECT" and not enters_modes(self.script)
+                    state = State("OBJECT" if stays else "", muted=state.muted)
+        return state
+
+
+def _join(first: State | None, second: State | None) -> State | None:
+    if first is None or second is None:
+        return first or second
+    return first.joined(second)
+
+
+def _end(node: ast.Call) -> tuple[int, int]:
+    return node.end_lineno or 0, node.end_col_offset or 0
+
+
+def _made_calls(root: ast.AST) -> Iterator[tuple[ast.Call, bool]]:
+    """The calls within a statement or an expression; whether each is surely made, once."""
+    waiting = [(root, True)]
+    while waiting:
+        node, is_sure = waiting.pop()
+        if isinstance(node, (ast.Lambda, *_FUNCTIONS, ast.ClassDef)):
+            continue
+        if isinstance(node, ast.Call):
+            yield node, is_sure
+        is_sure = is_sure and not isinstance(node, _CONDITIONAL)
+        waiting += [(child, is_sure) for child in ast.iter_child_nodes(node)]
+
+
+def _is_operator(call: ast.Call) -> bool:
+    """Whether what is called is written as an operator, or as something of one."""
+    node = call.func
+    names: list[str] = []
+    while isinstance(node, ast.Attribute):
+        names.append(node.attr)
+        node = node.value
+    return isinstance(node, ast.Name) and (names[-1:] == ["ops"] or node.id == "ops")
+
+
+@once_per_script
+def _own_functions(script: Script) -> dict[str, _Function]:
+    """The script's functions that a name surely calls: plain ones, defined once, that nothing else is called like."""
+    found: dict[str, list[_Function]] = {}
+    methods = {item for node in script.nodes if isinstance(node, ast.ClassDef) for item in node.body}
+    for node in script.nodes:
+        if isinstance(node, _FUNCTIONS) and node not in methods:
+            found.setdefault(node.name, []).append(node)
+    return {
+        name: nodes[0]
+        for name, nodes in found.items()
+        if len(nodes) == 1
+        and name not in bindings(script)
+        and not nodes[0].decorator_list
+        and isinstance(nodes[0], ast.FunctionDef)
+        and not any(isinstance(node, (ast.Yield, ast.YieldFrom)) for node in ast.walk(nodes[0]))
+    }
+
+
+@once_per_script
+def _handed_on(script: Script) -> frozenset[str]:
+    """The names that are used for more than to call them."""
+    called = {node.func for node in script.nodes if isinstance(node, ast.Call)}
+    return frozenset(
+        node.id
+        for node in script.nodes
+        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node not in called
+    )
+
+
+@once_per_script
+def _imported(script: Script) -> frozenset[str]:
+    """The names that imports bind."""
+    found: set[str] = set()
+    for node in script.nodes:
+        if isinstance(node, (ast.Import, ast.ImportFrom)):
+            found.update((alias.asname or alias.name).partition(".")[0] for alias in node.names)
+    return frozenset(found)
