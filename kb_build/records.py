@@ -38,6 +38,8 @@ NEEDS = "needs:"
 # that it takes instead.
 AREAS = "areas:"
 GIVEN = "given:"
+# How a flag begins that says what must not be None: Blender ends when the function is called.
+ENDS_WITHOUT = "ends-without:"
 # The flag of a socket that a node of a zone has once it is paired with the other one.
 WHEN_PAIRED = "when-paired"
 # The flag of what Blender computes for evaluated objects, and leaves empty on the originals.

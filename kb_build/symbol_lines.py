@@ -6,11 +6,11 @@ import re
 import textwrap
 from dataclasses import dataclass
 from functools import cache
-from itertools import dropwhile, groupby, takewhile
+from itertools import dropwhile, groupby, islice, takewhile
 from operator import attrgetter
 from typing import TYPE_CHECKING
 
-from kb_build.records import AREAS, FACTORY, FILLED_BY, FILLED_ON, GIVEN, NEEDS, NOT_TAKEN, THEN
+from kb_build.records import AREAS, ENDS_WITHOUT, FACTORY, FILLED_BY, FILLED_ON, GIVEN, NEEDS, NOT_TAKEN, THEN
 from kb_build.schema import TEST_ON
 
 if TYPE_CHECKING:
@@ -147,9 +147,13 @@ def area_text(types: Sequence[str]) -> str:
 def refusal_lines(symbol: Symbol) -> list[str]:
     """Which calls of a function were refused although their arguments are those that it asks for, a line each.
 
-    Where both a value and what takes it decide, that is said with the value (see taken_where).
+    Where both a value and what takes it decide, that is said with the value (see taken_where). What ends Blender comes
+    first.
     """
-    return [
+    fatal = [
+        f"while `{needed}` is None, which ends Blender: set it" for needed in symbol.flagged(ENDS_WITHOUT)
+    ]
+    return fatal + [
         _refusal_text(refusal)
         for refusal in symbol.refusals
         if refusal.is_explained and not (refusal.values and refusal.by)
@@ -185,6 +189,16 @@ def with_article(thing: str) -> str:
     return f"{'an' if thing[0].lower() in 'aeiou' else 'a'} {thing}"
 
 
+def _mode_text(refusal: Refusal) -> str:
+    return f"{refusal.mode.capitalize()} Mode"
+
+
+def mode_needed(symbol: Symbol) -> str:
+    """``Edit Mode``: where alone a function is taken, whatever it is given; empty for everywhere."""
+    whole = (refusal for refusal in symbol.refusals if refusal.mode and not (refusal.values or refusal.by))
+    return "".join(_mode_text(refusal) for refusal in islice(whole, 1))
+
+
 def _refusal_text(refusal: Refusal) -> str:
     """``type='COLOR'|'TEXT'`` without ``length``: “Strips.new_effect: invalid length”."""
     parts: list[str] = []
@@ -195,7 +209,7 @@ def _refusal_text(refusal: Refusal) -> str:
     if refusal.given:
         parts.append("without " + " and ".join(f"`{name}`" for name in refusal.given))
     if refusal.mode:
-        parts.append(f"outside of {refusal.mode.capitalize()} Mode")
+        parts.append(f"outside of {_mode_text(refusal)}")
     if refusal.again:
         parts.append("a second time" if refusal.again == "any" else "a second time with the same arguments")
     said = f"“{refusal.message}”" if refusal.message else "returns `None`"

@@ -17,6 +17,7 @@ from kb_build.errors import ExtractError
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
     AREAS,
+    ENDS_WITHOUT,
     EVALUATED,
     FILLED_BY,
     FILLED_ON,
@@ -169,9 +170,11 @@ def _add_argument_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> No
 
 
 def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds what a function refused."""
+    """Adds what a function refused, and without what it ends Blender."""
     if row is not None:
         row["refusals"] = refusals(seen["outcomes"])
+        if without := seen.get("ends_without"):
+            row["flags"] = [*row.get("flags", ()), ENDS_WITHOUT + without]
 
 
 def _add_evaluated(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:

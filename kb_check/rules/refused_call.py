@@ -10,10 +10,13 @@ spline = curve.splines.new("BEZIER")
 spline.points.add(3)  # reported: a Bézier spline has `bezier_points`
 mesh.attributes.new("weight", "FLOAT", "CURVE")  # reported: meshes have no such domain
 vector.length()  # reported: a property
+strip.modifiers.new(
+    "Curves", "CURVES"
+)  # reported: ends Blender while the workspace has no scene for the sequencer
 ```
 
-What returns None instead of raising an error is a warning. Not reported: what depends on the mode (see
-not-in-edit-mode).
+What returns None instead of raising an error is a warning, and so is what ends Blender in a new file. Not reported:
+what depends on the mode (see not-in-edit-mode).
 """
 
 from __future__ import annotations
@@ -22,11 +25,11 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance
-from kb_build.records import last_name
+from kb_build.records import ENDS_WITHOUT, last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.made_here import bindings, callee_path, named_words, places
+from kb_check.made_here import bindings, callee_path, knows_all, named_words, places
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -46,6 +49,7 @@ def _check(script: Script) -> Iterator[Finding]:
     yield from _called_properties(script)
     earlier: dict[tuple[str, str, str], CallSite] = {}
     for call in calls(script):
+        yield from _ending(script, call)
         refusals = call.callee.symbol.refusals
         if not refusals or call.has_unpacking or not isinstance(call.node.func, ast.Attribute):
             continue
@@ -67,6 +71,17 @@ def _check(script: Script) -> Iterator[Finding]:
                     yield _finding(script, call, refusal, f"{word} {with_article(thing)}")
             elif refusal.values and refusal.message:
                 yield _finding(script, call, refusal, "")
+
+
+def _ending(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A call that ends Blender while something is None that the script never sets."""
+    for needed in call.callee.symbol.flagged(ENDS_WITHOUT):
+        if last_name(needed) not in named_words(script) and knows_all(script):
+            path = call.callee.symbol.path
+            yield Finding(
+                RULE.id, "warning", script.span(call.node),
+                f"`{path}` ends Blender while `{needed}` is None, as it is in a new file: set it before.", path,
+            )  # fmt: skip
 
 
 def _called_properties(script: Script) -> Iterator[Finding]:

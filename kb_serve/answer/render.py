@@ -14,6 +14,7 @@ from kb_build.symbol_lines import (
     fillers,
     first_sentence,
     literal,
+    mode_needed,
     new_subscript,
     of_evaluated,
     operator_needs,
@@ -176,6 +177,11 @@ def _listed(title: str, entries: Iterable[SymbolEntry]) -> Iterator[AnswerBlock]
         yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), title.lower())
 
 
+def _functions(members: Iterable[SymbolEntry]) -> list[SymbolEntry]:
+    """The functions among a class's members, without those that every class has."""
+    return [entry for entry in members if entry.kind == "function" and not entry.name.startswith("bl_rna_")]
+
+
 def _of_file_browser(symbol: Symbol) -> list[str]:
     """The arguments of an operator on files that say which of them its browser shows, and how."""
     names = [parameter.name for parameter in symbol.parameters]
@@ -261,6 +267,8 @@ class MarkdownRenderer:
             yield from _parameters(symbol)
         elif symbol.kind in {"module", "data"} and self.reader.members(symbol.path):
             yield from self._module(symbol)
+        elif symbol.collection:
+            yield from self._functions(symbol)
         if symbol.enum_items:
             yield AnswerBlock(f"**Values**\n{_items(symbol.enum_items)}", "values")
         if symbol.kind == "socket":
@@ -269,6 +277,18 @@ class MarkdownRenderer:
             yield from self._passage(symbol.path)
             if used.text:
                 yield used
+
+    def _functions(self, collection: Symbol) -> Iterator[AnswerBlock]:
+        """What a collection adds and removes elements with, and in which mode alone."""
+        entries = _functions(self.reader.members(TYPES + collection.collection).values())
+        if lines := [f"- {entry.line}{self._mode(entry.path)}" for entry in entries]:
+            title = f"**Functions of `{collection.name}`**"
+            yield AnswerBlock("\n".join((title, *lines)), "functions")
+
+    def _mode(self, path: str) -> str:
+        symbol = self.reader.symbol(path)
+        mode = mode_needed(symbol) if symbol else ""
+        return f" (only in {mode})" if mode else ""
 
     def _namesakes(self, socket: Symbol) -> Iterator[SymbolEntry]:
         """The other sockets of a node that have the name of one, of which each mode shows another."""
@@ -442,10 +462,7 @@ class MarkdownRenderer:
         if lineage:
             yield AnswerBlock("base classes: " + ", ".join(f"`{entry.name}`" for entry in lineage), "bases")
         yield from _listed("Properties", [entry for entry in members if entry.kind in {"property", "data"}])
-        functions = [entry for entry in members if entry.kind == "function"]
-        yield from _listed(
-            "Functions", [entry for entry in functions if not entry.name.startswith("bl_rna_get_subclass")]
-        )
+        yield from _listed("Functions", _functions(members))
         if inherited := list(self._inherited(path, lineage)):
             yield AnswerBlock(f"inherited: + {', '.join(inherited)}", "inherited members")
         below = [entry.name for entry in self.reader.subclasses(path) if entry.group in {"data", ""}]

@@ -235,7 +235,7 @@ class Expressions:
             recognition.corrections.append(correction)
             rows = [entry for entry in self._reader.by_name(correction.meant) if entry.group != "ui"]
         if not rows and not prose and not chain.steps:
-            self._parts(name, recognition)
+            self._parts(chain, recognition)
         if chain.attributes and len(rows) > _FEW:
             return  # a common name that its owner in the query does not have
         for rank, entry in enumerate(sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]):
@@ -246,8 +246,9 @@ class Expressions:
                 sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
             recognition.add(entry.path, sure - 0.03 * rank, "name")
 
-    def _parts(self, name: str, recognition: Recognition) -> None:
+    def _parts(self, chain: Chain, recognition: Recognition) -> None:
         """Adds the names that one which never was is made of, each as the likeliest class has it."""
+        name = chain.root
         entries = [entry for part in self._corrector.parts(name) for entry in self._reader.by_name(part)]
         entries = [entry for entry in entries if entry.group != "ui" and entry.kind in _CALLED_OR_SET]
         weights = self._reader.weights([entry.path for entry in entries])
@@ -259,7 +260,8 @@ class Expressions:
             best.setdefault(entry.name, entry.path)
         for rank, path in enumerate(list(best.values())[:_FEW]):
             recognition.add(path, 0.84 - 0.01 * rank, SIMILAR)
-        if best:
+        is_name = "_" in name and not chain.assigned and not self._reader.by_key(key(name))
+        if best or is_name:
             recognition.missing.append(MissingName(name))
 
     def _affinity(self, entry: SymbolEntry, prose: set[str]) -> float:

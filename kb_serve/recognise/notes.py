@@ -78,8 +78,9 @@ class Notes:
         for missing in recognition.missing:
             if recognition.removed and not missing.sure:
                 continue
-            if not missing.owner and similar:
-                yield f"Nothing is called `{missing.name}` in Blender {self._version}.{closest}"
+            if not missing.owner and (similar or not recognition.matches):
+                found = closest or " What follows was found by its words."
+                yield f"Nothing is called `{missing.name}` in Blender {self._version}.{found}"
             elif missing.owner and missing.name.startswith("["):
                 yield f"`{missing.owner}` takes no custom properties: `{missing.name}` fails.{closest}"
             elif missing.owner and missing.name not in removed_names:

@@ -28,6 +28,8 @@ MOST_ATTEMPTS = 4
 # What a refusal names: things and what was given.
 GIVEN = re.compile(r"'[^']*'|\"[^\"]*\"|\b" + NAME + r"\b|\b7(?:\.0+)?\b")
 NONE = "returned None"
+# What is None in a new file, and is set for what is tried here.
+SEQUENCER_SCENE = "bpy.context.workspace.sequencer_scene"
 # They leave elements that stand for nothing, which crashes whoever reads the mesh.
 NOT_TRIED = frozenset({"MeshEdges", "MeshLoops", "MeshLoopTriangles", "MeshPolygons"})
 
@@ -156,6 +158,20 @@ def is_taken_in_edit_mode(struct, owner, function, arguments):
         bpy.data.objects.remove(obj)
 
 
+def ends_unset(owner, function, arguments):
+    """Whether a call ends Blender while there is no scene for the sequencer."""
+    workspace = bpy.context.workspace
+    if getattr(workspace, "sequencer_scene", None) is None:
+        return False
+
+    def work():
+        workspace.sequencer_scene = None
+        refusal(owner, function, arguments)
+        return True
+
+    return not apart(work)
+
+
 def other_arguments(arguments, given):
     """The same choices with other names and numbers."""
     others = {str: "another", float: NUMBER + 1.0, int: NUMBER + 1}
@@ -171,6 +187,7 @@ class Trial:
         self.send = send
         self.skipped = skipped
         self.tried = set()
+        self.unset = set()
         self.things = []
         self.modes = {}
 
@@ -207,7 +224,12 @@ class Trial:
             mode = "" if given else self.mode(message, struct, owner, function, arguments)
             yield {"message": message, "given": given, "mode": mode}
         elif message is not None:
-            yield {"message": ""}
+            row = {"message": ""}
+            if function not in self.unset:
+                self.unset.add(function)
+                if ends_unset(owner, function, arguments):
+                    row["ends_without"] = SEQUENCER_SCENE
+            yield row
             if message := refusal(owner, function, arguments):
                 other = refusal(owner, function, other_arguments(arguments, chosen))
                 yield {"message": message, "again": "any" if other == message else "same"}
@@ -262,7 +284,10 @@ def tried_apart(make, observer):
 
 
 def find_all(write, observer):
-    """One ``refusals`` record for each function of which a call was refused: all outcomes of the calls."""
+    """One ``refusals`` record for each function of which a call was refused: all outcomes of the calls.
+
+    ``ends_without`` says what must not be None, if that ends Blender.
+    """
     if not can_work_apart():
         return
     found = defaultdict(list)
@@ -270,5 +295,6 @@ def find_all(write, observer):
         for row in tried_apart(make, observer):
             found[row.pop("path")].append(row)
     for path, outcomes in sorted(found.items()):
-        if any(row["message"] for row in outcomes):
-            write("refusals", path=path, outcomes=outcomes)
+        ends = next(filter(None, [row.pop("ends_without", "") for row in outcomes]), "")
+        if ends or any(row["message"] for row in outcomes):
+            write("refusals", path=path, outcomes=outcomes, ends_without=ends)

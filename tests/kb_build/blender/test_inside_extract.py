@@ -14,7 +14,7 @@ import pytest
 from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
-from kb_build.records import NewValue
+from kb_build.records import ENDS_WITHOUT, NewValue
 from kb_build.symbol_lines import fillers, operator_needs, type_text, usual_default
 from simworlds.sandbox.runtime import find_runtime
 
@@ -733,6 +733,20 @@ def test_a_thing_is_as_it_was_after_edit_mode_was_tried(tmp_path: Path) -> None:
     answers = run_statements(tmp_path, lines, {5: "[curve.splines[0] == spline, len(bpy.data.objects)]"})
     assert not any(error for error, _, _ in answers), answers
     assert answers[-1][1] == answers[-1][2]
+
+
+ADD_MODIFIER = """
+import bpy
+strips = bpy.context.scene.sequence_editor_create().strips
+strip = strips.new_effect("strip", "COLOR", channel=1, frame_start=1, length=9)
+strip.modifiers.new("modifier", "CURVES")
+"""
+
+
+def test_what_ends_blender_in_a_new_file_is_known(symbols: dict[str, Symbol]) -> None:
+    ended = subprocess.run([sys.executable, "-c", ADD_MODIFIER], capture_output=True, check=False)
+    known = symbols["bpy.types.StripModifiers.new"].flagged(ENDS_WITHOUT)
+    assert known == (("bpy.context.workspace.sequencer_scene",) if ended.returncode else ())
 
 
 def test_what_python_code_returns_has_the_type_of_its_elements(symbols: dict[str, Symbol]) -> None:

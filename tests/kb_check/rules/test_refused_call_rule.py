@@ -83,3 +83,19 @@ def test_a_second_call_counts_only_on_the_same_thing(check: Check, between: str)
     call = 'ob.modifiers.new("Cloth", "CLOTH")'
     found = check("refused-call", f"import bpy\nob = bpy.context.object\n{call}\n{between}\n{call}\n")
     assert len(found) == between.startswith("if")
+
+
+@pytest.mark.parametrize("before", ["", "bpy.context.workspace.sequencer_scene = scene"])
+def test_a_call_that_ends_blender_is_found_unless_what_it_needs_is_set(check: Check, before: str) -> None:
+    found = check(
+        "refused-call",
+        f"""\
+import bpy
+scene = bpy.context.scene
+{before}
+strips = scene.sequence_editor_create().strips
+strip = strips.new_effect("strip", "COLOR", channel=1, frame_start=1, length=9)
+strip.modifiers.new("modifier", "CURVES")
+""",
+    )
+    assert [(finding.span.line, finding.severity) for finding in found] == [(6, "warning")] * (not before)

@@ -145,6 +145,17 @@ def test_a_class_lists_its_own_members_and_counts_inherited_ones(
             assert not own or f" of `{ancestor.name}`" in inherited
 
 
+def test_a_collection_shows_what_adds_and_removes_its_elements(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.Armature.edit_bones").text
+    assert (
+        "**Functions of `edit_bones`**\n- `new(name)` — Add a new bone (only in Edit Mode)\n- `remove("
+        in text
+    )
+    text = kb.query("bpy.types.Curve.splines").text
+    assert "- `new(type)` — Add a new spline to the curve\n" in text
+    assert "bl_rna" not in text
+
+
 def test_a_base_class_names_its_subclasses(kb: KnowledgeBase) -> None:
     text = kb.query("bpy.types.Modifier", max_tokens=ALL).text
     assert "**Subclasses**: " in text

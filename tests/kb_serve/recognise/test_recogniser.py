@@ -334,6 +334,19 @@ def test_a_misspelt_lone_name_is_corrected(kb: KnowledgeBase, reader: BaseReader
     assert len(wrong(kb, cases)) <= 0.04 * len(cases)  # some slips make another word: ``swap`` of ``snap``
 
 
+def test_a_lone_name_is_said_to_be_none_only_if_it_is_none(kb: KnowledgeBase, reader: BaseReader) -> None:
+    rows = reader.rows("SELECT DISTINCT name FROM symbols WHERE name LIKE '%\\_%' ESCAPE '\\'")
+    names = [name for (name,) in rows if name.isidentifier() and not name.isupper()]
+    for name in random.Random(SEED).sample(names, examples(100)):
+        turned = "_".join(reversed(name.split("_"))).strip("_")
+        is_none = not reader.by_key(key(turned)) and not turned.isupper() and "_" in turned
+        for written, expected in ((name, False), (turned, is_none)):
+            answer = kb.query(written, max_tokens=200)
+            said = any(note.startswith(f"Nothing is called `{written}`") for note in answer.notes)
+            assert said <= expected, (written, answer.notes)
+            assert said or not expected or answer.notes, written
+
+
 def test_a_right_name_is_not_corrected(kb: KnowledgeBase, reader: BaseReader) -> None:
     for path in (
         of_data(reader, "property", examples(200))
