@@ -24,10 +24,13 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_ENTERING = re.compile(r"mode_set|mode_toggle|editmode|sculptmode|posemode|paint_toggle|edit_toggle")
+_ENTERING = re.compile(
+    r"mode_set|mode_toggle|editmode|sculptmode|posemode|paint_toggle|edit_toggle|mainfile|homefile|app_template"
+    r"|^(mode|poll|is_editmode)$"
+)
 _OF_MODES = re.compile(r"mode|poll")
 _ACTIVE = "bpy.types.LayerObjects.active"
-_SWITCHED = frozenset({"scene", "view_layer", "workspace"})
+_SWITCHED = frozenset({"scene", "view_layer", "workspace", "hide_viewport", "exclude"})
 _REMOVING = frozenset(
     {
         "remove",
@@ -49,6 +52,7 @@ _MOST_VISITS = 2000
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
+_LEFT = (ast.Yield, ast.YieldFrom, ast.Await)
 _CONDITIONAL = (ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
@@ -64,7 +68,7 @@ def states(script: Script) -> dict[ast.Call, State]:
 
 @once_per_script
 def enters_modes(script: Script) -> bool:
-    """Whether a script names anything that may enter a mode, or may do so out of sight."""
+    """Whether a script names anything that may enter a mode or asks for it, or may do so out of sight."""
     return not knows_all(script) or any(map(_ENTERING.search, named_words(script)))
 
 
@@ -81,7 +85,13 @@ class _Run:
         self._running: list[_Function] = []
         self._returned: list[list[State]] = []
         self._jumped: list[list[State]] = []
-        self._visits = 0
+        self._stored = {
+            node.attr
+            for node in script.nodes
+            if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load)
+        }
+        self._parameters = {node.arg for node in script.nodes if isinstance(node, ast.arg)}
+        self._visits = self._finals = 0
         self._block(script.tree.body, UNKNOWN)
         direct = {
             node.func.id
@@ -120,26 +130,40 @@ class _Run:
                 after = self._try(node, state)
             case ast.Match():
                 subject = self._expressions([node.subject], state)
-                after = self._all_ways([case.body for case in node.cases], subject)
+                after = self._all_ways([case.body for case in node.cases], State(muted=subject.muted))
             case _:
                 after = self._simple(node, self._stores(node, self._expressions([node], state)))
         return after
 
     def _simple(self, node: ast.stmt, state: State) -> State | None:
         """What is known behind a statement that has none within it; a run may leave with it."""
+        left = State(muted=state.muted) if self._finals else state
         if isinstance(node, ast.Return) and self._returned:
-            self._returned[-1].append(state)
+            self._returned[-1].append(left)
         if isinstance(node, (ast.Break, ast.Continue)) and self._jumped:
-            self._jumped[-1].append(state)
+            self._jumped[-1].append(left)
         return None if isinstance(node, (ast.Return, ast.Raise, ast.Break, ast.Continue)) else state
 
     def _if(self, node: ast.If, state: State) -> State | None:
         words = {part.attr for part in ast.walk(node.test) if isinstance(part, ast.Attribute)}
-        asks = any(map(_OF_MODES.search, words))
+        asks = self._asks(node.test)
         inside = replace(state, mode="" if asks else state.mode, kind="" if words else state.kind)
         ways = self._block(node.body, inside), self._block(node.orelse, inside) if node.orelse else state
         after = _join(*ways)
         return replace(after, mode="") if after and asks and None in ways else after
+
+    def _asks(self, test: ast.expr) -> bool:
+        """Whether a condition may have to do with the mode: names it, or depends on what callers say."""
+        for node in ast.walk(test):
+            if isinstance(node, ast.Attribute) and _OF_MODES.search(node.attr):
+                return True
+            if isinstance(node, ast.Name) and (node.id in self._parameters or node.id in self._names):
+                return True
+            if isinstance(node, ast.Name) and any(
+                value is None or _mentions_modes(value) for value in bindings(self.script).get(node.id, ())
+            ):
+                return True
+        return False
 
     def _all_ways(self, bodies: Iterable[Sequence[ast.stmt]], state: State) -> State | None:
         after: State | None = state
@@ -150,32 +174,40 @@ class _Run:
     def _loop(self, node: ast.For | ast.AsyncFor | ast.While, state: State) -> State | None:
         while True:
             self._jumped.append([])
-            at_test = self._expressions([node.test], state) if isinstance(node, ast.While) else state
+            at_test = state
+            if isinstance(node, ast.While):
+                at_test = self._expressions([node.test], state)
+                at_test = State(muted=state.muted) if self._asks(node.test) else at_test
             after = self._block(node.body, at_test)
             for jumped in self._jumped.pop():
                 after = _join(after, jumped)
             again = _join(state, after) or state
             if again == state:
-                return self._block(node.orelse, state)
+                asks = isinstance(node, ast.While) and self._asks(node.test)
+                return self._block(node.orelse, State(muted=state.muted) if asks else state)
             state = again
 
     def _with(self, node: ast.With | ast.AsyncWith, state: State) -> State | None:
         items = [item.context_expr for item in node.items]
         state = self._expressions(items, state)
-        if any("override" in ast.unparse(item) for item in items):
+        if any(not isinstance(item, ast.Call) or "override" in ast.unparse(item) for item in items):
             self._block(node.body, State(muted=True))
             return State(muted=state.muted)
         if any("suppress" in ast.unparse(item) for item in items):
             after = self._block(node.body, replace(state, muted=True))
             return replace(_join(State(), after) or State(), muted=state.muted)
-        return self._block(node.body, state)
+        after = self._block(node.body, state)
+        leaves = any(ast.unparse(item).startswith("open(") for item in items) and len(items) == 1
+        return after if leaves or after is None else State(muted=state.muted)
 
     def _try(self, node: ast.Try | ast.TryStar, state: State) -> State | None:
         muted = bool(node.handlers)
+        self._finals += bool(node.finalbody)
         after = self._block(node.body, replace(state, muted=muted or state.muted))
         after = self._block(node.orelse, replace(after, muted=state.muted)) if after else None
         for handler in node.handlers:
             after = _join(after, self._block(handler.body, State(muted=state.muted)))
+        self._finals -= bool(node.finalbody)
         if not node.finalbody:
             return after
         known = self._block(node.finalbody, after or State(muted=state.muted))
@@ -190,8 +222,9 @@ class _Run:
         self._running.append(node)
         self._returned.append([])
         jumped, self._jumped = self._jumped, []
+        finals, self._finals = self._finals, 0
         after = self._block(node.body, state)
-        self._jumped = jumped
+        self._jumped, self._finals = jumped, finals
         for returned in self._returned.pop():
             after = _join(after, returned)
         self._running.pop()
@@ -202,7 +235,9 @@ class _Run:
         """What is known after the calls within expressions, in the order in which they are made."""
         for root in roots:
             for call, is_sure in sorted(_made_calls(root), key=lambda pair: _end(pair[0])):
-                if is_sure:
+                if not isinstance(call, ast.Call):
+                    state = State(muted=state.muted)
+                elif is_sure:
                     state = self._call(call, state)
                 else:
                     self._call(call, State(muted=True))
@@ -225,16 +260,19 @@ class _Run:
         if call is None or call.callee.symbol.kind != "operator" or isinstance(given, Mapping):
             return State(muted=state.muted)
         plain = all(isinstance(value, ast.Constant) for value in node.args)
-        before = state if plain else State(muted=True)
-        self.seen[node] = self.seen.get(node, before).joined(before)
-        if refusal(self.script, call, before):
+        if not plain:
+            return State(muted=state.muted)
+        self.seen[node] = self.seen.get(node, state).joined(state)
+        if refusal(self.script, call, state):
             return state
-        return replace(after_operator(call, before), muted=state.muted)
+        return replace(after_operator(call, state), muted=state.muted)
 
     def _is_harmless(self, node: ast.Call) -> bool:
         """Whether a call leaves the active object and its mode alone."""
         if _is_operator(node):
             return isinstance(node.func, ast.Attribute) and node.func.attr == "poll"
+        if any(self._is_run(value) for value in (*node.args, *(word.value for word in node.keywords))):
+            return False
         if isinstance(node.func, ast.Name):
             name = node.func.id
             known = name in _BUILTINS or (
@@ -247,7 +285,11 @@ class _Run:
             return False
         if call := self._calls.get(node):
             return call.callee.symbol.kind != "operator"
-        return knows_all(self.script) and node.func.attr not in self._names
+        return knows_all(self.script) and node.func.attr not in self._names | self._stored
+
+    def _is_run(self, value: ast.expr) -> bool:
+        """Whether what is given to a call is something that it may run."""
+        return isinstance(value, ast.Lambda) or (isinstance(value, ast.Name) and value.id in self._names)
 
     def _stores(self, statement: ast.stmt, state: State) -> State:
         """What is known after what a statement assigns."""
@@ -270,18 +312,26 @@ def _join(first: State | None, second: State | None) -> State | None:
     return first.joined(second)
 
 
-def _end(node: ast.Call) -> tuple[int, int]:
+def _mentions_modes(value: ast.expr) -> bool:
+    return any(
+        (isinstance(node, ast.Attribute) and _OF_MODES.search(node.attr) is not None)
+        or (isinstance(node, ast.Constant) and isinstance(node.value, bool))
+        for node in ast.walk(value)
+    )
+
+
+def _end(node: ast.expr) -> tuple[int, int]:
     return node.end_lineno or 0, node.end_col_offset or 0
 
 
-def _made_calls(root: ast.AST) -> Iterator[tuple[ast.Call, bool]]:
-    """The calls within a statement or an expression; whether each is surely made, once."""
+def _made_calls(root: ast.AST) -> Iterator[tuple[ast.expr, bool]]:
+    """The calls within a statement or an expression, and what lets others run; whether each is surely made, once."""
     waiting = [(root, True)]
     while waiting:
         node, is_sure = waiting.pop()
         if isinstance(node, (ast.Lambda, *_FUNCTIONS, ast.ClassDef)):
             continue
-        if isinstance(node, ast.Call):
+        if isinstance(node, (ast.Call, *_LEFT)):
             yield node, is_sure
         is_sure = is_sure and not isinstance(node, _CONDITIONAL)
         waiting += [(child, is_sure) for child in ast.iter_child_nodes(node)]

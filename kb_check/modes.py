@@ -47,7 +47,7 @@ _ADDED = (
     (re.compile(r"bpy\.ops\.object\.(empty|effector)_add"), "EMPTY"),
 )
 # Modules whose operators leave the object that they edit active and in its mode.
-_EDITING = re.compile(r"bpy\.ops\.(mesh|curve|surface|armature|pose|uv|lattice|mball|font)\.\w+")
+_EDITING = re.compile(r"bpy\.ops\.(mesh|curve|surface|armature|uv|lattice|mball|font)\.\w+")
 # Modules whose operators leave Object Mode to those of these names.
 _OF_SCENES = re.compile(
     r"bpy\.ops\.(object|mesh|curve|surface|rigidbody|ptcache|fluid|cloth|boid|dpaint|constraint|collection|anim|nla|graph|"
@@ -66,6 +66,10 @@ _HAVING = {
     "SCULPT": "bpy.ops.sculpt.sculptmode_toggle", "VERTEX_PAINT": "bpy.ops.paint.vertex_paint_toggle",
     "WEIGHT_PAINT": "bpy.ops.paint.weight_paint_toggle", "TEXTURE_PAINT": "bpy.ops.paint.texture_paint_toggle",
 }  # fmt: skip
+
+
+# The modes in which operators are known to be refused: in those of paint and sculpture, masks let more run.
+_FOLLOWED = frozenset({"OBJECT", "EDIT", "POSE"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -122,7 +126,7 @@ def refusal(script: Script, call: CallSite, state: State) -> str:
     if symbol.path == _EDIT_TOGGLE:
         return _no_such_mode(script, "EDIT", state.kind)
     modes = modes_wanted(symbol)
-    if not state.mode or modes is None:
+    if state.mode not in _FOLLOWED or modes is None or not _is_of_active(symbol, state):
         return ""
     if not modes.takes(state.mode):
         how = (
@@ -136,6 +140,11 @@ def refusal(script: Script, call: CallSite, state: State) -> str:
     if types and state.kind and not modes.is_others and not types.takes(state.kind):
         return f"does not run with {with_article(state.kind)} object, which is the active one here"
     return ""
+
+
+def _is_of_active(operator: Symbol, state: State) -> bool:
+    """Whether an operator works on the active object: those of poses take the armature that deforms it, too."""
+    return state.kind == "ARMATURE" or not operator.path.startswith("bpy.ops.pose.")
 
 
 def entering(modes: Wanted) -> str:
@@ -166,13 +175,17 @@ def after_operator(call: CallSite, state: State) -> State:
         return State({"OBJECT": "EDIT", "EDIT": "OBJECT"}.get(state.mode, ""), state.kind)
     if kind := next((kind for pattern, kind in _ADDED if pattern.fullmatch(path)), ""):
         return _after_adding(call, kind, state)
-    return State("OBJECT") if path == _FACTORY else _after_working(call.callee.symbol, state)
+    if path == _FACTORY:
+        return UNKNOWN if "app_template" in call.given or call.has_unpacking else State("OBJECT")
+    return _after_working(call.callee.symbol, state)
 
 
 def _after_working(operator: Symbol, state: State) -> State:
     """What an operator tells, which would have been refused in other modes; whether it leaves things as they are."""
     path, modes = operator.path, modes_wanted(operator)
-    keeps = _KEEPING.fullmatch(path) is not None
+    keeps = _KEEPING.fullmatch(path) is not None or (
+        state.mode == "POSE" and path.startswith("bpy.ops.pose.")
+    )
     if modes and not modes.is_others and len(modes.names) == 1:
         if modes.names[0] == "OBJECT":
             return State("OBJECT", state.kind if keeps else "")
