@@ -13,7 +13,7 @@ mode is certain: something before, on every way, enters it or runs in it alone. 
 a mode that an operator needs, it is a note: Blender may be in that mode when the script starts.
 
 Not reported: what stands inside `temp_override`, or in a `try` that catches the error; and what follows calls that may
-change the mode out of sight.
+change the mode out of sight. Blender is taken to have its own settings: new objects do not enter Edit Mode.
 
 In which modes operators run was found by asking each, with objects of all types in all modes
 (``kb_build/blender/inside/operator_needs.py``).
