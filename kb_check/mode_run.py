@@ -85,10 +85,15 @@ class _Run:
         self._running: list[_Function] = []
         self._returned: list[list[State]] = []
         self._jumped: list[list[State]] = []
-        self._stored = {
-            node.attr
+        self._made_in: dict[ast.AST, list[tuple[ast.expr, bool]]] = {}
+        stores = [
+            node
             for node in script.nodes
             if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load)
+        ]
+        self._stored = {node.attr for node in stores}
+        self._storing_lines = {
+            node.lineno for node in stores if node.attr in _SWITCHED or node.attr == "active"
         }
         self._parameters = {node.arg for node in script.nodes if isinstance(node, ast.arg)}
         self._visits = self._finals = 0
@@ -99,11 +104,27 @@ class _Run:
             if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
         }
         handed_on = _handed_on(script)
+        lines = self._telling_lines()
         for node in script.nodes:
-            if isinstance(node, _FUNCTIONS):
+            if isinstance(node, _FUNCTIONS) and not lines.isdisjoint(_lines(node)):
                 is_own = self._functions.get(node.name) is node and node.name in direct
                 if not is_own or node.name in handed_on:
                     self._function(node, UNKNOWN)
+
+    def _telling_lines(self) -> set[int]:
+        """The lines that have to do with modes, themselves or by the script's own functions that they call."""
+        lines = {node.lineno for node, call in self._calls.items() if has_to_do_with_modes(call)}
+        asked: set[str] = set()
+        while True:
+            names = {name for name, node in self._functions.items() if not lines.isdisjoint(_lines(node))}
+            if names <= asked:
+                return lines
+            asked |= names
+            lines |= {
+                node.lineno
+                for node in self.script.nodes
+                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in names
+            }
 
     def _block(self, statements: Sequence[ast.stmt], state: State | None) -> State | None:
         """What is known after statements; None where a run does not get behind them."""
@@ -234,7 +255,7 @@ class _Run:
     def _expressions(self, roots: Iterable[ast.AST], state: State) -> State:
         """What is known after the calls within expressions, in the order in which they are made."""
         for root in roots:
-            for call, is_sure in sorted(_made_calls(root), key=lambda pair: _end(pair[0])):
+            for call, is_sure in self._made(root):
                 if not isinstance(call, ast.Call):
                     state = State(muted=state.muted)
                 elif is_sure:
@@ -243,6 +264,12 @@ class _Run:
                     self._call(call, State(muted=True))
                     state = state if self._is_harmless(call) else State(muted=state.muted)
         return state
+
+    def _made(self, root: ast.AST) -> list[tuple[ast.expr, bool]]:
+        """The calls within a statement or an expression in their order; a run may come there often."""
+        if (found := self._made_in.get(root)) is None:
+            found = self._made_in[root] = sorted(_made_calls(root), key=lambda pair: _end(pair[0]))
+        return found
 
     def _call(self, node: ast.Call, state: State) -> State:
         if _is_operator(node) and not self._is_harmless(node):
@@ -293,6 +320,8 @@ class _Run:
 
     def _stores(self, statement: ast.stmt, state: State) -> State:
         """What is known after what a statement assigns."""
+        if self._storing_lines.isdisjoint(_lines(statement)):
+            return state
         for node in ast.walk(statement):
             if not isinstance(node, ast.Attribute) or isinstance(node.ctx, ast.Load):
                 continue
@@ -310,6 +339,10 @@ def _join(first: State | None, second: State | None) -> State | None:
     if first is None or second is None:
         return first or second
     return first.joined(second)
+
+
+def _lines(node: ast.stmt) -> range:
+    return range(node.lineno, (node.end_lineno or node.lineno) + 1)
 
 
 def _mentions_modes(value: ast.expr) -> bool:
@@ -355,6 +388,7 @@ def _own_functions(script: Script) -> dict[str, _Function]:
     for node in script.nodes:
         if isinstance(node, _FUNCTIONS) and node not in methods:
             found.setdefault(node.name, []).append(node)
+    yields = [node.lineno for node in script.nodes if isinstance(node, (ast.Yield, ast.YieldFrom))]
     return {
         name: nodes[0]
         for name, nodes in found.items()
@@ -362,7 +396,7 @@ def _own_functions(script: Script) -> dict[str, _Function]:
         and name not in bindings(script)
         and not nodes[0].decorator_list
         and isinstance(nodes[0], ast.FunctionDef)
-        and not any(isinstance(node, (ast.Yield, ast.YieldFrom)) for node in ast.walk(nodes[0]))
+        and not any(nodes[0].lineno <= line <= (nodes[0].end_lineno or 0) for line in yields)
     }
 
 

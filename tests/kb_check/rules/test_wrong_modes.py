@@ -62,7 +62,7 @@ bpy.ops.object.mode_set(mode="WEIGHT_PAINT")
 bpy.ops.object.convert(target="CURVE")
 bpy.ops.object.delete()
 """
-_SOUND = {
+_SOUND: dict[str, str] = {
     "helpers": """\
 import bpy
 def enter():
@@ -291,7 +291,7 @@ smooth_selected()
 
 
 def test_what_is_refused_is_found_and_nothing_else(check: Check, tmp_path: Path) -> None:
-    answers = run_statements(tmp_path, _CODE.splitlines())
+    answers = run_statements(tmp_path, list[str](_CODE.splitlines()))
     found = check("wrong-mode", _CODE)
     assert {finding.span.line for finding in found} == {
         place for place, (error, *_) in enumerate(answers, 1) if error
@@ -301,7 +301,8 @@ def test_what_is_refused_is_found_and_nothing_else(check: Check, tmp_path: Path)
 
 def test_scripts_that_blender_runs_have_no_finding(check: Check, tmp_path: Path) -> None:
     fresh = "import bpy\nbpy.ops.wm.read_factory_settings(use_empty=True)\n"
-    answers = run_statements(tmp_path, [fresh + code for code in _SOUND.values()])
+    scripts: list[str] = [fresh + code for code in _SOUND.values()]
+    answers = run_statements(tmp_path, scripts)
     assert [name for name, (error, *_) in zip(_SOUND, answers, strict=True) if error] == []
     assert [(name, found) for name, code in _SOUND.items() if (found := check("wrong-mode", code))] == []
 
