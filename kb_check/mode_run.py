@@ -11,7 +11,7 @@ import builtins
 import re
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, TypeVar
 
 from kb_build.flow.types import Mapping
 from kb_check.calls import calls
@@ -50,10 +50,25 @@ _COMPUTING = frozenset(
 _BUILTINS = frozenset(dir(builtins)) - _COMPUTING
 _MOST_VISITS = 2000
 
+_Node = TypeVar("_Node", bound=ast.AST)
+
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _LEFT = (ast.Yield, ast.YieldFrom, ast.Await)
 _CONDITIONAL = (ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
+
+
+@once_per_script
+def _by_type(script: Script) -> dict[type[ast.AST], list[ast.AST]]:
+    found: dict[type[ast.AST], list[ast.AST]] = {}
+    for node in script.nodes:
+        found.setdefault(type(node), []).append(node)
+    return found
+
+
+def _all(script: Script, *types: type[_Node]) -> list[_Node]:
+    """The nodes of a script that are of exactly these types; it is gone through once for all of them."""
+    return [node for kind in types for node in _by_type(script).get(kind, ()) if isinstance(node, kind)]
 
 
 @once_per_script
@@ -80,33 +95,26 @@ class _Run:
         self.seen: dict[ast.Call, State] = {}
         self._calls = {call.node: call for call in calls(script)}
         self._functions = _own_functions(script)
-        self._names = {node.name for node in script.nodes if isinstance(node, (*_FUNCTIONS, ast.ClassDef))}
+        self._names = {node.name for node in _all(script, *_FUNCTIONS, ast.ClassDef)}
         self._outcomes: dict[tuple[_Function, State], State] = {}
         self._running: list[_Function] = []
         self._returned: list[list[State]] = []
         self._jumped: list[list[State]] = []
+        self._calling_lines = {node.lineno for node in _all(script, ast.Call, *_LEFT)}
         self._made_in: dict[ast.AST, list[tuple[ast.expr, bool]]] = {}
-        stores = [
-            node
-            for node in script.nodes
-            if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load)
-        ]
+        stores = [node for node in _all(script, ast.Attribute) if not isinstance(node.ctx, ast.Load)]
         self._stored = {node.attr for node in stores}
         self._storing_lines = {
             node.lineno for node in stores if node.attr in _SWITCHED or node.attr == "active"
         }
-        self._parameters = {node.arg for node in script.nodes if isinstance(node, ast.arg)}
+        self._parameters = {node.arg for node in _all(script, ast.arg)}
         self._visits = self._finals = 0
         self._block(script.tree.body, UNKNOWN)
-        direct = {
-            node.func.id
-            for node in script.nodes
-            if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
-        }
+        direct = {node.func.id for node in _all(script, ast.Call) if isinstance(node.func, ast.Name)}
         handed_on = _handed_on(script)
         lines = self._telling_lines()
-        for node in script.nodes:
-            if isinstance(node, _FUNCTIONS) and not lines.isdisjoint(_lines(node)):
+        for node in _all(script, *_FUNCTIONS):
+            if not lines.isdisjoint(_lines(node)):
                 is_own = self._functions.get(node.name) is node and node.name in direct
                 if not is_own or node.name in handed_on:
                     self._function(node, UNKNOWN)
@@ -122,8 +130,8 @@ class _Run:
             asked |= names
             lines |= {
                 node.lineno
-                for node in self.script.nodes
-                if isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in names
+                for node in _all(self.script, ast.Call)
+                if isinstance(node.func, ast.Name) and node.func.id in names
             }
 
     def _block(self, statements: Sequence[ast.stmt], state: State | None) -> State | None:
@@ -267,6 +275,8 @@ class _Run:
 
     def _made(self, root: ast.AST) -> list[tuple[ast.expr, bool]]:
         """The calls within a statement or an expression in their order; a run may come there often."""
+        if isinstance(root, (ast.stmt, ast.expr)) and self._calling_lines.isdisjoint(_lines(root)):
+            return []
         if (found := self._made_in.get(root)) is None:
             found = self._made_in[root] = sorted(_made_calls(root), key=lambda pair: _end(pair[0]))
         return found
@@ -341,7 +351,7 @@ def _join(first: State | None, second: State | None) -> State | None:
     return first.joined(second)
 
 
-def _lines(node: ast.stmt) -> range:
+def _lines(node: ast.stmt | ast.expr) -> range:
     return range(node.lineno, (node.end_lineno or node.lineno) + 1)
 
 
@@ -384,11 +394,11 @@ def _is_operator(call: ast.Call) -> bool:
 def _own_functions(script: Script) -> dict[str, _Function]:
     """The script's functions that a name surely calls: plain ones, defined once, that nothing else is called like."""
     found: dict[str, list[_Function]] = {}
-    methods = {item for node in script.nodes if isinstance(node, ast.ClassDef) for item in node.body}
-    for node in script.nodes:
-        if isinstance(node, _FUNCTIONS) and node not in methods:
+    methods = {item for node in _all(script, ast.ClassDef) for item in node.body}
+    for node in _all(script, *_FUNCTIONS):
+        if node not in methods:
             found.setdefault(node.name, []).append(node)
-    yields = [node.lineno for node in script.nodes if isinstance(node, (ast.Yield, ast.YieldFrom))]
+    yields = [node.lineno for node in _all(script, ast.Yield, ast.YieldFrom)]
     return {
         name: nodes[0]
         for name, nodes in found.items()
@@ -403,11 +413,9 @@ def _own_functions(script: Script) -> dict[str, _Function]:
 @once_per_script
 def _handed_on(script: Script) -> frozenset[str]:
     """The names that are used for more than to call them."""
-    called = {node.func for node in script.nodes if isinstance(node, ast.Call)}
+    called = {node.func for node in _all(script, ast.Call)}
     return frozenset(
-        node.id
-        for node in script.nodes
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Load) and node not in called
+        node.id for node in _all(script, ast.Name) if isinstance(node.ctx, ast.Load) and node not in called
     )
 
 
@@ -415,7 +423,6 @@ def _handed_on(script: Script) -> frozenset[str]:
 def _imported(script: Script) -> frozenset[str]:
     """The names that imports bind."""
     found: set[str] = set()
-    for node in script.nodes:
-        if isinstance(node, (ast.Import, ast.ImportFrom)):
-            found.update((alias.asname or alias.name).partition(".")[0] for alias in node.names)
+    for node in _all(script, ast.Import, ast.ImportFrom):
+        found.update((alias.asname or alias.name).partition(".")[0] for alias in node.names)
     return frozenset(found)
