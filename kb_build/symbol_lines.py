@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import re
 import textwrap
+from dataclasses import dataclass
+from functools import cache
 from itertools import dropwhile, groupby, islice, takewhile
 from operator import attrgetter
 from typing import TYPE_CHECKING
@@ -23,6 +26,11 @@ _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
 _SHOWN_OTHERS = 4
 _SHOWN_LABELS = 3
+# What operators want of the active object, as ``kb_build/blender/inside/operator_needs.py`` words it.
+_NEEDED = re.compile(
+    r"an active(?: and selected)? object(?P<types>(?:, not)? of type [^ ,]+)?(?P<modes>(?:, not)? in mode [^ ,]+)?"
+)
+_QUOTED = re.compile(r"'(\w+)'")
 
 
 def literal(value: object) -> str:
@@ -100,6 +108,35 @@ def operator_needs(symbol: Symbol) -> str:
     given = [f"`{member}` in the context (`temp_override({member}=…)`)" for member in symbol.flagged(GIVEN)]
     areas = [area_text(operator_areas(symbol))] if operator_areas(symbol) else []
     return "".join(symbol.flagged(NEEDS)) or ", or ".join(given + areas)
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which types, or modes, of active objects an operator runs with: these ``names``, or all others."""
+
+    names: tuple[str, ...]
+    is_others: bool = False
+
+    def takes(self, name: str) -> bool:
+        """Whether an operator runs with a type, or in a mode."""
+        return (name in self.names) != self.is_others
+
+
+def operator_active(symbol: Symbol) -> tuple[Wanted | None, Wanted | None]:
+    """With which types of active objects, and in which modes, an operator runs; None where any will do."""
+    return _active("".join(symbol.flagged(NEEDS)))
+
+
+@cache
+def _active(needs: str) -> tuple[Wanted | None, Wanted | None]:
+    found = _NEEDED.fullmatch(needs)
+    return (_wanted(found["types"]), _wanted(found["modes"])) if found else (None, None)
+
+
+def _wanted(text: str | None) -> Wanted | None:
+    if not text or "…" in text:
+        return None
+    return Wanted(tuple(_QUOTED.findall(text)), text.startswith(", not"))
 
 
 def operator_areas(symbol: Symbol) -> tuple[str, ...]:

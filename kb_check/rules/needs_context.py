@@ -19,30 +19,28 @@ area and in none (``kb_build/blender/inside/operator_areas.py``).
 
 from __future__ import annotations
 
-import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Builtin, Mapping, Operator
 from kb_build.symbol_lines import area_text, operator_areas, operator_given
+from kb_check.background import is_called_by_others, lines_of_others
 from kb_check.calls import calls
 from kb_check.findings import Finding
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterator
 
     from kb_build.records import Symbol
     from kb_check.script import Script
 
-_BACKGROUND = "bpy.app.background"
-
 
 def _check(script: Script) -> Iterator[Finding]:
     found = [call for call in calls(script) if _wants(call.callee.symbol)]
-    if not found or _is_ready(script):
+    if not found or is_called_by_others(script):
         return
     asked = set(_asked(script))
-    given = [*_given_context(script), *_uncalled(script)]
+    given = lines_of_others(script)
     for call in found:
         path = call.callee.symbol.path
         first = script.type_of(call.node.args[0]) if call.node.args else None
@@ -72,59 +70,11 @@ def _advice(operator: Symbol) -> str:
     return f"{where}: give it one with `bpy.context.temp_override(window=…, area=…, region=…)`."
 
 
-def _is_ready(script: Script) -> bool:
-    """Whether a script is an add-on or a module, which others call, or knows that there may be no window."""
-    body = script.tree.body
-    if any(isinstance(node, ast.FunctionDef) and node.name == "register" for node in body) or not _runs(body):
-        return True
-    return any(_BACKGROUND in row.symbols for row in script.resolutions("attribute", "name"))
-
-
-def _runs(body: Sequence[ast.stmt]) -> bool:
-    """Whether a module calls anything when it is run."""
-    return any(
-        isinstance(getattr(node, "value", None), ast.Call)
-        or (isinstance(node, (ast.If, ast.For, ast.With, ast.Try, ast.While)) and _runs(node.body))
-        for node in body
-    )
-
-
 def _asked(script: Script) -> Iterator[str]:
     """The operators whose poll a script asks for."""
     for kind in script.analysis.types.values():
         if isinstance(kind, Builtin) and kind.name == "operator.poll" and isinstance(kind.receiver, Operator):
             yield kind.receiver.path
-
-
-def _given_context(script: Script) -> Iterator[tuple[int, int]]:
-    """The lines that have a context of their own: classes, and what stands inside ``temp_override``."""
-    for node in script.nodes:
-        if isinstance(node, ast.ClassDef) or (
-            isinstance(node, (ast.With, ast.AsyncWith)) and _overrides(node)
-        ):
-            yield node.lineno, node.end_lineno or node.lineno
-
-
-def _uncalled(script: Script) -> Iterator[tuple[int, int]]:
-    """The lines of functions that the script does not call itself."""
-    called = {
-        node.func.id
-        for node in script.nodes
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
-    }
-    for node in script.nodes:
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name not in called:
-            yield node.lineno, node.end_lineno or node.lineno
-
-
-def _overrides(node: ast.With | ast.AsyncWith) -> bool:
-    calls_made = (item.context_expr for item in node.items)
-    return any(
-        isinstance(call, ast.Call)
-        and isinstance(call.func, ast.Attribute)
-        and call.func.attr == "temp_override"
-        for call in calls_made
-    )
 
 
 RULE = Rule("needs-context", "note", "An operator that runs only in an area of a window", _check)

@@ -1,0 +1,66 @@
+"""Which lines of a script run in the context that Blender starts with, without a window."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_check.script import Script
+
+_BACKGROUND = "bpy.app.background"
+
+
+def is_called_by_others(script: Script) -> bool:
+    """Whether a script is an add-on or a module, which others call, or knows that there may be no window."""
+    body = script.tree.body
+    if any(isinstance(node, ast.FunctionDef) and node.name == "register" for node in body) or not _runs(body):
+        return True
+    return any(_BACKGROUND in row.symbols for row in script.resolutions("attribute", "name"))
+
+
+def _runs(body: Sequence[ast.stmt]) -> bool:
+    """Whether a module calls anything when it is run."""
+    return any(
+        isinstance(getattr(node, "value", None), ast.Call)
+        or (isinstance(node, (ast.If, ast.For, ast.With, ast.Try, ast.While)) and _runs(node.body))
+        for node in body
+    )
+
+
+def lines_of_others(script: Script) -> list[tuple[int, int]]:
+    """The lines whose context others give: first and last of each part."""
+    return [*_given_context(script), *_uncalled(script)]
+
+
+def _given_context(script: Script) -> Iterator[tuple[int, int]]:
+    """The lines that have a context of their own: classes, and what stands inside ``temp_override``."""
+    for node in script.nodes:
+        if isinstance(node, ast.ClassDef) or (
+            isinstance(node, (ast.With, ast.AsyncWith)) and _overrides(node)
+        ):
+            yield node.lineno, node.end_lineno or node.lineno
+
+
+def _uncalled(script: Script) -> Iterator[tuple[int, int]]:
+    """The lines of functions that the script does not call itself."""
+    called = {
+        node.func.id
+        for node in script.nodes
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
+    }
+    for node in script.nodes:
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name not in called:
+            yield node.lineno, node.end_lineno or node.lineno
+
+
+def _overrides(node: ast.With | ast.AsyncWith) -> bool:
+    calls_made = (item.context_expr for item in node.items)
+    return any(
+        isinstance(call, ast.Call)
+        and isinstance(call.func, ast.Attribute)
+        and call.func.attr == "temp_override"
+        for call in calls_made
+    )
