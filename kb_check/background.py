@@ -37,22 +37,16 @@ def lines_of_others(script: Script) -> list[tuple[int, int]]:
 
 def _given_context(script: Script) -> Iterator[tuple[int, int]]:
     """The lines that have a context of their own: classes, and what stands inside ``temp_override``."""
-    for node in script.nodes:
-        if isinstance(node, ast.ClassDef) or (
-            isinstance(node, (ast.With, ast.AsyncWith)) and _overrides(node)
-        ):
+    for node in script.all(ast.ClassDef, ast.With, ast.AsyncWith):
+        if isinstance(node, ast.ClassDef) or _overrides(node):
             yield node.lineno, node.end_lineno or node.lineno
 
 
 def _uncalled(script: Script) -> Iterator[tuple[int, int]]:
     """The lines of functions that the script does not call itself."""
-    called = {
-        node.func.id
-        for node in script.nodes
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name)
-    }
-    for node in script.nodes:
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef)) and node.name not in called:
+    called = {node.func.id for node in script.all(ast.Call) if isinstance(node.func, ast.Name)}
+    for node in script.all(ast.FunctionDef, ast.AsyncFunctionDef):
+        if node.name not in called:
             yield node.lineno, node.end_lineno or node.lineno
 
 

@@ -13,6 +13,13 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _DEEPEST = 4
+# The nodes that bind names; of type parameters those that this Python has.
+_TYPE_PARAMETERS = ("ParamSpec", "TypeVar", "TypeVarTuple")
+_BINDING: tuple[type[ast.AST], ...] = (
+    ast.Name, ast.arg, ast.alias, ast.Global, ast.Nonlocal, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef,
+    ast.ExceptHandler, ast.MatchAs, ast.MatchStar, ast.MatchMapping,
+    *(getattr(ast, name) for name in _TYPE_PARAMETERS if hasattr(ast, name)),
+)  # fmt: skip
 _LITERALS = (ast.Constant, ast.UnaryOp, ast.Tuple, ast.Name)
 
 
@@ -62,7 +69,7 @@ def set_of(script: Script, node: ast.Constant) -> Fix:
 @once_per_script
 def functions(script: Script) -> dict[str, ast.FunctionDef]:
     """Name → the function of the script that is called so, where nothing else is."""
-    found = {node.name: node for node in script.nodes if isinstance(node, ast.FunctionDef)}
+    found = {node.name: node for node in script.all(ast.FunctionDef)}
     times = times_bound(script)
     return {name: node for name, node in found.items() if times[name] == 1}
 
@@ -70,7 +77,7 @@ def functions(script: Script) -> dict[str, ast.FunctionDef]:
 @once_per_script
 def times_bound(script: Script) -> Counter[str]:
     """How often each name is bound, wherever."""
-    return Counter(name for node in script.nodes for name in bound_names(node))
+    return Counter(name for node in script.all(*_BINDING) for name in bound_names(node))
 
 
 @once_per_script
@@ -78,8 +85,8 @@ def _once_bound(script: Script) -> dict[str, ast.expr]:
     """Name → the literal that its only assignment gives it. A list is none: it may grow."""
     times = times_bound(script)
     values: dict[str, ast.expr] = {}
-    for node in script.nodes:
-        if isinstance(node, ast.Assign) and isinstance(node.value, _LITERALS):
+    for node in script.all(ast.Assign):
+        if isinstance(node.value, _LITERALS):
             values |= {target.id: node.value for target in node.targets if isinstance(target, ast.Name)}
     return {name: value for name, value in values.items() if times[name] == 1}
 

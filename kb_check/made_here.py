@@ -16,11 +16,18 @@ if TYPE_CHECKING:
 _DEEPEST = 8
 _ID = "bpy.types.ID"
 _WORD = re.compile(r"\w+")
+_BODIES: tuple[type[ast.AST], ...] = (
+    ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.If, ast.For, ast.AsyncFor, ast.While, ast.With,
+    ast.AsyncWith, ast.Try, ast.TryStar, ast.ExceptHandler, ast.match_case,
+)  # fmt: skip
 _COMPUTING = frozenset({"setattr", "exec", "eval"})
 # Modules that change nothing in Blender's data but what is given to them.
 _HARMLESS = (sys.stdlib_module_names - {"runpy", "importlib"}) | {
     "bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "idprop", "bl_math", "blf", "aud", "imbuf", "numpy",
 }  # fmt: skip
+_DOTS = 3  # of the path of an operator; that of a module has fewer
+# Operators that change nothing but the active object, which they leave as new as it is.
+_PLAIN = re.compile(r"bpy\.ops\.(mesh\.primitive_\w+_add|object\.(select_all|shade_\w+|delete)|wm\.read_\w+)")
 _OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
 
 
@@ -28,7 +35,7 @@ _OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
 def named_words(script: Script) -> frozenset[str]:
     """Every word of the script that may name a setting."""
     found: set[str] = set()
-    for node in script.nodes:
+    for node in script.all(ast.Attribute, ast.keyword, ast.Constant):
         match node:
             case ast.Attribute(attr=name) | ast.keyword(arg=str(name)):
                 found.add(name)
@@ -42,11 +49,8 @@ def named_words(script: Script) -> frozenset[str]:
 @once_per_script
 def computes_names(script: Script) -> bool:
     """Whether something out of sight may set settings: computed names, or the files beside the script."""
-    return any(
-        (isinstance(node, ast.Call) and isinstance(node.func, ast.Name) and node.func.id in _COMPUTING)
-        or (isinstance(node, ast.ImportFrom) and node.level > 0)
-        for node in script.nodes
-    )
+    called = {node.func.id for node in script.all(ast.Call) if isinstance(node.func, ast.Name)}
+    return not _COMPUTING.isdisjoint(called) or any(node.level > 0 for node in script.all(ast.ImportFrom))
 
 
 @once_per_script
@@ -54,12 +58,8 @@ def knows_all(script: Script) -> bool:
     """Whether all that a script does stands in it: it computes no names, and imports nothing that changes scenes."""
     if computes_names(script):
         return False
-    imported: set[str] = set()
-    for node in script.nodes:
-        if isinstance(node, ast.Import):
-            imported.update(alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            imported.add(node.module or "")
+    imported = {alias.name for node in script.all(ast.Import) for alias in node.names}
+    imported |= {node.module or "" for node in script.all(ast.ImportFrom)}
     return {name.partition(".")[0] for name in imported} <= _HARMLESS
 
 
@@ -118,12 +118,17 @@ def called_operators(script: Script) -> frozenset[str]:
     return frozenset(path for row in rows for path in row.symbols if path.startswith("bpy.ops."))
 
 
+def has_plain_operators_only(script: Script) -> bool:
+    """Whether all operators that the script calls leave things that it made as they are."""
+    return all(_PLAIN.fullmatch(path) for path in called_operators(script) if path.count(".") == _DOTS)
+
+
 @once_per_script
 def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
     """Name → everything that it is bound to, None for what is no expression."""
     found: dict[str, list[ast.expr | None]] = {}
     assigned: set[ast.Name] = set()
-    for node in script.nodes:
+    for node in script.all(ast.Assign, ast.AnnAssign, ast.arg):
         match node:
             case ast.Assign(targets=[ast.Name() as name]) | ast.AnnAssign(target=ast.Name() as name):
                 found.setdefault(name.id, []).append(node.value)
@@ -132,8 +137,8 @@ def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
                 found.setdefault(name, []).append(None)
             case _:
                 pass
-    for node in script.nodes:
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store) and node not in assigned:
+    for node in script.all(ast.Name):
+        if isinstance(node.ctx, ast.Store) and node not in assigned:
             found.setdefault(node.id, []).append(None)
     return found
 
@@ -142,7 +147,7 @@ def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
 def places(script: Script) -> dict[ast.stmt, tuple[list[ast.stmt], int]]:
     """Statement → the body that it is in, and its place there."""
     found: dict[ast.stmt, tuple[list[ast.stmt], int]] = {}
-    for node in script.nodes:
+    for node in script.all(*_BODIES):
         for field in ("body", "orelse", "finalbody"):
             body = getattr(node, field, None)
             if isinstance(body, list):
@@ -159,10 +164,10 @@ def alias(script: Script, node: ast.expr) -> ast.expr:
 @once_per_script
 def _handed_on(script: Script) -> frozenset[str]:
     """The names whose values are passed to functions that are neither the API's nor the script's own."""
-    own = {node.name for node in script.nodes if isinstance(node, (ast.FunctionDef, ast.ClassDef))}
+    own = {node.name for node in script.all(ast.FunctionDef, ast.ClassDef)}
     found: set[str] = set()
-    for node in script.nodes:
-        if isinstance(node, ast.Call) and not callee_path(script, node):
+    for node in script.all(ast.Call):
+        if not callee_path(script, node):
             function = node.func
             name = function.id if isinstance(function, ast.Name) else getattr(function, "attr", "")
             if name not in own:

@@ -11,7 +11,7 @@ import builtins
 import re
 from contextlib import suppress
 from dataclasses import replace
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Mapping
 from kb_check.calls import calls
@@ -50,25 +50,11 @@ _COMPUTING = frozenset(
 _BUILTINS = frozenset(dir(builtins)) - _COMPUTING
 _MOST_VISITS = 2000
 
-_Node = TypeVar("_Node", bound=ast.AST)
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 _FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
 _LEFT = (ast.Yield, ast.YieldFrom, ast.Await)
 _CONDITIONAL = (ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
-
-
-@once_per_script
-def _by_type(script: Script) -> dict[type[ast.AST], list[ast.AST]]:
-    found: dict[type[ast.AST], list[ast.AST]] = {}
-    for node in script.nodes:
-        found.setdefault(type(node), []).append(node)
-    return found
-
-
-def _all(script: Script, *types: type[_Node]) -> list[_Node]:
-    """The nodes of a script that are of exactly these types; it is gone through once for all of them."""
-    return [node for kind in types for node in _by_type(script).get(kind, ()) if isinstance(node, kind)]
 
 
 @once_per_script
@@ -95,25 +81,25 @@ class _Run:
         self.seen: dict[ast.Call, State] = {}
         self._calls = {call.node: call for call in calls(script)}
         self._functions = _own_functions(script)
-        self._names = {node.name for node in _all(script, *_FUNCTIONS, ast.ClassDef)}
+        self._names = {node.name for node in script.all(*_FUNCTIONS, ast.ClassDef)}
         self._outcomes: dict[tuple[_Function, State], State] = {}
         self._running: list[_Function] = []
         self._returned: list[list[State]] = []
         self._jumped: list[list[State]] = []
-        self._calling_lines = {node.lineno for node in _all(script, ast.Call, *_LEFT)}
+        self._calling_lines = {node.lineno for node in script.all(ast.Call, *_LEFT)}
         self._made_in: dict[ast.AST, list[tuple[ast.expr, bool]]] = {}
-        stores = [node for node in _all(script, ast.Attribute) if not isinstance(node.ctx, ast.Load)]
+        stores = [node for node in script.all(ast.Attribute) if not isinstance(node.ctx, ast.Load)]
         self._stored = {node.attr for node in stores}
         self._storing_lines = {
             node.lineno for node in stores if node.attr in _SWITCHED or node.attr == "active"
         }
-        self._parameters = {node.arg for node in _all(script, ast.arg)}
+        self._parameters = {node.arg for node in script.all(ast.arg)}
         self._visits = self._finals = 0
         self._block(script.tree.body, UNKNOWN)
-        direct = {node.func.id for node in _all(script, ast.Call) if isinstance(node.func, ast.Name)}
+        direct = {node.func.id for node in script.all(ast.Call) if isinstance(node.func, ast.Name)}
         handed_on = _handed_on(script)
         lines = self._telling_lines()
-        for node in _all(script, *_FUNCTIONS):
+        for node in script.all(*_FUNCTIONS):
             if not lines.isdisjoint(_lines(node)):
                 is_own = self._functions.get(node.name) is node and node.name in direct
                 if not is_own or node.name in handed_on:
@@ -130,7 +116,7 @@ class _Run:
             asked |= names
             lines |= {
                 node.lineno
-                for node in _all(self.script, ast.Call)
+                for node in self.script.all(ast.Call)
                 if isinstance(node.func, ast.Name) and node.func.id in names
             }
 
@@ -394,11 +380,11 @@ def _is_operator(call: ast.Call) -> bool:
 def _own_functions(script: Script) -> dict[str, _Function]:
     """The script's functions that a name surely calls: plain ones, defined once, that nothing else is called like."""
     found: dict[str, list[_Function]] = {}
-    methods = {item for node in _all(script, ast.ClassDef) for item in node.body}
-    for node in _all(script, *_FUNCTIONS):
+    methods = {item for node in script.all(ast.ClassDef) for item in node.body}
+    for node in script.all(*_FUNCTIONS):
         if node not in methods:
             found.setdefault(node.name, []).append(node)
-    yields = [node.lineno for node in _all(script, ast.Yield, ast.YieldFrom)]
+    yields = [node.lineno for node in script.all(ast.Yield, ast.YieldFrom)]
     return {
         name: nodes[0]
         for name, nodes in found.items()
@@ -413,9 +399,9 @@ def _own_functions(script: Script) -> dict[str, _Function]:
 @once_per_script
 def _handed_on(script: Script) -> frozenset[str]:
     """The names that are used for more than to call them."""
-    called = {node.func for node in _all(script, ast.Call)}
+    called = {node.func for node in script.all(ast.Call)}
     return frozenset(
-        node.id for node in _all(script, ast.Name) if isinstance(node.ctx, ast.Load) and node not in called
+        node.id for node in script.all(ast.Name) if isinstance(node.ctx, ast.Load) and node not in called
     )
 
 
@@ -423,6 +409,6 @@ def _handed_on(script: Script) -> frozenset[str]:
 def _imported(script: Script) -> frozenset[str]:
     """The names that imports bind."""
     found: set[str] = set()
-    for node in _all(script, ast.Import, ast.ImportFrom):
+    for node in script.all(ast.Import, ast.ImportFrom):
         found.update((alias.asname or alias.name).partition(".")[0] for alias in node.names)
     return frozenset(found)

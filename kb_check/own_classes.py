@@ -24,6 +24,8 @@ FunctionDefinition = ast.FunctionDef | ast.AsyncFunctionDef
 
 _DEEPEST = 20
 _REGISTERING = frozenset({"register_class", "register_classes_factory"})
+# The nodes that tell what a script registers.
+_TELLING = (ast.Call, ast.For, ast.Attribute, ast.FunctionDef, ast.Assign, ast.Name, ast.alias)
 _COMPUTING = frozenset({"setattr", "exec", "vars", "locals", "__dict__"})
 _DEMANDED = frozenset(name for kind in TYPES.values() for name in kind.needs)
 # Bases in Python that give what their reference lists, and nothing more.
@@ -83,7 +85,7 @@ class OwnClass:
 @once_per_script
 def own_classes(script: Script) -> list[OwnClass]:
     """The classes that derive from a type which Blender registers, where nothing changes them out of sight."""
-    nodes = [node for node in script.nodes if isinstance(node, ast.ClassDef)]
+    nodes = script.all(ast.ClassDef)
     if not nodes:
         return []
     names = _class_names(script, nodes)
@@ -178,7 +180,7 @@ def _registered_names(script: Script) -> frozenset[str]:
     lists: dict[str, ast.expr] = {}
     given: list[ast.expr] = []
     loops: list[ast.For] = []
-    for node in script.nodes:
+    for node in script.all(*_TELLING):
         match node:
             case ast.Call(func=ast.Name(id=called) | ast.Attribute(attr=called), args=[one]) if (
                 called in _REGISTERING

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from dataclasses import dataclass, field
 from functools import cached_property, wraps
-from typing import TYPE_CHECKING, TypeVar
+from typing import TYPE_CHECKING, TypeVar, cast
 from weakref import WeakKeyDictionary
 
 from kb_check.findings import Edit, Span
@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from kb_check.package import Package
 
 _T = TypeVar("_T")
+_Node = TypeVar("_Node", bound=ast.AST)
 
 
 @dataclass(frozen=True)
@@ -44,10 +45,24 @@ class Script:
         """The lines as Python counts them, with their ends."""
         return split_lines(self.code) or [""]
 
+    def all(self, *types: type[_Node]) -> list[_Node]:
+        """The nodes of the tree that are of exactly these types, type by type; an outer one before those in it."""
+        return [node for kind in types for node in cast("list[_Node]", self._by_type.get(kind, []))]
+
     @cached_property
-    def nodes(self) -> list[ast.AST]:
-        """Every node of the tree."""
-        return list(ast.walk(self.tree))
+    def _by_type(self) -> dict[type[ast.AST], list[ast.AST]]:
+        """Every node, but for what only says how another one is used."""
+        queue: list[ast.AST] = [self.tree]
+        found: dict[type[ast.AST], list[ast.AST]] = {}
+        for node in queue:  # it grows
+            found.setdefault(type(node), []).append(node)
+            for name in node._fields:
+                value = getattr(node, name, None)
+                if isinstance(value, list):
+                    queue += [part for part in cast("list[object]", value) if isinstance(part, ast.AST)]
+                elif isinstance(value, ast.AST) and name != "ctx":
+                    queue.append(value)
+        return found
 
     def resolutions(self, *kinds: str) -> Iterator[Resolution]:
         """What parts of the script stand for, of some kinds (see :class:`flow.types.Resolution`), in order."""
@@ -79,7 +94,7 @@ class Script:
     def _own_names(self) -> frozenset[str]:
         """The names that the script gives to its classes and their instances."""
         found: set[str] = set()
-        for node in self.nodes:
+        for node in self.all(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Name, ast.Attribute):
             match node:
                 case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name) | ast.ClassDef(name=name):
                     found.add(name)
@@ -103,9 +118,8 @@ class Script:
         """What the script's classes call themselves: values of the enumerations that list such classes."""
         return frozenset(
             node.value.value
-            for node in self.nodes
-            if isinstance(node, ast.Assign)
-            and any(isinstance(target, ast.Name) and target.id == "bl_idname" for target in node.targets)
+            for node in self.all(ast.Assign)
+            if any(isinstance(target, ast.Name) and target.id == "bl_idname" for target in node.targets)
             and isinstance(node.value, ast.Constant)
             and isinstance(node.value.value, str)
         )

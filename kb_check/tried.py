@@ -20,7 +20,7 @@ def is_tried(script: Script, node: ast.expr) -> bool:
 @once_per_script
 def _tried_lines(script: Script) -> list[tuple[int, int]]:
     found: list[tuple[int, int]] = []
-    for node in script.nodes:
+    for node in script.all(ast.Try, ast.TryStar, ast.With, ast.AsyncWith):
         match node:
             case ast.Try() | ast.TryStar() if node.handlers:
                 found.append((node.lineno, node.body[-1].end_lineno or 0))

@@ -88,10 +88,8 @@ def _helpers(script: Script) -> frozenset[str]:
     """The methods that the script calls itself and whose results it drops: Blender need not call them."""
     return frozenset(
         node.value.func.attr
-        for node in script.nodes
-        if isinstance(node, ast.Expr)
-        and isinstance(node.value, ast.Call)
-        and isinstance(node.value.func, ast.Attribute)
+        for node in script.all(ast.Expr)
+        if isinstance(node.value, ast.Call) and isinstance(node.value.func, ast.Attribute)
     )
 
 

@@ -18,7 +18,15 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import T
 from kb_build.symbol_lines import empty_when_new, fillers
 from kb_check.findings import Finding
-from kb_check.made_here import bindings, called_operators, callee_path, is_new, knows_all, named_words
+from kb_check.made_here import (
+    bindings,
+    called_operators,
+    callee_path,
+    has_plain_operators_only,
+    is_new,
+    knows_all,
+    named_words,
+)
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 
@@ -33,10 +41,7 @@ _ANIMATING = re.compile(r"keyframe_insert|driver_add|bpy\.ops\.(anim|nla|action|
 # Operators that hand on what other things have.
 _COPYING = re.compile(r"copy|link|join|quick|transfer|preset|paste|append|undo|duplicate")
 _ACTIVE = frozenset({f"{T}Context.object", f"{T}Context.active_object"})
-# Operators that leave the active object as new as it is.
-_PLAIN = re.compile(r"bpy\.ops\.(mesh\.primitive_\w+_add|object\.(select_all|shade_\w+|delete)|wm\.read_\w+)")
 _PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
-_DOTS = 3  # of the path of an operator; that of a module has fewer
 _WORD = re.compile(r"\w+")
 _GENERAL = frozenset({"object", "mesh", "scene", "anim"})  # modules whose operators fill many things
 _MAKING_MODIFIERS = ("Modifiers.new", "modifier_add")
@@ -111,8 +116,8 @@ def _stays_empty(script: Script, symbol: Symbol) -> bool:
 @once_per_script
 def _computes_kinds(script: Script) -> bool:
     """Whether the script makes modifiers of a kind that it computes."""
-    for node in script.nodes:
-        if isinstance(node, ast.Call) and isinstance(node.func, ast.Attribute) and node.func.attr in _MAKING:
+    for node in script.all(ast.Call):
+        if isinstance(node.func, ast.Attribute) and node.func.attr in _MAKING:
             path = callee_path(script, node)
             if path and not path.endswith(_MAKING_MODIFIERS):
                 continue
@@ -125,11 +130,11 @@ def _computes_kinds(script: Script) -> bool:
 @once_per_script
 def _asked(script: Script) -> frozenset[str]:
     """The names and attributes that are used for more than to read from them, or to hold them."""
-    read = {node.value for node in script.nodes if isinstance(node, ast.Attribute)}
-    held = {node.value for node in script.nodes if isinstance(node, ast.Assign)}
+    read = {node.value for node in script.all(ast.Attribute)}
+    held = {node.value for node in script.all(ast.Assign)}
     found: set[str] = set()
-    for node in script.nodes:
-        if isinstance(node, (ast.Attribute, ast.Name)) and isinstance(node.ctx, ast.Load):
+    for node in script.all(ast.Attribute, ast.Name):
+        if isinstance(node.ctx, ast.Load):
             if node in read or (node in held and isinstance(node, ast.Attribute)):
                 continue
             found.add(node.attr if isinstance(node, ast.Attribute) else node.id)
@@ -149,11 +154,10 @@ def _is_active(script: Script, node: ast.Attribute) -> bool:
     row = script.analysis.resolutions.get(node)
     if row is None or not _ACTIVE.issuperset(row.symbols) or "active" in named_words(script):
         return False
-    operators = {path for path in called_operators(script) if path.count(".") == _DOTS}
     made = [call for call in script.resolutions("call") if any(map(_PRIMITIVE.fullmatch, call.symbols))]
     before = any(getattr(call.node, "end_lineno", 0) <= node.lineno for call in made)
-    computed = any(isinstance(node, ast.Name) and node.id == "getattr" for node in script.nodes)
-    return before and not computed and all(map(_PLAIN.fullmatch, operators))
+    computed = any(node.id == "getattr" for node in script.all(ast.Name))
+    return before and not computed and has_plain_operators_only(script)
 
 
 RULE = Rule("empty-pointer", "warning", "Something read from what is None on a new thing", _check)

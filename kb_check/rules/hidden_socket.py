@@ -55,9 +55,8 @@ def _asked(script: Script) -> frozenset[str]:
     """The texts of which the script asks whether something has them."""
     return frozenset(
         node.left.value
-        for node in script.nodes
-        if isinstance(node, ast.Compare)
-        and isinstance(node.left, ast.Constant)
+        for node in script.all(ast.Compare)
+        if isinstance(node.left, ast.Constant)
         and isinstance(node.left.value, str)
         and isinstance(node.ops[0], (ast.In, ast.NotIn))
     )
@@ -102,7 +101,7 @@ def _is_paired_later(script: Script, node: ast.Subscript) -> bool:
     own = list(script.tree.body)
     plain = (ast.Expr, ast.Assign, ast.AnnAssign)
     here = _place(own, node)
-    calls = [part for part in script.nodes if isinstance(part, ast.Attribute) and part.attr == _PAIRING]
+    calls = [part for part in script.all(ast.Attribute) if part.attr == _PAIRING]
     places = [_place(own, call) for call in calls]
     return (
         here >= 0

@@ -31,9 +31,7 @@ _MAKERS = {"bpy.types.NodeTreeInterface.new_socket": 0, "bpy.types.NodeTreeInput
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for node in script.nodes:
-        if not isinstance(node, ast.Subscript):
-            continue
+    for node in script.all(ast.Subscript):
         owner, key = script.type_of(node.value), script.type_of(node.slice)
         name = literal_text(key) if key else None
         if isinstance(owner, Instance) and owner.cls == NODES_MODIFIER and name in _named(script):
@@ -47,9 +45,9 @@ def _check(script: Script) -> Iterator[Finding]:
 def _named(script: Script) -> frozenset[str]:
     """The names that the script gives to the sockets of groups."""
     found: set[str] = set()
-    for node in script.nodes:
-        place = _MAKERS.get(callee_path(script, node)) if isinstance(node, ast.Call) else None
-        if place is None or not isinstance(node, ast.Call):
+    for node in script.all(ast.Call):
+        place = _MAKERS.get(callee_path(script, node))
+        if place is None:
             continue
         given = [*node.args[place : place + 1], *(word.value for word in node.keywords if word.arg == "name")]
         found.update(

@@ -29,8 +29,8 @@ _ADDING = "bpy.types.bpy_struct.driver_add"
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for node in script.nodes:
-        if not isinstance(node, ast.Attribute) or hasattr(list, node.attr):
+    for node in script.all(ast.Attribute):
+        if hasattr(list, node.attr):
             continue
         if name := _handlers(script, node.value):
             yield Finding(

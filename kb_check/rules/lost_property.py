@@ -39,9 +39,7 @@ _ANNOTATIONS = "__annotations__"
 
 def _check(script: Script) -> Iterator[Finding]:
     classes = own_classes(script)
-    if not classes or any(
-        isinstance(node, ast.Attribute) and node.attr == _ANNOTATIONS for node in script.nodes
-    ):
+    if not classes or any(node.attr == _ANNOTATIONS for node in script.all(ast.Attribute)):
         return
     for own in classes:
         for statement in own.node.body:

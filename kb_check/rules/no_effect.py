@@ -39,7 +39,7 @@ _CHANGING = frozenset(
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for node in script.nodes:
+    for node in script.all(ast.Expr, ast.Assign, ast.AugAssign):
         match node:
             case ast.Expr(value=ast.Call() as call):
                 yield from _thrown_away(script, call)

@@ -30,7 +30,7 @@ _CHANGING = frozenset({"bpy.types.ArmatureEditBones.new", "bpy.types.ArmatureEdi
 def _check(script: Script) -> Iterator[Finding]:
     if not knows_all(script) or any(map(_ENTERING.search, named_words(script))):
         return
-    for node in script.nodes:
+    for node in script.all(ast.Call):
         match node:
             case ast.Call(func=ast.Attribute(value=ast.Attribute(attr="edit_bones", value=armature))):
                 if callee_path(script, node) in _CHANGING and is_new(script, armature):

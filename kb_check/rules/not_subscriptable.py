@@ -41,6 +41,7 @@ from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
 from kb_check.made_here import bindings, callee_path
 from kb_check.rule import Rule
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -71,8 +72,8 @@ _OF_COLLECTIONS = frozenset(
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for node in script.nodes:
-        if not isinstance(node, ast.Subscript) or (kind := script.type_of(node.value)) is None:
+    for node in script.all(ast.Subscript):
+        if (kind := script.type_of(node.value)) is None:
             continue
         told = {_refusal(script, node, member) for member in members(kind) if member != NONE}
         if (missing := _of_result(script, node)) and isinstance(kind, Mapping):
@@ -118,7 +119,7 @@ def _of_result(script: Script, node: ast.Subscript) -> str:
         values = bindings(script).get(call.id, [])
         call = (
             values[0]
-            if len(values) == 1 and values[0] is not None and not _is_filled(script, call.id)
+            if len(values) == 1 and values[0] is not None and call.id not in _filled(script)
             else call
         )
     path = callee_path(script, call) if isinstance(call, ast.Call) else ""
@@ -142,23 +143,17 @@ def _of_result(script: Script, node: ast.Subscript) -> str:
 def _is_tried(script: Script, node: ast.expr) -> bool:
     """Whether an error here may be caught: that of a key."""
     return any(
-        (isinstance(outer, ast.Try) and outer.lineno <= node.lineno <= (outer.body[-1].end_lineno or 0))
-        or (isinstance(outer, ast.With) and outer.lineno <= node.lineno <= (outer.end_lineno or 0))
-        for outer in script.nodes
+        outer.lineno <= node.lineno <= (outer.body[-1].end_lineno or 0)
+        for outer in script.all(ast.Try, ast.With)
     )
 
 
-def _is_filled(script: Script, name: str) -> bool:
-    """Whether a script may give a dictionary keys of its own."""
-    return any(
-        (isinstance(node, ast.Subscript) and isinstance(node.ctx, ast.Store) and _is_name(node.value, name))
-        or (isinstance(node, ast.Attribute) and node.attr in _FILLING and _is_name(node.value, name))
-        for node in script.nodes
-    )
-
-
-def _is_name(node: ast.expr, name: str) -> bool:
-    return isinstance(node, ast.Name) and node.id == name
+@once_per_script
+def _filled(script: Script) -> frozenset[str]:
+    """The names of dictionaries that the script may give keys of its own."""
+    owners = [node.value for node in script.all(ast.Subscript) if isinstance(node.ctx, ast.Store)]
+    owners += [node.value for node in script.all(ast.Attribute) if node.attr in _FILLING]
+    return frozenset(owner.id for owner in owners if isinstance(owner, ast.Name))
 
 
 def _of_changed(node: ast.Subscript, kind: Collection, key: Type | None) -> str:

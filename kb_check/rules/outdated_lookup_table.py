@@ -39,11 +39,11 @@ _SIMPLE = (ast.Assign, ast.AnnAssign, ast.AugAssign, ast.Expr, ast.Return, ast.D
 
 def _check(script: Script) -> Iterator[Finding]:
     called = {row.value for row in script.resolutions("call")}
-    named = {node.attr for node in script.nodes if isinstance(node, ast.Attribute)}
+    named = {node.attr for node in script.all(ast.Attribute)}
     if _MAKES not in called or named & _ENSURES:
         return
-    for node in script.nodes:
-        if not isinstance(node, ast.Subscript) or isinstance(node.slice, ast.Slice):
+    for node in script.all(ast.Subscript):
+        if isinstance(node.slice, ast.Slice):
             continue
         owner, key = script.type_of(node.value), script.type_of(node.slice)
         if not isinstance(owner, Instance) or owner.cls not in _TABLES or not owner.sure:

@@ -45,6 +45,7 @@ _REMOVING = frozenset({"remove", "clear", "read_homefile", "open_mainfile", "rea
 
 def _check(script: Script) -> Iterator[Finding]:
     yield from _called_properties(script)
+    unknown = {row.node for row in script.missing("keyword")}
     earlier: dict[tuple[str, str, str], CallSite] = {}
     for call in calls(script):
         yield from _ending(script, call)
@@ -54,6 +55,8 @@ def _check(script: Script) -> Iterator[Finding]:
         owner = call.node.func.value
         for refusal in refusals:
             if not _is_of(refusal, call) or (not refusal.given and not refusal.by and _gives_more(call)):
+                continue
+            if refusal.given and not unknown.isdisjoint(call.node.keywords):  # one of those may stand for it
                 continue
             if refusal.again:
                 before = earlier.setdefault((ast.unparse(owner), *_key(refusal, call)), call)
@@ -97,8 +100,8 @@ def _is_made(script: Script, thing: ast.expr) -> bool:
 
 def _called_properties(script: Script) -> Iterator[Finding]:
     """Calls of what is a value: Blender says that it is not callable."""
-    for node in script.nodes:
-        if not isinstance(node, ast.Call) or not isinstance(node.func, ast.Attribute):
+    for node in script.all(ast.Call):
+        if not isinstance(node.func, ast.Attribute):
             continue
         row, owner = script.analysis.resolutions.get(node.func), script.type_of(node.func.value)
         certain = row is not None and row.sure and not (row.guarded or row.missing or row.possible)
@@ -222,10 +225,7 @@ def _made_as(script: Script, node: ast.expr) -> str:
 
 def _is_retyped(script: Script) -> bool:
     """Whether a script gives something another type."""
-    return any(
-        isinstance(node, ast.Attribute) and node.attr == "type" and isinstance(node.ctx, ast.Store)
-        for node in script.nodes
-    )
+    return any(node.attr == "type" and isinstance(node.ctx, ast.Store) for node in script.all(ast.Attribute))
 
 
 def _finding(script: Script, call: CallSite, refusal: Refusal, why: str) -> Finding:

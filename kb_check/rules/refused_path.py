@@ -116,7 +116,7 @@ def _elsewhere(script: Script, call: CallSite, followed: Followed, node: ast.exp
 
 def _is_asked_for(script: Script, name: str) -> bool:
     """Whether a name stands in the script as a text of its own, as in ``hasattr(ob, "name")``."""
-    return any(isinstance(node, ast.Constant) and node.value == name for node in script.nodes)
+    return any(node.value == name for node in script.all(ast.Constant))
 
 
 def _of_item(

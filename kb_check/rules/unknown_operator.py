@@ -38,8 +38,8 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _of_lost_module(script: Script, row: Resolution) -> Lacking | None:
     """What became of an operator whose module is gone, where the script names one that was in it."""
-    for node in script.nodes:
-        if isinstance(node, ast.Attribute) and node.value is row.node:
+    for node in script.all(ast.Attribute):
+        if node.value is row.node:
             return script.names.path(f"{row.missing[0]}.{row.value}.{node.attr}")
     return None
 

@@ -65,8 +65,8 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _items_given(script: Script) -> Iterator[Finding]:
     """What is assigned to items of collections, which hold structures or nothing."""
-    for node in script.nodes:
-        if not isinstance(node, ast.Assign) or len(node.targets) != 1:
+    for node in script.all(ast.Assign):
+        if len(node.targets) != 1:
             continue
         target = node.targets[0]
         if not isinstance(target, ast.Subscript) or isinstance(target.slice, ast.Slice):
