@@ -42,6 +42,8 @@ GIVEN = "given:"
 ENDS_WITHOUT = "ends-without:"
 # The flag of a socket that a node of a zone has once it is paired with the other one.
 WHEN_PAIRED = "when-paired"
+# The flag of a collection that has no elements on what is newly made.
+EMPTY = "empty-when-new"
 # The flag of what Blender computes for evaluated objects, and leaves empty on the originals.
 EVALUATED = "evaluated-only"
 THEN = " then "  # between calls that fill it one after the other

@@ -8,9 +8,21 @@ from dataclasses import dataclass
 from functools import cache
 from itertools import dropwhile, groupby, islice, takewhile
 from operator import attrgetter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, cast
 
-from kb_build.records import AREAS, ENDS_WITHOUT, FACTORY, FILLED_BY, FILLED_ON, GIVEN, NEEDS, NOT_TAKEN, THEN
+from kb_build.records import (
+    AREAS,
+    EMPTY,
+    ENDS_WITHOUT,
+    FACTORY,
+    FILLED_BY,
+    FILLED_ON,
+    GIVEN,
+    NEEDS,
+    NOT_TAKEN,
+    THEN,
+    last_name,
+)
 from kb_build.schema import TEST_ON
 
 if TYPE_CHECKING:
@@ -21,6 +33,7 @@ if TYPE_CHECKING:
 NODE_FAMILIES = ("ShaderNode", "GeometryNode", "CompositorNode", "FunctionNode", "TextureNode")
 _ACTIVE = "bpy.context.object"
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
+SET = "set of enum items"
 _STAND_INS = frozenset({"NONE", "DEFAULT", "PLACEHOLDER", "UNSUPPORTED"})
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
@@ -33,12 +46,17 @@ _NEEDED = re.compile(
 _QUOTED = re.compile(r"'(\w+)'")
 
 
-def literal(value: object) -> str:
-    """A value as Python source; long sequences are shortened."""
-    if isinstance(value, list):
-        shown = ", ".join(map(literal, value[:_SHOWN_ELEMENTS]))
-        return f"({shown}{', …' if len(value) > _SHOWN_ELEMENTS else ''})"
-    return repr(value)
+def literal(value: object, kind: str = "enum") -> str:
+    """A value as Python source; long ones are shortened. ``kind`` is the type, of which lists of words are sets."""
+    if not isinstance(value, list):
+        return repr(value)
+    items = cast("list[object]", value)
+    shown = ", ".join(
+        [literal(item, kind) for item in items[:_SHOWN_ELEMENTS]] + ["…"] * (len(items) > _SHOWN_ELEMENTS)
+    )
+    if kind == "enum" and all(isinstance(item, str) for item in items):
+        return f"{{{shown}}}" if shown else "set()"
+    return f"({shown},)" if len(items) == 1 else f"({shown})"
 
 
 def type_text(symbol: Symbol) -> str:
@@ -48,7 +66,7 @@ def type_text(symbol: Symbol) -> str:
     if symbol.type == "pointer" and symbol.target:
         return f"pointer → {symbol.target}"
     if "enum-flag" in symbol.flags:
-        return "set of enum items"
+        return SET
     if settings := symbol.type_settings:
         return f"{symbol.type}, or as {' and '.join(settings)} says"
     return symbol.type + "".join(f"[{n}]" for n in symbol.array)
@@ -255,23 +273,29 @@ def default_text(symbol: Symbol) -> str:
     """What new ones have, in which kinds and modes they differ, and RNA's default where it is another."""
     if empty := empty_when_new(symbol):
         return _empty_text(symbol, empty)
+    if EMPTY in symbol.flags:
+        return f"empty (new {last_name(symbol.owner)})"
     usual = [new for new in symbol.new_values if not new.when]
     modal = [new for new in symbol.new_values if new.when]
     value = usual_default(symbol)
     if value is None:
         return ""
-    text = f"`{literal(value)}`"
+    text = f"`{literal(value, symbol.type)}`"
     if is_uncompared(symbol):
         text += " (RNA's; no new one was compared)"
     if usual:
         text += _whose(usual[0], usual[0].made or (symbol.owner.rpartition(".")[2],))
     others = [new for new in usual[1:] if not new.is_startup]
     for rows in (others, modal):
-        text += "".join(f", `{literal(new.value)}`{_whose(new, new.made)}" for new in rows[:_SHOWN_OTHERS])
+        text += "".join(
+            f", `{literal(new.value, symbol.type)}`{_whose(new, new.made)}" for new in rows[:_SHOWN_OTHERS]
+        )
         text += ", …" if len(rows) > _SHOWN_OTHERS else ""
-    text += "".join(f"; `{literal(new.value)}`{_whose(new, new.made)}" for new in usual[1:] if new.is_startup)
+    text += "".join(
+        f"; `{literal(new.value, symbol.type)}`{_whose(new, new.made)}" for new in usual[1:] if new.is_startup
+    )
     if usual and symbol.default not in (None, value) and _is_listed(symbol):
-        text += f"; RNA says `{literal(symbol.default)}`"
+        text += f"; RNA says `{literal(symbol.default, symbol.type)}`"
     return text
 
 
@@ -345,11 +369,13 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
     notes = [type_text(symbol)] if symbol.type else []
     default = usual_default(symbol)
     if default is not None and symbol.kind in {"property", "socket"}:
-        notes.append(f"= {literal(default)}" + (" (RNA's)" if is_uncompared(symbol) else ""))
+        notes.append(f"= {literal(default, symbol.type)}" + (" (RNA's)" if is_uncompared(symbol) else ""))
         modal = [new for new in symbol.new_values if new.when and not new.made]
-        notes += [f"({literal(new.value)} with {new.when})" for new in modal[:_SHOWN_LABELS]]
+        notes += [f"({literal(new.value, symbol.type)} with {new.when})" for new in modal[:_SHOWN_LABELS]]
     if (empty := empty_when_new(symbol)) and not empty.made:
         notes += ["= None", *([f"({made})"] if (made := _made_by(symbol)) else [])]
+    if EMPTY in symbol.flags:
+        notes.append("= []")
     if values := [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]:
         notes.append("|".join(values[:_SHOWN_VALUES]) + ("|…" if len(values) > _SHOWN_VALUES else ""))
     if "readonly" in symbol.flags:

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
+from kb_serve.reader import STRUCT
 from kb_serve.recognise.corrections import is_misspelling, nearest
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.removed_symbols import RemovedSymbolLookup, for_reading
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed_symbols import RemovedSymbol
 
 _MOST_NAMED = 3
+_FEW_MEMBERS = 8
 
 
 @dataclass(frozen=True, slots=True)
@@ -83,7 +85,7 @@ class KnownNames:
         removed = removed or self._lookup.below(owner, name)
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
-        return self._never(owner, name, self.reader.member_names(owner))
+        return self._never(owner, name)
 
     def path(self, path: str) -> Lacking | None:
         """What another Blender has under exactly this path; None for what none has."""
@@ -124,16 +126,36 @@ class KnownNames:
             removed.path, self._notes.removed(removed), targets, replacement, sure=sure, removed=True
         )
 
-    def _never(self, owner: str, name: str, names: Iterable[str]) -> Lacking:
-        similar = [found for found, _ in nearest(name, names, _MOST_NAMED)]
-        misspelt = [found for found in similar if is_misspelling(name, found, self._vocabulary)]
-        instead = tuple(f"{owner}.{found}" for found in similar)
+    def _never(self, owner: str, name: str) -> Lacking:
+        machinery = self.reader.members(STRUCT) if owner != STRUCT else {}
+        found = [found for found, _ in nearest(name, self.reader.member_names(owner), _MOST_NAMED)]
+        misspelt = [found for found in found if is_misspelling(name, found, self._vocabulary)]
+        similar = [found for found in found if found not in machinery or found in misspelt]
         span = "" if self._lookup.paths_below(owner, name) else self._span()
         message = f"`{owner}` has no `{name}` in Blender {self.version}{span}."
         return Lacking(
-            f"{owner}.{name}", message + _closest(similar), instead,
+            f"{owner}.{name}",
+            message + (_closest(similar) or self._of_kinds(owner, name) or self._own(owner)),
+            tuple(f"{owner}.{found}" for found in similar),
             f"{owner}.{misspelt[0]}" if len(misspelt) == 1 else "",
-        )  # fmt: skip
+        )
+
+    def _of_kinds(self, owner: str, name: str) -> str:
+        """What a name is a misspelling of that classes below a class have, as kinds of modifiers do."""
+        having: dict[str, str] = {}
+        for cls in self.reader.descendants(owner):
+            for member in self.reader.members(cls.path):
+                having.setdefault(member, cls.name)
+        similar = [found for found, _ in nearest(name, having, _MOST_NAMED)]
+        misspelt = [found for found in similar if is_misspelling(name, found, self._vocabulary)]
+        return (
+            f" Closest: {', '.join(f'`{having[found]}.{found}`' for found in misspelt)}." if misspelt else ""
+        )
+
+    def _own(self, owner: str) -> str:
+        """The members of a class that has few."""
+        own = [member for member in self.reader.members(owner) if not member.startswith("bl_rna_")]
+        return f" It has {_listed(own)}." if 0 < len(own) <= _FEW_MEMBERS else ""
 
     def _no_part(self, owner: str, name: str, names: Iterable[str], message: str, they: str) -> Lacking:
         names = list(names)

@@ -91,7 +91,7 @@ def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int], names: Mapping[st
             if symbol.reached:
                 graph.told[name] = symbol.reached
             if symbol.trees:
-                graph.trees[name] = symbol.trees
+                graph.trees[name] = _usual_trees(name, symbol.trees)
             if base != "bpy_struct":
                 graph.derived[base].append(name)
         elif symbol.kind in {"property", "context"} and symbol.target:
@@ -111,6 +111,13 @@ def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int], names: Mapping[st
         if not graph.derived.get(name):
             graph.trees.setdefault(name, ())  # RNA has the class, and no tree takes it
     return graph
+
+
+def _usual_trees(node: str, trees: tuple[str, ...]) -> tuple[str, ...]:
+    """Of the trees that take a node, the one that it is called after; all where there is none."""
+    family = "GeometryNodeTree" if node.startswith("FunctionNode") else ""
+    own = [tree for tree in trees if tree == family or node.startswith(tree.removesuffix("Tree"))]
+    return tuple(own) or trees
 
 
 def _rarity(path: str, uses: Mapping[str, int]) -> float:

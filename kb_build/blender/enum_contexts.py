@@ -80,6 +80,9 @@ def where_taken(taken: set[Context], refused: set[Context]) -> str:
         return "only with " + _modes(mode for _, mode in taken)
     if not new_refused:
         return "not with " + _modes(mode for _, mode in refused)
+    if new_refused <= {label for label, _ in taken}:  # in a mode that they are not in when new
+        modes = _modes(mode for label, mode in taken if label in new_refused)
+        return f"by {_labels(new_refused)} only with {modes}"
     fewer_take = len(new_taken) <= len(new_refused)
     return "only by " + _labels(new_taken) if fewer_take else "not by " + _labels(new_refused)
 

@@ -17,6 +17,7 @@ from kb_build.errors import ExtractError
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
     AREAS,
+    EMPTY,
     ENDS_WITHOUT,
     EVALUATED,
     FILLED_BY,
@@ -177,6 +178,12 @@ def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
             row["flags"] = [*row.get("flags", ()), ENDS_WITHOUT + without]
 
 
+def _add_empty(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that a collection of new instances has no elements."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), EMPTY]
+
+
 def _add_evaluated(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
     """Adds that only evaluated objects have it filled."""
     if row is not None:
@@ -191,6 +198,7 @@ _ADDED = {
     "operator_needs": _add_needs,
     "operator_areas": _add_areas,
     "refusals": _add_refusals,
+    "empty_collection": _add_empty,
     "evaluated": _add_evaluated,
 }
 

@@ -80,6 +80,14 @@ class _Choices:
             items = self.by_words.get(words)
         return next(iter(items)) if items and len(items) == 1 else ""
 
+    def written(self, identifier: str) -> str:
+        """What a script writes for an item, and which of several settings takes it, if not all do."""
+        takers = [symbol for symbol in self.symbols if _has_item(symbol, identifier)]
+        names = dict.fromkeys(f"`{symbol.name}`" for symbol in takers)
+        return f"`{identifier!r}`" + (
+            f" ({', '.join(names)} only)" if len(takers) < len(self.symbols) else ""
+        )
+
     def lack(self, term: str) -> bool:
         """Whether a term is surely none: neither a setting, nor like any item of those that Blender lists in full."""
         own = {word[:_LIKE] for text in self.texts for word in words_of(text)}
@@ -146,13 +154,17 @@ def _of_page(
         for entry, identifiers in meant.items():
             taken.add((section, entry.line))
             if identifiers and entry.term not in identifiers:
-                names = ", ".join(f"`{identifier!r}`" for identifier in identifiers)
+                names = ", ".join(map(choices.written, identifiers))
                 yield LabelName(page.slug, section, entry.line, names)
             elif not identifiers and _is_choice(entry, meant) and choices.lack(entry.term):
                 yield LabelName(page.slug, section, entry.line, choices.told(entry.term))
     for row in _called(page, [choices for choices in at.values() if len(choices.symbols) == 1]):
         if (row.section, row.line) not in taken:
             yield row
+
+
+def _has_item(symbol: Symbol, identifier: str) -> bool:
+    return any(item.identifier == identifier and item.where != NOT_TAKEN for item in symbol.enum_items)
 
 
 def _is_choice(entry: _Entry, meant: Mapping[_Entry, Sequence[str]]) -> bool:

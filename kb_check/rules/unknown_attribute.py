@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _CONTEXT = "bpy.types.Context"
+_LET_PASS = frozenset({"driver_remove"})
 # Before, what is assigned to an unknown name of a property group is lost, and no error.
 _OF_SCRIPTS, _REFUSED = "bpy.types.PropertyGroup", (5, 0)
 
@@ -42,7 +43,14 @@ def _check(script: Script) -> Iterator[Finding]:
         if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != _CONTEXT:
             had = _owner_that_had(script, row, owner)
             lacking = script.names.member(had, row.value, reading=row.kind != "store")
-            yield lacking_finding(script, RULE.id, row, lacking)
+            yield lacking_finding(script, RULE.id, row, lacking, "warning" if _is_let_pass(row) else "error")
+
+
+def _is_let_pass(row: Resolution) -> bool:
+    """Whether Blender does nothing, and raises no error: ``driver_remove`` of an unknown path returns False."""
+    calls = (node for node in ast.walk(row.statement or row.node) if isinstance(node, ast.Call))
+    functions = (call.func for call in calls if row.kind == "text" and row.node in call.args)
+    return any(isinstance(function, ast.Attribute) and function.attr in _LET_PASS for function in functions)
 
 
 def _owner_that_had(script: Script, row: Resolution, owner: str) -> str:

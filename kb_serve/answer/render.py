@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.records import EVALUATED, NOT_TAKEN
 from kb_build.symbol_lines import (
+    SET,
     alike_nodes,
     default_text,
     empty_when_new,
@@ -28,6 +29,7 @@ from kb_build.symbol_lines import (
     version_meant,
 )
 from kb_serve.answer.budget import AnswerBlock
+from kb_serve.answer.empty_pointers import empty_pointer_to
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 
@@ -144,13 +146,15 @@ def _default_text(parameter: Parameter, written: str) -> str:
     told = None if isinstance(parameter.default, list) else parameter.default
     if told is None and written and len(written) <= _LONGEST_DEFAULT:
         return written
-    return "" if parameter.default is None else literal(parameter.default)
+    return "" if parameter.default is None else literal(parameter.default, parameter.type)
 
 
-def _parameter_line(parameter: Parameter, written: str = "") -> str:
+def _parameter_line(parameter: Parameter, written: str = "", *, of_function: bool = True) -> str:
     """One argument or result. ``written`` is its default as the signature has it."""
     head = f"- `{parameter.name}`" if parameter.name else "-"
-    notes = [parameter.type or ""]
+    kind = SET if parameter.type == "enum" and isinstance(parameter.default, list) else parameter.type
+    # RNA gives this size to what may have any, which operators' properties may not.
+    notes = [kind.replace("[1]", "[any length]", 1) if of_function else kind]
     if parameter.required:
         notes.append("required")
     elif default := _default_text(parameter, written):
@@ -217,8 +221,11 @@ def _call_without(signature: str, names: Collection[str]) -> str:
 
 
 def _parameter_lines(symbol: Symbol, parameters: Iterable[Parameter]) -> list[str]:
-    defaults = _written_defaults(symbol.signature) if symbol.kind == "function" else {}
-    return [_parameter_line(item, defaults.get(item.name, "")) for item in parameters]
+    of_function = symbol.kind == "function"
+    defaults = _written_defaults(symbol.signature) if of_function else {}
+    return [
+        _parameter_line(item, defaults.get(item.name, ""), of_function=of_function) for item in parameters
+    ]
 
 
 def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
@@ -421,15 +428,8 @@ class MarkdownRenderer:
 
     def _empty_before(self, cls: Symbol) -> str:
         """Where a pointer that leads to instances of a class is None on new things: that, and what fills it."""
-        before, _, name = cls.reached.rpartition(".")
-        if not name.isidentifier():
-            return ""
-        for path in self.reader.pointers_called(name, cls.name):
-            holder = self.reader.symbol(path)
-            owner = self.reader.symbol(holder.owner) if holder else None
-            if holder and owner and owner.reached == before and empty_when_new(holder) and fillers(holder):
-                return f"; `{name}` is {default_text(holder)}"
-        return ""
+        pointer = empty_pointer_to(self.reader, cls)
+        return f"; `{pointer.name}` is {default_text(pointer)}" if pointer and fillers(pointer) else ""
 
     def _assigned(self, symbol: Symbol) -> str:
         """The call that makes the one kind of node tree that a pointer takes which is None on a new thing."""

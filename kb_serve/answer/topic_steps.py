@@ -13,8 +13,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
-from kb_build.symbol_lines import empty_when_new, fillers, operator_needs
+from kb_build.symbol_lines import empty_when_new, fillers, literal, operator_needs
 from kb_serve.answer.budget import AnswerBlock, tokens
+from kb_serve.answer.empty_pointers import empty_pointer_to
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.render import is_machinery
 from kb_serve.reader import STRUCT, TYPES
@@ -84,6 +85,7 @@ class Steps:
         self._names = names
         self._shown: set[str] = set()
         self._chosen: set[str] = set()
+        self._waiting: list[str] = []  # settings of what a pointer leads to that is None on new things
         self._creations = reader.creations(list(names.classes))
         # Where classes have the topic's name, the others of its pages are other topics' matter, unless these alone can
         # be made.
@@ -96,6 +98,7 @@ class Steps:
         """One block, a numbered list; none where nothing is made, set or run."""
         work = (self._make(), self._there()) if self._is_made() else (self._there(), self._make())
         steps = [*self._functions(), *(step for part in work for step in part), *self._run()]
+        steps += self._waiting
         lines = [f"{number}. {step}" for number, step in enumerate(steps, 1)]
         while sum(tokens(line) + 1 for line in lines) > _MOST_TOKENS:
             lines.pop()
@@ -216,7 +219,7 @@ class Steps:
             if made := self._reader.creations([holder]).get(holder):
                 self._shown.add(tree)
                 yield self._made(holder, made.call)
-                if pointer := self._reader.entry(f"{holder}.{name}"):
+                if pointer := self._reader.symbol(f"{holder}.{name}"):
                     yield from self._filled(pointer, self._variable(holder))
                 yield f"`tree = {self._variable(holder)}.{name}`"
             else:
@@ -303,15 +306,15 @@ class Steps:
                 waiting.append((target, f"{above}.{entry.name}"))
                 if left and (settings := self._settings(target)):
                     left -= 1
-                    yield from self._filled(entry, above)
+                    if pointer := self._reader.symbol(entry.path):
+                        yield from self._filled(pointer, above)
                     yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
 
-    def _filled(self, pointer: SymbolEntry, above: str) -> Iterator[str]:
+    def _filled(self, pointer: Symbol, above: str) -> Iterator[str]:
         """What fills a pointer of ``above`` that is None on new things."""
-        symbol = self._reader.symbol(pointer.path)
-        if symbol is None or not empty_when_new(symbol):
+        if not empty_when_new(pointer):
             return
-        calls = [_OF_OWNER.sub(f"{above}.", call) for call in fillers(symbol)]
+        calls = [_OF_OWNER.sub(f"{above}.", call) for call in fillers(pointer)]
         # One value of a setting makes one thing, another value the next, in place of the first.
         choices = {call.partition(" = ")[0] for call in calls if " = " in call}
         elsewhere = "on another object: " if choices & self._chosen else ""
@@ -369,10 +372,17 @@ class Steps:
             # An element of a collection is there only if somebody has made it.
             if not reached or "[" in reached or any(part in reached for part in _INTERFACE):
                 continue
-            if settings := self._settings(path):
+            if symbol and (settings := self._settings(path)):
                 left -= 1
                 self._shown.add(path)
-                yield f"set on `{reached}` (`{path.removeprefix(TYPES)}`): {settings}"
+                step = f"`{reached}` (`{path.removeprefix(TYPES)}`): {settings}"
+                pointer = empty_pointer_to(self._reader, symbol)
+                if pointer and not fillers(pointer):
+                    self._waiting.append(f"set, once it is not None, on {step}")
+                    continue
+                if pointer:
+                    yield from self._filled(pointer, reached.rpartition(".")[0])
+                yield f"set on {step}"
 
     def _functions(self) -> Iterator[str]:
         """Functions that every thing has and that are called as the topic is: ``keyframe_insert``."""
@@ -399,7 +409,7 @@ class Steps:
         """An operator's call with its first arguments, and what it does."""
         symbol = self._reader.symbol(path)
         given = [p for p in symbol.parameters if p.default is not None] if symbol else []
-        arguments = [f"{p.name}={p.default!r}" for p in given[:_ARGUMENTS]]
+        arguments = [f"{p.name}={literal(p.default)}" for p in given[:_ARGUMENTS]]
         left = len(symbol.parameters) - len(arguments) if symbol else 0
         entry = self._reader.entry(path)
         said = entry.line.partition(" — ")[2].removeprefix("(undocumented operator)") if entry else ""

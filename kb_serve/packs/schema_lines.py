@@ -84,7 +84,7 @@ class SchemaLines:
         usual = usual_default(symbol)
         if usual == symbol.default or isinstance(usual, list):
             return ""
-        return f"`{symbol.name}` = {literal(usual)}, not {literal(symbol.default)}"
+        return f"`{symbol.name}` = {literal(usual, symbol.type)}, not {literal(symbol.default, symbol.type)}"
 
     # Sockets
 

@@ -15,7 +15,7 @@ NOT_IN_COLLECTION = re.compile(r"\bbpy_prop_collection: attribute \"(?P<name>\w+
 NO_KEY = re.compile(r"\b(?P<on>bpy_\w+)\[key\]: key \"(?P<name>[^\"]+)\" not found")
 NO_INDEX = re.compile(r"\w+\[index\](?: = value)?: index (?P<index>-?\d+) out of range, size (?P<size>\d+)")
 SUBSCRIPTED = re.compile(r"\b([a-z]\w*)\[-?\d+\]")
-BAD_ENUM = re.compile(r"enum \"(?P<name>[^\"]*)\" not found in \((?P<items>[^)]*)\)?")
+BAD_ENUM = re.compile(r"(?P<quote>['\"])(?P<name>[^'\"]*)(?P=quote) not found in \((?P<items>[^)]*)\)?")
 BAD_KEYWORD = re.compile(
     r"keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)"
     r"|(?:(?<![\w.])(?P<function>[\w.]++)\(\) got an )?unexpected keyword argument ['\"](?P<unexpected>\w+)['\"]"
@@ -53,6 +53,9 @@ NO_FLUIDS = re.compile(
     r"|'(?:Levelset|MAC|Flag|Real|Vec|Int)Grid\w*' object has no attribute"
     r"|'(?:BasicParticle|Turbulence)System' object has no attribute"
 )
+INCOMPATIBLE = re.compile(r"class (?P<class>\w+), function (?P<function>\w+): incompatible return value")
+NO_PROPERTY = re.compile(r"'\w+' (?P<kind>\w+Property) could not register")
+NO_PARENT = re.compile(r"Registering panel class: parent '(?P<parent>\w*)' for '\w*' not found")
 NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w+) undefined")
 
 # The wording of messages that looks like code, or like names of classes and members.

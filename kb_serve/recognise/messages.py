@@ -21,7 +21,7 @@ from kb_serve.recognise.removed_symbols import plain_path, socket_node
 from kb_serve.recognise.unnamed_owners import UnnamedOwners
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.enum_values import EnumValues
@@ -58,6 +58,22 @@ _NO_FLUIDS = (
     "Python): every bake of a fluid ends the process there. Run the script with Blender itself: "
     "`blender --background scene.blend --python script.py`."
 )
+_NO_OPERATOR_NAMED = (
+    "The message does not name the operator that was called: ask for that to see its arguments."
+)
+_OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
+# Classes whose functions return something to Blender.
+_REGISTERED = (
+    "Operator",
+    "Panel",
+    "Menu",
+    "UIList",
+    "Gizmo",
+    "GizmoGroup",
+    "Node",
+    "FileHandler",
+    "AssetShelf",
+)
 _READS_ONLY = (
     "`draw()` and `poll()` of panels, menus, headers, lists and operators only read: nothing may be written there. "
     "Write in an operator's `execute()` (a button calls it), in a handler of `bpy.app.handlers`, or later, by "
@@ -89,6 +105,7 @@ class Messages:
         self._values(query, recognition)
         self._data(query, recognition)
         self._products(query, recognition)
+        self._registration(query, recognition)
         self._refused(query, recognition)
 
     def explain(self, query: str, recognition: Recognition) -> None:
@@ -220,6 +237,7 @@ class Messages:
         if taking and len(taking) <= _MOST_TAKING:
             listed = ", ".join(f"`{path}`" for path in taking)
             recognition.notes.append(f"`{name}` is an argument of {listed}.")
+        recognition.notes.append(_NO_OPERATOR_NAMED)
         once = [path for path in self._reader.removed_named(name) if path.endswith(f"({name})")]
         uses = self._reader.use_counts([plain_path(path) for path in once])
         once.sort(key=lambda path: -uses.get(plain_path(path), 0))
@@ -264,7 +282,10 @@ class Messages:
             items = re.findall(r"'([^']+)'", match["items"])
             function = forms.IN_FUNCTION.search(query)
             called = self._function(function["method"]) if function else ""
-            owners = self._enum_values.taking(items, called)[:_MANY]
+            owners = self._enum_values.taking(items, called)
+            if _OF_CLASSES in query:
+                owners = self._of_classes(owners) or owners
+            owners = owners[:_MANY]
             removed = None
             for rank, owner in enumerate(owners):
                 path, _, parameter = owner.partition("(")
@@ -281,6 +302,12 @@ class Messages:
                 recognition.notes.append(
                     f"`{match['name']}` is not an item of this enum; closest: {', '.join(similar)}."
                 )
+
+    def _of_classes(self, owners: Iterable[str]) -> list[str]:
+        """Those of some properties that classes set to be registered, the most important first."""
+        found = [owner for owner in owners if owner.rpartition(".")[2].startswith("bl_")]
+        weights = self._reader.weights(found)
+        return sorted(found, key=lambda owner: -weights.get(owner, 0.0))
 
     def _index(self, index: str, size: int, query: str, recognition: Recognition) -> str:
         """How many elements a collection has that lacks one, and, where the query names it, what adds one."""
@@ -387,6 +414,29 @@ class Messages:
         paths = [s.path for s in symbols if any(returned.type == cls for returned in s.returns)]
         uses = self._reader.use_counts(paths)
         return sorted(paths, key=lambda path: -uses.get(path, 0))
+
+    # Classes that are registered
+
+    def _registration(self, query: str, recognition: Recognition) -> None:
+        for match in _matches(forms.INCOMPATIBLE, query):
+            kind = match["class"].rpartition("_OT_")[1] and "Operator"
+            owners = [kind] if kind else _REGISTERED
+            found = (self._reader.entry(f"{TYPES}{owner}.{match['function']}") for owner in owners)
+            if entry := next(filter(None, found), None):
+                recognition.add(entry.path, 0.98, "error message")
+                recognition.notes.append(
+                    f"`{match['function']}` of `{match['class']}` must return what `{entry.path}` returns."
+                )
+        for match in _matches(forms.NO_PROPERTY, query):
+            recognition.add(f"bpy.props.{match['kind']}", 0.98, "error message")
+            recognition.notes.append(
+                "The cause is the error that Blender printed before this one, on stderr."
+            )
+        for match in _matches(forms.NO_PARENT, query):
+            recognition.add(f"{TYPES}Panel.bl_parent_id", 0.98, "error message")
+            recognition.notes.append(
+                f"Register the panel whose `bl_idname`, or else class name, is `{match['parent']}` first."
+            )
 
     @staticmethod
     def _products(query: str, recognition: Recognition) -> None:

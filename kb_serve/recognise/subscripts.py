@@ -31,6 +31,7 @@ _TAKING = frozenset(
 )
 _PROPERTIES = f"{NODES_MODIFIER}.properties"  # since Blender 5.2
 _ITEMS = f"{TYPES}NodeTreeInterface.items_tree"
+_MENU = f"{TYPES}NodeTreeInterfaceSocketMenu"
 # How people say in plain words that they want to set an input: of a modifier it may be called anything, of geometry
 # nodes alone it is one where no node is meant.
 _SAID = frozenset(map(stem, ("geometry", "nodes")))
@@ -73,13 +74,16 @@ class CustomProperties:
         if self._reader.entry(_PROPERTIES):
             return f"Inputs of a geometry-nodes modifier are values of `{_PROPERTIES}`, by the identifier of the input."
         items = "interface.items_tree" if self._reader.entry(_ITEMS) else "inputs"
-        return (
+        told = [
             "Inputs of a geometry-nodes modifier are set by the identifier of the group's input, not by its name: "
             f'`modifier[modifier.node_group.{items}["Size"].identifier] = 5.0`, then `obj.update_tag()`. '
             "Another key makes a custom property that changes nothing."
-            + (
-                " Where an output has the same name, take the item whose `in_out` is 'INPUT'."
-                if items.startswith("interface")
-                else ""
+        ]
+        if items.startswith("interface"):
+            told.append("Where an output has the same name, take the item whose `in_out` is 'INPUT'.")
+        if self._reader.entry(_MENU):
+            told.append(
+                "A menu takes the number of an entry, which is not its index: the last in the entry's row of "
+                '`modifier.id_properties_ui(identifier).as_dict()["items"]`.'
             )
-        )
+        return " ".join(told)

@@ -11,6 +11,7 @@ import re
 
 import bpy
 
+from .new_things import by_operator
 from .own_names import OwnNames
 from .rna import default_of, read_items
 from .wire import plain
@@ -166,7 +167,9 @@ def computed_choices(rna):
 
 
 class Layout:
-    """What there is to read in the instances of a class; ``pointers``: name → path where it is declared."""
+    """What there is to read in the instances of a class; ``pointers`` and ``collections``: name → path where it is
+    declared.
+    """
 
     def __init__(self, rna):
         named = rna.name_property.identifier if rna.name_property else "name"
@@ -174,6 +177,7 @@ class Layout:
         self.fields = []
         self.pointers = {}
         self.readonly_pointers = {}
+        self.collections = {}
         for prop in rna.properties:
             name = prop.identifier
             if prop.type == "POINTER":
@@ -181,9 +185,11 @@ class Layout:
                     self.pointers[name] = f"bpy.types.{declaring_class(rna, name)}.{name}"
                     if prop.is_readonly:
                         self.readonly_pointers[name] = self.pointers[name]
+            elif prop.type == "COLLECTION":
+                if name not in NOT_ASKED:
+                    self.collections[name] = f"bpy.types.{declaring_class(rna, name)}.{name}"
             elif (
-                prop.type != "COLLECTION"
-                and not prop.is_readonly
+                not prop.is_readonly
                 and name not in left_out
                 and not name.startswith("bl_")
                 and prop.subtype not in MACHINES_OWN
@@ -284,6 +290,8 @@ class Observer:
         # (path of a function, argument) → {items: Contexts}
         self.choices = {}
         self.pointers = Pointers()
+        # path of a collection → whether one of the new instances has elements in it
+        self.collections = {}
         self.names = OwnNames()
         self._layouts = {}
         self._varied = {}
@@ -340,6 +348,8 @@ class Observer:
             if is_new:
                 for name, path in self.layout(struct).pointers.items():
                     self.pointers.add(path, label, getattr(struct, name, None) is not None)
+                if not by_operator(label):
+                    self.count(struct)
             for field, value in before.items():
                 if not field.is_chosen or label == field.unasked:
                     self.add(seen.setdefault(field.path, []), plain(value), label)
@@ -352,6 +362,15 @@ class Observer:
                 self.vary(struct, label, place, self.restored(struct, before), is_new)
                 if self._varied[name] == 1:
                     self.vary_beside(struct, label, parts)
+
+    def count(self, struct):
+        """Notes which of a new instance's collections have elements."""
+        for name, path in self.layout(struct).collections.items():
+            try:
+                has_elements = len(getattr(struct, name)) > 0
+            except (AttributeError, TypeError, RuntimeError):
+                continue
+            self.collections[path] = self.collections.get(path, False) or has_elements
 
     def read(self, struct):
         """field → value of each comparable property, arrays and sets as lists."""
@@ -532,7 +551,7 @@ class Observer:
 
     def write(self, write):
         """A ``new_values`` record for each property that was read, ``enum_items`` for each asked, ``argument_items``
-        for each choice of a function, and the pointers.
+        for each choice of a function, the pointers, and the collections that no new instance has filled.
 
         One that is ``chosen`` says nothing about what is new.
         """
@@ -547,6 +566,8 @@ class Observer:
             contexts = [row.row(items, argument) for items, row in found.items()]
             write("argument_items", path=path, argument=argument, contexts=contexts)
         self.pointers.write(write)
+        for path in sorted(path for path, has_elements in self.collections.items() if not has_elements):
+            write("empty_collection", path=path)
         self.names.write(write)
 
     def usual(self, path):

@@ -10,12 +10,18 @@ import traceback
 
 import bpy
 
+BY = " by "  # between what was made and the operator that made it
 MODIFIED = ("MESH", "CURVE", "LATTICE", "GREASEPENCIL", "VOLUME")
 
 
 def called(thing):
     """What a thing is, by its class: ``cloth modifier``."""
     return thing.bl_rna.name.lower()
+
+
+def by_operator(label):
+    """Whether an operator has made what is called so, and filled it perhaps."""
+    return BY in label
 
 
 def choices(cls, name):
@@ -133,13 +139,13 @@ def added_by_operators():
             obj = bpy.context.object
             if obj is None or len(bpy.data.objects) == before:
                 continue
-            by = f"by {operator.idname_py()}({f'type={kind!r}' if kind else ''})"
+            by = f"{BY}{operator.idname_py()}({f'type={kind!r}' if kind else ''})"
             if operator.idname_py() == "object.effector_add":
                 yield f"{kind.lower().replace('_', ' ')} force field", obj.field
             else:
-                yield f"object {by}", obj
+                yield f"object{by}", obj
                 if obj.data is not None:
-                    yield f"{called(obj.data)} {by}", obj.data
+                    yield f"{called(obj.data)}{by}", obj.data
             remove(obj)
 
 

@@ -164,6 +164,14 @@ def reached(base: Path) -> dict[str, str]:
         ("PoseBone", 'bpy.context.object.pose.bones["Bone"]'),
         ("KinematicConstraint", 'bpy.context.object.pose.bones["Bone"].constraints["IK"]'),
         ("TrackToConstraint", 'bpy.context.object.constraints["Track To"]'),
+        (
+            "RepeatItem",
+            'bpy.context.object.modifiers["GeometryNodes"].node_group.nodes["Repeat Output"].active_item',
+        ),
+        (
+            "GeometryNodeMenuSwitch",
+            'bpy.context.object.modifiers["GeometryNodes"].node_group.nodes["Menu Switch"]',
+        ),
         ("NlaStrip", 'bpy.context.object.animation_data.nla_tracks["NlaTrack"].strips[0]'),
     ],
 )

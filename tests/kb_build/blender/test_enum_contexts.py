@@ -51,6 +51,10 @@ def test_the_shorter_side_of_what_decides_is_told() -> None:
             (context("AB", ("mesh", "")), context("A", ("mesh", "m='X'"), ("mesh", "m='Y'"))),
             "not with m='X'|'Y'",
         ),
+        (
+            (context("AB", ("mesh", ""), ("lamp", "m='X'")), context("A", ("lamp", ""), ("lamp", "m='Y'"))),
+            "by lamp only with m='X'",
+        ),
     ],
 )
 def test_else_what_was_made_or_its_mode(contexts: tuple[dict[str, Any], ...], expected: str) -> None:

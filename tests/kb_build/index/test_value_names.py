@@ -45,6 +45,16 @@ def test_choices_have_their_identifiers() -> None:
     assert beside(LISTED) == {"Replay": "`'REPLAY'`", "Modular": "`'MODULAR'`"}
 
 
+def test_a_choice_of_one_of_several_settings_says_whose_it_is() -> None:
+    other = enumeration("preview_cache_type", items=ITEMS[:2])
+    listed = LISTED + "  - **All:** At once.\n"
+    assert beside(listed, enumeration(), other) == {
+        "Replay": "`'REPLAY'`",
+        "Modular": "`'MODULAR'`",
+        "All": "`'ALL'` (`cache_type` only)",
+    }
+
+
 @pytest.mark.parametrize(
     ("term", "items", "expected"),
     [

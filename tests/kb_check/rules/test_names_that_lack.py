@@ -60,6 +60,34 @@ def test_a_property_that_became_a_socket_is_told_but_not_renamed(checker: Checke
     assert found.fix is None
 
 
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        # Not what every struct has of a like name: its own few members.
+        ("bpy.data.actions[0].layers[0].strips[0].channelbags.ensure(0)", " It has `new`, `remove`."),
+        ("bpy.context.object.modifiers['Mine'].segmants = 3", " Closest: `BevelModifier.segments`."),
+        ("bpy.context.object.id_propertys_ensure()", " Closest: `id_properties_ensure`."),
+        ("bpy.context.object.locaton", " Closest: `location`."),
+    ],
+)
+def test_what_may_be_meant_is_told(checker: Checker, code: str, told: str) -> None:
+    (found,) = checker.check(f"import bpy\n{code}\n")
+    assert (found.rule, found.severity) == ("unknown-attribute", "error")
+    assert found.message.endswith(told)
+
+
+def test_what_blender_lets_pass_is_a_warning(checker: Checker) -> None:
+    (found,) = checker.check("import bpy\nbpy.context.object.driver_remove('locaton')\n")
+    assert (found.rule, found.severity) == ("unknown-attribute", "warning")
+
+
+def test_a_keyword_that_is_none_is_the_one_finding_of_a_call(checker: Checker) -> None:
+    call = "strips.new_effect(name='x', type='COLOR', channel=1, frame_start=1{})"
+    code = f"import bpy\nstrips = bpy.context.scene.sequence_editor_create().strips\n{call}\n"
+    assert [one.rule for one in checker.check(code.format(", frame_end=9"))] == ["unknown-keyword"]
+    assert [one.rule for one in checker.check(code.format(""))] == ["refused-call"]
+
+
 def test_old_code_about_collections_is_told_with_what_took_its_place(checker: Checker) -> None:
     code = "import bpy\nbpy.context.scene.objects.link(bpy.context.object)\nbpy.context.object.data.use_auto_smooth"
     first, second = (one for one in checker.check(code) if one.rule == "unknown-attribute")

@@ -225,6 +225,12 @@ def test_arguments_tell_type_default_range_unit_and_choices(renderer: MarkdownRe
     assert all(f"Meaning {n}" in text for n in range(50))
 
 
+def test_arrays_of_any_length_are_not_said_to_have_one_element(kb: KnowledgeBase) -> None:
+    assert "`index` (int[any length], required" in kb.query("VertexGroup.add").text
+    assert "`normals` (float[any length][3], required" in kb.query("Mesh.normals_split_custom_set").text
+    assert "`value` (float[1], radians)" in kb.query("bpy.ops.transform.bend").text
+
+
 def test_undescribed_enum_items_are_all_listed(renderer: MarkdownRenderer) -> None:
     items = tuple(EnumItem(f"ICON_{n}") for n in range(300))
     symbol = Symbol("m.f", "function", "m", parameters=(Parameter("icon", "enum", enum_items=items),))

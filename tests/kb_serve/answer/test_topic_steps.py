@@ -71,3 +71,15 @@ def test_an_object_is_called_as_what_it_holds(reader: BaseReader, cls: str, name
 def test_what_somebody_must_have_made_is_not_set_as_if_it_were_there(reader: BaseReader) -> None:
     found = " ".join(steps(reader, "collision", "CollisionModifier", "ClothCollisionSettings"))
     assert 'modifiers["Cloth"]' not in found
+
+
+def test_what_is_none_until_something_makes_it_is_set_last(reader: BaseReader) -> None:
+    found = steps(reader, "override", "IDOverrideLibrary", "RenderSettings")
+    assert "set on `bpy.context.scene.render`" in found[0]
+    assert "set, once it is not None, on `bpy.context.object.override_library`" in found[-1]
+
+
+def test_a_pointer_that_is_none_is_filled_before_what_it_holds_is_set(reader: BaseReader) -> None:
+    made, held = steps(reader, "force field", "FieldSettings")
+    assert made.endswith("`bpy.ops.object.forcefield_toggle()` makes `bpy.context.object.field`")
+    assert "set on `bpy.context.object.field`" in held

@@ -265,6 +265,48 @@ def test_an_unknown_keyword_alone_names_the_operators_that_know_it(kb: Knowledge
     assert answer.kind == "candidates"
 
 
+@pytest.mark.parametrize(
+    ("message", "path", "said"),
+    [
+        (
+            "TypeError: register_class(...):, validating class: enum \"VIEW3D\" not found in ('EMPTY', 'VIEW_3D', "
+            "'IMAGE_EDITOR', 'NODE_EDITOR', 'SEQUENCE_EDITOR', 'CLIP_EDITOR', 'DOPESHEET_EDITOR', 'GRAPH_EDITOR')",
+            "bpy.types.Panel.bl_space_type",
+            "closest: `VIEW_3D`",
+        ),
+        (
+            "ValueError: validating class:: 'REGISTR' not found in ('REGISTER', 'UNDO', 'UNDO_GROUPED', 'BLOCKING', "
+            "'MACRO', 'GRAB_CURSOR', 'GRAB_CURSOR_X', 'GRAB_CURSOR_Y', 'DEPENDS_ON_CURSOR', 'PRESET', 'INTERNAL')",
+            "bpy.types.Operator.bl_options",
+            "closest: `REGISTER`",
+        ),
+        (
+            "RuntimeError: class OBJECT_OT_drop, function execute: incompatible return value , TypeError(, "
+            "Function.result expected a set, not a NoneType)",
+            "bpy.types.Operator.execute",
+            "must return what `bpy.types.Operator.execute` returns",
+        ),
+        (
+            "ValueError: bpy_struct \"Scene\" registration error: 'mode' EnumProperty could not register (see previous "
+            "error)",
+            "bpy.props.EnumProperty",
+            "printed before this one",
+        ),
+        (
+            "RuntimeError: Error: Registering panel class: parent 'PT_main' for 'PT_sub' not found",
+            "bpy.types.Panel.bl_parent_id",
+            "`PT_main` first",
+        ),
+    ],
+)
+def test_what_is_refused_when_classes_are_registered(
+    kb: KnowledgeBase, message: str, path: str, said: str
+) -> None:
+    answer = kb.query(message)
+    assert answer.hits[0].id == path
+    assert said in "\n".join(answer.notes)
+
+
 IMAGES = (
     "'AVIF', 'JPEG', 'OPEN_EXR', 'PNG', 'WEBP', 'BMP', 'CINEON', 'DPX', 'IRIS', 'JPEG2000', 'HDR', 'TARGA'"
 )

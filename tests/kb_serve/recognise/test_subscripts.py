@@ -26,6 +26,7 @@ if TYPE_CHECKING:
 def test_inputs_of_a_geometry_nodes_modifier_are_set_by_identifier(kb: KnowledgeBase, query: str) -> None:
     notes = "\n".join(kb.query(query).notes)
     assert 'modifier[modifier.node_group.interface.items_tree["Size"].identifier] = 5.0' in notes
+    assert "A menu takes the number of an entry, which is not its index" in notes
     assert "has no" not in notes
 
 

@@ -1,0 +1,111 @@
+"""Elements of collections that new things have empty."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+
+_MADE = """\
+import bpy
+mesh = bpy.data.meshes.new('m')
+ob = bpy.data.objects.new('o', mesh)
+scene = bpy.data.scenes.new('s')
+curve = bpy.data.curves.new('c', 'CURVE')
+tree = bpy.data.node_groups.new('g', 'GeometryNodeTree')
+action = bpy.data.actions.new('a')
+armature = bpy.data.armatures.new('r')
+group = bpy.data.collections.new('k')
+pencil = bpy.data.grease_pencils.new('p')
+camera = bpy.data.cameras.new('c')
+material = bpy.data.materials.new('m')
+world = bpy.data.worlds.new('w')
+lattice = bpy.data.lattices.new('l')
+bpy.context.scene.collection.objects.link(ob)
+ob.select_set(True)
+"""
+_LINES = """\
+mesh.materials[0] = material
+ob.data.materials[0].name = 'x'
+ob.material_slots[0].material = material
+ob.modifiers['Cloth'].settings.quality = 5
+ob.constraints['Track To'].influence = 0.5
+ob.vertex_groups['Pin'].name = 'x'
+ob.vertex_groups[-1].name = 'x'
+ob.particle_systems[0].name = 'x'
+mesh.vertices[0].co = (0, 0, 0)
+mesh.polygons[0].use_smooth = True
+mesh.uv_layers[0].name = 'x'
+mesh.attributes['x'].name = 'y'
+mesh.color_attributes[0].name = 'y'
+curve.splines[0].use_cyclic_u = True
+tree.nodes['Group Input'].location = (0, 0)
+tree.links[0].is_valid
+tree.interface.items_tree['Geometry'].name = 'x'
+action.slots[0].name_display
+action.layers[0].strips
+armature.bones['Bone'].use_deform = True
+armature.collections['Arm'].name = 'x'
+group.objects['x'].name = 'y'
+group.children[0].name = 'y'
+pencil.layers['Lines'].hide = True
+scene.timeline_markers['x'].frame = 4
+scene.objects['Cube'].name = 'y'
+camera.background_images[0].alpha = 0.5
+scene.view_layers[0].name = 'x'
+scene.render.views[0].name
+lattice.points[0].co
+material.node_tree.nodes['Principled BSDF'].location = (0, 0)
+material.node_tree.nodes[0].location = (0, 0)
+bpy.data.objects['o'].name
+mesh.vertices[:]
+ob.modifiers.get('Cloth')
+"""
+
+
+def found(checker: Checker, line: str, before: str = "") -> bool:
+    return bool(checker.check(f"{_MADE}{before}{line}\n", rules=["empty-collection"]))
+
+
+def test_elements_that_new_things_do_not_have_are_found(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _LINES.splitlines()
+    outcomes = run_statements(tmp_path, [*_MADE.splitlines(), *lines])[-len(lines) :]
+    refused = [line for line, (error, *_) in zip(lines, outcomes, strict=True) if error]
+    assert [line for line in lines if found(rule_checker, line)] == refused
+    assert len(refused) == 27
+
+
+@pytest.mark.parametrize(
+    ("line", "before"),
+    [
+        ("mesh.materials[0].name", "mesh.materials.append(material)\n"),
+        ("mesh.materials[0].name", "ob.active_material = material\n"),
+        ("mesh.materials[0].name", "ob.data = bpy.data.meshes['x']\nob.data.materials.append(material)\n"),
+        ("ob.material_slots[0].name", "mesh.materials.append(material)\n"),
+        ("ob.particle_systems[0].name", "ob.modifiers.new('p', 'PARTICLE_SYSTEM')\n"),
+        ("mesh.vertices[0].co", "mesh.from_pydata([(0, 0, 0)], [], [])\n"),
+        ("mesh.vertices[0].co", "import bmesh\nbm = bmesh.new()\nbm.to_mesh(mesh)\n"),
+        ("mesh.vertices[0].co", "def fill(it):\n    it.from_pydata([(0, 0, 0)], [], [])\nfill(mesh)\n"),
+        ("mesh.vertices[0].co", "bpy.ops.object.editmode_toggle()\n"),
+        ("ob.modifiers['Cloth'].name", "import rigging\n"),
+        ("ob.modifiers['Cloth'].name", "setattr(ob, 'x', 1)\n"),
+        ("ob.modifiers['Cloth'].name", "if ob.modifiers:\n    pass\n"),
+        ("ob.modifiers['Cloth'].name", "path = 'modifiers'\n"),
+        ("action.layers[0].strips", "ob.animation_data_create().action = action\n"),
+        ("scene.objects['Cube'].name", "scene.collection.objects.link(ob)\n"),
+    ],
+)
+def test_what_may_have_been_filled_is_left_alone(rule_checker: Checker, line: str, before: str) -> None:
+    assert found(rule_checker, line)
+    assert not found(rule_checker, line, before)
+
+
+def test_what_is_tried_or_was_there_is_left_alone(rule_checker: Checker) -> None:
+    assert not found(rule_checker, "try:\n    mesh.materials[0]\nexcept IndexError:\n    pass")
+    assert not found(rule_checker, "bpy.context.object.material_slots[0].material")
