@@ -428,6 +428,18 @@ def _template(name: str, text: str, version: str) -> Page:
     return Page(f"templates_py/{name}", "template", version, title, (Section("", title, 1, body),))
 
 
+def _name_active_items(symbols: dict[str, dict[str, Any]]) -> None:
+    """Gives the active item of a node the class of the node's items: RNA calls each of some nodes' a RepeatItem."""
+    items: dict[str, list[str]] = {}
+    for row in symbols.values():
+        if row.get("type") == "collection" and row["path"].endswith("_items"):
+            items.setdefault(row["owner"], []).append(row.get("target", ""))
+    for owner, targets in items.items():
+        active = symbols.get(f"{owner}.active_item")
+        if active is not None and len(targets) == 1:
+            active["target"] = targets[0]
+
+
 def read_extract(path: Path) -> Extract:
     """Reads the extractor's output. Raises ExtractError when it is not whole."""
     raw = _read(path)
@@ -437,6 +449,7 @@ def read_extract(path: Path) -> Extract:
     for holder, tree in _TREES.items():
         if holder in raw.symbols and f"bpy.types.{tree}" in raw.symbols:
             raw.symbols[holder]["target"] = tree
+    _name_active_items(raw.symbols)
     _substitute(raw.symbols.values())
     described = [*_described_members(raw.symbols.values())]
     symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}

@@ -103,15 +103,13 @@ BMESH_RESULTS = {
     "region": ("BMFace",), "new_geom": ("BMVert", "BMEdge", "BMFace"), "split": ("BMVert", "BMEdge", "BMFace"),
 }  # fmt: skip
 
-# Properties that RNA declares wider than they are, or as of another class: path → class.
+# Properties that RNA declares wider than they are: path → class.
 NARROWER = {
     "bpy.types.SpaceNodeEditor.edit_tree": "NodeTree",
     "bpy.types.Context.space_data": "Space",
     "bpy.types.Context.edit_bone": "EditBone",
     "bpy.types.BoidSettings.active_boid_state": "BoidState",
     "bpy.types.Context.grease_pencil": "GreasePencilv3",
-    "bpy.types.GeometryNodeBake.active_item": "NodeGeometryBakeItem",
-    "bpy.types.GeometryNodeCaptureAttribute.active_item": "NodeGeometryCaptureAttributeItem",
 }
 
 # Parameters of a script's own functions that are called so by everyone. Only a name that hardly means another thing

@@ -51,7 +51,7 @@ def line(kind: str = "property", **fields: object) -> str:
                 "default": ["A"],
                 "enum_items": (EnumItem("A"), EnumItem("B")),
             },
-            "`x` set of enum items = ('A') (RNA's) A|B",
+            "`x` set of enum items = {'A'} (RNA's) A|B",
         ),
         ({"type": "enum", "flags": ("enum-flag",), "default": ["A"]}, "`x` set of enum items"),
         ({"type": "int", "deprecation": Deprecation("Unused.")}, "`x` int deprecated"),
@@ -158,7 +158,15 @@ def test_a_default_tells_whose_it_is(fields: dict[str, object], expected: str) -
 
 
 @pytest.mark.parametrize(
-    ("value", "text"), [(None, "None"), ("a", "'a'"), ([1, ["b"]], "(1, ('b'))"), (list(range(17)), None)]
+    ("value", "text"),
+    [
+        (None, "None"),
+        ("a", "'a'"),
+        ([1, [2]], "(1, (2,))"),
+        (["b"], "{'b'}"),
+        ([], "set()"),
+        (list(range(17)), None),
+    ],
 )
 def test_a_literal_is_python_and_short(value: object, text: str | None) -> None:
     shown = literal(value)

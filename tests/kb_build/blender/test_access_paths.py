@@ -169,6 +169,10 @@ def reached(base: Path) -> dict[str, str]:
             'bpy.context.object.modifiers["GeometryNodes"].node_group.nodes["Repeat Output"].active_item',
         ),
         (
+            "NodeGeometryBakeItem",
+            'bpy.context.object.modifiers["GeometryNodes"].node_group.nodes["Bake"].active_item',
+        ),
+        (
             "GeometryNodeMenuSwitch",
             'bpy.context.object.modifiers["GeometryNodes"].node_group.nodes["Menu Switch"]',
         ),
