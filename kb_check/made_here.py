@@ -88,13 +88,13 @@ def _is_new_member(script: Script, node: ast.Attribute, depth: int) -> bool:
     if calls := fillers(symbol):
         return any(call.partition("(")[0] in called_operators(script) for call in calls)
     if symbol.name == "data" and symbol.owner == "bpy.types.Object":
-        return is_new(script, node.value, depth - 1) and _has_new_data(script, node.value, depth - 1)
+        return is_new(script, node.value, depth - 1) and has_new_data(script, node.value, depth - 1)
     points_elsewhere = script.names.reader.descends(f"bpy.types.{symbol.target}", _ID)
     return not points_elsewhere and is_new(script, node.value, depth - 1)
 
 
-def _has_new_data(script: Script, node: ast.expr, depth: int) -> bool:
-    """Whether a new object was made with new data."""
+def has_new_data(script: Script, node: ast.expr, depth: int = _DEEPEST) -> bool:
+    """Whether an object was made with new data, which have nothing that they would give it."""
     values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else [node]
     return bool(values) and all(
         isinstance(value, ast.Call)

@@ -21,7 +21,7 @@ from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
 from kb_build.records import EMPTY, last_name
 from kb_check.findings import Finding
-from kb_check.made_here import callee_path, has_plain_operators_only, is_new, knows_all
+from kb_check.made_here import callee_path, has_new_data, has_plain_operators_only, is_new, knows_all
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
@@ -40,6 +40,7 @@ _TAKING = frozenset({"link", "new"})
 _ADDING = ("append", "new", "add", "link")
 # Collections that Blender fills as another one of the same thing is filled, with the stem of its name.
 _FILLED_BESIDE = {"particle_systems": {stem("modifiers")}}
+_OBJECT = f"{T}Object"
 _WORD = re.compile(r"\w+")
 _SCENES = frozenset({f"{T}Context.collection", f"{T}Scene.collection"})
 
@@ -51,6 +52,7 @@ def _check(script: Script) -> Iterator[Finding]:
             symbol
             and knows_all(script)
             and is_new(script, collection.value)
+            and (symbol.owner != _OBJECT or has_new_data(script, collection.value))
             and not is_tried(script, node)
             and not _may_be_filled(script, symbol)
         ):

@@ -109,3 +109,9 @@ def test_what_may_have_been_filled_is_left_alone(rule_checker: Checker, line: st
 def test_what_is_tried_or_was_there_is_left_alone(rule_checker: Checker) -> None:
     assert not found(rule_checker, "try:\n    mesh.materials[0]\nexcept IndexError:\n    pass")
     assert not found(rule_checker, "bpy.context.object.material_slots[0].material")
+
+
+def test_what_an_object_has_of_its_older_data_is_left_alone(rule_checker: Checker) -> None:
+    older = "bpy.data.objects.new('p', bpy.data.meshes['x']).{}[0].name"
+    assert not found(rule_checker, older.format("material_slots"))
+    assert not found(rule_checker, older.format("vertex_groups"))
