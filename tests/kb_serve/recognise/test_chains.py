@@ -72,20 +72,20 @@ def test_a_full_stop_between_sentences_is_no_attribute() -> None:
 
 def test_a_page_of_code_is_read_up_to_a_limit_and_fast() -> None:
     code = "\n".join(f"obj{n}.modifiers['M{n}'].settings.quality = {n}" for n in range(5_000))
-    start = time.perf_counter()
+    start = time.process_time()
     found = find_chains(code)
     assert len(found) <= MAX_QUERY
     assert len([chain for chain in found if chain.is_code]) <= 12
-    assert time.perf_counter() - start < 1
+    assert time.process_time() - start < 1
 
 
 @pytest.mark.parametrize(
     "piece", ["(", "[", '["', "a(", "a[", "a.", "a->", "'", '"', "\\", "a['\\", ")", "]", "(((["]
 )
 def test_brackets_without_end_take_no_time_of_note(piece: str) -> None:
-    start = time.perf_counter()
+    start = time.process_time()
     find_chains(piece * 10_000)
-    assert time.perf_counter() - start < 2
+    assert time.process_time() - start < 2
 
 
 def test_any_text_is_read() -> None:

@@ -94,9 +94,9 @@ def test_similarity_and_nearest_agree(reader: BaseReader) -> None:
 def test_thousands_of_names_are_compared_in_no_time(reader: BaseReader) -> None:
     names = list(reader.members("bpy.types"))
     assert len(names) > 3_500
-    start = time.perf_counter()
+    start = time.process_time()
     assert nearest("ClothSetings", names)[0][0] == "ClothSettings"
-    assert time.perf_counter() - start < 0.5
+    assert time.process_time() - start < 0.5
 
 
 def test_a_misspelt_class_is_found_and_a_right_one_left_alone(
