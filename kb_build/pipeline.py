@@ -307,19 +307,22 @@ def _symbol_tables(
     from kb_build.usage.usage_index import merged, page_usage, with_aliases  # noqa: PLC0415 - loaded ahead
 
     symbols = extract.symbols
-    guides = page_usage(symbols, pages, extract.version)
-    found = scripts()
-    uses = with_aliases(merged([found.uses, guides]), symbols)
-    counts = {path: found.count for path, found in uses.items()}
-    reached = reached_expressions(symbols, counts, extract.names, extract.places)
-    listed = SymbolList(symbols)
-    usage = SymbolUsage(
-        uses,
-        {f"bpy.types.{name}": expression for name, expression in reached.items()},
-        extract.names,
-        [*panel_conditions(settled(found.gatings, listed), listed)],
-    )
-    return symbol_tables(symbols, pages, usage)
+
+    def used() -> SymbolUsage:
+        guides = page_usage(symbols, pages, extract.version)
+        found = scripts()
+        uses = with_aliases(merged([found.uses, guides]), symbols)
+        counts = {path: found.count for path, found in uses.items()}
+        reached = reached_expressions(symbols, counts, extract.names, extract.places)
+        listed = SymbolList(symbols)
+        return SymbolUsage(
+            uses,
+            {f"bpy.types.{name}": expression for name, expression in reached.items()},
+            extract.names,
+            [*panel_conditions(settled(found.gatings, listed), listed)],
+        )
+
+    return symbol_tables(symbols, pages, used)
 
 
 def _pages(work: _Build, read: Mapping[str, list[Page]], extract: Extract) -> list[Page]:

@@ -331,6 +331,9 @@ class Link:
     kind: LinkKind
 
 
+_LEAVES = frozenset({str, int, float, bool, type(None)})
+
+
 def to_json(record: Symbol | Page) -> dict[str, Any]:
     """A record as a JSON-ready dictionary, without the fields that hold their default value."""
     return {
@@ -342,6 +345,8 @@ def to_json(record: Symbol | Page) -> dict[str, Any]:
 
 def _plain(value: Any) -> Any:
     """A field's value, the records in it taken apart."""
+    if type(value) in _LEAVES:  # hundreds of thousands
+        return value
     if isinstance(value, tuple):
         return [_plain(part) for part in cast("tuple[Any, ...]", value)]
     if isinstance(value, Section):  # thousands, and most have no marks

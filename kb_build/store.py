@@ -275,16 +275,16 @@ def _write(part: Path, contents: Contents) -> None:
             names = find_label_names(symbols, pages, passages, labelled)
             values = find_value_names(symbols, pages, passages)
             _insert(connection, "label_names", (*names, *values), 4)
-            tables = contents.tables() if contents.tables else symbol_tables(contents.symbols, contents.pages)
-            _write_symbols(connection, tables)
-            _write_usage(connection, tables.uses)
-            weights = symbol_weights(contents.symbols, passages, expansions, tables.uses)
-            _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "refusals", _refusals(contents.symbols), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             _insert(
                 connection, "links", ((link.source, link.target, link.kind) for link in contents.links), 3
             )
+            tables = contents.tables() if contents.tables else symbol_tables(contents.symbols, contents.pages)
+            _write_symbols(connection, tables)
+            _write_usage(connection, tables.uses)
+            weights = symbol_weights(contents.symbols, passages, expansions, tables.uses)
+            _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "meta", contents.meta.items(), 2)
         connection.executescript(f"{INDEXES} ANALYZE;")
     finally:

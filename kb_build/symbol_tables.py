@@ -15,7 +15,7 @@ from kb_build.symbol_lines import member_line, switches
 from kb_build.usage.examples import SymbolUsage
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import Page, PanelCondition, Symbol
     from kb_build.usage.examples import Uses
@@ -38,12 +38,18 @@ class SymbolTables:
 
 
 def symbol_tables(
-    symbols: Sequence[Symbol], pages: Sequence[Page], usage: SymbolUsage | None = None
+    symbols: Sequence[Symbol], pages: Sequence[Page], used: Callable[[], SymbolUsage] = SymbolUsage
 ) -> SymbolTables:
-    """The rows of all symbols, and of the names of ``pages``. ``usage``: of the symbols in scripts."""
-    usage = usage or SymbolUsage()
+    """The rows of all symbols, and of the names of ``pages``.
+
+    ``used`` gives the uses of the symbols in scripts. It is called last: it may wait for them.
+    """
     names = {row for symbol in symbols for row in symbol_names(symbol)}
-    items = (row for symbol in symbols for row in enum_rows(symbol))
+    # In the order of their keys: SQLite then fills page after page, and splits none.
+    names = sorted(names.union(row for page in pages for row in page_names(page)))
+    items = sorted((row for symbol in symbols for row in enum_rows(symbol)), key=itemgetter(0, 1, 2))
+    records = [pack(to_json(symbol)) if symbol.kind != "class" else b"" for symbol in symbols]
+    usage = used()
     calls = creation_calls(symbols, usage.reached, usage.names)
     on = _switches(usage.conditions)
     return SymbolTables(
@@ -51,13 +57,13 @@ def symbol_tables(
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label,
-                member_line(symbol, on.get(symbol.path, "")), pack(to_json(_with_path(symbol, usage.reached))),
+                member_line(symbol, on.get(symbol.path, "")),
+                record or pack(to_json(_with_path(symbol, usage.reached))),
             )
-            for number, symbol in enumerate(symbols)
+            for number, (symbol, record) in enumerate(zip(symbols, records, strict=True))
         ],
-        # In the order of their keys: SQLite then fills page after page, and splits none.
-        names=sorted(names.union(row for page in pages for row in page_names(page))),
-        enum_items=sorted(items, key=itemgetter(0, 1, 2)),
+        names=names,
+        enum_items=items,
         creation=[(path, *creation) for path, creation in calls.items()],
         conditions=usage.conditions,
         uses=usage.uses,
@@ -103,7 +109,7 @@ def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:
 
 def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
     """A class with the expression that leads to an instance."""
-    path = reached.get(symbol.path) if symbol.kind == "class" else None
+    path = reached.get(symbol.path)
     return replace(symbol, reached=path) if path else symbol
 
 

@@ -3,7 +3,11 @@
 
 import os
 import signal
+import tempfile
+import traceback
 from contextlib import suppress
+
+from .wire import Writer
 
 # Of the processor: on a busy machine the same work comes to its end.
 WORK_SECONDS = 5
@@ -27,3 +31,40 @@ def apart(work):
             done = work()
         os._exit(not done)
     return os.waitpid(process, 0)[1] == 0
+
+
+class Beside:
+    """Writes records in a process of its own, a copy of this one, while this one goes on.
+
+    What they tell is of Blender as it was when this was made.
+    """
+
+    def __init__(self, step, find):
+        """``find`` is given what it writes records with. ``step`` names it where it fails."""
+        self.file = tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace")
+        self.process = os.fork()
+        if not self.process:
+            ended = False
+            with suppress(BaseException):
+                ended = self.work(step, find)
+            os._exit(not ended)
+
+    def work(self, step, find):
+        """What the other process does."""
+        write = Writer(self.file)
+        try:
+            find(write)
+        except Exception:
+            write("fault", step=step, traceback=traceback.format_exc())
+        write.flush()
+        return True
+
+    def into(self, write):
+        """Waits for the records, and writes them. Raises RuntimeError where not all are there."""
+        status = os.waitpid(self.process, 0)[1]
+        with self.file:
+            self.file.seek(0)
+            lines = self.file.read().splitlines()
+        if status:
+            raise RuntimeError(f"Blender ended, with status {status}")
+        write.lines(lines)

@@ -27,6 +27,7 @@ from . import (
     refusals,
     rna,
 )
+from .apart import Beside, can_work_apart
 from .instances import Observer
 from .neighbours import Neighbours
 from .wire import Writer
@@ -69,7 +70,21 @@ def write_rna(write, found):
     found["structs"] = rna.write_all(write, modules.write_member)
 
 
+def start_refusals(_write, found):
+    """Begins with what takes longest, and needs nothing of the other steps."""
+    if can_work_apart():
+        observer = found["observer"]
+        found["refusals"] = Beside("refusals", lambda write: refusals.find_all(write, observer))
+
+
+def write_refusals(write, found):
+    """What was begun there."""
+    if "refusals" in found:
+        found["refusals"].into(write)
+
+
 STEPS = (
+    ("start of refusals", start_refusals),
     ("classes", write_rna),
     ("operators", lambda write, _found: operators.write_all(write)),
     ("names", lambda _write, found: own_names.look_at_start(found["observer"])),
@@ -93,7 +108,6 @@ STEPS = (
     ),
     ("pointers", lambda write, found: pointer_fillers.find_all(write, found["observer"], found["skipped"])),
     ("evaluated", lambda write, found: evaluated.find_all(write, found["skipped"])),
-    ("refusals", lambda write, found: refusals.find_all(write, found["observer"])),
     ("own names", lambda write, found: own_names.find_all(write, found["observer"], found["skipped"])),
     (
         "needs",
@@ -101,6 +115,7 @@ STEPS = (
     ),
     ("neighbours", lambda write, found: found["neighbours"].write(write)),
     ("instances", lambda write, found: found["observer"].write(write)),
+    ("refusals", write_refusals),
 )
 
 
@@ -112,7 +127,7 @@ def main(arguments):
     """
     given, output = arguments
     gc.disable()  # what is read stays until the end, which is near
-    write = Writer(output)
+    write = Writer(open(output, "w", encoding="utf-8", errors="replace"))
     with open(given, encoding="utf-8") as file:
         observer = Observer()
         found = {"observer": observer, "neighbours": Neighbours(observer), **json.load(file)}

@@ -15,7 +15,7 @@ from contextlib import suppress
 
 import bpy
 
-from .apart import apart, can_work_apart
+from .apart import apart
 from .new_things import MAKERS, activate, added_by_operators, choices, object_of, scratch_scene
 from .pointer_fillers import ADDING
 
@@ -286,10 +286,8 @@ def tried_apart(make, observer):
 def find_all(write, observer):
     """One ``refusals`` record for each function of which a call was refused: all outcomes of the calls.
 
-    ``ends_without`` says what must not be None, if that ends Blender.
+    ``ends_without`` says what must not be None, if that ends Blender. Wants a system that can work apart.
     """
-    if not can_work_apart():
-        return
     found = defaultdict(list)
     for make in (objects, *(make for make in MAKERS if make is not added_by_operators)):
         for row in tried_apart(make, observer):

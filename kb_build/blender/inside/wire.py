@@ -39,10 +39,10 @@ def plain(value):
 
 
 class Writer:
-    """Writes one record a line, leaving out what holds nothing."""
+    """Writes one record a line to a file, leaving out what holds nothing."""
 
-    def __init__(self, path):
-        self._file = open(path, "w", encoding="utf-8", errors="replace")
+    def __init__(self, file):
+        self._file = file
         self._encode = json.JSONEncoder(ensure_ascii=False, separators=(",", ":")).encode
         self.count = 0
 
@@ -51,8 +51,12 @@ class Writer:
         row.update(
             (key, value) for key, value in values.items() if value is not None and value not in ("", [], ())
         )
-        self._file.write(self._encode(row) + "\n")
-        self.count += 1
+        self.lines([self._encode(row)])
+
+    def lines(self, encoded):
+        """Writes records that another writer wrote, a text each."""
+        self._file.writelines(line + "\n" for line in encoded)
+        self.count += len(encoded)
 
     def flush(self):
         """Puts what was written on disk, whatever happens to this process."""
