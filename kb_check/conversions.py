@@ -62,6 +62,8 @@ _DOCUMENTED = {"str": frozenset({"str"}), "string": frozenset({"str"}), "float":
 _OF_BMESH = {
     **_DOCUMENTED, "enum": frozenset({"str"}), "int": frozenset({"int", "bool"}), "bool": frozenset({"bool", "int"}),
 }  # fmt: skip
+# The parts of documented types of mathutils that are sequences of numbers.
+_OF_MATHUTILS = frozenset({"Vector", "Quaternion", "Euler", "Matrix", "Color", "Sequence[float]", "None"})
 _BMESH_WORDS = {"int": "an int", "bool": "True or False"}
 # Arrays whose size is not the one that RNA declares.
 CHANGING_ARRAYS = frozenset({"bpy.types.FModifierGenerator.coefficients", "bpy.types.MeshPolygon.vertices"})
@@ -195,13 +197,20 @@ def _whole_misfit(script: Script, node: ast.expr, kind: Type, length: int, takes
 
 
 def _documented_misfit(taker: Taker, kind: Type) -> Misfit | None:
-    """A value that no reading of the reference allows: text for a number, a number for text."""
+    """A value that no reading of the reference allows: text for a number, a number for text, either for a vector."""
+    if taker.path.startswith("mathutils.") and _OF_MATHUTILS.issuperset(_parts(taker.documented)):
+        is_refused = isinstance(kind, Plain) and kind.kind != "bytes"
+        return Misfit("a sequence of numbers", describe(kind)) if is_refused else None
     strict = _OF_BMESH if taker.path.startswith("bmesh.ops.") else _DOCUMENTED
     fits = strict.get(taker.documented)
     if fits is None or not isinstance(kind, Plain) or kind.kind in fits:
         return None
     takes = _BMESH_WORDS.get(taker.documented, "") if strict is _OF_BMESH else ""
     return Misfit(takes or ("a str" if "str" in fits else "a number"), describe(kind))
+
+
+def _parts(documented: str) -> list[str]:
+    return documented.replace("mathutils.", "").split(" | ")
 
 
 def _takes(taker: Taker) -> str:

@@ -97,7 +97,9 @@ def _assignments(script: Script) -> Iterator[Given]:
 def _arguments(script: Script) -> Iterator[Given]:
     for call in calls(script):
         symbol, is_rna = call.callee.symbol, call.callee.is_rna
-        if symbol.kind != "class":
+        # Numbers that should be one sequence are too many arguments.
+        is_vector = symbol.owner == "mathutils" and len(call.node.args) <= len(call.callee.positional)
+        if symbol.kind != "class" or is_vector:
             for parameter, argument in call.arguments():
                 yield Given(argument, (parameter_taker(script, symbol, parameter, is_rna=is_rna),))
 

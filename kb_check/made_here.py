@@ -161,6 +161,29 @@ def alias(script: Script, node: ast.expr) -> ast.expr:
     return values[0] if len(values) == 1 and isinstance(values[0], ast.Attribute) else node
 
 
+def read_pointer(script: Script, node: ast.expr) -> ast.Attribute | None:
+    """The attribute that an expression reads, itself or by the only value of a name that is only read from."""
+    if isinstance(node, ast.Name) and node.id not in asked_names(script):
+        values = bindings(script).get(node.id, [])
+        value = values[0] if len(values) == 1 else None
+        return value if isinstance(value, ast.Attribute) else None
+    return node if isinstance(node, ast.Attribute) else None
+
+
+@once_per_script
+def asked_names(script: Script) -> frozenset[str]:
+    """The names and attributes that are used for more than to read from them, or to hold them."""
+    read = {node.value for node in script.all(ast.Attribute)}
+    held = {node.value for node in script.all(ast.Assign)}
+    found: set[str] = set()
+    for node in script.all(ast.Attribute, ast.Name):
+        if isinstance(node.ctx, ast.Load):
+            if node in read or (node in held and isinstance(node, ast.Attribute)):
+                continue
+            found.add(node.attr if isinstance(node, ast.Attribute) else node.id)
+    return frozenset(found)
+
+
 @once_per_script
 def _handed_on(script: Script) -> frozenset[str]:
     """The names whose values are passed to functions that are neither the API's nor the script's own."""

@@ -318,6 +318,7 @@ class Calls(Narrowing):
         symbol = self.api.symbols.symbol(callee.cls)
         if symbol and symbol.parameters:
             self._keywords(symbol, keywords)
+            self._values(symbol, node)
         return Instance(callee.cls)
 
     # The script's own.

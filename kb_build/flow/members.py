@@ -355,10 +355,21 @@ class Members(Core):
             if found is not None:
                 return found
         element = kind.element
-        if text and isinstance(element, Instance) and text not in self.file.given_names:
-            classes = self.api.classes_by_label(element.cls, text) or [element.cls]
+        if text and isinstance(element, Instance):
+            classes = self._classes_by_name(element.cls, text) or [element.cls]
             return union(self._as_found(Instance(cls)) for cls in classes)
         return element
+
+    def _classes_by_name(self, base: str, name: str) -> list[str]:
+        """The classes of what may have a name among things of the class ``base``; none where that is not known."""
+        classes = self.api.classes_by_label(base, name)
+        for thing in self.file.given_names.get(name, ()):
+            kind = self.types.get(thing) if thing else None
+            if not isinstance(kind, Instance):
+                return []
+            if self.api.descends(kind.cls, base):
+                classes = [*classes, kind.cls]
+        return list(dict.fromkeys(classes))
 
     def _as_found(self, kind: Type) -> Type:
         """What is looked up anew: another class, as soon as something may have set what it is. Names keep theirs."""

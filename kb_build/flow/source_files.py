@@ -13,6 +13,8 @@ from kb_build.flow.scopes import Scope
 from kb_build.flow.types import Readings
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
     from kb_build.flow.types import Resolution, Type
 
 
@@ -38,15 +40,18 @@ class SourceFile:
     complete: bool = True
 
     @cached_property
-    def given_names(self) -> frozenset[str]:
-        """The texts that it may give as names: all that it has for more than to look an item up."""
+    def given_names(self) -> Mapping[str, Sequence[ast.expr | None]]:
+        """The texts that it may give as names, all that it has for more than to look an item up: with the expressions
+        for the things that are given them, None for what is unknown.
+        """
         nodes = list(ast.walk(self.tree)) if self.tree else []
         sought = {key for node in nodes for key in _sought(node)}
-        return frozenset(
-            node.value
-            for node in nodes
-            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in sought
-        )
+        things = {name: thing for node in nodes for name, thing in _naming(node)}
+        found: dict[str, list[ast.expr | None]] = {}
+        for node in nodes:
+            if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in sought:
+                found.setdefault(node.value, []).append(things.get(node))
+        return found
 
     @cached_property
     def sets_types(self) -> bool:
@@ -73,6 +78,18 @@ def _sought(node: ast.AST) -> list[ast.expr]:
             return [node.left]
         case _:
             return []
+
+
+def _naming(node: ast.AST) -> Iterator[tuple[ast.expr, ast.expr]]:
+    """(name, thing) where a statement or a call gives a thing its name."""
+    match node:
+        case ast.Call(func=ast.Attribute(attr="new")):
+            yield from ((name, node) for name in node.args[:1])
+            yield from ((keyword.value, node) for keyword in node.keywords if keyword.arg == "name")
+        case ast.Assign(targets=[ast.Attribute(attr="name", value=thing)], value=name):
+            yield name, thing
+        case _:
+            pass
 
 
 def _sets_type(node: ast.AST) -> bool:

@@ -19,6 +19,7 @@ from kb_build.flow.facts import T
 from kb_build.symbol_lines import empty_when_new, fillers
 from kb_check.findings import Finding
 from kb_check.made_here import (
+    asked_names,
     bindings,
     called_operators,
     callee_path,
@@ -26,6 +27,7 @@ from kb_check.made_here import (
     is_new,
     knows_all,
     named_words,
+    read_pointer,
 )
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
@@ -54,7 +56,7 @@ def _check(script: Script) -> Iterator[Finding]:
         node = row.node
         if not isinstance(node, ast.Attribute) or not row.sure or row.guarded:
             continue
-        pointer = _pointer(script, node.value)
+        pointer = read_pointer(script, node.value)
         if pointer is None or ast.unparse(pointer) in told:
             continue
         symbol = _empty(script, pointer)
@@ -69,15 +71,6 @@ def _check(script: Script) -> Iterator[Finding]:
         )  # fmt: skip
 
 
-def _pointer(script: Script, node: ast.expr) -> ast.Attribute | None:
-    """The attribute that an expression reads, itself or by the only value of a name that is only read from."""
-    if isinstance(node, ast.Name) and node.id not in _asked(script):
-        values = bindings(script).get(node.id, [])
-        value = values[0] if len(values) == 1 else None
-        return value if isinstance(value, ast.Attribute) else None
-    return node if isinstance(node, ast.Attribute) else None
-
-
 def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:
     """The symbol of a pointer that is None on all that is new, and that something fills."""
     row = script.analysis.resolutions.get(pointer)
@@ -90,7 +83,7 @@ def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:
 
 def _stays_empty(script: Script, symbol: Symbol) -> bool:
     """Whether the script names nothing that may fill a pointer, and does not ask whether it is None."""
-    if not knows_all(script) or symbol.name in _asked(script) or symbol.owner == f"{T}ID":
+    if not knows_all(script) or symbol.name in asked_names(script) or symbol.owner == f"{T}ID":
         return False
     words, operators = named_words(script), called_operators(script)
     is_animated = symbol.name == "animation_data" and any(map(_ANIMATING.search, words | operators))
@@ -125,20 +118,6 @@ def _computes_kinds(script: Script) -> bool:
             if not all(isinstance(value, (ast.Constant, ast.Attribute)) for value in given):
                 return True
     return False
-
-
-@once_per_script
-def _asked(script: Script) -> frozenset[str]:
-    """The names and attributes that are used for more than to read from them, or to hold them."""
-    read = {node.value for node in script.all(ast.Attribute)}
-    held = {node.value for node in script.all(ast.Assign)}
-    found: set[str] = set()
-    for node in script.all(ast.Attribute, ast.Name):
-        if isinstance(node.ctx, ast.Load):
-            if node in read or (node in held and isinstance(node, ast.Attribute)):
-                continue
-            found.add(node.attr if isinstance(node, ast.Attribute) else node.id)
-    return frozenset(found)
 
 
 def _is_made(script: Script, node: ast.expr) -> bool:

@@ -17,11 +17,13 @@ from typing import TYPE_CHECKING
 
 from kb_check.calls import calls
 from kb_check.findings import Finding
+from kb_check.literals import number
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_check.calls import CallSite
     from kb_check.script import Script
 
 # Modules whose reference shows one of several signatures, and what bpy.props fills in when a class is registered.
@@ -33,6 +35,8 @@ _MARKS = ("/", "*", "=")
 _MAY_BE_LEFT_OUT = {
     "mathutils.Matrix.Rotation": {"axis"}, "mathutils.Matrix.Scale": {"axis"}, "mathutils.Vector.Range": {"stop"},
 }  # fmt: skip
+# Those that may be left out but for some values of another argument: (parameter, other, values).
+_NEEDED_WITH = {"mathutils.Matrix.Rotation": ("axis", "size", {3, 4})}
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -43,7 +47,7 @@ def _check(script: Script) -> Iterator[Finding]:
         unreliable = path.startswith(_SEVERAL_SIGNATURES) or callee.is_open or not told
         if callee.symbol.kind != "function" or call.has_unpacking or unreliable:
             continue
-        given = call.given | _MAY_BE_LEFT_OUT.get(path, set())
+        given = call.given | _may_be_left_out(script, call)
         missing = [p.name for p in callee.parameters if p.required and p.name not in given]
         if missing:
             names = ", ".join(f"`{name}`" for name in missing)
@@ -52,6 +56,14 @@ def _check(script: Script) -> Iterator[Finding]:
                 f"`{path}` also needs {names}: `{callee.symbol.signature}`.",
                 f"{path}({missing[0]})",
             )  # fmt: skip
+
+
+def _may_be_left_out(script: Script, call: CallSite) -> set[str]:
+    path = call.callee.symbol.path
+    optional = _MAY_BE_LEFT_OUT.get(path, set())
+    name, other, values = _NEEDED_WITH.get(path, ("", "", set[int]()))
+    needed = any(p.name == other and number(script, node) in values for p, node in call.arguments())
+    return optional - {name} if needed else optional
 
 
 RULE = Rule("missing-argument", "error", "An argument that a call needs and does not have", _check)

@@ -259,6 +259,29 @@ def test_what_is_not_there_is_told_with_its_owner(api: Api) -> None:
     }
 
 
+@pytest.mark.parametrize(
+    ("code", "cls"),
+    [
+        ("ob.modifiers.new('Rim', 'BEVEL')\nob.modifiers['Rim']", {"BevelModifier"}),
+        ("ob.modifiers.new(name='Rim', type='BEVEL')\nob.modifiers.get('Rim')", {"BevelModifier"}),
+        ("c = ob.constraints.new('TRACK_TO')\nc.name = 'Aim'\nob.constraints['Aim']", {"TrackToConstraint"}),
+        ("ob.modifiers.new('Rim', kind)\nob.modifiers['Rim']", {"Modifier"}),
+        ("ob.modifiers.new('Rim', 'BEVEL')\nprint('Rim')\nob.modifiers['Rim']", {"Modifier"}),
+        ("ob.vertex_groups.new(name='Rim')\nob.modifiers['Rim']", {"Modifier"}),
+        (
+            "ob.modifiers.new('Wave', 'BEVEL')\nob.modifiers['Wave']",
+            {"BevelModifier", "WaveModifier"},
+        ),
+        (
+            "bpy.data.node_groups.new('Own', 'GeometryNodeTree')\nbpy.data.node_groups['Own']",
+            {"GeometryNodeTree"},
+        ),
+    ],
+)
+def test_what_a_name_is_given_to_is_found_by_it(api: Api, code: str, cls: set[str]) -> None:
+    assert last_type(api, "import bpy\nob = bpy.context.object\n" + code) == cls
+
+
 def test_what_derived_classes_have_is_possible(api: Api) -> None:
     row = resolved(api, "import bpy\nbpy.context.object.modifiers['mine'].levels")["levels"]
     assert "bpy.types.SubsurfModifier.levels" in row.possible

@@ -101,6 +101,26 @@ bpy.ops.mesh.primitive_cube_add(size=None)
 bpy.ops.mesh.primitive_cube_add(location=(1, 2))
 bpy.ops.mesh.primitive_cube_add(align=1)
 bpy.ops.mesh.primitive_circle_add(vertices=8.0)
+Vector("abc")
+Vector(5)
+Euler("XYZ")
+Quaternion(1.0)
+Color("red")
+Matrix.Translation("abc")
+Matrix.Translation(3)
+Matrix.Diagonal(2)
+Matrix.LocRotScale("abc", None, None)
+Matrix.LocRotScale((0, 0, 0), None, 2.0)
+ob.location.dot("abc")
+ob.location.cross(2)
+ob.location.lerp(5, 0.5)
+ob.location.rotate("XYZ")
+ob.rotation_euler.rotate("Z")
+ob.rotation_euler.make_compatible(0)
+Quaternion().slerp(1, 0.5)
+mathutils.geometry.intersect_point_line(0, (1, 0, 0), (0, 1, 0))
+mathutils.kdtree.KDTree(1).insert(0, 0)
+mathutils.noise.noise(0.5)
 """,
     "read-only": """\
 ob.type = 'MESH'
@@ -136,6 +156,8 @@ scene.frame_set()
 mesh.from_pydata([], [])
 mathutils.geometry.intersect_line_line((0, 0, 0), (1, 0, 0))
 ob.location.lerp((0, 0, 0))
+Matrix.Rotation(math.pi, 4)
+Matrix.Rotation(math.pi, 3)
 """,
     "positional-argument": """\
 ob.shape_key_add("Smile")
@@ -250,6 +272,14 @@ geometry.interface.new_socket("Size", socket_type='NodeSocketFloat')
 geometry.interface.items_tree["Size"].default_value = 2
 subdivision = ob.modifiers.new("", 'SUBSURF')
 ob.modifiers["Subdivision"].levels = 2
+bevel = ob.modifiers.new("Edges", 'BEVEL')
+ob.modifiers["Edges"].segments = 2
+either = ob.modifiers.new("Either", 'BEVEL')
+either = ob.modifiers.new("Either", 'MIRROR')
+ob.modifiers["Either.001"].use_axis[0] = True
+follow = ob.constraints.new('FOLLOW_PATH')
+follow.name = "Follow"
+ob.constraints["Follow"].offset_factor = 0.5
 solidify = ob.modifiers.new("Lattice", 'SOLIDIFY')
 ob.modifiers["Lattice"].thickness = 2
 tree.nodes["Mix"].data_type = 'RGBA'
@@ -287,6 +317,16 @@ bpy.ops.mesh.primitive_cube_add('EXEC_DEFAULT', True)
 bpy.ops.mesh.primitive_circle_add('EXEC_DEFAULT', vertices=8)
 Matrix.Rotation(1, 2)
 Matrix.Rotation(math.pi, 4, 'X')
+Matrix.Rotation(math.pi, 4, (0, 0, 1))
+Matrix.Scale(2, 4)
+Matrix.LocRotScale(None, None, (1, 2, 3))
+Vector(range(3))
+Vector(b"ab")
+Euler(ob.location, 'ZYX')
+Quaternion((1, 0, 0), math.pi)
+Color()
+mathutils.noise.noise(ob.location)
+mathutils.geometry.intersect_point_line([0, 0, 0], (1, 0, 0), ob.location)
 Vector.Range(4)
 bmesh.ops.translate(bm, vec=(0, 0, 1), verts=bm.verts)
 """.splitlines()

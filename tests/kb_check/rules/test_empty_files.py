@@ -1,0 +1,97 @@
+"""What an empty file lacks is found where a script surely has one, and nowhere else."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+
+_EMPTYING = "import bpy\nbpy.ops.wm.read_factory_settings(use_empty=True)\n"
+_READING = """\
+bpy.context.scene.world.color = (0, 0, 0)
+bpy.context.scene.world.node_tree
+bpy.context.scene.camera.location.x = 1
+bpy.context.object.location.x = 1
+bpy.context.active_object.name
+bpy.context.view_layer.objects.active.name = 'a'
+bpy.data.scenes[0].world.name
+bpy.data.objects['Cube'].location.x = 1
+bpy.data.objects['Camera'].data.lens = 20
+bpy.data.objects['Light'].data.energy
+bpy.data.meshes['Cube'].name
+bpy.data.cameras['Camera'].lens
+bpy.data.lights['Light'].energy
+bpy.data.materials['Material'].roughness
+bpy.data.worlds['World'].color
+bpy.data.collections['Collection'].name
+bpy.context.scene.render.fps = 25
+bpy.context.scene.collection.name
+bpy.context.view_layer.name
+bpy.data.scenes['Scene'].frame_end
+bpy.context.scene.world
+bpy.context.scene.eevee.taa_samples
+bpy.context.scene.view_settings.exposure
+""".splitlines()
+
+
+def is_found(checker: Checker, text: str) -> bool:
+    return bool(checker.check(text, rules=["empty-file"]))
+
+
+def test_what_blender_refuses_in_an_empty_file_is_found(rule_checker: Checker, tmp_path: Path) -> None:
+    answers = run_statements(tmp_path, [_EMPTYING, *_READING])[1:]
+    refused = [line for line, (error, *_) in zip(_READING, answers, strict=True) if error]
+    found = [line for line in _READING if is_found(rule_checker, f"{_EMPTYING}{line}\n")]
+    assert found == refused
+    assert len(refused) == 16
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        f"{_EMPTYING}bpy.context.scene.world = bpy.data.worlds.new('World')\nbpy.context.scene.world.color = (0, 0, 0)",
+        f"{_EMPTYING}bpy.data.worlds.new('World')\nbpy.data.worlds['World'].color = (0, 0, 0)",
+        f"{_EMPTYING}if bpy.context.scene.world:\n    bpy.context.scene.world.color = (0, 0, 0)",
+        f"{_EMPTYING}world = bpy.context.scene.world\nif world is not None:\n    world.color = (0, 0, 0)",
+        f"{_EMPTYING}try:\n    bpy.context.scene.world.name\nexcept AttributeError:\n    pass",
+        f"{_EMPTYING}bpy.ops.import_scene.gltf(filepath='a.glb')\nbpy.context.scene.world.name",
+        f"{_EMPTYING}bpy.ops.wm.open_mainfile(filepath='a.blend')\nbpy.context.scene.world.name",
+        f"{_EMPTYING}bpy.ops.mesh.primitive_cube_add()\nbpy.context.object.location.x = 1",
+        f"{_EMPTYING}bpy.ops.mesh.primitive_cube_add()\nbpy.data.objects['Cube'].location.x = 1",
+        f"{_EMPTYING}bpy.ops.object.camera_add()\nbpy.context.scene.camera.location.x = 1",
+        f"{_EMPTYING}import scenery\nscenery.make()\nbpy.context.scene.world.name",
+        f"{_EMPTYING}setattr(bpy.context.scene, 'wor' + 'ld', bpy.data.worlds.new('a'))\nbpy.context.scene.world.name",
+        f"{_EMPTYING}bpy.data.objects.new('Cube', None)\nbpy.data.objects['Cube'].location.x = 1",
+        "import bpy\nbpy.context.scene.world.name\nbpy.ops.wm.read_factory_settings(use_empty=True)",
+        "import bpy\nbpy.ops.wm.read_factory_settings()\nbpy.context.scene.world.name",
+        "import bpy\nif bpy.app.background:\n    bpy.ops.wm.read_homefile(use_empty=True)\n"
+        "bpy.context.scene.world.name",
+        "import bpy\ndef empty():\n    return\n    bpy.ops.wm.read_homefile(use_empty=True)\nempty()\n"
+        "bpy.context.scene.world.name",
+        "import bpy\ndef light():\n    bpy.context.scene.world.name\nlight()\n"
+        "bpy.ops.wm.read_homefile(use_empty=True)\nlight()",
+    ],
+)
+def test_what_may_be_there_is_left_alone(rule_checker: Checker, text: str) -> None:
+    assert not is_found(rule_checker, text)
+
+
+@pytest.mark.parametrize(
+    "text",
+    [
+        "import bpy\nbpy.ops.wm.read_homefile(use_empty=True)\nbpy.ops.mesh.primitive_cube_add()\n"
+        "bpy.context.scene.world.name",
+        "import bpy\ndef empty():\n    bpy.ops.wm.read_homefile(use_empty=True)\ndef light(scene):\n"
+        "    world = scene.world\n    world.color = (0, 0, 0)\ndef main():\n    empty()\n"
+        "    light(bpy.context.scene)\nif __name__ == '__main__':\n    main()",
+        f"{_EMPTYING}for number in range(3):\n    bpy.context.scene.camera.location.x = number",
+    ],
+)
+def test_functions_and_blocks_behind_it_are_looked_at(rule_checker: Checker, text: str) -> None:
+    assert is_found(rule_checker, text)
