@@ -170,7 +170,9 @@ class _Script:
                 self._scope_of[statement] = number
                 inner = number
                 match statement:
-                    case ast.Assign(targets=[ast.Name(id=name)]) if statement.lineno == statement.end_lineno:
+                    case ast.Assign(targets=[ast.Name(id=name)], value=value) if (
+                        statement.lineno == statement.end_lineno and not _is_none(value)
+                    ):
                         self._bind(number, name, statement.lineno)
                     case ast.For(target=ast.Name(id=name)) if statement.iter.end_lineno == statement.lineno:
                         self._bind(number, name, statement.lineno)
@@ -230,7 +232,7 @@ class _Script:
         cost += 1.0 if "self." in code else 0.0
         cost += 1.5 if isinstance(statement, (ast.If, ast.While, ast.Return)) else 0.0
         if isinstance(statement, ast.Assign) and _is_literal(statement.value):
-            cost -= 1.0
+            cost += 2.0 if _is_none(statement.value) else -1.0  # it does not show what is taken
         return cost, first, code
 
     def _is_of_editors(self, member: str) -> bool:
@@ -281,6 +283,10 @@ def _is_literal(node: ast.expr) -> bool:
     if isinstance(node, (ast.Tuple, ast.List, ast.Set)):
         return all(_is_literal(item) for item in node.elts)
     return isinstance(node, ast.Constant) or (isinstance(node, ast.UnaryOp) and _is_literal(node.operand))
+
+
+def _is_none(node: ast.expr) -> bool:
+    return isinstance(node, ast.Constant) and node.value is None
 
 
 def _dedented(lines: list[str]) -> str:

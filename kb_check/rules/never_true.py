@@ -10,16 +10,19 @@ if context.mode == "PAINT_WEIGHT":
     ...
 ```
 
-An empty text is not reported: Blender gives one where a file holds a value that this version does not know.
+Not reported: an empty text, since Blender gives one where a file holds a value that this version does not know; an old
+value beside the one that took its place (``ob.type in {"GPENCIL", "GREASEPENCIL"}``).
 """
 
 from __future__ import annotations
 
+import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -31,10 +34,26 @@ if TYPE_CHECKING:
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("compared"):
         if row.value:
+            beside = _beside(script).get(row.node, frozenset())
             owner = row.missing[0]
             lacking = script.names.value(owner, row.value, script.api.values_of(owner))
+            if any(path.rpartition(":")[2] in beside for path in lacking.instead):
+                continue
             lacking = replace(lacking, message=f"{lacking.message} The comparison never matches it.")
             yield lacking_finding(script, RULE.id, row, lacking, RULE.severity)
+
+
+@once_per_script
+def _beside(script: Script) -> dict[ast.AST, frozenset[str]]:
+    """Of each text in a container that something is looked up in: all texts of the container."""
+    found: dict[ast.AST, frozenset[str]] = {}
+    for node in script.all(ast.Compare):
+        for container in node.comparators:
+            if isinstance(container, (ast.Tuple, ast.List, ast.Set)):
+                texts = [item for item in container.elts if isinstance(item, ast.Constant)]
+                whole = frozenset(item.value for item in texts if isinstance(item.value, str))
+                found.update(dict.fromkeys(texts, whole))
+    return found
 
 
 RULE = Rule("never-true", "warning", "A comparison with a value that the enumeration never has", _check)

@@ -71,7 +71,8 @@ def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ())
     if last is None or last.kind != "call" or symbol.kind not in {"operator", "function"}:
         return
     text = last.text
-    if symbol.kind == "operator" and _gives_context(text, {one.name for one in symbol.parameters}):
+    once = {path.rpartition("(")[2].rstrip(")") for path in removed if path.startswith(f"{symbol.path}(")}
+    if symbol.kind == "operator" and _gives_context(text, once.union(one.name for one in symbol.parameters)):
         line = with_context(chain)
         yield f"{NO_OVERRIDE} Write `{line}`." if line else NO_OVERRIDE
     for _ in range(_DEPTH):

@@ -144,10 +144,16 @@ class Messages:
             entry = self._named(owner, match["context"] or match["name"])
             if entry:
                 recognition.add(entry.path, 0.98, "error message")
-                recognition.notes.append(f"`{entry.path}` is read-only: it cannot be assigned.")
+                recognition.notes.append(self._read_only(entry.path))
         for match in _matches(forms.WRONG_TYPE, query):
             if match["path"] and (entry := self._named(*match["path"].rpartition(".")[::2])):
                 recognition.add(entry.path, 0.98, "error message")
+
+    def _read_only(self, path: str) -> str:
+        symbol = self._reader.symbol(path)
+        if symbol is None or symbol.kind != "property" or "readonly" in symbol.flags:
+            return f"`{path}` is read-only: it cannot be assigned."
+        return f"`{path}` can be assigned at other times: another setting, or what it belongs to, decides it here."
 
     def _no_attribute(self, written: str, name: str, recognition: Recognition) -> None:
         """A class or module without an attribute that other versions may have, or that never was."""

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
 from kb_build.records import FILLED_BY
+from kb_build.symbol_lines import empty_when_new
 from kb_serve.reader import COLLECTION, STRUCT, TYPES
 
 if TYPE_CHECKING:
@@ -42,12 +43,14 @@ class UnnamedOwners:
         for removed in gone:
             recognition.add_removed(removed)
             owners.add(removed.path.rpartition(".")[0].removeprefix(TYPES))
-        holders = [entry for owner in sorted(owners)[:_MANY] for entry in self._holders(owner)]
         around = set(terms(query))
+        named_first = sorted(owners, key=lambda owner: (not around.issuperset(terms(owner)), owner))
+        holders = [entry for owner in named_first[:_MANY] for entry in self._holders(owner)]
         likely = [
             entry for entry in holders if set(terms(f"{entry.owner} {entry.name}")) <= around | {"type"}
         ]
         few = len(owners) <= _FEW
+        told = set(likely)
         if few and len(holders) <= _MANY:
             likely = likely or holders
         self._tell(name, owners, holders, recognition)
@@ -55,8 +58,19 @@ class UnnamedOwners:
             recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
             if not gone:
                 recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
-            if few and (call := self._flag(entry, FILLED_BY)):
+            if (few or entry in told) and (call := self._flag(entry, FILLED_BY)):
                 recognition.notes.append(f"`{entry.path}` is None before `{call}`.")
+            elif entry in told and (setting := self._setting(entry)):
+                recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
+
+    def _setting(self, entry: SymbolEntry) -> str:
+        """The statement that sets a pointer which is None on new things; empty for other pointers."""
+        symbol = self._reader.symbol(entry.path)
+        if symbol is None or "readonly" in symbol.flags or not empty_when_new(symbol):
+            return ""
+        made = self._reader.creations([TYPES + entry.target]).get(TYPES + entry.target)
+        value = made.call if made else entry.target.lower()
+        return f"{entry.owner.removeprefix(TYPES).lower()}.{entry.name} = {value}"
 
     def _tell(
         self, name: str, owners: set[str], holders: list[SymbolEntry], recognition: Recognition

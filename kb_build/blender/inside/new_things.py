@@ -11,6 +11,8 @@ import traceback
 import bpy
 
 BY = " by "  # between what was made and the operator that made it
+# It is not new any more: only the items that its enumerations take are asked.
+CONSTRAINT_TO_BONE = "constraint with a bone as target"
 MODIFIED = ("MESH", "CURVE", "LATTICE", "GREASEPENCIL", "VOLUME")
 
 
@@ -206,7 +208,7 @@ def dynamic_paint(modifier):
 
 
 def constraints():
-    """Every constraint of objects, also of an armature's, and of bones with a bone as target."""
+    """Every constraint of objects, also of an armature's, and of bones; those of objects with a bone as target, too."""
     obj = add_object(None)
     bpy.ops.object.armature_add()
     armature = bpy.context.object
@@ -218,11 +220,12 @@ def constraints():
                 constraint = owner.constraints.new(kind)
             except (TypeError, RuntimeError):
                 continue
-            if owner == bone and hasattr(constraint, "subtarget"):
-                constraint.target = armature
-                constraint.subtarget = bone.name
             label = "constraint of a bone" if owner == bone and label else called(constraint)
             yield label, constraint
+            if owner == obj and hasattr(constraint, "subtarget"):
+                constraint.target = armature
+                constraint.subtarget = bone.name
+                yield CONSTRAINT_TO_BONE, constraint
 
 
 def children():
@@ -552,6 +555,9 @@ def write_all(write, observer, neighbours, skipped):
         try:
             for label, thing, *call in make():
                 if thing is not None:
+                    if label == CONSTRAINT_TO_BONE:
+                        observer.ask(thing, label, "")
+                        continue
                     observer.calls[label] = "".join(call)
                     observer.look(label, thing)
                     neighbours.look(thing)

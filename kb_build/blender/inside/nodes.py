@@ -276,6 +276,11 @@ def paired(node, tree):
     return end
 
 
+def is_called_after(identifier, tree):
+    """Whether a class of nodes has the name of a type of trees: ``GeometryNodeRepeatInput``."""
+    return identifier.startswith(tree.bl_idname.removesuffix("Tree"))
+
+
 def compositing_scene():
     """A scratch scene with a compositor tree of its own: before Blender 5.0 some nodes go nowhere else."""
     if "node_tree" not in bpy.types.Scene.bl_rna.properties:
@@ -317,10 +322,10 @@ def write_all(write, structs, observer, former):
         if not nodes:
             continue
         owner = f"bpy.types.{identifier}"
-        node, *others = nodes.values()
+        # What a new one has may depend on the tree: it is what it has in the tree that it is called after.
+        node, *others = sorted(nodes.values(), key=lambda one: not is_called_after(identifier, one.id_data))
         alone = {(side, socket.identifier) for side, sockets in sides(node).items() for socket in sockets}
         end = paired(node, node.id_data)
-        # Which items its enumerations take depends on the tree; what a new one has does not.
         observer.look(identifier, node, place=f" in a {node.id_data.bl_idname}" if others else "")
         for other in others:
             observer.ask(other, f"{identifier} in a {other.id_data.bl_idname}", "")

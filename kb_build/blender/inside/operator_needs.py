@@ -124,12 +124,18 @@ class Objects:
         self.passed = {}
         # Those that can run with a mesh object in Object Mode that is active and not selected.
         self.unselected = set()
+        # Those that can run with an object once it was in its modes, and could not before: these have left something.
+        self.left = set()
 
     def ask(self, known):
         """Asks these operators, and those that can run again: what does not answer as before depends on more."""
         self.passed = self.asked(known)
         again = self.asked({path: known[path] for path in self.passed})
-        self.passed = {path: found for path, found in self.passed.items() if again.get(path) == found}
+        self.passed = {
+            path: found
+            for path, found in self.passed.items()
+            if again.get(path) == found and path not in self.left
+        }
 
     def asked(self, known):
         """Path → {type: modes in which it can run}, of these operators."""
@@ -151,6 +157,10 @@ class Objects:
                 self.tried[kind].append(mode)
                 for path in can_run(known):
                     passed.setdefault(path, {}).setdefault(kind, []).append(mode)
+            if "OBJECT" in self.tried[kind]:
+                self.left.update(
+                    path for path in can_run(known) if "OBJECT" not in passed.get(path, {}).get(kind, ())
+                )
             remove(obj)
         return passed
 
