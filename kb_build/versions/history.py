@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from kb_build.blender.extract_reader import Extract
+    from kb_build.records import Symbol
 
 HISTORY_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "api.csv.gz"
 COLUMNS = ["path", "items_of"]  # and one for each version
@@ -41,14 +42,19 @@ def history_paths(extract: Extract) -> Iterator[str]:
     for symbol in extract.symbols:
         if any(flag.startswith("same-as:") for flag in symbol.flags) or ".bl_rna_get_subclass" in symbol.path:
             continue
-        yield symbol.path
-        for item in symbol.enum_items:
-            yield f"{symbol.path}:{item.identifier}"
-        for parameter in symbol.parameters:
-            path = f"{symbol.path}({parameter.name})"
-            yield path
-            for item in parameter.enum_items:
-                yield f"{path}:{item.identifier}"
+        yield from paths_of(symbol)
+
+
+def paths_of(symbol: Symbol) -> Iterator[str]:
+    """The identifiers of a symbol, its enum items, its parameters and their items."""
+    yield symbol.path
+    for item in symbol.enum_items:
+        yield f"{symbol.path}:{item.identifier}"
+    for parameter in symbol.parameters:
+        path = f"{symbol.path}({parameter.name})"
+        yield path
+        for item in parameter.enum_items:
+            yield f"{path}:{item.identifier}"
 
 
 def is_from_stubs(patch: str) -> bool:

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, short_path
-from kb_build.versions.history import SHARED
+from kb_build.versions.history import SHARED, paths_of
 from kb_build.versions.paths import split_path
 from kb_build.versions.similar_names import find_similar_names
 from kb_build.versions.successors import Successors, load_successors
@@ -75,9 +75,9 @@ def _keys(path: str, items: Counter[str]) -> Iterator[str]:
 def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version: str) -> RemovedSymbols:
     """Compares ``symbols``, those of a (minor) version, with what the history knows of other versions.
 
-    A symbol that extraction found is never called removed, whatever the history says.
+    What extraction found, enum items and parameters too, is never called removed, whatever the history says.
     """
-    known = {symbol.path for symbol in symbols}
+    known = {path for symbol in symbols for path in paths_of(symbol)}
     bases = {symbol.path: symbol.base for symbol in symbols if symbol.base}
     successors = Successors(load_successors(), history, version, bases)
 
@@ -114,6 +114,6 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         names=tuple((spelled, path) for path, *_ in removed for spelled in _keys(path, items)),
         successors=tuple(rows),
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
-        since=tuple((path, first) for path, first in since.items() if path in known),
+        since=tuple((symbol.path, since[symbol.path]) for symbol in symbols if symbol.path in since),
         versions=history.versions,
     )

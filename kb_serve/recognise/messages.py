@@ -15,6 +15,7 @@ from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import unknown_keywords
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.nameless_messages import recognise_nameless
 from kb_serve.recognise.products import CLASSES, WITH_AT
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import plain_path, socket_node
@@ -107,6 +108,7 @@ class Messages:
         self._products(query, recognition)
         self._registration(query, recognition)
         self._refused(query, recognition)
+        recognise_nameless(query, self._reader, recognition)
 
     def explain(self, query: str, recognition: Recognition) -> None:
         """Adds notes that need the query's names: the right argument, a removed socket."""

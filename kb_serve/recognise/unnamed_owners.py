@@ -53,6 +53,9 @@ class UnnamedOwners:
         told = set(likely)
         if few and len(holders) <= _MANY:
             likely = likely or holders
+        elif not few and len(owners) <= _MANY and not likely:
+            likely = [entry for entry in holders if self._flag(entry, FILLED_BY) is not None]
+            told = set(self._weightiest(likely)[:1])
         self._tell(name, owners, holders, recognition)
         for rank, entry in enumerate(self._weightiest(likely)[:_FEW]):
             recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")

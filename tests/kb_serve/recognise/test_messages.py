@@ -25,6 +25,7 @@ FIRST = {
     "TypeError: bpy_struct: item.attr = val: Object.data expected a Mesh type, not Object": "bpy.types.Object.data",
     'AttributeError: bpy_struct: attribute "type" from "Object" is read-only': "bpy.types.Object.type",
     "AttributeError: 'Context' object has no attribute 'active_objct'": "bpy.types.Context.active_object",
+    "AttributeError: 'NoneType' object has no attribute 'mass'": "bpy.types.Object.rigid_body",
     "AttributeError: 'NoneType' object has no attribute 'key_blocks'": "bpy.types.Mesh.shape_keys",
     "AttributeError: 'NoneType' object has no attribute 'bone_groups'": "bpy.types.Armature.collections",
     'AttributeError: bpy_prop_collection: attribute "link" not found': "bpy.types.CollectionObjects.link",
@@ -111,7 +112,18 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "RuntimeError: Operator bpy.ops.uv.unwrap.poll() failed, context is incorrect",
             "mode_set(mode='EDIT')",
         ),
-        ("AttributeError: 'NoneType' object has no attribute 'mass'", "`.mass` is None"),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'mass'",
+            "`bpy.types.Object.rigid_body` is None before `bpy.ops.rigidbody.object_add()`.",
+        ),
+        (
+            "bpy.context.scene.world.node_tree.nodes: 'NoneType' object has no attribute 'node_tree'",
+            '`bpy.types.Scene.world` is None on what is new: set it, `scene.world = bpy.data.worlds.new("World")`.',
+        ),
+        (
+            'AttributeError: bpy_struct: attribute "id_type" from "DriverTarget" is read-only',
+            "`bpy.types.DriverTarget.id_type` can be assigned at other times",
+        ),
         (
             "AttributeError: 'NoneType' object has no attribute 'nodes'",
             "`.nodes`, a `bpy.types.NodeTree`, is None: it does not exist (yet), or was not found. One is reached by "

@@ -1,0 +1,235 @@
+"""What Blender's messages that name nothing of the API are about, and what helps.
+
+Each row was seen in Blender: a test makes it say them all.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
+
+_SURE = 0.97
+_T = "bpy.types."
+_O = "bpy.ops.object."
+
+
+@dataclass(frozen=True, slots=True)
+class NamelessMessage:
+    """The parts of a message that are always the same, the symbols that it is about, most likely first, and what helps.
+
+    It is told only of a Blender that has the first of the symbols.
+    """
+
+    parts: tuple[str, ...]
+    paths: tuple[str, ...]
+    help: str
+
+
+NAMELESS_MESSAGES = (
+    # Objects, collections, view layers
+    NamelessMessage(
+        ("selected because it is not in View Layer",),
+        (f"{_T}Object.select_set", f"{_T}CollectionObjects.link"),
+        "The object is in no collection of the view layer: `scene.collection.objects.link(obj)` first.",
+    ),
+    NamelessMessage(
+        ("ViewLayer '", "does not contain object '"),
+        (f"{_T}LayerObjects.active", f"{_T}CollectionObjects.link"),
+        "The object is in no collection of the view layer: `scene.collection.objects.link(obj)` first.",
+    ),
+    NamelessMessage(
+        ("Object '", "already in collection '"),
+        (f"{_T}CollectionObjects.link",),
+        "Link it only where it is not yet: `if obj.name not in collection.objects:`. What operators add is linked.",
+    ),
+    NamelessMessage(
+        ("Collection '", "already in collection '"),
+        (f"{_T}CollectionChildren.link",),
+        "Link it only where it is not yet: `if child.name not in collection.children:`.",
+    ),
+    NamelessMessage(
+        ("Object '", "not in collection '"),
+        (f"{_T}CollectionObjects.unlink", f"{_T}Object.users_collection"),
+        "It is in others: `for collection in obj.users_collection: collection.objects.unlink(obj)`.",
+    ),
+    NamelessMessage(
+        ("has no evaluated mesh data",),
+        (f"{_T}Object.ray_cast", f"{_T}Object.closest_point_on_mesh", f"{_T}ID.evaluated_get"),
+        "The object must be in the view layer and computed: link it, then `bpy.context.view_layer.update()`.",
+    ),
+    # Meshes
+    NamelessMessage(
+        ("Tangent space can only be computed for tris/quads",),
+        (f"{_T}Mesh.calc_tangents", "bmesh.ops.triangulate"),
+        "A face has more than four corners: triangulate such faces first (`bmesh.ops.triangulate`).",
+    ),
+    NamelessMessage(
+        ("to_mesh(): Mesh '", "is in editmode"),
+        ("bmesh.types.BMesh.to_mesh", "bmesh.from_edit_mesh", "bmesh.update_edit_mesh"),
+        "Leave Edit Mode first (`bpy.ops.object.mode_set(mode='OBJECT')`), or change the mesh by "
+        "`bmesh.from_edit_mesh(mesh)` and `bmesh.update_edit_mesh(mesh)`.",
+    ),
+    NamelessMessage(
+        ("sequence length mismatch given",),
+        (f"{_T}bpy_prop_collection.foreach_set", f"{_T}bpy_prop_collection.foreach_get"),
+        "It wants as many numbers as elements × values of each (3 for `co`); of none, add elements first "
+        "(`mesh.vertices.add(count)`).",
+    ),
+    NamelessMessage(
+        ("internal error setting the array",),
+        (f"{_T}bpy_prop_collection.foreach_set",),
+        "The list is longer or shorter than elements × values of each (3 for `co`), or of another type.",
+    ),
+    NamelessMessage(
+        ("Vertex not in group",),
+        (f"{_T}VertexGroup.weight", f"{_T}MeshVertex.groups"),
+        "Ask only for vertices that are in the group: `any(one.group == group.index for one in vertex.groups)`.",
+    ),
+    # Modifiers, transforms
+    NamelessMessage(
+        ("Modifier cannot be applied to a mesh with shape keys",),
+        (f"{_O}modifier_apply", f"{_T}Object.shape_key_clear"),
+        "Remove the shape keys first (`obj.shape_key_clear()`), or make a mesh of the result: "
+        "`bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph))`.",
+    ),
+    NamelessMessage(
+        ("Modifiers cannot be applied to multi-user data",),
+        (f"{_O}modifier_apply",),
+        "Give the object data of its own first: `obj.data = obj.data.copy()`.",
+    ),
+    NamelessMessage(
+        ("Cannot apply to a multi user",),
+        (f"{_O}transform_apply",),
+        "Give the object data of its own first: `obj.data = obj.data.copy()`.",
+    ),
+    NamelessMessage(
+        ("value to the existing '", "IDProperty"),
+        (f"{_T}NodesModifier",),
+        "An input of a geometry nodes modifier, or a custom property, keeps its type: give a value of that type.",
+    ),
+    NamelessMessage(
+        ('bpy_struct[key]: key "Socket_',),
+        (f"{_T}NodesModifier", f"{_T}NodeTreeInterfaceSocket.identifier"),
+        "The group has no input of that identifier: `item.identifier` of its `interface.items_tree` tells it.",
+    ),
+    # Nodes
+    NamelessMessage(
+        ("Cannot add socket to built-in node",),
+        (f"{_T}NodeTreeInterface.new_socket",),
+        "Sockets of a group's input and output come from its interface: "
+        "`tree.interface.new_socket(\"Name\", in_out='INPUT', socket_type='NodeSocketFloat')`.",
+    ),
+    NamelessMessage(
+        ("Same input/output direction of sockets",),
+        (f"{_T}NodeLinks.new",),
+        "A link goes from an output to an input: `tree.links.new(one.outputs[0], other.inputs[0])`.",
+    ),
+    # Animation
+    NamelessMessage(
+        ("the track does not have any space to accommodate this new strip",),
+        (f"{_T}NlaStrips.new", f"{_T}NlaTracks.new"),
+        "The track has a strip in these frames: give another `start`, or add it to a new track "
+        "(`animation_data.nla_tracks.new()`).",
+    ),
+    NamelessMessage(
+        ("keyframe_insert() property", "not found"),
+        (f"{_T}bpy_struct.keyframe_insert",),
+        'The path is a property of the very thing, as text: `obj.keyframe_insert("location")`; what belongs to its '
+        "data is keyed there (`obj.data.keyframe_insert(…)`).",
+    ),
+    NamelessMessage(
+        ("driver_add(): property", "not found"),
+        (f"{_T}bpy_struct.driver_add",),
+        'The path is a property of the very thing, as text: `obj.driver_add("location", 0)`; what belongs to its '
+        "data is driven there (`obj.data.driver_add(…)`).",
+    ),
+    # Rendering, baking
+    NamelessMessage(
+        ("Cannot render, no camera",),
+        (f"{_T}Scene.camera", f"{_T}BlendDataCameras.new"),
+        "`scene.camera = obj`, an object with a camera as data.",
+    ),
+    NamelessMessage(
+        ("Current render engine does not support baking",),
+        (f"{_O}bake", f"{_T}RenderSettings.engine"),
+        "Cycles does: `scene.render.engine = 'CYCLES'`.",
+    ),
+    NamelessMessage(
+        ("No valid selected objects",),
+        (f"{_O}bake", f"{_T}Object.select_set"),
+        "Select the objects first (`obj.select_set(True)`), and make one active.",
+    ),
+    NamelessMessage(
+        ("Bake failed: no Fluid modifier found",),
+        ("bpy.ops.fluid.bake_all",),
+        "The active object must be the fluid's domain: `view_layer.objects.active = domain`.",
+    ),
+    NamelessMessage(
+        ("Bake failed: invalid domain",),
+        ("bpy.ops.fluid.bake_all", f"{_T}FluidModifier.fluid_type"),
+        "The active object must be the fluid's domain, of `fluid_type = 'DOMAIN'`.",
+    ),
+    # Files
+    NamelessMessage(
+        ("Cannot read '", "No such file or directory"),
+        (f"{_T}BlendDataImages.load", "bpy.path.abspath"),
+        "There is no such file where Blender looks: `//` begins a path beside the saved .blend; any other relative "
+        "path begins where Blender was started.",
+    ),
+    NamelessMessage(
+        ("failed to open blend file",),
+        (f"{_T}BlendDataLibraries.load", "bpy.path.abspath"),
+        "There is no such .blend where Blender looks: `//` begins a path beside the saved one.",
+    ),
+    NamelessMessage(
+        ("Cannot open file", "for writing: No such file or directory"),
+        ("bpy.ops.wm.save_as_mainfile",),
+        "The folder does not exist: make it first (`os.makedirs(folder, exist_ok=True)`).",
+    ),
+    NamelessMessage(
+        ("OBJ Import: Cannot open file",),
+        ("bpy.ops.wm.obj_import",),
+        "There is no such file where Blender looks.",
+    ),
+    NamelessMessage(
+        ("Add-on not loaded:", "No module named"),
+        ("bpy.ops.preferences.addon_enable", "bpy.utils.refresh_script_paths"),
+        "The add-on is not installed under that name; extensions are called `bl_ext.repository.name`.",
+    ),
+    # Values
+    NamelessMessage(
+        ("Converting py args to operator properties", "not found in ('OBJECT'"),
+        (f"{_O}mode_set", f"{_T}Object.mode"),
+        "The active object has no such mode: its type decides which there are ('POSE' wants an armature). Make the "
+        "object that is meant active first.",
+    ),
+)
+_ANYWHERE = (
+    (
+        " not found in ()",
+        "The enumeration has no values at present: they come from other data, such as the Menu Switch that a menu is "
+        "linked to.",
+    ),
+    (
+        "expected a set, not a str",
+        "An enumeration of flags takes a set of texts: `{'A'}`, `{'A', 'B'}`.",
+    ),
+    (
+        "sequences of dimension 0 should contain",
+        "The value has another number of items than the property: a colour with alpha has 4, one without 3.",
+    ),
+)
+
+
+def recognise_nameless(query: str, reader: BaseReader, recognition: Recognition) -> None:
+    """Adds what a message that names no symbol is about, with what helps."""
+    for message in NAMELESS_MESSAGES:
+        if all(part in query for part in message.parts) and reader.entry(message.paths[0]):
+            for rank, path in enumerate(message.paths):
+                recognition.add(path, _SURE - 0.03 * rank, "error message")
+            recognition.notes.append(message.help)
+    recognition.notes += [note for part, note in _ANYWHERE if part in query]

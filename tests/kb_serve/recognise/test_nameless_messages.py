@@ -1,0 +1,136 @@
+"""Messages that name nothing of the API, as this environment's Blender says them, and what they lead to."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.recognise.nameless_messages import NAMELESS_MESSAGES
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_serve.knowledge_base import KnowledgeBase
+
+_STATEMENTS = """\
+bpy.data.objects.new("o", None).select_set(True)
+bpy.context.view_layer.objects.active = bpy.data.objects.new("o", None)
+bpy.context.collection.objects.link(ob)
+scene.collection.children.link(bpy.data.collections["Collection"])
+scene.collection.objects.unlink(ob)
+bpy.data.objects.new("o", mesh).ray_cast((0, 0, 5), (0, 0, -1))
+bpy.data.objects.new("o", mesh).closest_point_on_mesh((0, 0, 0))
+ngon().calc_tangents()
+bpy.ops.object.mode_set(mode="EDIT"); bmesh.new().to_mesh(mesh)
+bpy.data.meshes.new("m").vertices.foreach_set("co", [0.0] * 9)
+mesh.vertices.foreach_set("co", [0.0] * 9)
+ob.vertex_groups.new(name="g").weight(0)
+ob.shape_key_add(name="a"); ob.modifiers.new("s", "SUBSURF"); bpy.ops.object.modifier_apply(modifier="s")
+double(); ob.modifiers.new("s", "SUBSURF"); bpy.ops.object.modifier_apply(modifier="s")
+double(); bpy.ops.object.transform_apply()
+nodes()["Socket_0"] = "A"
+nodes()["Socket_9"]
+tree().nodes.new("NodeGroupInput").outputs.new("NodeSocketFloat", "x")
+n = node(); n.id_data.links.new(n.inputs[0], n.inputs[1])
+track.strips.new("s", 1, action); track.strips.new("t", 1, action)
+ob.keyframe_insert("nothing")
+ob.driver_add("nothing")
+scene.camera = None; bpy.ops.render.render()
+bpy.ops.object.bake(type="DIFFUSE")
+scene.render.engine = "CYCLES"; bpy.ops.object.select_all(action="DESELECT"); bpy.ops.object.bake(type="DIFFUSE")
+bpy.ops.fluid.bake_all()
+ob.modifiers.new("f", "FLUID").fluid_type = "FLOW"; bpy.ops.fluid.bake_all()
+bpy.data.images.load("/none.png")
+bpy.data.libraries.load("/none.blend").__enter__()
+bpy.ops.wm.save_as_mainfile(filepath="none/x.blend")
+bpy.ops.wm.obj_import(filepath="/none.obj")
+bpy.ops.preferences.addon_enable(module="nothing")
+bpy.ops.object.mode_set(mode="POSE")
+menu().default_value = "A"
+scene.tool_settings.snap_elements = "VERTEX"
+ob.location = (1, 2, 3, 4)
+""".splitlines()
+_RUN = """
+import json, sys
+import bpy, bmesh
+
+def ngon():
+    mesh = bpy.data.meshes.new("m")
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (2, 1, 0), (1, 2, 0), (0, 1, 0)], [], [(0, 1, 2, 3, 4)])
+    mesh.uv_layers.new()
+    return mesh
+
+def double():
+    scene.collection.objects.link(bpy.data.objects.new("o", mesh))
+
+def tree():
+    return bpy.data.node_groups.new("g", "GeometryNodeTree")
+
+def node():
+    return tree().nodes.new("ShaderNodeMath")
+
+def menu():
+    return tree().interface.new_socket("Mode", in_out="INPUT", socket_type="NodeSocketMenu")
+
+def nodes():
+    group = tree()
+    group.interface.new_socket("Count", in_out="INPUT", socket_type="NodeSocketInt")
+    modifier = ob.modifiers.new("m", "NODES")
+    modifier.node_group = group
+    return modifier
+
+messages = []
+for line in json.load(open(sys.argv[-1])):
+    bpy.ops.wm.read_factory_settings()
+    scene = bpy.context.scene
+    ob = bpy.data.objects["Cube"]
+    bpy.context.view_layer.objects.active = ob
+    mesh = ob.data
+    action = bpy.data.actions.new("a")
+    track = ob.animation_data_create().nla_tracks.new()
+    try:
+        exec(line)
+        messages.append("")
+    except Exception as error:
+        messages.append(f"{type(error).__name__}: {str(error).strip()}")
+open(sys.argv[-1], "w").write(json.dumps(messages))
+"""
+
+
+@pytest.fixture(scope="module")
+def messages(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
+    """What Blender says to each of the statements."""
+    folder: Path = tmp_path_factory.mktemp("messages")
+    file = folder / "messages.json"
+    file.write_text(json.dumps(_STATEMENTS))
+    run = [sys.executable, "-P", "-c", _RUN, str(file)]
+    subprocess.run(run, check=True, timeout=120, capture_output=True, cwd=folder)
+    return json.loads(file.read_text())
+
+
+def test_blender_says_each_of_the_messages(messages: list[str]) -> None:
+    assert [line for line, said in zip(_STATEMENTS, messages, strict=True) if not said] == []
+    unsaid = [
+        one for one in NAMELESS_MESSAGES if not any(all(p in said for p in one.parts) for said in messages)
+    ]
+    assert unsaid == []
+
+
+def test_each_message_leads_to_what_it_is_about(kb: KnowledgeBase, messages: list[str]) -> None:
+    for said in messages:
+        about = [one for one in NAMELESS_MESSAGES if all(part in said for part in one.parts)]
+        assert len(about) <= 1, said
+        answer = kb.query(said)
+        for one in about:
+            assert answer.hits[0].id in one.paths, said
+            assert one.help in answer.notes
+        assert answer.notes, said
+
+
+def test_what_they_lead_to_exists(kb: KnowledgeBase) -> None:
+    paths = {path for one in NAMELESS_MESSAGES for path in one.paths}
+    assert {path for path in paths if kb.symbol(path) is None} == set()
