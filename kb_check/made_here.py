@@ -11,6 +11,8 @@ from kb_build.symbol_lines import fillers
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from kb_check.script import Script
 
 _DEEPEST = 8
@@ -34,8 +36,22 @@ _OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
 @once_per_script
 def named_words(script: Script) -> frozenset[str]:
     """Every word of the script that may name a setting."""
+    return _words(script.all(ast.Attribute, ast.keyword, ast.Constant))
+
+
+def named_before(script: Script, place: ast.expr) -> frozenset[str]:
+    """Those of the words that may have had an effect when the script comes to a place: all, within a function."""
+    for number, statement in enumerate(script.tree.body):
+        if statement.lineno <= place.lineno <= (statement.end_lineno or 0):
+            if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+                break
+            return _words(node for one in script.tree.body[: number + 1] for node in ast.walk(one))
+    return named_words(script)
+
+
+def _words(nodes: Iterable[ast.AST]) -> frozenset[str]:
     found: set[str] = set()
-    for node in script.all(ast.Attribute, ast.keyword, ast.Constant):
+    for node in nodes:
         match node:
             case ast.Attribute(attr=name) | ast.keyword(arg=str(name)):
                 found.add(name)

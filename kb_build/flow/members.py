@@ -55,6 +55,7 @@ _GROUP_METHODS = frozenset({"add", "remove", "clear", "move"})
 _PYTHON: dict[str, type] = {"str": str, "int": int, "float": float, "bool": bool, "bytes": bytes}
 # The last socket of nodes whose items scripts add: it makes room for each.
 _MOVING = "NodeSocketVirtual"
+_GROUP = f"{T}PropertyGroup"
 _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", "mathutils.Quaternion"})
 
 
@@ -139,7 +140,10 @@ class Members(Core):
         symbol = self.api.symbols.symbol(cls)
         if symbol is None or symbol.kind != "class" or symbol.group in {"ui", "operator"} or _half_known(cls):
             return True
-        return any(self.api.descends(cls, base) for base in OPEN_CLASSES)
+        bases = [base for base in OPEN_CLASSES if self.api.descends(cls, base)]
+        # What an add-on of Blender's declares (scene.cycles) is all that there is, until scripts declare more.
+        is_declared = bases == [_GROUP] and cls != _GROUP and any(self.api.symbols.members(cls))
+        return bool(bases) and not is_declared
 
     @staticmethod
     def is_there_at_times(path: str) -> bool:

@@ -26,6 +26,7 @@ from kb_check.made_here import (
     has_plain_operators_only,
     is_new,
     knows_all,
+    named_before,
     named_words,
     read_pointer,
 )
@@ -60,7 +61,7 @@ def _check(script: Script) -> Iterator[Finding]:
         if pointer is None or ast.unparse(pointer) in told:
             continue
         symbol = _empty(script, pointer)
-        if symbol is None or not _stays_empty(script, symbol) or not _is_made(script, pointer.value):
+        if symbol is None or not _stays_empty(script, symbol, node) or not _is_made(script, pointer.value):
             continue
         told.add(ast.unparse(pointer))
         calls = " or ".join(f"`{call}`" for call in fillers(symbol)[-1:])
@@ -81,11 +82,11 @@ def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:
     return symbol if symbol and empty and not empty.made and fillers(symbol) else None
 
 
-def _stays_empty(script: Script, symbol: Symbol) -> bool:
-    """Whether the script names nothing that may fill a pointer, and does not ask whether it is None."""
+def _stays_empty(script: Script, symbol: Symbol, place: ast.expr) -> bool:
+    """Whether the script names nothing that may have filled a pointer, and does not ask whether it is None."""
     if not knows_all(script) or symbol.name in asked_names(script) or symbol.owner == f"{T}ID":
         return False
-    words, operators = named_words(script), called_operators(script)
+    words, operators = named_before(script, place), called_operators(script)
     is_animated = symbol.name == "animation_data" and any(map(_ANIMATING.search, words | operators))
     if is_animated or any(map(_COPYING.search, operators)):
         return False

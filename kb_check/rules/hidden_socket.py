@@ -91,8 +91,9 @@ def _unpaired(script: Script, sockets: list[Symbol], node: ast.Subscript) -> str
         "zone" in w for w in named_words(script)
     ):
         return ""
-    if _PAIRING in named_words(script) and not _is_paired_later(script, node):
-        return ""
+    is_place = isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, int)
+    if is_place or (_PAIRING in named_words(script) and not _is_paired_later(script, node)):
+        return ""  # another socket is in its place before
     return f"`{sockets[0].path}` is there once `{_PAIRING}` has been called, which comes before."
 
 

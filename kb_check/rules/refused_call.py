@@ -27,7 +27,7 @@ from kb_build.records import ENDS_WITHOUT, last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.made_here import bindings, callee_path, knows_all, named_words, places
+from kb_check.made_here import bindings, callee_path, knows_all, named_before, named_words, places
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -80,10 +80,10 @@ def _ending(script: Script, call: CallSite) -> Iterator[Finding]:
     for needed in call.callee.symbol.flagged(ENDS_WITHOUT):
         owner = function.value if isinstance(function, ast.Attribute) else None
         if (
-            last_name(needed) not in named_words(script)
-            and isinstance(owner, ast.Attribute)
+            isinstance(owner, ast.Attribute)
             and knows_all(script)
             and _is_made(script, owner.value)
+            and last_name(needed) not in named_before(script, call.node)
         ):
             yield Finding(
                 RULE.id, "warning", script.span(call.node),
@@ -147,7 +147,7 @@ def _follows(script: Script, before: CallSite, call: CallSite, owner: ast.expr) 
     root = owner
     while isinstance(root, (ast.Attribute, ast.Subscript)):
         root = root.value
-    if not isinstance(root, ast.Name) or named_words(script) & _REMOVING:
+    if not isinstance(root, ast.Name):
         return False
     rows = {
         statement.value: (body, place)
@@ -157,7 +157,17 @@ def _follows(script: Script, before: CallSite, call: CallSite, owner: ast.expr) 
     if len(rows) < 2 or rows[before.node][0] is not rows[call.node][0]:
         return False
     body, place = rows[call.node]
-    return not any(_binds(statement, root.id) for statement in body[rows[before.node][1] : place])
+    between = body[rows[before.node][1] : place]
+    return not any(_binds(statement, root.id) for statement in between) and not _may_remove(script, between)
+
+
+def _may_remove(script: Script, statements: list[ast.stmt]) -> bool:
+    """Whether statements remove what was made, themselves or by the script's own functions."""
+    own = {node.name for node in script.all(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)}
+    nodes = [node for statement in statements for node in ast.walk(statement)]
+    names = {node.attr for node in nodes if isinstance(node, ast.Attribute)}
+    names |= {node.id for node in nodes if isinstance(node, ast.Name)}
+    return bool(names & _REMOVING) or bool(names & own and named_words(script) & _REMOVING)
 
 
 def _binds(statement: ast.stmt, name: str) -> bool:

@@ -39,8 +39,13 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _WITH = re.compile(r"(only|not) with (\w+)=('[^'|]*'(?:\|'[^'|]*')*)")
+# What another struct's setting decides as well: with some values of the first, or with some of those alone.
+_OR_IF = re.compile(r"; with (\w+)=('[^'|]*'(?:\|'[^'|]*')*) only if .*")
+_ONLY_IF = re.compile(r"with (\w+)=('[^'|]*'(?:\|'[^'|]*')*) only if (\w+)\.(\w+)=(.*)")
+_TEXT = re.compile(r"'([^']*)'")
 _BY = re.compile(r"(only|not) by ([^…]+)")
-_SCENE = "bpy.types.Scene"
+_T = "bpy.types."
+_SCENE = f"{_T}Scene"
 _ACTIVE = frozenset({"bpy.types.Context.object", "bpy.types.Context.active_object"})
 _OPENING = frozenset(
     {"bpy.ops.wm.open_mainfile", "bpy.ops.wm.read_homefile", "bpy.ops.wm.read_factory_settings"}
@@ -73,6 +78,8 @@ def _check(script: Script) -> Iterator[Finding]:
             continue
         if setting := _setting(script, symbol, item):
             yield from _refused_by_setting(script, statement, node, setting, item)
+        elif " only if " in item.where:
+            yield from _refused_beside(script, statement, node, symbol.owner, item)
         elif kind := _other_kind(script, node.value, item):
             yield _finding(script, statement.value, item, symbol.path, f"this is a {kind}")
     for call in calls(script):
@@ -105,10 +112,14 @@ def _finding(script: Script, node: ast.expr, item: EnumItem, path: str, why: str
 
 def _setting(script: Script, symbol: Symbol, item: EnumItem) -> _Setting | None:
     """The setting of the same thing that decides whether it takes an item."""
-    if found := _WITH.fullmatch(item.where):
+    rest = _OR_IF.search(item.where)
+    if found := _WITH.fullmatch(item.where[: rest.start()] if rest else item.where):
         other = script.api.symbols.symbol(f"{symbol.owner}.{found[2]}")
+        values = frozenset(_TEXT.findall(found[3]))
+        if rest and (rest[1] != found[2] or found[1] != "only"):
+            return None
         return (
-            _Setting(other, frozenset(found[3].strip("'").split("'|'")), found[1] == "only")
+            _Setting(other, values.union(_TEXT.findall(rest[2]) if rest else ()), found[1] == "only")
             if other
             else None
         )
@@ -152,6 +163,29 @@ def _refused_by_setting(
         usual = usual_default(setting.symbol)
         why = f"in a new scene `{name}` is {usual!r}: this script does not set it"
         yield replace(_finding(script, statement.value, item, setting.symbol.path, why), severity="warning")
+
+
+def _refused_beside(
+    script: Script, statement: ast.Assign, target: ast.Attribute, owner: str, item: EnumItem
+) -> Iterator[Finding]:
+    """A value that goes with what the script has set only if a struct beside has another setting than a new one has."""
+    found = _ONLY_IF.fullmatch(item.where)
+    if found is None:
+        return
+    setting, beside = (
+        script.api.symbols.symbol(path) for path in (f"{owner}.{found[1]}", f"{_T}{found[3]}.{found[4]}")
+    )
+    before = _set_before(script, statement, target.value, setting) if setting else None
+    if (
+        beside
+        and isinstance(before, ast.Constant)
+        and before.value in _TEXT.findall(found[2])
+        and beside.name not in named_words(script)
+        and not set(_values_of_new(beside)) & set(_TEXT.findall(found[5]))
+        and _works_on_a_scene(script, target.value)
+    ):
+        why = f"`{found[1]}` is {before.value!r} here, and in a new scene `{beside.name}` is {usual_default(beside)!r}"
+        yield replace(_finding(script, statement.value, item, f"{owner}.{found[1]}", why), severity="warning")
 
 
 def _values_of_new(symbol: Symbol) -> list[object]:
@@ -212,6 +246,7 @@ def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
     )
     if is_add_on or not knows_all(script) or called_operators(script) & _OPENING:
         return False
+    node = alias(script, node)
     while isinstance(node, ast.Attribute):
         row = script.analysis.resolutions.get(node)
         symbol = script.api.symbols.symbol(row.symbols[0]) if row and len(row.symbols) == 1 else None

@@ -282,6 +282,14 @@ def test_what_a_name_is_given_to_is_found_by_it(api: Api, code: str, cls: set[st
     assert last_type(api, "import bpy\nob = bpy.context.object\n" + code) == cls
 
 
+def test_what_cycles_declares_is_all_that_there_is(api: Api) -> None:
+    start = "import bpy\ncycles = bpy.context.scene.cycles\n"
+    assert unknown(api, f"{start}cycles.samples\ncycles.sample") == {("CyclesRenderSettings", "sample")}
+    declared = "bpy.types.CyclesRenderSettings.own = bpy.props.IntProperty()\ncycles.own"
+    assert unknown(api, start + declared) == set()
+    assert unknown(api, "import bpy\ngroup: bpy.types.PropertyGroup\ngroup.own") == set()
+
+
 def test_what_derived_classes_have_is_possible(api: Api) -> None:
     row = resolved(api, "import bpy\nbpy.context.object.modifiers['mine'].levels")["levels"]
     assert "bpy.types.SubsurfModifier.levels" in row.possible

@@ -40,9 +40,20 @@ def test_what_new_things_lack_is_found(rule_checker: Checker, tmp_path: Path) ->
     )
 
 
-def test_what_the_script_fills_is_not(rule_checker: Checker) -> None:
+def test_what_the_script_has_filled_before_is_not(rule_checker: Checker) -> None:
+    made, read = _LINES.splitlines(keepends=True)[:4], _LINES.splitlines(keepends=True)[4:]
     for call, line in _FILLED.items():
+        found = rule_checker.check("".join([*made, call, *read]), rules=["empty-pointer"])
+        assert line + 1 not in {one.span.line for one in found}, call
         found = rule_checker.check(_LINES + call, rules=["empty-pointer"])
-        assert line not in {one.span.line for one in found}, call
-    computed = _LINES + "kind = input()\nob.modifiers.new('x', kind)\n"
-    assert {one.span.line for one in rule_checker.check(computed, rules=["empty-pointer"])} == {5, 8}
+        assert line in {one.span.line for one in found}, call
+    kinds = ["kind = input()\n", "ob.modifiers.new('x', kind)\n"]
+    computed = "".join([*made, *kinds, *read])
+    assert {one.span.line for one in rule_checker.check(computed, rules=["empty-pointer"])} == {7, 10}
+
+
+def test_what_functions_fill_may_be_filled_before(rule_checker: Checker) -> None:
+    read = "".join(f"    {line}\n" for line in _LINES.splitlines()[1:])
+    fill = "def fill(ob):\n    ob.animation_data_create()\n"
+    found = rule_checker.check(f"import bpy\ndef read():\n{read}{fill}", rules=["empty-pointer"])
+    assert 6 not in {one.span.line for one in found}

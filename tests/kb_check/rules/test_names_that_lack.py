@@ -31,6 +31,8 @@ def test_a_comparison_that_never_holds_is_a_warning(checker: Checker) -> None:
     (finding,) = checker.check(code)
     assert (finding.rule, finding.severity, finding.span.line) == ("never-true", "warning", 2)
     assert "never matches" in finding.message
+    assert not checker.check("import bpy\nbpy.context.object.type in {'GPENCIL', 'GREASEPENCIL'}")
+    assert checker.check("import bpy\nbpy.context.object.type in {'GPENCIL', 'MESH'}")
     (finding,) = checker.check("import bpy\nbpy.context.scene.render.engine = 'CYCLE'")
     assert (finding.rule, finding.severity) == ("unknown-value", "error")
 

@@ -60,6 +60,10 @@ WRONG = {
     "refused-value": [
         "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
         _IMAGES + "images.media_type = 'VIDEO'\nimages.color_mode = 'RGB'\nimages.file_format = 'PNG'",
+        _IMAGES + "images.file_format = 'JPEG'\nimages.color_mode = 'RGBA'",
+        _IMAGES + "images.file_format = 'HDR'\nimages.color_mode = 'RGBA'",
+        _IMAGES + "images.file_format = 'JPEG'\nimages.color_depth = '16'",
+        _IMAGES + "images.file_format = 'OPEN_EXR'\nimages.color_depth = '10'",
         _PARTICLES + "hair.render_type = 'HALO'",
         _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketShader')",
         _TREE + "tree.color_tag = 'SHADER'",
@@ -75,6 +79,8 @@ WRONG = {
     "wrong-type": [_TREE + "tree.interface.new_socket('x', description=None)"],
     "unknown-name": ["import bgl", "from bgl import glEnable"],
     "unknown-attribute": [
+        "bpy.context.scene.cycles.use_denoise = True",
+        "bpy.context.view_layer.cycles.use_pass_debug_sample_count = True",
         "bpy.context.scene.cycles.use_square_samples = True",
         "bpy.data.lights.new('x', 'POINT').cycles.cast_shadow = True",
         _CUBE + "bpy.context.object.data.face_maps",
@@ -91,6 +97,10 @@ RIGHT = [
     "images.file_format = 'PNG'",
     _IMAGES + "def still():\n    images.media_type = 'IMAGE'\nimages.media_type = 'VIDEO'\nstill()\n"
     "images.file_format = 'PNG'",
+    _IMAGES + "images.file_format = 'PNG'\nimages.color_depth = '16'\nimages.color_mode = 'RGBA'",
+    _IMAGES + "images.file_format = 'AVIF'\nimages.color_depth = '10'\nimages.color_mode = 'RGBA'",
+    _IMAGES
+    + "bpy.context.scene.render.ffmpeg.codec = 'PNG'\nimages.file_format = 'JPEG'\nimages.color_mode = 'RGBA'",
     "bpy.ops.object.effector_add(type='WIND')\nbpy.context.object.field.shape = 'LINE'",
     _CUBE + "bpy.ops.object.forcefield_toggle()\nfield = bpy.context.object.field\nfield.type = 'WIND'\n"
     "field.shape = 'POINTS'",

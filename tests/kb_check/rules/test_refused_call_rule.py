@@ -85,8 +85,28 @@ def test_a_second_call_counts_only_on_the_same_thing(check: Check, between: str)
     assert len(found) == between.startswith("if")
 
 
-@pytest.mark.parametrize("before", ["", "bpy.context.workspace.sequencer_scene = scene"])
-def test_a_call_that_ends_blender_is_found_unless_what_it_needs_is_set(check: Check, before: str) -> None:
+def test_a_new_file_before_it_is_no_reason_to_pass_a_second_call(check: Check) -> None:
+    start = (
+        "import bpy\nbpy.ops.wm.read_factory_settings(use_empty=True)\naction = bpy.data.actions.new('a')\n"
+    )
+    call = "action.layers.new('layer')\n"
+    assert len(check("refused-call", start + call + call)) == 1
+    assert not check("refused-call", start + call + "bpy.ops.wm.read_homefile()\n" + call)
+    helper = "def fresh():\n    bpy.ops.wm.read_homefile()\n"
+    assert not check("refused-call", start + helper + call + "fresh()\n" + call)
+
+
+@pytest.mark.parametrize(
+    ("before", "after"),
+    [
+        ("", ""),
+        ("bpy.context.workspace.sequencer_scene = scene", ""),
+        ("", "bpy.context.workspace.sequencer_scene = scene"),
+    ],
+)
+def test_a_call_that_ends_blender_is_found_unless_what_it_needs_is_set(
+    check: Check, before: str, after: str
+) -> None:
     found = check(
         "refused-call",
         f"""\
@@ -96,6 +116,7 @@ scene = bpy.context.scene
 strips = scene.sequence_editor_create().strips
 strip = strips.new_effect("strip", "COLOR", channel=1, frame_start=1, length=9)
 strip.modifiers.new("modifier", "CURVES")
+{after}
 """,
     )
     assert [(finding.span.line, finding.severity) for finding in found] == [(6, "warning")] * (not before)
