@@ -10,7 +10,7 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from kb_build.records import FILLED_ON, symbol_from_json
+from kb_build.records import EMPTY, FILLED_ON, symbol_from_json
 from kb_build.schema import open_read_only, unpack
 from kb_build.symbol_lines import empty_when_new, fillers, literal
 from simworlds.sandbox.program import Program
@@ -58,6 +58,7 @@ def compare_values(
         (
             *_values(symbols, made["rows"]),
             *_pointers(symbols, made["rows"]),
+            *_collections(symbols, made["rows"]),
             *_fillers(symbols, made["filled"]),
         )
     )
@@ -106,6 +107,19 @@ def _pointers(symbols: _Symbols, rows: Iterable[Mapping[str, Any]]) -> set[_Pair
                 told = told_empty(symbol, label)
                 wrong = f"{cls}.{name} of a new {label}: {_NONE[not leads]}, told {_NONE[told]}"
                 pairs.add(_Pair(label, cls, name, False, wrong if told is leads else ""))
+    return pairs
+
+
+def _collections(symbols: _Symbols, rows: Iterable[Mapping[str, Any]]) -> set[_Pair]:
+    """Whether collections of new things have elements, beside those that are told to be empty."""
+    pairs: set[_Pair] = set()
+    for row in rows:
+        label, cls = row["label"], row["class"]
+        for name, has_elements in row["collections"].items():
+            symbol = _member(symbols, cls, name)
+            if symbol is not None and EMPTY in symbol.flags:
+                wrong = f"{cls}.{name} of a new {label}: has elements, told empty"
+                pairs.add(_Pair(label, cls, name, False, wrong if has_elements else ""))
     return pairs
 
 
@@ -182,10 +196,16 @@ def _properties(base: Path) -> dict[str, Symbol | str]:
 
 def _declared(symbols: _Symbols, cls: str, name: str) -> Symbol | None:
     """The property of a class, or of the nearest class above it, if its default was compared."""
+    found = _member(symbols, cls, name)
+    return found if found is not None and "compared" in found.flags else None
+
+
+def _member(symbols: _Symbols, cls: str, name: str) -> Symbol | None:
+    """The property of a class, or of the nearest class above it."""
     owner: Any = _TYPES + cls
     while isinstance(owner, str) and owner in symbols:
         found = symbols.get(f"{owner}.{name}")
         if found is not None and not isinstance(found, str):
-            return found if "compared" in found.flags else None
+            return found
         owner = symbols[owner]
     return None

@@ -55,10 +55,15 @@ def asked_for(kind):
 
 def read(label, thing, rows):
     """Adds what a thing and its inner settings hold."""
-    values, pointers = {}, {}
+    values, pointers, collections = {}, {}, {}
     for prop in thing.bl_rna.properties:
         if prop.type == "POINTER" and prop.identifier not in NOT_ASKED:
             pointers[prop.identifier] = getattr(thing, prop.identifier, None) is not None
+        if prop.type == "COLLECTION":
+            try:
+                collections[prop.identifier] = len(getattr(thing, prop.identifier)) > 0
+            except (AttributeError, RuntimeError, TypeError):
+                continue
         if prop.type not in {"POINTER", "COLLECTION"} and not prop.is_readonly:
             try:
                 value = held(getattr(thing, prop.identifier))
@@ -66,7 +71,8 @@ def read(label, thing, rows):
                     values[prop.identifier] = value
             except (AttributeError, RuntimeError):
                 continue
-    rows.append({"label": label, "class": thing.bl_rna.identifier, "values": values, "pointers": pointers})
+    held_here = {"values": values, "pointers": pointers, "collections": collections}
+    rows.append({"label": label, "class": thing.bl_rna.identifier, **held_here})
     for name in INNER:
         inner = getattr(thing, name, None)
         if isinstance(inner, bpy.types.bpy_struct) and not isinstance(inner, bpy.types.ID):
@@ -164,19 +170,21 @@ def stacked(rows):
 
 
 def nodes(rows):
-    """Every node of every tree."""
+    """Every node, in the tree that it is called after if that takes it."""
+    groups = {}
     for tree in ("ShaderNodeTree", "GeometryNodeTree", "CompositorNodeTree", "TextureNodeTree"):
         try:
-            group = bpy.data.node_groups.new("x", tree)
+            groups[tree[: -len("Tree")]] = bpy.data.node_groups.new("x", tree)
         except TypeError:
             continue
-        for name in dir(bpy.types):
-            if "Node" in name and not any(row["label"] == name for row in rows):
-                try:
-                    node = group.nodes.new(name)
-                except RuntimeError:
-                    continue
-                read(name, node, rows)
+    for name in dir(bpy.types):
+        for kind in sorted(groups, key=lambda kind: not name.startswith(kind)) if "Node" in name else ():
+            try:
+                node = groups[kind].nodes.new(name)
+            except RuntimeError:
+                continue
+            read(name, node, rows)
+            break
 
 
 def filled_by_calls():

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.live.values import compare_values, same_value, told_empty, told_value
-from kb_build.records import NewValue, Symbol
+from kb_build.records import EMPTY, NewValue, Symbol
 from kb_build.schema import pack, unpack
 from simworlds.sandbox.runtime import find_runtime
 
@@ -90,10 +90,13 @@ def test_what_is_wrong_is_found(built: Built, tmp_path: Path) -> None:
         flags = ["readonly", "compared", "filled-by:"]
         made = flags[2] + "bpy.ops.object.forcefield_toggle()"
         change(field, "flags", [*flags[:2], made], [*flags[:2], flags[2] + "bpy.ops.rigidbody.object_add()"])
+        layers = "bpy.types.Scene.view_layers"
+        change(layers, "flags", ["readonly"], ["readonly", EMPTY])
         change(keys, "flags", [*flags[:2], flags[2] + "obj.shape_key_add()"], flags[:2])
     found = compare_values(base, find_runtime(None, home=tmp_path))
     assert found.wrong == (
         "Object.field is still None after bpy.ops.rigidbody.object_add(), which is told to make it",
         "ClothCollisionSettings.damping of a new cloth modifier: 0.0, told 1",
         "Object.rigid_body of a new mesh object: None, told not None",
+        "Scene.view_layers of a new scene: has elements, told empty",
     )
