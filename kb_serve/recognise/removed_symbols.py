@@ -69,7 +69,8 @@ def socket_node(path: str) -> str:
 
 def plain_path(path: str) -> str:
     """The symbol that a parameter (``f(x)``) or an enum item (``p:ITEM``) belongs to; other paths as they are."""
-    return path if '["' in path else path.partition(":")[0].partition("(")[0]
+    socket, closing, _ = path.partition('"]')
+    return socket + closing if '["' in socket else path.partition(":")[0].partition("(")[0]
 
 
 class RemovedSymbolLookup:

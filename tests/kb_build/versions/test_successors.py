@@ -97,6 +97,62 @@ def test_successors_exist_in_every_version_that_can_be_built(
         # Renamed twice: what 2.80 called it, and what took that name's place.
         ("bpy.types.BooleanModifier.solver:CARVE", "4.5", ["bpy.types.BooleanModifier.solver:FAST"]),
         ("bpy.types.BooleanModifier.solver:CARVE", "5.1", ["bpy.types.BooleanModifier.solver:FLOAT"]),
+        # Members of one group that went to different owners.
+        ("bpy.types.Camera.cycles", "5.1", ["bpy.types.Camera.panorama_type"]),
+        ("bpy.types.CyclesCameraSettings.panorama_type", "5.1", ["bpy.types.Camera.panorama_type"]),
+        (
+            "bpy.types.CyclesCameraSettings.panorama_type:MIRRORBALL",
+            "5.1",
+            ["bpy.types.Camera.panorama_type:MIRRORBALL"],
+        ),
+        (
+            "bpy.types.CyclesCameraSettings.aperture_size",
+            "5.1",
+            ["bpy.types.CameraDOFSettings.aperture_fstop"],
+        ),
+        (
+            "bmesh.types.BMLoopUV.select",
+            "5.1",
+            [
+                "bmesh.types.BMLoop.uv_select_vert",
+                "bmesh.types.BMLoop.uv_select_edge",
+                "bmesh.types.BMFace.uv_select",
+            ],
+        ),
+        ("bpy.context.sequences", "5.1", ["bpy.context.strips"]),
+        ("bpy.types.TextSequence.align_x:LEFT", "5.1", ["bpy.types.TextStrip.anchor_x:LEFT"]),
+        ("bpy.types.TransformSequence.scale_start_x", "5.1", ["bpy.types.StripTransform.scale_x"]),
+        # A pattern, and then another.
+        ("bpy.types.NoiseGpencilModifier.layer", "4.3", ["bpy.types.GreasePencilNoiseModifier.layer_filter"]),
+        (
+            "bpy.types.NoiseGpencilModifier.layer",
+            "5.1",
+            ["bpy.types.GreasePencilNoiseModifier.tree_node_filter"],
+        ),
+        ("bpy.types.GPencilLayer.info", "4.3", []),
+        (
+            "bpy.types.GPencilLayer.info",
+            "5.1",
+            ["bpy.types.AnnotationLayer.info", "bpy.types.GreasePencilTreeNode.name"],
+        ),
+        # Properties of nodes that became sockets.
+        (
+            "bpy.types.CompositorNodeTonemap.tonemap_type",
+            "5.1",
+            ['bpy.types.CompositorNodeTonemap.inputs["Type"]'],
+        ),
+        (
+            "bpy.types.CompositorNodeChromaMatte.threshold",
+            "5.1",
+            ['bpy.types.CompositorNodeChromaMatte.inputs["Minimum"]'],
+        ),
+        (
+            "bpy.types.GeometryNodeTransform.mode",
+            "5.1",
+            ['bpy.types.GeometryNodeTransform.inputs["Mode"]'],
+        ),
+        ("bpy.types.CompositorNodeViewer.use_alpha", "5.1", [""]),
+        ("bpy.types.GreasePencil.edit_curve_resolution", "5.1", [""]),
         # Not yet removed, or not yet there.
         ("bpy.types.Action.fcurves", "4.5", []),
         (
@@ -111,6 +167,24 @@ def test_a_name_leads_to_what_takes_its_place_in_that_version(
 ) -> None:
     found = Successors(table, history, version, {}).of(path)
     assert [row.new[0] if row.new else "" for row in found][: len(targets) or None] == targets
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "bpy.ops.sequencer.effect_strip_add(frame_end)",
+        "bpy.ops.sequencer.image_strip_add(frame_end)",
+        "bpy.types.StripsTopLevel.new_effect(frame_end)",
+        "bpy.types.TransformStrip.rotation_start",
+        "bpy.types.CompositorNodeVecBlur.factor",
+        "bmesh.ops.bevel(vertex_only)",
+    ],
+)
+def test_a_new_name_that_takes_another_value_says_which(
+    history: ApiHistory, table: list[Succession], path: str
+) -> None:
+    """What a row says beside the name keeps its fix from being a sure one."""
+    assert all(row.how for row in Successors(table, history, "5.1", {}).of(path))
 
 
 def test_members_of_a_renamed_class_are_found_in_its_bases(

@@ -79,6 +79,7 @@ def test_successors_exist_and_exclude_guesses(reader: BaseReader, removed: Remov
         (f"{T}Object.type:LAMP", f"{T}Object.type", ""),
         ("bpy.ops.object.add(type):LAMP", "bpy.ops.object.add", ""),
         (f'{T}N.inputs["A:B (c)"]', f'{T}N.inputs["A:B (c)"]', f"{T}N"),
+        (f'{T}N.inputs["A:B (c)"]:D', f'{T}N.inputs["A:B (c)"]', f"{T}N"),
         (f"{T}Object.type", f"{T}Object.type", ""),
     ],
 )
