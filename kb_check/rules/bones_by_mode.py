@@ -1,6 +1,10 @@
 """An edit bone that is used after Edit Mode was left, or a bone that is looked up before it is.
 
 ```python
+armature = bpy.data.armatures.new("Rig")
+rig = bpy.data.objects.new("Rig", armature)
+bpy.context.collection.objects.link(rig)
+bpy.context.view_layer.objects.active = rig
 bpy.ops.object.mode_set(mode="EDIT")
 shin = armature.edit_bones.new("shin")
 shin.tail = (0, 0, 1)
@@ -9,11 +13,12 @@ bpy.ops.object.mode_set(mode="OBJECT")
 shin.roll = 0.5  # reported: edit bones are gone now; armature.bones["shin"], rig.pose.bones["shin"]
 ```
 
-Blender frees all edit bones when it leaves Edit Mode: what is set is lost, what is read is of something else, and often
+Blender frees all edit bones when it leaves Edit Mode: what is set is lost, what is read may be anything, and often
 Blender ends. They stay gone when Edit Mode is entered again.
 
-Not reported: modes that are entered in a condition, a loop or a function, and by computed names; bones in lists; bones
-of armatures that are not made beside the lookup; and what stands in a ``try``.
+Not reported: modes that are entered or left elsewhere than in the statements around the bone (in a condition, a loop, a
+function that they call); bones in lists; bones looked up in armatures that these statements do not make; and what stands
+in a ``try``.
 """
 
 from __future__ import annotations
