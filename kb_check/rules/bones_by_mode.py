@@ -17,8 +17,8 @@ Blender frees all edit bones when it leaves Edit Mode: what is set is lost, what
 Blender ends. They stay gone when Edit Mode is entered again.
 
 Not reported: modes that are entered or left elsewhere than in the statements around the bone (in a condition, a loop, a
-function that they call); bones in lists; bones looked up in armatures that these statements do not make; and what stands
-in a ``try``.
+function that they call); bones in lists; bones looked up in armatures that these statements do not make; and what
+stands in a ``try``.
 """
 
 from __future__ import annotations
