@@ -7,7 +7,6 @@ change the mode out of sight ends what is known; an operator that runs in one mo
 from __future__ import annotations
 
 import ast
-import builtins
 import re
 from contextlib import suppress
 from dataclasses import replace
@@ -16,6 +15,18 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import Mapping
 from kb_check.calls import calls
 from kb_check.made_here import bindings, knows_all, named_words
+from kb_check.mode_keeping import (
+    FUNCTIONS,
+    LEFT,
+    REMOVING,
+    SWITCHED,
+    calls_by_node,
+    is_harmless,
+    is_operator,
+    own_functions,
+    own_names,
+    sets_active,
+)
 from kb_check.modes import UNKNOWN, State, after_operator, has_to_do_with_modes, refusal
 from kb_check.script import once_per_script
 
@@ -29,31 +40,10 @@ _ENTERING = re.compile(
     r"|^(mode|poll|is_editmode)$"
 )
 _OF_MODES = re.compile(r"mode|poll")
-_ACTIVE = "bpy.types.LayerObjects.active"
-_SWITCHED = frozenset({"scene", "view_layer", "workspace", "hide_viewport", "exclude"})
-_REMOVING = frozenset(
-    {
-        "remove",
-        "batch_remove",
-        "unlink",
-        "clear",
-        "orphans_purge",
-        "user_clear",
-        "user_remap",
-        "hide_set",
-        "load",
-    }
-)
-_COMPUTING = frozenset(
-    {"exec", "eval", "getattr", "setattr", "compile", "__import__", "next", "map", "filter"}
-)
-_BUILTINS = frozenset(dir(builtins)) - _COMPUTING
 _MOST_VISITS = 2000
 
 
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
-_FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
-_LEFT = (ast.Yield, ast.YieldFrom, ast.Await)
 _CONDITIONAL = (ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp)
 
 
@@ -79,19 +69,18 @@ class _Run:
     def __init__(self, script: Script) -> None:
         self.script = script
         self.seen: dict[ast.Call, State] = {}
-        self._calls = {call.node: call for call in calls(script)}
-        self._functions = _own_functions(script)
-        self._names = {node.name for node in script.all(*_FUNCTIONS, ast.ClassDef)}
+        self._calls = calls_by_node(script)
+        self._functions = own_functions(script)
+        self._names = own_names(script)
         self._outcomes: dict[tuple[_Function, State], State] = {}
         self._running: list[_Function] = []
         self._returned: list[list[State]] = []
         self._jumped: list[list[State]] = []
-        self._calling_lines = {node.lineno for node in script.all(ast.Call, *_LEFT)}
+        self._calling_lines = {node.lineno for node in script.all(ast.Call, *LEFT)}
         self._made_in: dict[ast.AST, list[tuple[ast.expr, bool]]] = {}
         stores = [node for node in script.all(ast.Attribute) if not isinstance(node.ctx, ast.Load)]
-        self._stored = {node.attr for node in stores}
         self._storing_lines = {
-            node.lineno for node in stores if node.attr in _SWITCHED or node.attr == "active"
+            node.lineno for node in stores if node.attr in SWITCHED or node.attr == "active"
         }
         self._parameters = {node.arg for node in script.all(ast.arg)}
         self._visits = self._finals = 0
@@ -99,7 +88,7 @@ class _Run:
         direct = {node.func.id for node in script.all(ast.Call) if isinstance(node.func, ast.Name)}
         handed_on = _handed_on(script)
         lines = self._telling_lines()
-        for node in script.all(*_FUNCTIONS):
+        for node in script.all(*FUNCTIONS):
             if not lines.isdisjoint(_lines(node)):
                 is_own = self._functions.get(node.name) is node and node.name in direct
                 if not is_own or node.name in handed_on:
@@ -256,7 +245,7 @@ class _Run:
                     state = self._call(call, state)
                 else:
                     self._call(call, State(muted=True))
-                    state = state if self._is_harmless(call) else State(muted=state.muted)
+                    state = state if is_harmless(self.script, call) else State(muted=state.muted)
         return state
 
     def _made(self, root: ast.AST) -> list[tuple[ast.expr, bool]]:
@@ -268,13 +257,13 @@ class _Run:
         return found
 
     def _call(self, node: ast.Call, state: State) -> State:
-        if _is_operator(node) and not self._is_harmless(node):
+        if is_operator(node) and not is_harmless(self.script, node):
             return self._operator(node, state)
         if isinstance(node.func, ast.Name) and (function := self._functions.get(node.func.id)):
             return self._function(function, state)
-        if self._is_harmless(node):
+        if is_harmless(self.script, node):
             return state
-        removes = isinstance(node.func, ast.Attribute) and node.func.attr in _REMOVING
+        removes = isinstance(node.func, ast.Attribute) and node.func.attr in REMOVING
         return State("OBJECT" if removes and state.mode == "OBJECT" else "", muted=state.muted)
 
     def _operator(self, node: ast.Call, state: State) -> State:
@@ -290,30 +279,6 @@ class _Run:
             return state
         return replace(after_operator(call, state), muted=state.muted)
 
-    def _is_harmless(self, node: ast.Call) -> bool:
-        """Whether a call leaves the active object and its mode alone."""
-        if _is_operator(node):
-            return isinstance(node.func, ast.Attribute) and node.func.attr == "poll"
-        if any(self._is_run(value) for value in (*node.args, *(word.value for word in node.keywords))):
-            return False
-        if isinstance(node.func, ast.Name):
-            name = node.func.id
-            known = name in _BUILTINS or (
-                node in self._calls and self._calls[node].callee.symbol.kind != "operator"
-            )
-            return name not in self._names and (
-                known or (name in _imported(self.script) and knows_all(self.script))
-            )
-        if not isinstance(node.func, ast.Attribute) or node.func.attr in _REMOVING:
-            return False
-        if call := self._calls.get(node):
-            return call.callee.symbol.kind != "operator"
-        return knows_all(self.script) and node.func.attr not in self._names | self._stored
-
-    def _is_run(self, value: ast.expr) -> bool:
-        """Whether what is given to a call is something that it may run."""
-        return isinstance(value, ast.Lambda) or (isinstance(value, ast.Name) and value.id in self._names)
-
     def _stores(self, statement: ast.stmt, state: State) -> State:
         """What is known after what a statement assigns."""
         if self._storing_lines.isdisjoint(_lines(statement)):
@@ -321,13 +286,11 @@ class _Run:
         for node in ast.walk(statement):
             if not isinstance(node, ast.Attribute) or isinstance(node.ctx, ast.Load):
                 continue
-            if node.attr in _SWITCHED:
+            if node.attr in SWITCHED:
                 state = State(muted=state.muted)
-            elif node.attr == "active":
-                row = self.script.analysis.resolutions.get(node)
-                if row is None or _ACTIVE in row.symbols or not row.symbols:
-                    stays = state.mode == "OBJECT" and not enters_modes(self.script)
-                    state = State("OBJECT" if stays else "", muted=state.muted)
+            elif sets_active(self.script, node):
+                stays = state.mode == "OBJECT" and not enters_modes(self.script)
+                state = State("OBJECT" if stays else "", muted=state.muted)
         return state
 
 
@@ -358,42 +321,12 @@ def _made_calls(root: ast.AST) -> Iterator[tuple[ast.expr, bool]]:
     waiting = [(root, True)]
     while waiting:
         node, is_sure = waiting.pop()
-        if isinstance(node, (ast.Lambda, *_FUNCTIONS, ast.ClassDef)):
+        if isinstance(node, (ast.Lambda, *FUNCTIONS, ast.ClassDef)):
             continue
-        if isinstance(node, (ast.Call, *_LEFT)):
+        if isinstance(node, (ast.Call, *LEFT)):
             yield node, is_sure
         is_sure = is_sure and not isinstance(node, _CONDITIONAL)
         waiting += [(child, is_sure) for child in ast.iter_child_nodes(node)]
-
-
-def _is_operator(call: ast.Call) -> bool:
-    """Whether what is called is written as an operator, or as something of one."""
-    node = call.func
-    names: list[str] = []
-    while isinstance(node, ast.Attribute):
-        names.append(node.attr)
-        node = node.value
-    return isinstance(node, ast.Name) and (names[-1:] == ["ops"] or node.id == "ops")
-
-
-@once_per_script
-def _own_functions(script: Script) -> dict[str, _Function]:
-    """The script's functions that a name surely calls: plain ones, defined once, that nothing else is called like."""
-    found: dict[str, list[_Function]] = {}
-    methods = {item for node in script.all(ast.ClassDef) for item in node.body}
-    for node in script.all(*_FUNCTIONS):
-        if node not in methods:
-            found.setdefault(node.name, []).append(node)
-    yields = [node.lineno for node in script.all(ast.Yield, ast.YieldFrom)]
-    return {
-        name: nodes[0]
-        for name, nodes in found.items()
-        if len(nodes) == 1
-        and name not in bindings(script)
-        and not nodes[0].decorator_list
-        and isinstance(nodes[0], ast.FunctionDef)
-        and not any(nodes[0].lineno <= line <= (nodes[0].end_lineno or 0) for line in yields)
-    }
 
 
 @once_per_script
@@ -403,12 +336,3 @@ def _handed_on(script: Script) -> frozenset[str]:
     return frozenset(
         node.id for node in script.all(ast.Name) if isinstance(node.ctx, ast.Load) and node not in called
     )
-
-
-@once_per_script
-def _imported(script: Script) -> frozenset[str]:
-    """The names that imports bind."""
-    found: set[str] = set()
-    for node in script.all(ast.Import, ast.ImportFrom):
-        found.update((alias.asname or alias.name).partition(".")[0] for alias in node.names)
-    return frozenset(found)

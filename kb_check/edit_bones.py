@@ -1,0 +1,273 @@
+"""What a body of statements does to the bones of armatures, statement by statement, as their mode changes.
+
+Only what surely runs, in this order, is followed: the statements of the body themselves, not what is in their blocks.
+"""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kb_build.flow.facts import T
+from kb_build.flow.types import Instance
+from kb_check.made_here import callee_path, named_words
+from kb_check.mode_keeping import calls_by_node, keeps_mode, sets_active
+from kb_check.modes import MODE_SET, literal_argument
+from kb_check.script import once_per_script
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.script import Script
+
+EDIT_BONE = f"{T}EditBone"
+_NEW = {f"{T}BlendDataArmatures.new": "armature", f"{T}ArmatureEditBones.new": "edit_bone"}
+_NEW_OBJECT = f"{T}BlendDataObjects.new"
+_UPDATING = "update_from_editmode"  # makes bones of edit bones before Edit Mode is left
+_ADD = "bpy.ops.object.armature_add"
+_ADDED = "Bone"  # how an armature's one bone is called that the operator adds
+_SELECT = "bpy.ops.object.select_all"
+_TOGGLE = "bpy.ops.object.editmode_toggle"
+# The members that lead from an object with an armature to its bones: (kind, member) → kind.
+_STEPS = {
+    ("object", "data"): "armature", ("object", "pose"): "pose", ("armature", "edit_bones"): "edit_bones",
+    ("armature", "bones"): "bones", ("pose", "bones"): "bones",
+}  # fmt: skip
+_ACTIVE = frozenset(
+    {"bpy.context.object", "bpy.context.active_object", "bpy.context.view_layer.objects.active"}
+)
+# What is run only by chance, later, or for other values of the names.
+_NOT_SURELY = (
+    ast.Lambda, ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp,
+)  # fmt: skip
+
+
+@dataclass(frozen=True, slots=True)
+class Thing:
+    """Something of an armature, which is known by the call that made it."""
+
+    kind: str
+    made_by: ast.Call
+
+
+@dataclass(slots=True)
+class Bones:
+    """What is known of bones before a statement.
+
+    ``gone``: the names that hold edit bones of before Edit Mode was left.
+    """
+
+    script: Script
+    gone: set[str] = field(default_factory=set[str])
+    _held: set[str] = field(default_factory=set[str])
+    _is_edited: bool = False
+    _is_split: bool = False  # an object may still be in Edit Mode, and not be the one that leaves it
+    _things: dict[str, Thing] = field(default_factory=dict[str, Thing])
+    _active: ast.Call | None = None
+    _without_bones: set[ast.Call] = field(default_factory=set[ast.Call])
+    _unmade: set[tuple[ast.Call, str]] = field(default_factory=set[tuple[ast.Call, str]])
+
+    def is_unmade(self, node: ast.Subscript) -> bool:
+        """Whether a bone is asked for by the name of one that is, until Edit Mode is left, an edit bone only."""
+        match node:
+            case ast.Subscript(slice=ast.Constant(value=str(name)), ctx=ast.Load()):
+                thing = self._thing(node.value)
+                known = thing is not None and thing.kind == "bones" and (thing.made_by, name) in self._unmade
+                return known and _UPDATING not in named_words(self.script)
+            case _:
+                return False
+
+    def pass_by(self, statement: ast.stmt) -> None:
+        """Goes on to what is known behind a statement."""
+        for name in _bound(statement):
+            self.gone.discard(name)
+            self._held.discard(name)
+            self._things.pop(name, None)
+        if (mode := self._entered(statement)) is not None:
+            self._change_mode(mode)
+        elif not self._adds(statement) and not self._selects(statement) and not self._activates(statement):
+            self._keep(statement)
+        self._hold(statement)
+
+    def _entered(self, statement: ast.stmt) -> str | None:
+        """The mode that a statement enters: ``EDIT``, or another one; None for none that is known."""
+        call = _operator(self.script, statement)
+        if call is None or not isinstance(statement, ast.Expr):
+            return None
+        site = calls_by_node(self.script)[call]
+        if site.callee.symbol.path == _TOGGLE:
+            return "OBJECT" if self._is_edited else "EDIT"
+        mode = literal_argument(site, "mode") if site.callee.symbol.path in MODE_SET else None
+        return mode if isinstance(mode, str) and "toggle" not in site.given else None
+
+    def _change_mode(self, mode: str) -> None:
+        if mode == "EDIT":
+            self._is_edited = True
+            return
+        self.gone |= self._held
+        self._without_bones.clear()
+        self._forget_edit()
+
+    def _forget_edit(self) -> None:
+        self._held.clear()
+        self._unmade.clear()
+        self._is_edited = False
+
+    def _adds(self, statement: ast.stmt) -> bool:
+        """Whether a statement adds an armature, which becomes the active object."""
+        call = _operator(self.script, statement)
+        if call is None or calls_by_node(self.script)[call].callee.symbol.path != _ADD:
+            return False
+        self._forget_edit()
+        self._active = call
+        self._without_bones = {call}
+        self._is_edited = literal_argument(calls_by_node(self.script)[call], "enter_editmode") is True
+        return True
+
+    def _selects(self, statement: ast.stmt) -> bool:
+        call = _operator(self.script, statement)
+        return call is not None and calls_by_node(self.script)[call].callee.symbol.path == _SELECT
+
+    def _activates(self, statement: ast.stmt) -> bool:
+        """Whether a statement makes an object active: it may be another one than that in Edit Mode."""
+        match statement:
+            case ast.Assign(targets=[ast.Attribute() as target]) if sets_active(self.script, target):
+                thing = self._thing(statement.value)
+                self._active = thing.made_by if thing and thing.kind == "object" else None
+                self._is_split |= self._is_edited
+                self._held.clear()
+                self._is_edited = False
+                return True
+            case _:
+                return False
+
+    def _keep(self, statement: ast.stmt) -> None:
+        if not keeps_mode(self.script, statement):
+            self._forget_edit()
+            self._active = None
+            self._without_bones.clear()
+        stores = (
+            node
+            for node in ast.walk(statement)
+            if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load)
+        )
+        if any(node.attr == "data" for node in stores):  # an object may get another armature
+            self._things.clear()
+            self._active = None
+
+    def _hold(self, statement: ast.stmt) -> None:
+        """Takes down what a statement makes, and the names that it gives things."""
+        for node in surely_run(statement):
+            match node:
+                case ast.Call(func=ast.Attribute(value=bones)) if self._made(node) == "edit_bone":
+                    self._add_bone(self._thing(bones), _argument(node, 0, "name"))
+                case ast.Call() if self._made(node) == "armature":
+                    self._without_bones.add(node)
+                case _:
+                    pass
+        match statement:
+            case ast.Assign(targets=[ast.Name(id=name)]) if name not in _shared(self.script):
+                if self._is_edited and not self._is_split and _is_edit_bone(self.script, statement.value):
+                    self._held.add(name)
+                if thing := self._thing(statement.value):
+                    self._things[name] = thing
+            case _:
+                pass
+
+    def _add_bone(self, armature: Thing | None, name: ast.expr | None) -> None:
+        match name:
+            case ast.Constant(value=str(text)) if armature and armature.made_by in self._without_bones:
+                if text != _ADDED or self._made(armature.made_by) == "armature":
+                    self._unmade.add((armature.made_by, text))
+            case _:
+                pass
+
+    def _thing(self, node: ast.expr | None) -> Thing | None:
+        """What an expression is, if it belongs to an armature that this body makes."""
+        match node:
+            case ast.Name(id=name):
+                return self._things.get(name)
+            case ast.Attribute(value=value, attr="data" | "pose" | "bones" | "edit_bones" as name):
+                owner = self._thing(value)
+                kind = _STEPS.get((owner.kind, name)) if owner else None
+                return Thing(kind, owner.made_by) if owner and kind else None
+            case ast.Attribute(attr="object" | "active_object" | "active") if self._active:
+                return Thing("object", self._active) if ast.unparse(node) in _ACTIVE else None
+            case ast.Call() if self._made(node) == "armature":
+                return Thing("armature", node)
+            case ast.Call() if callee_path(self.script, node) == _NEW_OBJECT:
+                data = self._thing(_argument(node, 1, "object_data"))
+                return Thing("object", data.made_by) if data and data.kind == "armature" else None
+            case _:
+                return None
+
+    def _made(self, call: ast.Call) -> str:
+        return _NEW.get(callee_path(self.script, call), "")
+
+
+def surely_run(statement: ast.stmt) -> Iterator[ast.AST]:
+    """The parts of a statement that run wherever it does, its blocks left out."""
+    if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
+        return
+    waiting: list[ast.AST] = [
+        node for node in ast.iter_child_nodes(statement) if isinstance(node, (ast.expr, ast.withitem))
+    ]
+    if isinstance(statement, ast.Assert):
+        waiting = [statement.test]
+    while waiting:
+        node = waiting.pop()
+        if not isinstance(node, _NOT_SURELY):
+            yield node
+            waiting += ast.iter_child_nodes(node)
+
+
+def _operator(script: Script, statement: ast.stmt) -> ast.Call | None:
+    """The operator that a statement calls, if it is a plain call."""
+    match statement:
+        case ast.Expr(value=ast.Call() as call) | ast.Assign(value=ast.Call() as call):
+            site = calls_by_node(script).get(call)
+            plain = not call.args and all(keeps_mode(script, word.value) for word in call.keywords)
+            known = site and plain and not site.has_unpacking and site.callee.symbol.kind == "operator"
+            return call if known else None
+        case _:
+            return None
+
+
+def _is_edit_bone(script: Script, node: ast.expr) -> bool:
+    kind = script.type_of(node)
+    return isinstance(kind, Instance) and kind.sure and kind.cls == EDIT_BONE
+
+
+def _argument(call: ast.Call, place: int, name: str) -> ast.expr | None:
+    if place < len(call.args):
+        return call.args[place]
+    return next((word.value for word in call.keywords if word.arg == name), None)
+
+
+def _bound(statement: ast.stmt) -> Iterator[str]:
+    """The names that a statement may bind or unbind, blocks and all."""
+    for node in ast.walk(statement):
+        match node:
+            case ast.Name(id=name, ctx=ast.Store() | ast.Del()):
+                yield name
+            case (
+                ast.ExceptHandler(name=str(name))
+                | ast.MatchAs(name=str(name))
+                | ast.MatchStar(name=str(name))
+                | ast.MatchMapping(rest=str(name))
+                | ast.FunctionDef(name=name)
+                | ast.AsyncFunctionDef(name=name)
+                | ast.ClassDef(name=name)
+            ):
+                yield name
+            case ast.alias(name=path, asname=name):
+                yield name or path.partition(".")[0]
+            case _:
+                pass
+
+
+@once_per_script
+def _shared(script: Script) -> frozenset[str]:
+    """The names that a function binds for others."""
+    return frozenset(name for node in script.all(ast.Global, ast.Nonlocal) for name in node.names)
