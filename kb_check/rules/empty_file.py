@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import T
 from kb_check.emptied import empties_only, is_emptied_before
 from kb_check.findings import Finding
-from kb_check.made_here import asked_names, called_operators, knows_all, read_pointer
+from kb_check.made_here import asked_names, called_operators, knows_all, named_words, read_pointer
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
@@ -104,7 +104,9 @@ def _looked_up(script: Script) -> Iterator[Finding]:
     """What is looked up in ``bpy.data`` by the name that it has in the startup file."""
     texts = {node.value for node in script.all(ast.Constant) if isinstance(node.value, str)}
     names = texts & set[str]().union(*_STARTUP.values())
-    for node in script.all(ast.Subscript) if names and _calls_only(script, _BRINGING_NOTHING) else ():
+    if not names or "libraries" in named_words(script) or not _calls_only(script, _BRINGING_NOTHING):
+        return
+    for node in script.all(ast.Subscript):
         match node:
             case ast.Subscript(
                 value=ast.Attribute(attr=name) as collection,

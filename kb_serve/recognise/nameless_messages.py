@@ -202,7 +202,7 @@ NAMELESS_MESSAGES = (
     ),
     # Values
     NamelessMessage(
-        ("Converting py args to operator properties", "not found in ('OBJECT'"),
+        ("Converting py args to operator properties", "not found in ('OBJECT', 'EDIT'"),
         (f"{_O}mode_set", f"{_T}Object.mode"),
         "The active object has no such mode: its type decides which there are ('POSE' wants an armature). Make the "
         "object that is meant active first.",

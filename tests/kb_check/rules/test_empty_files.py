@@ -68,6 +68,8 @@ def test_what_blender_refuses_in_an_empty_file_is_found(rule_checker: Checker, t
         f"{_EMPTYING}import scenery\nscenery.make()\nbpy.context.scene.world.name",
         f"{_EMPTYING}setattr(bpy.context.scene, 'wor' + 'ld', bpy.data.worlds.new('a'))\nbpy.context.scene.world.name",
         f"{_EMPTYING}bpy.data.objects.new('Cube', None)\nbpy.data.objects['Cube'].location.x = 1",
+        f"{_EMPTYING}with bpy.data.libraries.load('a.blend') as (known, wanted):\n    wanted.objects = known.objects\n"
+        "bpy.data.objects['Cube'].location.x = 1",
         "import bpy\nbpy.context.scene.world.name\nbpy.ops.wm.read_factory_settings(use_empty=True)",
         "import bpy\nbpy.ops.wm.read_factory_settings()\nbpy.context.scene.world.name",
         "import bpy\nif bpy.app.background:\n    bpy.ops.wm.read_homefile(use_empty=True)\n"
