@@ -53,6 +53,10 @@ class CallSite:
         """The names of the parameters that are given."""
         return {parameter.name for parameter, _ in self.arguments()}
 
+    def argument(self, name: str) -> ast.expr | None:
+        """What is given for a parameter."""
+        return next((node for parameter, node in self.arguments() if parameter.name == name), None)
+
     def arguments(self) -> Iterator[tuple[Parameter, ast.expr]]:
         """The arguments whose parameter is known."""
         by_name = {parameter.name: parameter for parameter in self.callee.parameters}

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
 from kb_build.flow.types import Instance
+from kb_check.literals import bound_names
 from kb_check.made_here import callee_path, named_words
 from kb_check.mode_keeping import calls_by_node, keeps_mode, sets_active
 from kb_check.modes import MODE_SET, literal_argument
@@ -161,7 +162,7 @@ class Bones:
         for node in surely_run(statement):
             match node:
                 case ast.Call(func=ast.Attribute(value=bones)) if self._made(node) == "edit_bone":
-                    self._add_bone(self._thing(bones), _argument(node, 0, "name"))
+                    self._add_bone(self._thing(bones), self._argument(node, "name"))
                 case ast.Call() if self._made(node) == "armature":
                     self._without_bones.add(node)
                 case _:
@@ -197,10 +198,14 @@ class Bones:
             case ast.Call() if self._made(node) == "armature":
                 return Thing("armature", node)
             case ast.Call() if callee_path(self.script, node) == _NEW_OBJECT:
-                data = self._thing(_argument(node, 1, "object_data"))
+                data = self._thing(self._argument(node, "object_data"))
                 return Thing("object", data.made_by) if data and data.kind == "armature" else None
             case _:
                 return None
+
+    def _argument(self, call: ast.Call, name: str) -> ast.expr | None:
+        site = calls_by_node(self.script).get(call)
+        return site.argument(name) if site else None
 
     def _made(self, call: ast.Call) -> str:
         return _NEW.get(callee_path(self.script, call), "")
@@ -239,32 +244,11 @@ def _is_edit_bone(script: Script, node: ast.expr) -> bool:
     return isinstance(kind, Instance) and kind.sure and kind.cls == EDIT_BONE
 
 
-def _argument(call: ast.Call, place: int, name: str) -> ast.expr | None:
-    if place < len(call.args):
-        return call.args[place]
-    return next((word.value for word in call.keywords if word.arg == name), None)
-
-
 def _bound(statement: ast.stmt) -> Iterator[str]:
     """The names that a statement may bind or unbind, blocks and all."""
     for node in ast.walk(statement):
-        match node:
-            case ast.Name(id=name, ctx=ast.Store() | ast.Del()):
-                yield name
-            case (
-                ast.ExceptHandler(name=str(name))
-                | ast.MatchAs(name=str(name))
-                | ast.MatchStar(name=str(name))
-                | ast.MatchMapping(rest=str(name))
-                | ast.FunctionDef(name=name)
-                | ast.AsyncFunctionDef(name=name)
-                | ast.ClassDef(name=name)
-            ):
-                yield name
-            case ast.alias(name=path, asname=name):
-                yield name or path.partition(".")[0]
-            case _:
-                pass
+        if not isinstance(node, (ast.arg, ast.Global, ast.Nonlocal)):
+            yield from bound_names(node)
 
 
 @once_per_script

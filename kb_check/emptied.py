@@ -5,7 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.made_here import callee_path, places
+from kb_check.literals import functions
+from kb_check.made_here import callee_path, owners, places
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
@@ -41,11 +42,8 @@ def _emptying(script: Script) -> frozenset[ast.stmt]:
         node: node.value for node in script.all(ast.Expr) if isinstance(node.value, ast.Call)
     }
     found = {node for node, call in calls.items() if callee_path(script, call) in EMPTYING}
-    functions = {
-        name: node for name, nodes in _functions(script).items() if len(nodes) == 1 for node in nodes
-    }
     while True:
-        emptying = {name for name, node in functions.items() if _empties(node.body, found)}
+        emptying = {name for name, node in functions(script).items() if _empties(node.body, found)}
         more = {
             node
             for node, call in calls.items()
@@ -76,7 +74,7 @@ def _is_after(script: Script, statement: ast.stmt, followed: frozenset[str]) -> 
         body, place = places(script)[here]
         if not emptying.isdisjoint(body[:place]):
             return True
-        here = _owners(script).get(id(body))
+        here = owners(script)[here]
         if isinstance(here, _Function):
             return _is_called_after(script, here, followed)
     return False
@@ -85,7 +83,7 @@ def _is_after(script: Script, statement: ast.stmt, followed: frozenset[str]) -> 
 def _is_called_after(script: Script, function: _Function, followed: frozenset[str]) -> bool:
     """Whether the script calls one of its functions, and only behind what empties the file."""
     name = function.name
-    if name in followed or len(_functions(script).get(name, ())) != 1 or function.decorator_list:
+    if name in followed or functions(script).get(name) is not function or function.decorator_list:
         return False
     named = [node for node in script.all(ast.Name) if node.id == name and isinstance(node.ctx, ast.Load)]
     calls = {node.func: node for node in script.all(ast.Call)}
@@ -96,26 +94,6 @@ def _is_called_after(script: Script, function: _Function, followed: frozenset[st
         and _is_after(script, statement, followed | {name})
         for node in named
     )
-
-
-@once_per_script
-def _functions(script: Script) -> dict[str, list[_Function]]:
-    found: dict[str, list[_Function]] = {}
-    for node in script.all(ast.FunctionDef, ast.AsyncFunctionDef):
-        found.setdefault(node.name, []).append(node)
-    return found
-
-
-@once_per_script
-def _owners(script: Script) -> dict[int, ast.AST]:
-    """The statement that has a body, by the body's identity."""
-    bodies = {id(body) for body, _ in places(script).values()}
-    return {
-        id(body): node
-        for node in ast.walk(script.tree)
-        for field in ("body", "orelse", "finalbody")
-        if id(body := getattr(node, field, None)) in bodies
-    }
 
 
 @once_per_script

@@ -11,7 +11,7 @@ from kb_build.symbol_lines import fillers
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
+    from collections.abc import Iterable, Iterator
 
     from kb_check.script import Script
 
@@ -36,7 +36,7 @@ _OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
 @once_per_script
 def named_words(script: Script) -> frozenset[str]:
     """Every word of the script that may name a setting."""
-    return _words(script.all(ast.Attribute, ast.keyword, ast.Constant))
+    return words_of(script.all(ast.Attribute, ast.keyword, ast.Constant))
 
 
 def named_before(script: Script, place: ast.expr) -> frozenset[str]:
@@ -45,11 +45,17 @@ def named_before(script: Script, place: ast.expr) -> frozenset[str]:
         if statement.lineno <= place.lineno <= (statement.end_lineno or 0):
             if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
                 break
-            return _words(node for one in script.tree.body[: number + 1] for node in ast.walk(one))
+            return frozenset[str]().union(*_words_by_statement(script)[: number + 1])
     return named_words(script)
 
 
-def _words(nodes: Iterable[ast.AST]) -> frozenset[str]:
+@once_per_script
+def _words_by_statement(script: Script) -> list[frozenset[str]]:
+    return [words_of(ast.walk(statement)) for statement in script.tree.body]
+
+
+def words_of(nodes: Iterable[ast.AST]) -> frozenset[str]:
+    """The words of nodes, by themselves, that may name a setting: attributes, keywords, texts."""
     found: set[str] = set()
     for node in nodes:
         match node:
@@ -121,6 +127,14 @@ def has_new_data(script: Script, node: ast.expr, depth: int = _DEEPEST) -> bool:
     )
 
 
+def member_path(script: Script, attribute: ast.Attribute) -> str:
+    """The path of the one symbol that an attribute surely is; empty for none."""
+    row = script.analysis.resolutions.get(attribute)
+    if row is None or not row.sure or row.guarded or row.missing or len(row.symbols) != 1:
+        return ""
+    return row.symbols[0]
+
+
 def callee_path(script: Script, call: ast.Call) -> str:
     """The path of the one thing of the API that a call surely calls; empty for none."""
     row = script.analysis.resolutions.get(call)
@@ -136,7 +150,18 @@ def called_operators(script: Script) -> frozenset[str]:
 
 def has_plain_operators_only(script: Script) -> bool:
     """Whether all operators that the script calls leave things that it made as they are."""
-    return all(_PLAIN.fullmatch(path) for path in called_operators(script) if path.count(".") == _DOTS)
+    return calls_only(script, _PLAIN)
+
+
+def calls_only(script: Script, operators: re.Pattern[str]) -> bool:
+    """Whether the paths of all operators that the script calls match."""
+    return all(operators.fullmatch(path) for path in called_operators(script) if path.count(".") == _DOTS)
+
+
+@once_per_script
+def stored_names(script: Script) -> frozenset[str]:
+    """The attributes that the script sets or deletes."""
+    return frozenset(node.attr for node in script.all(ast.Attribute) if not isinstance(node.ctx, ast.Load))
 
 
 @once_per_script
@@ -162,13 +187,21 @@ def bindings(script: Script) -> dict[str, list[ast.expr | None]]:
 @once_per_script
 def places(script: Script) -> dict[ast.stmt, tuple[list[ast.stmt], int]]:
     """Statement → the body that it is in, and its place there."""
-    found: dict[ast.stmt, tuple[list[ast.stmt], int]] = {}
+    return {statement: (body, place) for _, body in _blocks(script) for place, statement in enumerate(body)}
+
+
+@once_per_script
+def owners(script: Script) -> dict[ast.stmt, ast.AST]:
+    """Statement → what has the body that it is in."""
+    return {statement: owner for owner, body in _blocks(script) for statement in body}
+
+
+def _blocks(script: Script) -> Iterator[tuple[ast.AST, list[ast.stmt]]]:
     for node in script.all(*_BODIES):
         for field in ("body", "orelse", "finalbody"):
             body = getattr(node, field, None)
             if isinstance(body, list):
-                found.update((statement, (body, place)) for place, statement in enumerate(body))
-    return found
+                yield node, body
 
 
 def alias(script: Script, node: ast.expr) -> ast.expr:

@@ -7,7 +7,7 @@ import builtins
 from typing import TYPE_CHECKING
 
 from kb_check.calls import calls
-from kb_check.made_here import bindings, knows_all
+from kb_check.made_here import bindings, knows_all, stored_names
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
@@ -103,7 +103,7 @@ def is_harmless(script: Script, node: ast.Call) -> bool:
         return False
     if call:
         return call.callee.symbol.kind != "operator"
-    return knows_all(script) and node.func.attr not in own and node.func.attr not in _stored(script)
+    return knows_all(script) and node.func.attr not in own and node.func.attr not in stored_names(script)
 
 
 def _is_run(value: ast.expr, own: frozenset[str]) -> bool:
@@ -151,12 +151,6 @@ def own_functions(script: Script) -> dict[str, _Function]:
         and isinstance(nodes[0], ast.FunctionDef)
         and not any(nodes[0].lineno <= line <= (nodes[0].end_lineno or 0) for line in yields)
     }
-
-
-@once_per_script
-def _stored(script: Script) -> frozenset[str]:
-    """The attributes that the script sets or deletes."""
-    return frozenset(node.attr for node in script.all(ast.Attribute) if not isinstance(node.ctx, ast.Load))
 
 
 @once_per_script

@@ -112,9 +112,8 @@ def has_to_do_with_modes(call: CallSite) -> bool:
 
 def literal_argument(call: CallSite, name: str) -> object:
     """The literal that is given for a parameter, or its default; None where it is computed."""
-    for parameter, node in call.arguments():
-        if parameter.name == name:
-            return node.value if isinstance(node, ast.Constant) else None
+    if (node := call.argument(name)) is not None:
+        return node.value if isinstance(node, ast.Constant) else None
     return next((known.default for known in call.callee.parameters if known.name == name), None)
 
 

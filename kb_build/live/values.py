@@ -17,7 +17,7 @@ from simworlds.sandbox.program import Program
 from simworlds.sandbox.runtime import Runtime, installed_bpy, run_program
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import Default, Symbol
 
@@ -28,6 +28,7 @@ _PROGRAM = Program(
 )
 _SECONDS = 120.0
 _TYPES = "bpy.types."
+_COMPARED = "compared"
 _PRECISION = 1e-5
 _NONE = {True: "None", False: "not None"}
 
@@ -78,48 +79,48 @@ class _Pair(NamedTuple):
     wrong: str
 
 
+def _held(
+    symbols: _Symbols, rows: Iterable[Mapping[str, Any]], part: str, flag: str
+) -> Iterator[tuple[str, str, Symbol, Any]]:
+    """(what is new, its class, a property with a flag, what was seen of that) of each row."""
+    for row in rows:
+        for name, seen in row[part].items():
+            symbol = _member(symbols, row["class"], name)
+            if symbol is not None and flag in symbol.flags:
+                yield row["label"], row["class"], symbol, seen
+
+
 def _values(symbols: _Symbols, rows: Iterable[Mapping[str, Any]]) -> set[_Pair]:
     """The values of new things beside those that are told."""
     pairs: set[_Pair] = set()
-    for row in rows:
-        label, cls = row["label"], row["class"]
-        for name, value in row["values"].items():
-            symbol = _declared(symbols, cls, name)
-            if value is None or label.startswith(f"{name}=") or symbol is None:
-                continue
-            told = told_value(symbol, label)
-            if told is None or (symbol.type == "enum" and value == ""):  # a number that stands for no item
-                continue
-            wrong = f"{cls}.{name} of a new {label}: {literal(value)}, told {literal(told)}"
-            differs = not same_value(symbol.default, value)
-            pairs.add(_Pair(label, cls, name, differs, "" if same_value(told, value) else wrong))
+    for label, cls, symbol, value in _held(symbols, rows, "values", _COMPARED):
+        if value is None or label.startswith(f"{symbol.name}="):
+            continue
+        told = told_value(symbol, label)
+        if told is None or (symbol.type == "enum" and value == ""):  # a number that stands for no item
+            continue
+        wrong = f"{cls}.{symbol.name} of a new {label}: {literal(value)}, told {literal(told)}"
+        differs = not same_value(symbol.default, value)
+        pairs.add(_Pair(label, cls, symbol.name, differs, "" if same_value(told, value) else wrong))
     return pairs
 
 
 def _pointers(symbols: _Symbols, rows: Iterable[Mapping[str, Any]]) -> set[_Pair]:
     """Whether pointers of new things are None, beside what is told."""
     pairs: set[_Pair] = set()
-    for row in rows:
-        label, cls = row["label"], row["class"]
-        for name, leads in row["pointers"].items():
-            symbol = _declared(symbols, cls, name)
-            if symbol is not None:
-                told = told_empty(symbol, label)
-                wrong = f"{cls}.{name} of a new {label}: {_NONE[not leads]}, told {_NONE[told]}"
-                pairs.add(_Pair(label, cls, name, False, wrong if told is leads else ""))
+    for label, cls, symbol, leads in _held(symbols, rows, "pointers", _COMPARED):
+        told = told_empty(symbol, label)
+        wrong = f"{cls}.{symbol.name} of a new {label}: {_NONE[not leads]}, told {_NONE[told]}"
+        pairs.add(_Pair(label, cls, symbol.name, False, wrong if told is leads else ""))
     return pairs
 
 
 def _collections(symbols: _Symbols, rows: Iterable[Mapping[str, Any]]) -> set[_Pair]:
-    """Whether collections of new things have elements, beside those that are told to be empty."""
+    """Whether collections of new things have elements that are told to be empty."""
     pairs: set[_Pair] = set()
-    for row in rows:
-        label, cls = row["label"], row["class"]
-        for name, has_elements in row["collections"].items():
-            symbol = _member(symbols, cls, name)
-            if symbol is not None and EMPTY in symbol.flags:
-                wrong = f"{cls}.{name} of a new {label}: has elements, told empty"
-                pairs.add(_Pair(label, cls, name, False, wrong if has_elements else ""))
+    for label, cls, symbol, has_elements in _held(symbols, rows, "collections", EMPTY):
+        wrong = f"{cls}.{symbol.name} of a new {label}: has elements, told empty"
+        pairs.add(_Pair(label, cls, symbol.name, False, wrong if has_elements else ""))
     return pairs
 
 
@@ -192,12 +193,6 @@ def _properties(base: Path) -> dict[str, Symbol | str]:
     finally:
         connection.close()
     return known
-
-
-def _declared(symbols: _Symbols, cls: str, name: str) -> Symbol | None:
-    """The property of a class, or of the nearest class above it, if its default was compared."""
-    found = _member(symbols, cls, name)
-    return found if found is not None and "compared" in found.flags else None
 
 
 def _member(symbols: _Symbols, cls: str, name: str) -> Symbol | None:

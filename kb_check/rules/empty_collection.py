@@ -21,7 +21,14 @@ from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
 from kb_build.records import EMPTY, last_name
 from kb_check.findings import Finding
-from kb_check.made_here import callee_path, has_new_data, has_plain_operators_only, is_new, knows_all
+from kb_check.made_here import (
+    callee_path,
+    has_new_data,
+    has_plain_operators_only,
+    is_new,
+    knows_all,
+    member_path,
+)
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
@@ -74,10 +81,7 @@ def _subscripts(script: Script) -> dict[ast.Attribute, ast.Subscript]:
 
 def _empty(script: Script, collection: ast.Attribute) -> Symbol | None:
     """The symbol of a collection that is empty on all that is new."""
-    row = script.analysis.resolutions.get(collection)
-    if row is None or not row.sure or row.guarded or row.missing or len(row.symbols) != 1:
-        return None
-    symbol = script.api.symbols.symbol(row.symbols[0])
+    symbol = script.api.symbols.symbol(member_path(script, collection))
     return symbol if symbol and EMPTY in symbol.flags else None
 
 

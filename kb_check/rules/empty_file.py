@@ -21,9 +21,17 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import T
 from kb_check.emptied import empties_only, is_emptied_before
 from kb_check.findings import Finding
-from kb_check.made_here import asked_names, called_operators, knows_all, named_words, read_pointer
+from kb_check.made_here import (
+    asked_names,
+    calls_only,
+    knows_all,
+    member_path,
+    named_words,
+    read_pointer,
+    stored_names,
+    words_of,
+)
 from kb_check.rule import Rule
-from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
@@ -32,13 +40,11 @@ if TYPE_CHECKING:
     from kb_build.flow.types import Resolution
     from kb_check.script import Script
 
-_WORD = re.compile(r"\w+")
-_DOTS = 2  # of the path of an operator's module
 # Operators that fill none of what is looked for; those that are called read an empty file.
-_PLAIN = r"wm\.(read_factory_settings|read_homefile|save\w*)|(render|export_\w+|screen|preferences)\.\w+"
+_PLAIN = r"bpy\.ops\.(wm\.(read_factory_settings|read_homefile|save\w*)|(render|export_\w+|screen|preferences)\.\w+)"
 _EDITING = (
-    r"(mesh|curve|surface|armature|mball|font|lattice|transform|rigidbody|ptcache|fluid|dpaint|cloth|particle|material|"
-    r"texture|uv|node|anim|action|graph|nla|pose|constraint|geometry|text|sculpt|paint|object)\.\w+"
+    r"bpy\.ops\.(mesh|curve|surface|armature|mball|font|lattice|transform|rigidbody|ptcache|fluid|dpaint|cloth|particle|"
+    r"material|texture|uv|node|anim|action|graph|nla|pose|constraint|geometry|text|sculpt|paint|object)\.\w+"
 )
 
 
@@ -62,7 +68,7 @@ _EMPTY = {
         re.compile(f"{_PLAIN}|{_EDITING}"), 'scene.world = bpy.data.worlds.new("World")'
     ),
     f"{T}Scene.camera": _Empty(
-        re.compile(rf"(?!object\.\w*(add|camera))({_PLAIN}|{_EDITING})"), "scene.camera = obj"
+        re.compile(rf"(?!bpy\.ops\.object\.\w*(add|camera))({_PLAIN}|{_EDITING})"), "scene.camera = obj"
     ),
     f"{T}LayerObjects.active": _ACTIVE,
     f"{T}Context.object": _ACTIVE,
@@ -87,7 +93,7 @@ def _pointers(script: Script) -> Iterator[Finding]:
     for row in script.resolutions("attribute", "store"):
         node = row.node
         pointer = read_pointer(script, node.value) if isinstance(node, ast.Attribute) else None
-        path = _path(script, pointer) if pointer else ""
+        path = member_path(script, pointer) if pointer else ""
         if path not in _EMPTY or path in told or not isinstance(node, ast.Attribute):
             continue
         if _stays_empty(script, path) and _is_run_later(script, row, node):
@@ -104,7 +110,7 @@ def _looked_up(script: Script) -> Iterator[Finding]:
     """What is looked up in ``bpy.data`` by the name that it has in the startup file."""
     texts = {node.value for node in script.all(ast.Constant) if isinstance(node.value, str)}
     names = texts & set[str]().union(*_STARTUP.values())
-    if not names or "libraries" in named_words(script) or not _calls_only(script, _BRINGING_NOTHING):
+    if not names or "libraries" in named_words(script) or not calls_only(script, _BRINGING_NOTHING):
         return
     for node in script.all(ast.Subscript):
         match node:
@@ -114,7 +120,7 @@ def _looked_up(script: Script) -> Iterator[Finding]:
                 ctx=ast.Load(),
             ) if key in _STARTUP.get(name, ()):
                 row = script.analysis.resolutions.get(collection)
-                path = _path(script, collection)
+                path = member_path(script, collection)
                 is_gone = path == f"{T}BlendData.{name}" and not _is_named(script, key)
                 if row and is_gone and _is_run_later(script, row, node):
                     yield Finding(
@@ -124,13 +130,6 @@ def _looked_up(script: Script) -> Iterator[Finding]:
                     )  # fmt: skip
             case _:
                 pass
-
-
-def _path(script: Script, pointer: ast.Attribute) -> str:
-    """The path of the one symbol that an attribute surely is; empty for none."""
-    row = script.analysis.resolutions.get(pointer)
-    known = row is not None and row.sure and not row.guarded and not row.missing and len(row.symbols) == 1
-    return row.symbols[0] if row and known else ""
 
 
 def _is_run_later(script: Script, row: Resolution, node: ast.expr) -> bool:
@@ -144,18 +143,10 @@ def _stays_empty(script: Script, path: str) -> bool:
     names = empty.asked | {path.rpartition(".")[2]}
     return (
         names.isdisjoint(asked_names(script))
-        and names.isdisjoint(_set(script))
-        and names.isdisjoint(_given(script))
-        and _calls_only(script, empty.beside)
+        and names.isdisjoint(stored_names(script))
+        and names.isdisjoint(words_of(script.all(ast.keyword, ast.Constant)))
+        and calls_only(script, empty.beside)
     )
-
-
-def _calls_only(script: Script, allowed: re.Pattern[str]) -> bool:
-    """Whether all operators that a script calls are of those."""
-    operators = (
-        path.removeprefix("bpy.ops.") for path in called_operators(script) if path.count(".") > _DOTS
-    )
-    return all(map(allowed.fullmatch, operators))
 
 
 def _is_named(script: Script, name: str) -> bool:
@@ -165,20 +156,6 @@ def _is_named(script: Script, name: str) -> bool:
         isinstance(node.value, str) and name in node.value and node not in keys
         for node in script.all(ast.Constant)
     )
-
-
-@once_per_script
-def _set(script: Script) -> frozenset[str]:
-    """The attributes that the script sets."""
-    return frozenset(node.attr for node in script.all(ast.Attribute) if not isinstance(node.ctx, ast.Load))
-
-
-@once_per_script
-def _given(script: Script) -> frozenset[str]:
-    """The words of the script that are keywords or in texts."""
-    texts = (node.value for node in script.all(ast.Constant) if isinstance(node.value, str))
-    keywords = {node.arg for node in script.all(ast.keyword) if node.arg}
-    return frozenset(keywords.union(*(_WORD.findall(text) for text in texts)))
 
 
 RULE = Rule("empty-file", "warning", "Something read from what an empty file lacks", _check)

@@ -26,6 +26,7 @@ from kb_check.made_here import (
     has_plain_operators_only,
     is_new,
     knows_all,
+    member_path,
     named_before,
     named_words,
     read_pointer,
@@ -74,10 +75,7 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:
     """The symbol of a pointer that is None on all that is new, and that something fills."""
-    row = script.analysis.resolutions.get(pointer)
-    if row is None or not row.sure or row.guarded or row.missing or len(row.symbols) != 1:
-        return None
-    symbol = script.api.symbols.symbol(row.symbols[0])
+    symbol = script.api.symbols.symbol(member_path(script, pointer))
     empty = empty_when_new(symbol) if symbol else None
     return symbol if symbol and empty and not empty.made and fillers(symbol) else None
 

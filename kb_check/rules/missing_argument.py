@@ -62,8 +62,8 @@ def _may_be_left_out(script: Script, call: CallSite) -> set[str]:
     path = call.callee.symbol.path
     optional = _MAY_BE_LEFT_OUT.get(path, set())
     name, other, values = _NEEDED_WITH.get(path, ("", "", set[int]()))
-    needed = any(p.name == other and number(script, node) in values for p, node in call.arguments())
-    return optional - {name} if needed else optional
+    node = call.argument(other)
+    return optional - {name} if node is not None and number(script, node) in values else optional
 
 
 RULE = Rule("missing-argument", "error", "An argument that a call needs and does not have", _check)

@@ -28,6 +28,7 @@ from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.made_here import bindings, callee_path, knows_all, named_before, named_words, places
+from kb_check.mode_keeping import own_names
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -127,7 +128,7 @@ def _is_of(refusal: Refusal, call: CallSite) -> bool:
     """Whether a call has one of the values that are refused, if only some are."""
     if not refusal.values:
         return True
-    given = next((node for name, node in call.arguments() if name.name == refusal.argument), None)
+    given = call.argument(refusal.argument)
     return isinstance(given, ast.Constant) and given.value in refusal.values
 
 
@@ -138,7 +139,7 @@ def _gives_more(call: CallSite) -> bool:
 
 def _key(refusal: Refusal, call: CallSite) -> tuple[str, str]:
     """The function, and the value that is refused the second time, if only some are."""
-    given = next((node for name, node in call.arguments() if name.name == refusal.argument), None)
+    given = call.argument(refusal.argument)
     return call.callee.symbol.path, ast.unparse(given) if given else ""
 
 
@@ -163,11 +164,10 @@ def _follows(script: Script, before: CallSite, call: CallSite, owner: ast.expr) 
 
 def _may_remove(script: Script, statements: list[ast.stmt]) -> bool:
     """Whether statements remove what was made, themselves or by the script's own functions."""
-    own = {node.name for node in script.all(ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)}
     nodes = [node for statement in statements for node in ast.walk(statement)]
     names = {node.attr for node in nodes if isinstance(node, ast.Attribute)}
     names |= {node.id for node in nodes if isinstance(node, ast.Name)}
-    return bool(names & _REMOVING) or bool(names & own and named_words(script) & _REMOVING)
+    return bool(names & _REMOVING) or bool(names & own_names(script) and named_words(script) & _REMOVING)
 
 
 def _binds(statement: ast.stmt, name: str) -> bool:

@@ -38,10 +38,11 @@ if TYPE_CHECKING:
     from kb_build.records import EnumItem, Symbol
     from kb_check.script import Script
 
-_WITH = re.compile(r"(only|not) with (\w+)=('[^'|]*'(?:\|'[^'|]*')*)")
+_VALUES = r"(\w+)=('[^'|]*'(?:\|'[^'|]*')*)"
+_WITH = re.compile(rf"(only|not) with {_VALUES}")
 # What another struct's setting decides as well: with some values of the first, or with some of those alone.
-_OR_IF = re.compile(r"; with (\w+)=('[^'|]*'(?:\|'[^'|]*')*) only if .*")
-_ONLY_IF = re.compile(r"with (\w+)=('[^'|]*'(?:\|'[^'|]*')*) only if (\w+)\.(\w+)=(.*)")
+_OR_IF = re.compile(rf"; with {_VALUES} only if .*")
+_ONLY_IF = re.compile(rf"with {_VALUES} only if (\w+)\.(\w+)=(.*)")
 _TEXT = re.compile(r"'([^']*)'")
 _BY = re.compile(r"(only|not) by ([^…]+)")
 _T = "bpy.types."

@@ -20,17 +20,26 @@ def can_work_apart():
     return hasattr(os, "fork")
 
 
-def apart(work):
-    """Whether work in a process of its own, a copy of this one, comes to its end and gives something true."""
+def forked(work):
+    """Starts work in a copy of this process; returns its number. Its status is 0 if what the work gives is true."""
     process = os.fork()
     if not process:
-        signal.setitimer(signal.ITIMER_PROF, WORK_SECONDS)
-        signal.alarm(SECONDS)
         done = False
         with suppress(BaseException):
             done = work()
         os._exit(not done)
-    return os.waitpid(process, 0)[1] == 0
+    return process
+
+
+def apart(work):
+    """Whether work in a process of its own, a copy of this one, comes to its end and gives something true."""
+
+    def limited():
+        signal.setitimer(signal.ITIMER_PROF, WORK_SECONDS)
+        signal.alarm(SECONDS)
+        return work()
+
+    return os.waitpid(forked(limited), 0)[1] == 0
 
 
 class Beside:
@@ -42,15 +51,10 @@ class Beside:
     def __init__(self, step, find):
         """``find`` is given what it writes records with. ``step`` names it where it fails."""
         self.file = tempfile.TemporaryFile("w+", encoding="utf-8", errors="replace")
-        self.process = os.fork()
-        if not self.process:
-            ended = False
-            with suppress(BaseException):
-                ended = self.work(step, find)
-            os._exit(not ended)
+        self.process = forked(lambda: self.work(step, find))
 
     def work(self, step, find):
-        """What the other process does."""
+        """What the other process does. Returns whether it came to its end."""
         write = Writer(self.file)
         try:
             find(write)
