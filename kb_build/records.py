@@ -44,6 +44,13 @@ ENDS_WITHOUT = "ends-without:"
 WHEN_PAIRED = "when-paired"
 # The flag of a collection that has no elements on what is newly made.
 EMPTY = "empty-when-new"
+# How flags begin of a property that RNA calls writable, and Blender does not always let be assigned: on which things it
+# is locked, or is not (``any``: on all that were tried), in which modes, and which setting frees it.
+LOCKED_ON = "locked-on:"
+FREE_ON = "free-on:"
+LOCKED_WITH = "locked-with:"
+FREED_BY = "freed-by:"
+ANY = "any"
 # The flag of what Blender computes for evaluated objects, and leaves empty on the originals.
 EVALUATED = "evaluated-only"
 THEN = " then "  # between calls that fill it one after the other

@@ -11,13 +11,18 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, cast
 
 from kb_build.records import (
+    ANY,
     AREAS,
     EMPTY,
     ENDS_WITHOUT,
     FACTORY,
     FILLED_BY,
     FILLED_ON,
+    FREE_ON,
+    FREED_BY,
     GIVEN,
+    LOCKED_ON,
+    LOCKED_WITH,
     NEEDS,
     NOT_TAKEN,
     THEN,
@@ -121,6 +126,30 @@ def fillers(symbol: Symbol) -> list[str]:
     return [call for text in symbol.flagged(FILLED_BY) for call in text.split(THEN)]
 
 
+def is_locked(symbol: Symbol) -> bool:
+    """Whether a property cannot be assigned: RNA says so, or Blender refused it on all that was tried."""
+    return "readonly" in symbol.flags or (LOCKED_ON + ANY in symbol.flags and not freed_by(symbol))
+
+
+def freed_by(symbol: Symbol) -> str:
+    """``use_auto_texspace = False``: the setting of its owner that lets a property be assigned; empty for others."""
+    return "".join(symbol.flagged(FREED_BY))
+
+
+def locked_text(symbol: Symbol) -> str:
+    """Where a property that RNA calls writable cannot be assigned; empty where it always can."""
+    locked, free, modes = map(symbol.flagged, (LOCKED_ON, FREE_ON, LOCKED_WITH))
+    if freed_by(symbol):
+        return f"cannot be assigned before `{freed_by(symbol)}`"
+    if is_locked(symbol) and locked:
+        return "cannot be assigned: Blender refuses it on all that were tried, though RNA calls it writable"
+    if free:
+        return f"can be assigned only on {_things(free, _SHOWN_ELEMENTS)}"
+    if locked:
+        return f"cannot be assigned on {_things(locked, _SHOWN_ELEMENTS)}"
+    return f"cannot be assigned with {' or '.join(f'`{mode}`' for mode in modes)}" if modes else ""
+
+
 def operator_needs(symbol: Symbol) -> str:
     """What an operator's poll wants, of all that was tried; empty where that is not known."""
     given = [f"`{member}` in the context (`temp_override({member}=…)`)" for member in symbol.flagged(GIVEN)]
@@ -202,9 +231,9 @@ def _by(refusal: Refusal) -> str:
     return f"{'only' if few_take else 'not'} by {_things(refusal.taken_by if few_take else refusal.by)}"
 
 
-def _things(labels: Sequence[str]) -> str:
+def _things(labels: Sequence[str], most: int = _SHOWN_VALUES) -> str:
     """``a poly spline or nurbs spline``, ``a MESH, CURVE or FONT object``: what all end with is said once."""
-    shown = list(labels[:_SHOWN_VALUES])
+    shown = list(labels[:most])
     last = {label.rpartition(" ")[2] for label in labels}
     if len(last) == 1 and len(shown) > 1:
         shown[:-1] = [label.rpartition(" ")[0] for label in shown[:-1]]
@@ -378,8 +407,10 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
         notes.append("= []")
     if values := [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]:
         notes.append("|".join(values[:_SHOWN_VALUES]) + ("|…" if len(values) > _SHOWN_VALUES else ""))
-    if "readonly" in symbol.flags:
+    if is_locked(symbol):
         notes.append("read-only")
+    if setting := freed_by(symbol):
+        notes.append(f"(after {setting})")
     if switch:
         notes.append(f"(if {switch})")
     if symbol.deprecation:

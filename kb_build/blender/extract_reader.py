@@ -16,13 +16,18 @@ from kb_build.blender.refused_calls import refusals
 from kb_build.errors import ExtractError
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
+    ANY,
     AREAS,
     EMPTY,
     ENDS_WITHOUT,
     EVALUATED,
     FILLED_BY,
     FILLED_ON,
+    FREE_ON,
+    FREED_BY,
     GIVEN,
+    LOCKED_ON,
+    LOCKED_WITH,
     NEEDS,
     Default,
     Link,
@@ -48,6 +53,7 @@ _UNTOLD = {
     "enum": "...",
     **dict.fromkeys(("boolean[1]", "float[1]", "int[1]"), "..."),
 }
+_BY = " by "  # in what new things are called, before the operator that made them
 _INDEXABLE = re.compile(r"[\[*?]")
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
@@ -178,6 +184,19 @@ def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
             row["flags"] = [*row.get("flags", ()), ENDS_WITHOUT + without]
 
 
+def _add_locked(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds where Blender does not let it be assigned: on what, whichever names fewer things, or in which modes."""
+    if row is None:
+        return
+    locked, free = seen.get("on", ()), seen.get("free_on", ())
+    prefix, labels = (FREE_ON, free) if 0 < len(free) < len(locked) else (LOCKED_ON, locked)
+    plain = [label for label in labels if _BY not in label]
+    told = [prefix + label for label in plain or labels] if free else [LOCKED_ON + ANY] * bool(locked)
+    told += [LOCKED_WITH + mode for mode in seen.get("modes", ())]
+    told += [FREED_BY + seen["freed_by"]] if seen.get("freed_by") else []
+    row["flags"] = [*row.get("flags", ()), *told]
+
+
 def _add_empty(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
     """Adds that a collection of new instances has no elements."""
     if row is not None:
@@ -200,6 +219,7 @@ _ADDED = {
     "refusals": _add_refusals,
     "empty_collection": _add_empty,
     "evaluated": _add_evaluated,
+    "locked": _add_locked,
 }
 
 

@@ -7,6 +7,7 @@ Blender refuses it with an AttributeError. What a read-only property leads to ca
 ob.type = "MESH"  # reported
 ob.data.vertices = []  # reported: mesh.from_pydata(...)
 bpy.context.object = ob  # reported: bpy.context.view_layer.objects.active = ob
+mesh.texspace_size = (1, 1, 1)  # reported, unless the script names `use_auto_texspace`, which is on at first
 ```
 """
 
@@ -16,8 +17,10 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbol_lines import freed_by, is_locked
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import is_of_instance
+from kb_check.made_here import named_words
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -87,6 +90,18 @@ def _check(script: Script) -> Iterator[Finding]:
             first = symbols[0]
             assert first is not None
             yield _finding(script, row, first)
+        elif row.kind == "store":
+            yield from _locked(script, row, symbols)
+
+
+def _locked(script: Script, row: Resolution, symbols: list[Symbol | None]) -> Iterator[Finding]:
+    """What can be assigned only after another setting, of which the script has no word."""
+    settings = {freed_by(symbol) if symbol else "" for symbol in symbols}
+    setting = settings.pop() if len(settings) == 1 else ""
+    if setting and setting.partition(" ")[0] not in named_words(script):
+        path = next(symbol.path for symbol in symbols if symbol)
+        told = f"`{path}` cannot be assigned before `{setting}`: a new one has it otherwise."
+        yield Finding(RULE.id, "warning", script.name_span(row.node), told, path)
 
 
 def _owners(symbols: list[Symbol | None]) -> list[str]:
@@ -100,7 +115,7 @@ def _is_deleted(row: Resolution) -> bool:
 def _is_refused(row: Resolution, symbol: Symbol) -> bool:
     """Whether an instance refuses another value for a member."""
     if symbol.owner.startswith("bpy.types."):
-        return symbol.kind == "function" or "readonly" in symbol.flags or row.kind == "attribute"
+        return symbol.kind == "function" or is_locked(symbol) or row.kind == "attribute"
     refused = next(
         (names for module, names in _REFUSED.items() if symbol.owner.startswith(module)), frozenset()
     )

@@ -17,6 +17,7 @@ from kb_build.symbol_lines import (
     first_sentence,
     is_stand_in,
     literal,
+    locked_text,
     mode_needed,
     new_subscript,
     of_evaluated,
@@ -104,6 +105,8 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield f"subtype: {symbol.subtype}"
     if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS]:
         yield ", ".join(flags)
+    if text := locked_text(symbol):
+        yield text
     if symbol.modes:
         yield "shown when " + " and ".join(symbol.modes)
 

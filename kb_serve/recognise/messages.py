@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.records import EVALUATED
-from kb_build.symbol_lines import GET_EVALUATED
+from kb_build.symbol_lines import GET_EVALUATED, locked_text
 from kb_serve.reader import TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import unknown_keywords
@@ -155,6 +155,8 @@ class Messages:
         symbol = self._reader.symbol(path)
         if symbol is None or symbol.kind != "property" or "readonly" in symbol.flags:
             return f"`{path}` is read-only: it cannot be assigned."
+        if text := locked_text(symbol):
+            return f"`{path}` {text}."
         return f"`{path}` can be assigned at other times: another setting, or what it belongs to, decides it here."
 
     def _no_attribute(self, written: str, name: str, recognition: Recognition) -> None:

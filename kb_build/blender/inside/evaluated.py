@@ -9,8 +9,9 @@ import traceback
 
 import bpy
 
-from .instances import AROUND, DEPTH, NOT_ASKED, UNREADABLE, declaring_class
+from .instances import AROUND, DEPTH, NOT_ASKED, UNREADABLE
 from .new_things import attempts, choices, mesh_object, scratch_scene
+from .rna import declaring_class
 
 FRAMES = 4
 # More elements than these are all alike.

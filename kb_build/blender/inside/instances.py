@@ -11,9 +11,10 @@ import re
 
 import bpy
 
+from .locked import Locked
 from .new_things import by_operator
 from .own_names import OwnNames
-from .rna import default_of, read_items
+from .rna import ancestry, declaring_class, default_of, read_items
 from .wire import plain
 
 DEPTH = 3
@@ -91,17 +92,6 @@ def put(struct, name, value):
         return False
 
 
-def declaring_class(rna, name):
-    """The class whose own property it is, seen from one of its descendants."""
-    pointer = rna.properties[name].as_pointer()
-    while rna.base is not None:
-        inherited = rna.base.properties.get(name)
-        if inherited is None or inherited.as_pointer() != pointer:
-            break
-        rna = rna.base
-    return rna.identifier
-
-
 def same(left, right):
     """Whether two values are equal, floats as far as single precision goes."""
     if isinstance(left, list) and isinstance(right, list):
@@ -109,15 +99,6 @@ def same(left, right):
     if isinstance(left, (int, float)) and isinstance(right, (int, float)):
         return left == right or abs(left - right) <= 2e-6 * max(abs(left), abs(right))
     return left == right
-
-
-def ancestry(rna):
-    """The identifiers of a class and of those that it inherits from."""
-    names = []
-    while rna is not None:
-        names.append(rna.identifier)
-        rna = rna.base
-    return names
 
 
 def variable(cls):
@@ -292,6 +273,7 @@ class Observer:
         self.pointers = Pointers()
         # path of a collection → whether one of the new instances has elements in it
         self.collections = {}
+        self.locked = Locked()
         self.names = OwnNames()
         self._layouts = {}
         self._varied = {}
@@ -350,6 +332,7 @@ class Observer:
                     self.pointers.add(path, label, getattr(struct, name, None) is not None)
                 if not by_operator(label):
                     self.count(struct)
+                self.locked.look(label, struct, root)
             for field, value in before.items():
                 if not field.is_chosen or label == field.unasked:
                     self.add(seen.setdefault(field.path, []), plain(value), label)
@@ -449,8 +432,9 @@ class Observer:
         known = {part.as_pointer() for part in self.belonging(struct)}
         empty = {path for path, is_empty in self.empty_pointers(struct).items() if is_empty}
         enums = self.layout(struct).enums
-        if self._varied[struct.bl_rna.identifier] > 1:
-            # The first one of its class has shown which of them depend on the mode.
+        is_first = self._varied[struct.bl_rna.identifier] == 1
+        if not is_first:
+            # It has shown which of them depend on the mode.
             enums = [field for field in enums if self.is_computed(field)]
         for field in self.layout(struct).modes:
             start = before.get(field)
@@ -465,6 +449,8 @@ class Observer:
                     self.note_filled(struct, filled, f".{field.name} = {item!r}")
                     empty -= filled
                 self.ask(struct, label + place, mode, enums)
+                if is_first:
+                    self.locked.look_in_mode(struct, mode)
                 for part in self.belonging(struct):
                     if part.as_pointer() not in known:
                         self.look(f"{label} with {mode}", part, is_new=is_new)
@@ -551,7 +537,8 @@ class Observer:
 
     def write(self, write):
         """A ``new_values`` record for each property that was read, ``enum_items`` for each asked, ``argument_items``
-        for each choice of a function, the pointers, and the collections that no new instance has filled.
+        for each choice of a function, the pointers, what is locked, and the collections that no new instance has
+        filled.
 
         One that is ``chosen`` says nothing about what is new.
         """
@@ -566,6 +553,7 @@ class Observer:
             contexts = [row.row(items, argument) for items, row in found.items()]
             write("argument_items", path=path, argument=argument, contexts=contexts)
         self.pointers.write(write)
+        self.locked.write(write)
         for path in sorted(path for path, has_elements in self.collections.items() if not has_elements):
             write("empty_collection", path=path)
         self.names.write(write)

@@ -7,7 +7,8 @@ owner, into each of theirs. Where a neighbour's setting decides, its other setti
 
 import bpy
 
-from .instances import UNVARIED, declaring_class, put, refused_value_items
+from .instances import UNVARIED, put, refused_value_items
+from .rna import declaring_class
 
 
 def can_be_varied(struct):

@@ -32,6 +32,26 @@ def version_text(version):
     return f"{version[0]}.{version[1]}" if version and any(version) else ""
 
 
+def declaring_class(rna, name):
+    """The class whose own property it is, seen from one of its descendants."""
+    pointer = rna.properties[name].as_pointer()
+    while rna.base is not None:
+        inherited = rna.base.properties.get(name)
+        if inherited is None or inherited.as_pointer() != pointer:
+            break
+        rna = rna.base
+    return rna.identifier
+
+
+def ancestry(rna):
+    """The identifiers of a class and of those that it inherits from."""
+    names = []
+    while rna is not None:
+        names.append(rna.identifier)
+        rna = rna.base
+    return names
+
+
 def read_items(items):
     """Enum items as rows. Each is read while the iteration stands on it: computed ones are freed after it."""
     return [
