@@ -72,6 +72,8 @@ def type_text(symbol: Symbol) -> str:
         return f"pointer → {symbol.target}"
     if "enum-flag" in symbol.flags:
         return SET
+    if symbol.subtype == "BYTE_STRING":
+        return "bytes"
     if settings := symbol.type_settings:
         return f"{symbol.type}, or as {' and '.join(settings)} says"
     return symbol.type + "".join(f"[{n}]" for n in symbol.array)

@@ -171,7 +171,7 @@ class Layout:
                     self.collections[name] = f"bpy.types.{declaring_class(rna, name)}.{name}"
             elif (
                 not prop.is_readonly
-                and name not in left_out
+                and (name not in left_out or prop.type == "ENUM")
                 and not name.startswith("bl_")
                 and prop.subtype not in MACHINES_OWN
                 and not (getattr(prop, "is_array", False) and not 0 < prop.array_length <= LONGEST_ARRAY)
@@ -309,6 +309,15 @@ class Observer:
                 yield struct
                 queue += [(part, left - 1) for part in self.belonging(struct)] if left else []
 
+    def nearest(self, root):
+        """An instance, and of each class the struct that belongs to it most directly."""
+        seen = set()
+        for struct in self.parts(root):
+            name = struct.bl_rna.identifier
+            if name not in seen:
+                seen.add(name)
+                yield struct
+
     def empty_pointers(self, struct):
         """The paths of an instance's read-only pointers, and whether each is None."""
         return {
@@ -325,7 +334,9 @@ class Observer:
         self.names.add(root)
         seen = self.values if is_new else self.start_values
         # All are read before any is put into a mode, which may change another one's settings.
-        parts = [(struct, self.read(struct)) for struct in self.parts(root)]
+        parts = [
+            (struct, self.read(struct)) for struct in (self.parts(root) if is_new else self.nearest(root))
+        ]
         for struct, before in parts:
             if is_new:
                 for name, path in self.layout(struct).pointers.items():

@@ -348,7 +348,8 @@ def animation():
     data = obj.animation_data
     yield "animation data", data
     curve = curves_of(data.action)[0]
-    yield "f-curve", curve
+    yield "f-curve of keyframe_insert()", curve
+    yield "f-curve of fcurves.new()", curves_of(data.action).new("scale", index=0)
     yield "keyframe of keyframe_insert()", curve.keyframe_points[0]
     yield "keyframe of keyframe_points.insert()", curve.keyframe_points.insert(5, 1.0)
     curve.keyframe_points.add(1)
@@ -473,6 +474,16 @@ def scenes():
         yield "light group", lightgroups.add()
 
 
+def libraries():
+    """Libraries of assets, in the preferences."""
+    paths = bpy.context.preferences.filepaths
+    collection = getattr(paths, "asset_libraries", None)
+    if hasattr(collection, "new"):
+        library = collection.new(name="new", directory="new")
+        yield called(library), library
+        collection.remove(library)
+
+
 def node_trees():
     """Node trees, the sockets of their interfaces, and what hangs on them."""
     for kind in ("ShaderNodeTree", "GeometryNodeTree", "CompositorNodeTree", "TextureNodeTree"):
@@ -498,7 +509,7 @@ def node_trees():
 
 MAKERS = (
     data_blocks, added_by_operators, modifiers, constraints, particles, children, force_fields, rigid_bodies, strips,
-    animation, armatures, splines, mesh_parts, drawings, scenes, node_trees,
+    animation, armatures, splines, mesh_parts, drawings, scenes, libraries, node_trees,
 )  # fmt: skip
 
 

@@ -10,7 +10,6 @@ from statements_in_blender import run_statements
 from kb_build.symbol_lines import freed_by, is_locked, locked_text
 
 if TYPE_CHECKING:
-
     from kb_build.blender.extract_reader import Extract
     from kb_build.records import Symbol
 
