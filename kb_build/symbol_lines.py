@@ -407,7 +407,8 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
         notes += ["= None", *([f"({made})"] if (made := _made_by(symbol)) else [])]
     if EMPTY in symbol.flags:
         notes.append("= []")
-    if values := [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]:
+    values = [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]
+    if values and not is_stand_in(symbol):
         notes.append("|".join(values[:_SHOWN_VALUES]) + ("|…" if len(values) > _SHOWN_VALUES else ""))
     if is_locked(symbol):
         notes.append("read-only")

@@ -30,6 +30,12 @@ _HELD = (
 _BLOCKS = ("obj", "scene", "mesh", "mat", "tree", "curve")
 _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTree": "tree", "Curve": "curve"}
 
+# Only nodes of a class that a script registers take sockets of their own.
+_SOCKETS = (f"{TYPES}NodeInputs.new", f"{TYPES}NodeOutputs.new")
+_NEW_SOCKET = f"{TYPES}NodeTreeInterface.new_socket"
+_SOCKET = f"{TYPES}NodeSocket"
+_OF_INTERFACE = f"{TYPES}NodeTreeInterfaceSocket"
+
 # Class → the method that makes it, and a call.
 _METHODS = {"Driver": (f"{TYPES}bpy_struct.driver_add", 'obj.driver_add("location", 2).driver')}
 
@@ -80,6 +86,7 @@ class _Calls:
                 known = calls.get(cls)
                 if known is None or known.maker.startswith("bpy.ops."):
                     calls[cls] = creation
+        calls.update(self._of_interfaces())
         for name, (maker, call) in _METHODS.items():
             if {maker, f"{TYPES}{name}"} <= self._symbols.keys():
                 calls.setdefault(f"{TYPES}{name}", Creation(call, maker))
@@ -101,7 +108,7 @@ class _Calls:
     def _by_collection(self, holder: Symbol) -> Iterator[tuple[str, Creation]]:
         for name in _MAKERS:
             maker = self._symbols.get(f"{TYPES}{holder.collection}.{name}")
-            if maker is not None and maker.returns:
+            if maker is not None and maker.returns and maker.path not in _SOCKETS:
                 break
         else:
             return
@@ -128,6 +135,14 @@ class _Calls:
             first = next(iter(items), "")
             given = self._arguments(maker, base, first, block=block)
             yield base.path, Creation(f"{head}({given})", maker.path)
+
+    def _of_interfaces(self) -> Iterator[tuple[str, Creation]]:
+        """A group's sockets: the items of its interface, and what they become on its nodes."""
+        for path in self._symbols if _NEW_SOCKET in self._symbols else ():
+            kind = path.removeprefix(_OF_INTERFACE)
+            if kind not in {"", path} and _SOCKET + kind in self._symbols:
+                call = f"tree.interface.new_socket(\"Name\", in_out='INPUT', socket_type='NodeSocket{kind}')"
+                yield from ((cls, Creation(call, _NEW_SOCKET)) for cls in (path, _SOCKET + kind))
 
     def _arguments(self, maker: Symbol, cls: Symbol, choice: str, *, block: str) -> str:
         return ", ".join(

@@ -10,6 +10,7 @@ from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recogniser import Recogniser
+from kb_serve.recognise.unwanted import without_unwanted
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -23,6 +24,7 @@ _FAR = 0.5  # share of the best hit's score below which another one is far from 
 _ALWAYS = 5  # hits for a description that are listed however far they are
 _NAMES = 4  # so many of those listed are symbols, if the search finds some that are not
 _TOO_FAR = 0.25  # share of the best hit's score below which a symbol does not help either
+_OPERATORS = "bpy.ops"
 _LEAST_HITS = 20  # of the search, so that it also finds alternatives to a named class, and names beside pages
 
 
@@ -86,6 +88,7 @@ class QueryRanker:
 
     def rank(self, query: str, limit: int = _LEAST_HITS, about: str = "") -> Ranking:
         """The ids for a query, at least ``limit`` of them if there are; ``about``: see Searcher.search."""
+        query, operators = without_unwanted(query)
         recognition = self._recogniser.recognise(query)
         best = recognition.best
         if best is not None and best.sure >= 1.0 and best.why != "successor":
@@ -97,10 +100,18 @@ class QueryRanker:
         prose = prose_of(query)
         hits = self.searcher.search(prose, max(limit, _LEAST_HITS), failed=is_message(query), about=about)
         ranked = self._merged(recognition, hits)
+        if not operators:
+            ranked.sort(key=self._far_from_functions)
         ranked[:1] = [self._at_its_section(row, prose) for row in ranked[:1]]
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         named = named and not recognition.is_open
         return Ranking(ranked, recognition, named, self._notes.on(recognition))
+
+    def _far_from_functions(self, row: RankedId) -> int:
+        """Where an id stands for who wants no operators: what a script can use instead, what explains it, the rest."""
+        if row.id.startswith(_OPERATORS):
+            return 2
+        return int(row.score < _FAR * SURE or self._reader.is_page(row.id))
 
     def _at_its_section(self, row: RankedId, prose: str) -> RankedId:
         """A page that was found as a whole, with the section that is asked for."""

@@ -36,7 +36,7 @@ NODE_WORDS = frozenset(
 )
 REMOVAL_WORDS = frozenset(
     """away clean clear cut delete deleted deleting detach discard drop empty erase forget free get hide kill lose off
-    purge remove removed removes removing reset rid strip unassign unbake undo unlink wipe without""".split()  # noqa: SIM905
+    purge remove removed removes removing reset rid unassign unbake undo unlink wipe without""".split()  # noqa: SIM905
 )
 _FEEDBACK = 100
 _FEEDBACK_POWER = 3  # the weaker half of the feedback units hardly votes

@@ -101,6 +101,11 @@ def same(left, right):
     return left == right
 
 
+def is_data_block(rna):
+    """Whether the class of a pointer's target is an ID, of which scripts make one and assign it."""
+    return "ID" in ancestry(rna)
+
+
 def variable(cls):
     """A name that scripts give to an instance of a class: ``scene``, ``node_tree``."""
     name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls).lower()
@@ -149,7 +154,7 @@ def computed_choices(rna):
 
 class Layout:
     """What there is to read in the instances of a class; ``pointers`` and ``collections``: name → path where it is
-    declared.
+    declared. ``unassigned`` are the pointers to what a script cannot make by itself and assign.
     """
 
     def __init__(self, rna):
@@ -157,15 +162,15 @@ class Layout:
         left_out = {named, "name"}
         self.fields = []
         self.pointers = {}
-        self.readonly_pointers = {}
+        self.unassigned = {}
         self.collections = {}
         for prop in rna.properties:
             name = prop.identifier
             if prop.type == "POINTER":
                 if name not in NOT_ASKED:
                     self.pointers[name] = f"bpy.types.{declaring_class(rna, name)}.{name}"
-                    if prop.is_readonly:
-                        self.readonly_pointers[name] = self.pointers[name]
+                    if prop.is_readonly or not is_data_block(prop.fixed_type):
+                        self.unassigned[name] = self.pointers[name]
             elif prop.type == "COLLECTION":
                 if name not in NOT_ASKED:
                     self.collections[name] = f"bpy.types.{declaring_class(rna, name)}.{name}"
@@ -319,10 +324,9 @@ class Observer:
                 yield struct
 
     def empty_pointers(self, struct):
-        """The paths of an instance's read-only pointers, and whether each is None."""
+        """The paths of the pointers of an instance that nothing can be assigned to, and whether each is None."""
         return {
-            path: getattr(struct, name, None) is None
-            for name, path in self.layout(struct).readonly_pointers.items()
+            path: getattr(struct, name, None) is None for name, path in self.layout(struct).unassigned.items()
         }
 
     def look(self, label, root, vary=True, place="", is_new=True):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds what fills the read-only pointers that are None on new things, by trying it on new ones.
+"""Finds what fills the pointers that are None on new things and take no assignment, by trying it on new ones.
 
 Tried are methods without arguments and ``use_…`` switches of each kind of data-block, the kinds of modifiers, and the
 operators that add things to the active object, its modifiers and its scene. Each is tried on things that were made for
@@ -31,7 +31,7 @@ class Trial:
         self.empty = {path for path, is_empty in self.asked() if is_empty}
 
     def asked(self):
-        """(path, whether it is None) of every read-only pointer."""
+        """(path, whether it is None) of every pointer that nothing can be assigned to."""
         for struct in self.structs:
             yield from self.observer.empty_pointers(struct).items()
 
