@@ -9,7 +9,9 @@ from functools import lru_cache
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Literal
 
+from kb_build.index.analysis import terms
 from kb_build.records import PAGE_SOURCES
+from kb_serve.answer.asked_values import asked_values, may_have_more
 from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
 from kb_serve.answer.next_call import next_call
 from kb_serve.answer.practice import Practice
@@ -23,6 +25,7 @@ from kb_serve.recognise.several import parts_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from kb_serve.answer.asked_values import AskedValue
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.several import QuestionPart
 
@@ -142,13 +145,17 @@ class AnswerComposer:
             sockets = self._renderer.sockets(hits[0].id, text)
             blocks = (*asked, *sockets, *self._whole(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
-        return _draft("candidates", hits, notes, self._found(hits, rows))
+        return _draft("candidates", hits, notes, self._found(hits, rows, frozenset(terms(text))))
 
-    def _found(self, hits: Sequence[Hit], rows: Sequence[RankedId]) -> Iterator[AnswerBlock]:
+    def _found(
+        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: frozenset[str]
+    ) -> Iterator[AnswerBlock]:
         """The best hit in brief, and the others. A page says how, but code needs names: they follow its heading."""
         excerpt = self._excerpt(hits[0], rows[0])
-        others = [*self._others(hits[1:], rows[1:])]
+        others = [*self._others(hits[1:], rows[1:], asked)]
         yield next(excerpt)
+        names = [value.argument for value in self._asked(hits[0], asked) if value.argument]
+        yield from self._renderer.arguments(hits[0].id, names)
         if _is_page(hits[0]):
             yield from (block for block in others if block.name == _NAMES)
             others = [block for block in others if block.name != _NAMES]
@@ -243,14 +250,20 @@ class AnswerComposer:
             entry = self._reader.entry(f"{row.id}.{name}")
             yield f"- {entry.line if entry else f'`{name}`'}"
 
-    def _others(self, hits: Sequence[Hit], rows: Sequence[RankedId]) -> Iterator[AnswerBlock]:
-        """A line for each further hit: symbols, then pages."""
+    def _others(
+        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: frozenset[str] = frozenset()
+    ) -> Iterator[AnswerBlock]:
+        """A line for each further hit: symbols, then pages. ``asked`` are the question's words."""
         further = list(zip(hits, rows, strict=True))
         for title, name, are_pages in (
             ("In Python", _NAMES, False),
             ("Pages", "further pages", True),
         ):
-            lines = [f"- {self._line(hit, row)}" for hit, row in further if _is_page(hit) == are_pages]
+            lines = [
+                f"- {self._line(hit, row)}{self._values(hit, asked)}"
+                for hit, row in further
+                if _is_page(hit) == are_pages
+            ]
             if lines:
                 yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), name)
 
@@ -270,6 +283,18 @@ class AnswerComposer:
         page = self._reader.page_entry(hit.id)
         text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
+
+    def _asked(self, hit: Hit, asked: frozenset[str]) -> list[AskedValue]:
+        """The arguments and values of a hit that the question speaks of."""
+        entry = None if not asked or _is_page(hit) else self._reader.entry(hit.id)
+        if entry is None or not may_have_more(entry.kind, entry.line):
+            return []
+        symbol = self._reader.symbol(hit.id)
+        return asked_values(symbol, asked) if symbol else []
+
+    def _values(self, hit: Hit, asked: frozenset[str]) -> str:
+        values = [f"`{value.text}`" for value in self._asked(hit, asked)]
+        return f" — asked for: {', '.join(values)}" if values else ""
 
     def _instead_of_words(self, entry: SymbolEntry) -> str:
         """What is said of a symbol without a description: its call, or how many members it has."""
