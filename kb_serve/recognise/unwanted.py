@@ -5,11 +5,19 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-_ANY = r"(?:an?\s+|the\s+|any\s+|using\s+|calling\s+)*"
-_OPERATORS = rf"(?P<operators>{_ANY}(?:bpy\.ops(?:\.\w+)*(?:\(\))?|ops|operators?)\b)"
-_CONTEXT = rf"{_ANY}(?:context\s+overrid(?:e|es|ing)|overrid(?:e|es|ing)(?:\s+the\s+context)?|context)\b"
-_LACKING = r"(?:without|w/o|no|not(?=\s+(?:using|calling))|instead\s+of|rather\s+than)"
-_UNWANTED = re.compile(rf"[\s,]+\(?\b{_LACKING}\s+(?:{_OPERATORS}|{_CONTEXT})\)?", re.I)
+from kb_serve.recognise.message_patterns import is_message
+
+_ANY = r"(?:(?:an?|the|any|using|calling)\s)*"
+# Not one operator by its name: who names it wants to know what else there is.
+_OPERATORS = rf"{_ANY}(?:bpy\.ops\b(?!\.\w)|ops\b|operators?\b)"
+_OVERRIDE = rf"{_ANY}(?:context\s)?overrid(?:e|es|ing)\b"
+_THING = rf"(?:{_OPERATORS}|{_OVERRIDE})"
+_LACKING = r"(?:without|w/o|not(?=\s(?:using|calling))|instead\sof|rather\sthan|no(?=\s[\w.]+(?:\s\w+)?\W*$))"
+_STATED = r"(?<!\bis)(?<!\bare)(?<!\bhas)(?<!\bhave)"  # "there is no operator" says what is the case
+_UNWANTED = re.compile(rf"{_STATED},?\s\(?{_LACKING}\s{_THING}(?:\s(?:or|and|nor)\s{_THING})*\)?", re.I)
+_WHY = re.compile(r"why\b", re.I)  # asks what the case is, not how to do something
+_OF_OPERATORS = re.compile(_OPERATORS, re.I)
+_NAMED = "bpy.ops."
 _CODE = "python"  # who says so writes code
 
 
@@ -17,13 +25,14 @@ class Wanted(NamedTuple):
     """A question without what it does not want; ``operators``: whether they will do."""
 
     text: str
-    operators: bool
+    operators: bool = True
 
 
 def without_unwanted(query: str) -> Wanted:
-    """A question as it would be asked by who only knows what is wanted."""
-    found = _UNWANTED.search(query)
+    """A question, its blanks single, as it would be asked by who only knows what is wanted."""
+    found = None if is_message(query) or _WHY.match(query) else _UNWANTED.search(query)
     if found is None:
-        return Wanted(query, operators=True)
+        return Wanted(query)
     text = " ".join((query[: found.start()] + query[found.end() :]).split())
-    return Wanted(f"{text} {_CODE}", operators=found["operators"] is None)
+    are_unwanted = _OF_OPERATORS.search(found[0]) is not None and _NAMED not in text
+    return Wanted(f"{text} {_CODE}", operators=not are_unwanted)

@@ -1,0 +1,48 @@
+"""A line of an answer names the arguments and values that the question speaks of."""
+
+from __future__ import annotations
+
+from kb_build.index.analysis import terms
+from kb_build.records import NOT_TAKEN, EnumItem, Parameter, Symbol
+from kb_serve.answer.asked_values import asked_values, may_have_more
+
+_EFFECT = Symbol(
+    "bpy.types.StripsTopLevel.new_effect", "function", label="New Effect",
+    parameters=(
+        Parameter("name", "string"),
+        Parameter("type", "enum", enum_items=(
+            EnumItem("CROSS", "Crossfade"), EnumItem("GAMMA_CROSS", "Gamma Crossfade"), EnumItem("TEXT", "Text"),
+            EnumItem("OLD", "Speed", where=NOT_TAKEN),
+        )),
+        Parameter("use_selection", "boolean", label="Selected Objects"),
+    ),
+)  # fmt: skip
+
+
+def _asked(query: str) -> list[str]:
+    return [value.text for value in asked_values(_EFFECT, frozenset(terms(query)))]
+
+
+def test_values_are_named_by_what_they_are_called_and_the_fullest_first() -> None:
+    assert _asked("crossfade two strips") == ["type='CROSS'"]
+    assert _asked("gamma crossfade between strips") == ["type='GAMMA_CROSS'", "type='CROSS'"]
+    assert _asked("add text over the film") == ["type='TEXT'"]
+
+
+def test_an_argument_is_named_by_its_label_too() -> None:
+    assert _asked("only the selected objects") == ["use_selection"]
+
+
+def test_what_every_function_has_what_blender_refuses_and_the_symbol_itself_are_not_named() -> None:
+    assert not _asked("give it a name and a type")
+    assert not _asked("speed up the film")
+    assert not _asked("new effect")
+    assert not _asked("")
+
+
+def test_a_line_that_says_all_needs_no_look() -> None:
+    assert may_have_more("function", "`new_effect(name, type)` — Add")
+    assert not may_have_more("function", "`clear()` — Remove all")
+    assert may_have_more("property", "`type` enum A|B|…")
+    assert not may_have_more("property", "`type` enum A|B")
+    assert not may_have_more("class", "`Strip` — A strip")
