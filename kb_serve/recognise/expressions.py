@@ -238,7 +238,9 @@ class Expressions:
             self._parts(chain, recognition)
         if chain.attributes and len(rows) > _FEW:
             return  # a common name that its owner in the query does not have
-        for rank, entry in enumerate(sorted(rows, key=lambda entry: -self._affinity(entry, prose))[:5]):
+        weights = self._reader.weights([entry.path for entry in rows]) if len(rows) > 1 else {}
+        rows.sort(key=lambda entry: (-self._affinity(entry, prose), -weights.get(entry.path, 0.0)))
+        for rank, entry in enumerate(rows[:5]):
             sure = 0.9 if len(rows) == 1 else 0.84
             if chain.attributes and (len(rows) > 1 or "_" not in name):
                 sure = 0.55

@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3
+_LONG_LABEL = 3  # words, which no question has by chance
+_WHOLE_LABEL = 0.82  # how sure what is called so is then
 _OTHERWISE = 0.85  # how sure a name is that shares only its key with the query
 
 
@@ -85,6 +87,7 @@ class Spellings:
         """Adds the symbols and pages with the query's key; the fuller the spelling, the surer."""
         dotted = "." in text
         plain = " " not in text.strip()
+        is_long = text.count(" ") + 1 >= _LONG_LABEL
         strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
         typed = 0 in strange.values() or self._is_enum_item(text) or self._is_removed(text)
         for form, identifier in sorted(rows, key=lambda row: strange[row[1]]):
@@ -93,9 +96,10 @@ class Spellings:
                 recognition.add(identifier, _OTHERWISE if typed and strange[identifier] > 1 else 1.0, "exact")
             elif form in {FORM_NAME, FORM_LABEL} and not dotted:
                 same = self._last_part(identifier) == text
-                recognition.add(identifier, 0.9 if same and plain and "_" in text else 0.7, "name")
+                sure = 0.9 if same and plain and "_" in text else _WHOLE_LABEL if is_long else 0.7
+                recognition.add(identifier, sure, "name")
             else:
-                recognition.add(identifier, 0.75, "title")
+                recognition.add(identifier, _WHOLE_LABEL if is_long else 0.75, "title")
 
     def _labelled(self, text: str, recognition: Recognition) -> None:
         """Adds classes and operators with exactly this label; for modifiers, Blender's default name will do."""
