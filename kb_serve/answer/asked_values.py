@@ -1,14 +1,15 @@
-"""The arguments and values of a symbol that a question speaks of: ``type='CROSSFADE'`` for ``crossfade two strips``."""
+"""The arguments and values of a symbol that a question speaks of: ``type='CROSS'`` for ``crossfade two strips``."""
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.index.analysis import terms
+from kb_build.index.analysis import stem, terms, words
 from kb_build.records import NOT_TAKEN
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Iterator, Sequence
 
     from kb_build.records import EnumItem, Symbol
 
@@ -20,54 +21,74 @@ _COMMON = frozenset(
 )
 _CALLED = {"operator", "function"}
 _CUT = "|…"
+_OF_DIALOGS = "ui_"
+# What follows these is not wanted, up to the next of the words that go on.
+_NOT_WANTED = re.compile(
+    r"\b(?:not|without|no|except|excluding|but\snot|instead\sof|rather\sthan)\b.*?(?=[,.;]|\b(?:and|but|then)\b|$)",
+    re.I | re.S,
+)
 
 
 class AskedValue(NamedTuple):
-    """An argument, or the value of one or of the symbol itself, as Python source; how many words asked for it."""
+    """An argument, or the value of one or of the symbol itself, as Python source.
+
+    ``words``: how many words asked for it; ``in_order``: whether as it has them.
+    """
 
     text: str
     argument: str
     words: int
+    in_order: bool
+
+
+def asked_words(question: str) -> tuple[str, ...]:
+    """The stems of the words by which a question asks for something, in their order."""
+    return tuple(terms(_NOT_WANTED.sub(" ", question)))
 
 
 def may_have_more(kind: str, line: str) -> bool:
-    """Whether a symbol's line leaves out arguments or values."""
-    return (kind in _CALLED and "()" not in line.partition("`")[2]) or (kind == "property" and _CUT in line)
+    """Whether a symbol's line leaves out arguments or values that can be given."""
+    head = line.partition(" — ")[0]
+    is_called = kind in _CALLED and "()" not in head
+    return is_called or (kind == "property" and _CUT in head and "read-only" not in head)
 
 
-def asked_values(symbol: Symbol, asked: Collection[str]) -> list[AskedValue]:
+def asked_values(symbol: Symbol, asked: Sequence[str]) -> list[AskedValue]:
     """What of a symbol the words ``asked`` (stems) speak of besides the symbol itself, most words first."""
-    own = {*terms(symbol.path), *terms(symbol.label)}
-    left = frozenset(asked) - own
+    left = frozenset(asked) - {*terms(symbol.path), *terms(symbol.label)} - _COMMON
     if not left:
         return []
-    found = [
-        *_arguments(symbol, frozenset(asked), left),
-        *_values(symbol.enum_items, "", frozenset(asked), left),
-    ]
-    return sorted(found, key=lambda value: -value.words)[:MOST]
+    told = _Told(asked, left)
+    found = [*told.arguments(symbol), *told.values(symbol.enum_items, "")]
+    return sorted(found, key=lambda value: (-value.words, not value.in_order))[:MOST]
 
 
-def _arguments(symbol: Symbol, asked: frozenset[str], left: frozenset[str]) -> Iterator[AskedValue]:
-    for parameter in symbol.parameters:
-        values = [*_values(parameter.enum_items, parameter.name, asked, left)]
-        yield from values
-        words = max(_spoken(text, asked, left) for text in (parameter.name, parameter.label))
-        if words and not values:
-            yield AskedValue(parameter.name, parameter.name, words)
+class _Told:
+    """What a question says, and of that what the symbol does not say itself."""
 
+    def __init__(self, asked: Sequence[str], left: frozenset[str]) -> None:
+        self._places = {word: place for place, word in enumerate(asked)}
+        self._left = left
 
-def _values(
-    items: tuple[EnumItem, ...], argument: str, asked: frozenset[str], left: frozenset[str]
-) -> Iterator[AskedValue]:
-    for item in items:
-        words = max(_spoken(item.identifier, asked, left), _spoken(item.name, asked, left))
-        if words and item.where != NOT_TAKEN:
-            value = repr(item.identifier)
-            yield AskedValue(f"{argument}={value}" if argument else value, argument, words)
+    def arguments(self, symbol: Symbol) -> Iterator[AskedValue]:
+        for parameter in symbol.parameters:
+            if parameter.name.startswith(_OF_DIALOGS):
+                continue
+            values = [*self.values(parameter.enum_items, parameter.name)]
+            yield from values or self._asked(parameter.name, parameter.name, parameter.name, parameter.label)
 
+    def values(self, items: tuple[EnumItem, ...], argument: str) -> Iterator[AskedValue]:
+        for item in items:
+            if item.where != NOT_TAKEN:
+                value = repr(item.identifier)
+                text = f"{argument}={value}" if argument else value
+                yield from self._asked(text, argument, item.name, item.identifier)
 
-def _spoken(text: str, asked: frozenset[str], left: frozenset[str]) -> int:
-    """How many words a name has, if all are asked for, and one that is not the symbol's own; else 0."""
-    words = frozenset(terms(text))
-    return len(words) if words <= asked and not words.isdisjoint(left - _COMMON) else 0
+    def _asked(self, text: str, argument: str, *names: str) -> Iterator[AskedValue]:
+        """One, if all words of one of its names are asked for, and one that is not the symbol's own."""
+        for name in names:
+            own = [stem(word) for word in words(name)]
+            places = [self._places.get(word, -1) for word in terms(name)]
+            if places and min(places) >= 0 and not self._left.isdisjoint(own):
+                yield AskedValue(text, argument, len(places), places == sorted(places))
+                return

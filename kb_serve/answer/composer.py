@@ -9,9 +9,8 @@ from functools import lru_cache
 from itertools import zip_longest
 from typing import TYPE_CHECKING, Literal
 
-from kb_build.index.analysis import terms
 from kb_build.records import PAGE_SOURCES
-from kb_serve.answer.asked_values import asked_values, may_have_more
+from kb_serve.answer.asked_values import asked_values, asked_words, may_have_more
 from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
 from kb_serve.answer.next_call import next_call
 from kb_serve.answer.practice import Practice
@@ -145,17 +144,17 @@ class AnswerComposer:
             sockets = self._renderer.sockets(hits[0].id, text)
             blocks = (*asked, *sockets, *self._whole(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
-        return _draft("candidates", hits, notes, self._found(hits, rows, frozenset(terms(text))))
+        return _draft("candidates", hits, notes, self._found(hits, rows, asked_words(text)))
 
     def _found(
-        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: frozenset[str]
+        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str]
     ) -> Iterator[AnswerBlock]:
         """The best hit in brief, and the others. A page says how, but code needs names: they follow its heading."""
         excerpt = self._excerpt(hits[0], rows[0])
         others = [*self._others(hits[1:], rows[1:], asked)]
         yield next(excerpt)
-        names = [value.argument for value in self._asked(hits[0], asked) if value.argument]
-        yield from self._renderer.arguments(hits[0].id, names)
+        names = {value.argument for value in self._asked(hits[0], asked)}
+        yield from self._renderer.arguments(hits[0].id, names, unless_all_fit=True)
         if _is_page(hits[0]):
             yield from (block for block in others if block.name == _NAMES)
             others = [block for block in others if block.name != _NAMES]
@@ -251,7 +250,7 @@ class AnswerComposer:
             yield f"- {entry.line if entry else f'`{name}`'}"
 
     def _others(
-        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: frozenset[str] = frozenset()
+        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str] = ()
     ) -> Iterator[AnswerBlock]:
         """A line for each further hit: symbols, then pages. ``asked`` are the question's words."""
         further = list(zip(hits, rows, strict=True))
@@ -284,7 +283,7 @@ class AnswerComposer:
         text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
 
-    def _asked(self, hit: Hit, asked: frozenset[str]) -> list[AskedValue]:
+    def _asked(self, hit: Hit, asked: Sequence[str]) -> list[AskedValue]:
         """The arguments and values of a hit that the question speaks of."""
         entry = None if not asked or _is_page(hit) else self._reader.entry(hit.id)
         if entry is None or not may_have_more(entry.kind, entry.line):
@@ -292,7 +291,7 @@ class AnswerComposer:
         symbol = self._reader.symbol(hit.id)
         return asked_values(symbol, asked) if symbol else []
 
-    def _values(self, hit: Hit, asked: frozenset[str]) -> str:
+    def _values(self, hit: Hit, asked: Sequence[str]) -> str:
         values = [f"`{value.text}`" for value in self._asked(hit, asked)]
         return f" — asked for: {', '.join(values)}" if values else ""
 

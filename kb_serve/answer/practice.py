@@ -12,6 +12,10 @@ if TYPE_CHECKING:
 
     from kb_serve.reader import BaseReader
 
+_HANDLERS = "bpy.app.handlers."
+_PERSISTENT = f"{_HANDLERS}persistent"
+_STAYING = f"Loading a file removes a handler, before `load_post` runs it too, unless it has `@{_PERSISTENT}` above it."
+
 
 class Practice:
     """Sentences for the answers from one base."""
@@ -22,6 +26,8 @@ class Practice:
 
     def of(self, identifier: str) -> Iterator[str]:
         """Sentences on a symbol, or on what the page with that slug explains."""
+        if identifier.startswith(_HANDLERS) and identifier != _PERSISTENT and self._reader.entry(_PERSISTENT):
+            yield _STAYING
         if identifier in CLASSES:
             yield WITH_AT
         if identifier == NODES_MODIFIER or identifier in self._explaining(NODES_MODIFIER):

@@ -32,6 +32,7 @@ from kb_build.symbol_lines import (
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.empty_pointers import empty_pointer_to
 from kb_serve.answer.panel_lines import panel_lines
+from kb_serve.answer.switches import switch_lines
 from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 
 if TYPE_CHECKING:
@@ -64,6 +65,7 @@ _SHOWN_FLAGS = (
     "hidden-by-default",
 )
 _BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
+_FEW_PARAMETERS = 8
 _BROWSER_ALWAYS = "filter_folder"  # every operator that opens the file browser has it
 _BROWSER = frozenset({"filemode", "display_type", "sort_method", "hide_props_region"})
 _MACHINERY = {
@@ -316,10 +318,12 @@ class MarkdownRenderer:
             if entry.kind == "socket" and is_named_so and entry.path != socket.path:
                 yield entry
 
-    def arguments(self, path: str, names: Collection[str]) -> Iterator[AnswerBlock]:
-        """Some arguments of an operator or function."""
+    def arguments(
+        self, path: str, names: Collection[str], *, unless_all_fit: bool = False
+    ) -> Iterator[AnswerBlock]:
+        """Some arguments of an operator or function; not where the answer has ``unless_all_fit`` all of them anyway."""
         symbol = self.reader.symbol(path) if names else None
-        if symbol is not None:
+        if symbol is not None and not (unless_all_fit and len(symbol.parameters) <= _FEW_PARAMETERS):
             lines = _parameter_lines(symbol, [item for item in symbol.parameters if item.name in names])
             yield AnswerBlock(f"**Asked for**, of `{path}`\n" + "\n".join(lines), "what was asked for")
 
@@ -374,7 +378,8 @@ class MarkdownRenderer:
             lines.append(line)
         if needs := operator_needs(symbol):
             lines.append(f"Of all that was tried, its poll takes {needs}.")
-        if line := "; ".join(panel_lines(symbol, self.reader)):
+        told = [*panel_lines(symbol, self.reader)] or [*switch_lines(symbol, self.reader)]
+        if line := "; ".join(told):
             lines.append(line[0].upper() + line[1:] + ".")
         if symbol.deprecation:
             removal = version_meant(symbol.deprecation.removal)

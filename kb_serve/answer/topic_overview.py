@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 _EDITOR = f"{TYPES}Space"
 _SELDOM = ("grease_pencil/", "render/freestyle/")  # seldom meant by who does not say so
+_WHAT_IS = re.compile(r"(?:what(?:'s|\s(?:is|are))|explain)\s(?:an?\s|the\s)?", re.I)
 _MAX_WORDS = 4
 _CALLED_SO = 4  # pages
 _KINDS = ("modifier", "constraint", "node")  # how titles of pages end
@@ -72,7 +73,7 @@ class Topics:
         Of several pages with that title, in singular or plural, the one with the most pages and symbols; of many single
         pages none. A modifier's or a constraint's name is enough where nothing else is called so.
         """
-        plain = text.strip().strip("`'\"?!.")
+        plain = _WHAT_IS.sub("", text.strip().strip("`'\"?!."))
         if not key(plain) or len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
             return ""
         if plain != plain.lower() and self._is_class(plain):

@@ -11,7 +11,9 @@ _ANY = r"(?:(?:an?|the|any|using|calling)\s)*"
 # Not one operator by its name: who names it wants to know what else there is.
 _OPERATORS = rf"{_ANY}(?:bpy\.ops\b(?!\.\w)|ops\b|operators?\b)"
 _OVERRIDE = rf"{_ANY}(?:context\s)?overrid(?:e|es|ing)\b"
-_THING = rf"(?:{_OPERATORS}|{_OVERRIDE})"
+# "without operator buttons" is about buttons.
+_END = r"(?=\W*$|[,.;:!?)]|\s(?:and|at|but|by|for|from|in|nor|on|or|so|that|to|when|while|with)\b)"
+_THING = rf"(?:{_OPERATORS}|{_OVERRIDE}){_END}"
 _LACKING = r"(?:without|w/o|not(?=\s(?:using|calling))|instead\sof|rather\sthan|no(?=\s[\w.]+(?:\s\w+)?\W*$))"
 _STATED = r"(?<!\bis)(?<!\bare)(?<!\bhas)(?<!\bhave)"  # "there is no operator" says what is the case
 _UNWANTED = re.compile(rf"{_STATED},?\s\(?{_LACKING}\s{_THING}(?:\s(?:or|and|nor)\s{_THING})*\)?", re.I)

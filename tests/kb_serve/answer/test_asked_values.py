@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from kb_build.index.analysis import terms
 from kb_build.records import NOT_TAKEN, EnumItem, Parameter, Symbol
-from kb_serve.answer.asked_values import asked_values, may_have_more
+from kb_serve.answer.asked_values import asked_values, asked_words, may_have_more
 
 _EFFECT = Symbol(
     "bpy.types.StripsTopLevel.new_effect", "function", label="New Effect",
@@ -20,7 +19,7 @@ _EFFECT = Symbol(
 
 
 def _asked(query: str) -> list[str]:
-    return [value.text for value in asked_values(_EFFECT, frozenset(terms(query)))]
+    return [value.text for value in asked_values(_EFFECT, asked_words(query))]
 
 
 def test_values_are_named_by_what_they_are_called_and_the_fullest_first() -> None:
@@ -40,9 +39,28 @@ def test_what_every_function_has_what_blender_refuses_and_the_symbol_itself_are_
     assert not _asked("")
 
 
+def test_what_is_not_wanted_is_not_named() -> None:
+    assert _asked("crossfade not gamma crossfade") == ["type='CROSS'"]
+    assert not _asked("strips without a crossfade")
+    assert _asked("no text, crossfade") == ["type='CROSS'"]
+
+
+def test_of_two_with_the_same_words_the_one_in_the_order_of_the_question_comes_first() -> None:
+    items = (
+        EnumItem("GEOMETRY_ORIGIN", "Geometry to Origin"),
+        EnumItem("ORIGIN_GEOMETRY", "Origin to Geometry"),
+    )
+    operator = Symbol(
+        "bpy.ops.object.place", "operator", parameters=(Parameter("type", "enum", enum_items=items),)
+    )
+    found = [value.text for value in asked_values(operator, asked_words("set the origin to the geometry"))]
+    assert found == ["type='ORIGIN_GEOMETRY'", "type='GEOMETRY_ORIGIN'"]
+
+
 def test_a_line_that_says_all_needs_no_look() -> None:
     assert may_have_more("function", "`new_effect(name, type)` — Add")
     assert not may_have_more("function", "`clear()` — Remove all")
     assert may_have_more("property", "`type` enum A|B|…")
     assert not may_have_more("property", "`type` enum A|B")
+    assert not may_have_more("property", "`type` enum A|B|… read-only — A kind")
     assert not may_have_more("class", "`Strip` — A strip")

@@ -177,9 +177,10 @@ def test_a_node_that_no_tree_takes_is_not_said_to_be_made(kb: KnowledgeBase) -> 
 
 
 def test_values_that_are_put_together_at_run_time_are_not_told_by_a_stand_in(kb: KnowledgeBase) -> None:
-    text = kb.query("bpy.types.ColorManagedInputColorspaceSettings.name").text
-    assert "'NONE'" not in text
+    text = kb.query("bpy.types.SpaceNodeEditor.tree_type").text
+    assert "'DEFAULT'" not in text
     assert "put together while Blender runs" in text
+    assert "`tree_type` enum —" in kb.query("bpy.types.SpaceNodeEditor", max_tokens=ALL).text
 
 
 def test_a_module_lists_its_contents(kb: KnowledgeBase) -> None:

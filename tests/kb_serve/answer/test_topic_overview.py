@@ -26,6 +26,7 @@ def topics(reader: BaseReader) -> Topics:
     [
         ("cloth", "physics/cloth/index"), ("Cloth", "physics/cloth/index"), (" cloth? ", "physics/cloth/index"),
         ("rigid body", "physics/rigid_body/index"), ("rigid bodies", "physics/rigid_body/index"),
+        ("what is a rigid body?", "physics/rigid_body/index"), ("explain cloth", "physics/cloth/index"),
         ("rigid_body", ""), ("Rigid Body", "physics/rigid_body/index"), ("physics", "physics/index"),
         ("modifiers", "modeling/modifiers/index"), ("modifier", "modeling/modifiers/index"),
         ("subdivision surface", "modeling/modifiers/generate/subdivision_surface"),

@@ -12,6 +12,7 @@ import pytest
 from bpe_openai import get_encoding
 from click.testing import CliRunner
 
+from kb_build.index.analysis import key
 from kb_serve.errors import BadQuery
 from kb_serve.packs.changes import Changes, owner_of
 from kb_serve.packs.pack import write_pack
@@ -41,7 +42,7 @@ def exists(reader: BaseReader, path: str) -> bool:
         return True
     owner, colon, value = path.rpartition(":")
     if colon:
-        return any(row[:2] == (owner, value) for row in reader.enum_owners(value.lower().replace("_", "")))
+        return any(row[:2] == (owner, value) for row in reader.enum_owners(key(value)))
     called, _, argument = path.removesuffix(")").partition("(")
     symbol = reader.symbol(called)
     return symbol is not None and argument in {parameter.name for parameter in symbol.parameters}

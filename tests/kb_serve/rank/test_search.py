@@ -75,15 +75,9 @@ def test_a_query_that_is_a_phrase_gains_by_it(searcher: Searcher, monkeypatch: p
     assert whole > lead()
 
 
-@pytest.mark.parametrize(
-    ("query", "slug"),
-    [
-        ("the gap between two parts of one cloth", "physics/cloth/settings/collisions"),
-        ("what is a rigid body", "physics/rigid_body/introduction"),
-    ],
-)
-def test_a_question_finds_the_page_that_answers_it(searcher: Searcher, query: str, slug: str) -> None:
-    assert slug in [row.ref for row in searcher.search(query, 10)]
+def test_a_question_finds_the_page_that_answers_it(searcher: Searcher) -> None:
+    found = [row.ref for row in searcher.search("the gap between two parts of one cloth", 10)]
+    assert "physics/cloth/settings/collisions" in found
 
 
 def test_scores_fall_and_no_id_comes_twice(searcher: Searcher) -> None:

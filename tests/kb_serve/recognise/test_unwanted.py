@@ -42,6 +42,7 @@ def test_what_is_not_wanted_is_left_out(query: str, text: str, operators: bool) 
         "render without denoising",
         "cloth without self collision",
         "operator without undo",
+        "panel without operator buttons",
     ],
 )
 def test_what_is_asked_for_stays(query: str) -> None:
