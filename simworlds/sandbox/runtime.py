@@ -17,7 +17,7 @@ from simworlds.files import staged_folder
 from simworlds.installed import installed_bpy
 from simworlds.operating_system import SYSTEM
 from simworlds.processes import CommandFailed, run_group
-from simworlds.releases import USUAL, Release, minor_of, release, releases, same_version
+from simworlds.releases import USUAL, Release, minor_of, release, releases, same_version, version_key
 from simworlds.sandbox.errors import NotInstalled, ProgramFailed, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 
@@ -172,7 +172,7 @@ def _managed(wanted: str, runtimes: Path, progress: Report | None, *, install: b
             f"there is no bpy package for Blender {wanted} (only for {known}); install that Blender and "
             f"{_NAME_IT}"
         )
-    version = entry.bpy if wanted.count(".") == 1 else wanted
+    version = entry.bpy if wanted.count(".") == 1 else ".".join(map(str, version_key(wanted)))
     folder = runtimes / version
     if not folder.is_dir():
         if not install:
