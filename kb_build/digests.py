@@ -7,7 +7,7 @@ import json
 import os
 from typing import TYPE_CHECKING
 
-from simworlds.files import write_whole
+from simworlds.files import sha256_of_file, write_whole
 from simworlds.folder_files import read_file
 
 if TYPE_CHECKING:
@@ -28,11 +28,7 @@ class Digests:
     def of_file(self, path: Path) -> str:
         """SHA-256 of a file's content, in hexadecimal digits. Raises OSError."""
 
-        def compute() -> str:
-            with path.open("rb") as file:
-                return hashlib.file_digest(file, "sha256").hexdigest()
-
-        return self._recall(path, _signature(path.stat()), compute)
+        return self._recall(path, _signature(path.stat()), lambda: sha256_of_file(path))
 
     def of_files(self, files: FolderFiles) -> str:
         """SHA-256 over the names and contents of files beneath a folder. Raises OSError."""

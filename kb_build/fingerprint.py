@@ -12,6 +12,8 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from simworlds.installed import installed_version
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
@@ -58,21 +60,10 @@ def _code(files: Iterable[Path]) -> str:
 
 
 def _versions(packages: Iterable[str]) -> str:
-    versions: list[str] = []
-    for package in packages:
-        try:
-            versions.append(f"{package}=={metadata.version(package)}")
-        except metadata.PackageNotFoundError:
-            versions.append(f"{package}: absent")
-    return ", ".join(versions)
-
-
-def own_version() -> str:
-    """The installed SimWorlds' version; "unknown" where it runs without being installed."""
-    try:
-        return metadata.version("simworlds")
-    except metadata.PackageNotFoundError:
-        return "unknown"
+    found = {package: installed_version(package) for package in packages}
+    return ", ".join(
+        f"{package}=={version}" if version else f"{package}: absent" for package, version in found.items()
+    )
 
 
 @cache

@@ -18,10 +18,11 @@ from kb_build.base_file import read_meta
 from kb_build.blender.extractor import extract_api
 from kb_build.digests import Digests
 from kb_build.errors import ExtractError, SourceError, StoreError
-from kb_build.fingerprint import base_fingerprint, extractor_digest, own_version, runtime_digest
+from kb_build.fingerprint import base_fingerprint, extractor_digest, runtime_digest
 from kb_build.pages.sources import Origin, find_sources
 from simworlds.files import remove_unfinished_files
 from simworlds.forked import beside
+from simworlds.installed import own_version
 from simworlds.releases import ROLES, minor_of
 from simworlds.sandbox.runtime import find_runtime
 from simworlds.settings import base_path, cache_folder, summaries_path

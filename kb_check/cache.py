@@ -5,6 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import sqlite3
+import sys
 import time
 import zlib
 from contextlib import suppress
@@ -18,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
     from typing import Self
 
-_PARTS = ("kb_check", "kb_build", "kb_serve")
+_PARTS = ("kb_check", "kb_build", "kb_serve", "simworlds")
 _MOST_BYTES = 32 << 20
 _WAIT_SECONDS = 2.0
 _CREATE = "CREATE TABLE IF NOT EXISTS results (key BLOB PRIMARY KEY, used REAL, value BLOB) WITHOUT ROWID"
@@ -56,18 +57,22 @@ class ResultCache:
 
     def close(self) -> None:
         """Notes what was used, drops the oldest results beyond the bound, and closes the file."""
+        if self._connection is None:
+            return
         now = time.time()
-        self._execute_many("UPDATE results SET used = ? WHERE key = ?", [(now, key) for key in self._used])
-        self._execute(
-            "DELETE FROM results WHERE key IN (SELECT key FROM (SELECT key, SUM(LENGTH(value) + 100) OVER "
-            "(ORDER BY used DESC, key) AS size FROM results) WHERE size > ?)",
-            (_MOST_BYTES,),
-        )
-        if self._connection is not None:
-            with suppress(sqlite3.Error):
-                self._connection.commit()
-            self._connection.close()
-            self._connection = None
+        with suppress(sqlite3.Error):
+            self._connection.execute("BEGIN IMMEDIATE")  # one change of the file, not one for each row
+            self._connection.executemany(
+                "UPDATE results SET used = ? WHERE key = ?", [(now, key) for key in self._used]
+            )
+            self._connection.execute(
+                "DELETE FROM results WHERE key IN (SELECT key FROM (SELECT key, SUM(LENGTH(value) + 100) OVER "
+                "(ORDER BY used DESC, key) AS size FROM results) WHERE size > ?)",
+                (_MOST_BYTES,),
+            )
+            self._connection.execute("COMMIT")
+        self._connection.close()
+        self._connection = None
 
     def __enter__(self) -> Self:
         return self
@@ -85,7 +90,8 @@ class ResultCache:
             self._connect()
 
     def _connect(self) -> None:
-        connection = sqlite3.connect(self._path, timeout=_WAIT_SECONDS)
+        # Each result is written at once: it holds up no other process, and outlives this one.
+        connection = sqlite3.connect(self._path, timeout=_WAIT_SECONDS, isolation_level=None)
         try:
             connection.execute("PRAGMA synchronous = OFF")
             connection.execute(_CREATE)
@@ -102,11 +108,6 @@ class ResultCache:
         except sqlite3.Error:
             return []
 
-    def _execute_many(self, statement: str, rows: list[tuple[Any, ...]]) -> None:
-        if self._connection is not None and rows:
-            with suppress(sqlite3.Error):
-                self._connection.executemany(statement, rows)
-
 
 def result_key(base: str, files: Iterable[tuple[str, bytes, bool]]) -> bytes:
     """The key of a group's results: the base's fingerprint, and each file's name, content, and whether it is wanted."""
@@ -119,9 +120,9 @@ def result_key(base: str, files: Iterable[tuple[str, bytes, bool]]) -> bytes:
 
 @cache
 def code_digest() -> str:
-    """A digest of the code that findings come from."""
+    """A digest of the code that findings come from, and of the Python that parses: what is syntax depends on it."""
     top = Path(__file__).resolve().parents[1]
-    digest = hashlib.sha256()
+    digest = hashlib.sha256(sys.version.encode())
     for part in _PARTS:
         for path in sorted((top / part).rglob("*.py")):
             digest.update(f"{path.relative_to(top)}\0".encode())

@@ -113,6 +113,7 @@ def _below(folder: Path, excluded: _Excluded, ignored: GitIgnore | None = None) 
                 name.endswith(SUFFIXES)
                 and not name.startswith(".")
                 and path.is_file()
+                and not path.is_symlink()
                 and not excluded.has(path)
                 and not (ignored is not None and ignored.leaves_out(path, is_folder=False))
             ):

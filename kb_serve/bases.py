@@ -10,8 +10,9 @@ from threading import RLock
 from typing import TYPE_CHECKING
 
 from kb_serve.errors import BaseUnreadable
-from kb_serve.in_use import blender_in_use, minor
+from kb_serve.in_use import blender_in_use
 from kb_serve.locate import find_base
+from simworlds.releases import minor_of
 from simworlds.settings import built_bases
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ class Bases:
         """The default version if it has no base, ``""`` where no version has one, None where nothing is missing."""
         built = self.built()
         if self._default is not None:
-            return None if minor(self._default) in built else self._default
+            return None if minor_of(self._default) in built else self._default
         return None if built else ""
 
     @cached_property
@@ -96,7 +97,8 @@ class Bases:
         version = version or self._default
         built = self.built()
         if version is None and len(built) > 1 and self.in_use is not None:
-            version = minor(self.in_use) if minor(self.in_use) in built else None
+            in_use = minor_of(self.in_use)
+            version = in_use if in_use in built else None
         path = built.get(version) if version is not None else next(reversed(built.values()), None)
         return path or find_base(version, self.home)
 

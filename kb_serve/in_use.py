@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
+
+from simworlds.installed import installed_bpy
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from pathlib import Path
-
-_SECONDS = 20.0
-_VERSION = re.compile(r"^Blender (\d+\.\d+\.\d+)", re.MULTILINE)
 
 
 def blender_in_use(executable: Path | None = None) -> str | None:
@@ -17,35 +16,15 @@ def blender_in_use(executable: Path | None = None) -> str | None:
 
     bpy is not imported: its distribution's metadata is enough.
     """
-    return _version_of(executable) if executable is not None else _installed()
-
-
-def _installed() -> str | None:
-    from importlib import metadata  # noqa: PLC0415 - not needed where there is only one base
-
-    try:
-        return metadata.version("bpy")
-    except metadata.PackageNotFoundError:
-        return None
+    found = installed_bpy() if executable is None else _version_of(executable)
+    return ".".join(map(str, version_key(found))) if found else None  # a wheel's may end in "a1" or ".post1"
 
 
 def _version_of(executable: Path) -> str | None:
-    import subprocess  # noqa: PLC0415 - most callers name no executable
+    from simworlds.sandbox.errors import RuntimeMissing  # noqa: PLC0415 - most callers name no executable
+    from simworlds.sandbox.runtime import executable_version  # noqa: PLC0415
 
     try:
-        done = subprocess.run(
-            [str(executable), "--version"],
-            stdin=subprocess.DEVNULL,
-            capture_output=True,
-            timeout=_SECONDS,
-            check=False,
-        )
-    except (OSError, subprocess.TimeoutExpired):
+        return executable_version(executable)
+    except RuntimeMissing:
         return None
-    match = _VERSION.search((done.stdout + done.stderr).decode(errors="replace"))
-    return match[1] if match else None
-
-
-def minor(version: str) -> str:
-    """``"5.1.2"`` → ``"5.1"``."""
-    return ".".join(version.split(".")[:2])

@@ -27,7 +27,7 @@ def find_base(version: str | None, home: Path | None = None) -> Path:
             raise BaseMissing(f"There is no knowledge base in {folder}.", _how_to_get(USUAL))
         return list(built.values())[-1]
     try:
-        wanted = minor_of(version.strip().removeprefix("v"))
+        wanted = minor_of(version)
     except UserError:
         raise BaseMissing(
             f"{version[:_LONGEST_QUOTE]!r} is not a Blender version. Write it as 5.1. Built are: {_names(built)}."

@@ -19,11 +19,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal, NoReturn
 
-from kb_serve.in_use import minor
 from simworlds.errors import UserError
 from simworlds.operating_system import SYSTEM
 from simworlds.own_command import own_command
-from simworlds.releases import USUAL, minor_of, release, version_key
+from simworlds.releases import USUAL, is_same_minor, minor_of, release, version_key
 from simworlds.settings import ready_base_source
 from simworlds.terminal.lines import write_line
 
@@ -93,21 +92,21 @@ class Upkeep:
         ``asked`` is the version that the caller named, if any: then newer versions do not matter.
         """
         have, in_use = meta.get("blender", ""), self.bases.in_use
-        if in_use is None or not _newer(in_use, have) or (asked and minor(in_use) != minor(have)):
+        if in_use is None or not _newer(in_use, have) or (asked and not is_same_minor(in_use, have)):
             return ""
         if self.state == "failed":
             then = f"Building its base failed: {self.reason}"
         elif self.enabled:
             then = "Its base is being built in the background; until then, answers come from this one."
         else:
-            then = f"Build its base: {own_command()} kb build {minor(in_use)}"
+            then = f"Build its base: {own_command()} kb build {minor_of(in_use)}"
         return f"This is Blender {have}'s knowledge base, but Blender {in_use} is in use. {then}"
 
     def offer(self, version: str | None) -> str:
         """The query that has the base of a version built here, where this can be done; empty elsewhere."""
-        wanted = minor(version or self.bases.wanted_but_missing() or USUAL)
+        wanted = minor_of(version or self.bases.wanted_but_missing() or USUAL)
         in_use = self.bases.in_use
-        can = release(wanted) is not None or (in_use is not None and minor(in_use) == wanted)
+        can = release(wanted) is not None or (in_use is not None and is_same_minor(in_use, wanted))
         return f"kb build {wanted}" if can and self._may_build() else ""
 
     def _may_build(self) -> bool:
@@ -127,7 +126,7 @@ class Upkeep:
     def missing_note(self, version: str | None) -> str:
         """What is done about a missing base of this version (None: of whichever is wanted); empty if nothing is."""
         job = self._job
-        if job is None or (version is not None and minor(version) != minor(job.version)):
+        if job is None or (version is not None and not is_same_minor(version, job.version)):
             return ""
         if self.state == "running":
             so_far = f" ({self.progress})" if self.progress else ""
@@ -141,7 +140,7 @@ class Upkeep:
             version = wanted or in_use or USUAL
             if source:
                 return self._fetching(version, source, is_named=bool(wanted or in_use))
-            meta: Mapping[str, str] | None = {} if in_use and minor(version) == minor(in_use) else None
+            meta: Mapping[str, str] | None = {} if in_use and is_same_minor(version, in_use) else None
         else:
             meta = self._nearest(in_use) if in_use is not None else None
         if in_use is None or meta is None or not SYSTEM.limits_processes:
@@ -151,8 +150,8 @@ class Upkeep:
     def _nearest(self, in_use: str) -> Mapping[str, str] | None:
         """The meta of the nearest base that is older than the Blender in use, if there is one."""
         built = self.bases.built()
-        if minor(in_use) in built:
-            meta = self.bases.pick(minor(in_use)).meta
+        if minor_of(in_use) in built:
+            meta = self.bases.pick(minor_of(in_use)).meta
             return meta if _newer(in_use, meta.get("blender", "")) else None
         older = [version for version in built if version_key(version) < version_key(in_use)]
         return self.bases.pick(older[-1]).meta if older else None
@@ -163,11 +162,17 @@ class Upkeep:
             words.append("--any")
         return _Job(version, "fetched", [sys.executable, "-m", *words])
 
-    def _building(self, in_use: str, meta: Mapping[str, str]) -> _Job:
-        words = ["kb_serve.rebuild", in_use, "--home", str(self.bases.home), *_as_before(meta, minor(in_use))]
-        if self.blender_exe is not None:
+    def _building(self, version: str, meta: Mapping[str, str]) -> _Job:
+        words = [
+            "kb_serve.rebuild",
+            version,
+            "--home",
+            str(self.bases.home),
+            *_as_before(meta, minor_of(version)),
+        ]
+        if self.blender_exe is not None and is_same_minor(self.bases.in_use or "", version):
             words += ["--blender-exe", str(self.blender_exe)]
-        return _Job(in_use, "built", [sys.executable, "-m", *words])
+        return _Job(version, "built", [sys.executable, "-m", *words])
 
     def _perform(self, job: _Job) -> None:
         self.state = "running"

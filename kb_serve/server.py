@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 import logging
 from contextlib import asynccontextmanager
-from importlib import metadata
 from typing import TYPE_CHECKING
 
 import anyio
@@ -19,6 +18,7 @@ from starlette.responses import Response
 from kb_build.records import to_json
 from kb_serve.errors import KBServeError
 from kb_serve.served_tools import TOOL_NAMES, answer, is_quick, listing
+from simworlds.installed import own_version
 from simworlds.mcp_transport.tool_listing import SCHEMAS, as_listed, schemas_text
 
 if TYPE_CHECKING:
@@ -121,7 +121,7 @@ def make_server(service: Service) -> Server[None]:
 
     return Server(
         "simworlds",
-        version=_own_version(),
+        version=own_version(),
         title="SimWorlds: Blender documentation",
         instructions=INSTRUCTIONS,
         lifespan=lifespan,
@@ -159,13 +159,6 @@ class _WithoutStreams:
 
 
 _NO_STREAM = Response("This server has no streams: use POST.\n", status_code=405, headers={"Allow": "POST"})
-
-
-def _own_version() -> str:
-    try:
-        return metadata.version("simworlds")
-    except metadata.PackageNotFoundError:  # run from its source
-        return ""
 
 
 def _failed(message: str) -> types.CallToolResult:

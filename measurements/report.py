@@ -9,13 +9,13 @@ import sqlite3
 import subprocess
 from dataclasses import dataclass, field
 from datetime import UTC, datetime
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table, format_table
 from measurements.setting import REPO, brief
 from measurements.targets import TARGETS, format_value
+from simworlds.installed import installed_version
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
@@ -142,10 +142,7 @@ def _sources(meta: Mapping[str, str]) -> list[dict[str, Any]]:
 
 
 def _version(name: str) -> str:
-    try:
-        return metadata.version(name)
-    except metadata.PackageNotFoundError:
-        return "(from source)" if name == "simworlds" else "(absent)"
+    return installed_version(name) or ("(from source)" if name == "simworlds" else "(absent)")
 
 
 def _git(*arguments: str) -> str:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import shutil
 import tomllib
 from pathlib import Path
@@ -15,6 +14,7 @@ from release.licences import Dependency, dependencies, page
 from release.requirements import runtime_requirements
 from release.sbom import hashes, sbom
 from release.validate import validate
+from simworlds.files import sha256_of_file
 
 REPO = Path(__file__).resolve().parent.parent
 _PAGE = REPO / "docs" / "licences.md"
@@ -39,13 +39,13 @@ def main(context: click.Context, output: Path) -> None:
         raise click.ClickException(f"{wheel.name} has more than {_LARGEST_WHEEL:,} bytes.")
     bill = output / f"{wheel.stem}.cdx.json"
     bill.write_text(
-        sbom(project["version"], _sha256(wheel), rows, hashes(lock), epoch(REPO)), encoding="utf-8"
+        sbom(project["version"], sha256_of_file(wheel), rows, hashes(lock), epoch(REPO)), encoding="utf-8"
     )
     bundle = output / f"simworlds-{project['version']}.mcpb"
     write_bundle(wheel, project["version"], bundle, epoch(REPO))
     requirements = output / "requirements.txt"
     requirements.write_text(runtime_requirements(lock, rows), encoding="utf-8")
-    sums = [f"{_sha256(path)}  {path.name}\n" for path in (wheel, sdist, bill, bundle, requirements)]
+    sums = [f"{sha256_of_file(path)}  {path.name}\n" for path in (wheel, sdist, bill, bundle, requirements)]
     (output / "SHA256SUMS").write_text("".join(sums), encoding="utf-8")
     for path in (wheel, sdist, bill, bundle, requirements):
         click.echo(f"{path.stat().st_size:>10,}  {path.name}")
@@ -74,11 +74,6 @@ def _checked(rows: list[Dependency]) -> list[Dependency]:
             "Leave the package out, or look its licence up and add it to release/licences.py."
         )
     return rows
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 if __name__ == "__main__":

@@ -59,7 +59,12 @@ class _Lazy(click.Group):
         try:
             return super().invoke(ctx)
         except (ImportError, AttributeError) as error:  # of what a system lacks
-            raise _unless_it_should_work(error) from error
+            if _should_work(ctx.invoked_subcommand or ""):
+                raise
+            raise _NeedsBlender(
+                "This command needs a live Blender, which does not run on this system. Run it in WSL. What needs no "
+                "Blender works here: docs, serve, check, migrate, stubs, kb fetch."
+            ) from error
 
     def list_commands(self, ctx: click.Context) -> list[str]:
         """The names, sorted."""
@@ -83,16 +88,11 @@ class _Lazy(click.Group):
             formatter.write_dl([(name, entry.help) for name, entry in sorted(_COMMANDS.items())])
 
 
-def _unless_it_should_work(error: Exception) -> Exception:
-    """The error itself on systems with a live Blender; on others, that this command needs one."""
+def _should_work(name: str) -> bool:
+    """Whether a command is to work on this system: those of ``agents`` and ``bench`` need a live Blender."""
     from simworlds.operating_system import SYSTEM  # noqa: PLC0415 - seldom
 
-    if SYSTEM.limits_processes:
-        return error
-    return _NeedsBlender(
-        "This command needs a live Blender, which does not run on this system. Run it in WSL. What needs no "
-        "Blender works here: docs, serve, check, migrate, stubs, kb fetch."
-    )
+    return SYSTEM.limits_processes or _COMMANDS[name].module.partition(".")[0] not in {"agents", "bench"}
 
 
 class _NeedsBlender(click.ClickException):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import os
+import shlex
 import signal
 import subprocess
 import sys
@@ -62,6 +63,14 @@ class System(Protocol):
         """The interpreter of a virtual environment."""
         ...
 
+    def script_in(self, environment: Path, name: str) -> Path:
+        """A command that a package has put into a virtual environment."""
+        ...
+
+    def quoted(self, word: str) -> str:
+        """A word as it is typed in the system's own shell."""
+        ...
+
 
 class Posix:
     """Linux and macOS."""
@@ -105,6 +114,14 @@ class Posix:
     def python_in(self, environment: Path) -> Path:
         """See System."""
         return environment / "bin" / "python"
+
+    def script_in(self, environment: Path, name: str) -> Path:
+        """See System."""
+        return environment / "bin" / name
+
+    def quoted(self, word: str) -> str:
+        """See System."""
+        return shlex.quote(word)
 
 
 class Windows:
@@ -179,6 +196,14 @@ class Windows:
     def python_in(self, environment: Path) -> Path:
         """See System."""
         return environment / "Scripts" / "python.exe"
+
+    def script_in(self, environment: Path, name: str) -> Path:
+        """See System."""
+        return environment / "Scripts" / f"{name}.exe"
+
+    def quoted(self, word: str) -> str:
+        """See System."""
+        return subprocess.list2cmdline([word])
 
 
 class _Number:

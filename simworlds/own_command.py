@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import os
-import shlex
 import shutil
 import sys
 from importlib import metadata
 from pathlib import Path
 from urllib.parse import urlsplit
 from urllib.request import url2pathname
+
+from simworlds.operating_system import SYSTEM
 
 _NAME = "simworlds"
 _CACHED = frozenset({"archive-v0", "environments-v2"})  # folders of uv's cache that uvx runs from
@@ -24,9 +25,9 @@ def own_command() -> str:
     prefix = Path(sys.prefix)
     if os.environ.get("UV") and _CACHED.intersection(prefix.parts):
         return _of_uvx()
-    script = prefix / ("Scripts" if os.name == "nt" else "bin") / _NAME
+    script = SYSTEM.script_in(prefix, _NAME)
     found = shutil.which(_NAME)
-    return shlex.quote(str(script)) if found is None and script.is_file() else _NAME
+    return SYSTEM.quoted(str(script)) if found is None and script.is_file() else _NAME
 
 
 def _of_uvx() -> str:
@@ -39,4 +40,4 @@ def _of_uvx() -> str:
         return f"uvx {_NAME}"
     parts = urlsplit(url)
     place = url2pathname(parts.path) if parts.scheme == "file" else url
-    return f"uvx --from {shlex.quote(place)} {_NAME}"
+    return f"uvx --from {SYSTEM.quoted(place)} {_NAME}"

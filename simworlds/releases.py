@@ -15,7 +15,7 @@ ROLES: tuple[Role, ...] = ("manual", "guides")
 USUAL = "5.1"  # where no Blender is in use and none is named: the version that the shipped summaries are of
 
 _TABLE = Path(__file__).resolve().parent.parent / "corpora" / "sources.toml"
-_VERSION = re.compile(r"(\d{1,2})\.(\d{1,2})(?:\.(\d{1,3}))?")
+_VERSION = re.compile(r"v?(\d{1,2})\.(\d{1,2})(?:\.(\d{1,3}))?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,7 +39,7 @@ def _table() -> dict[str, Any]:
 
 
 def minor_of(version: str) -> str:
-    """``"5.1.2"`` or ``"5.1"`` → ``"5.1"``. Raises UserError for what is not a Blender version."""
+    """``"5.1.2"``, ``"5.1"`` or ``"v5.1"`` → ``"5.1"``. Raises UserError for what is not a Blender version."""
     match = _VERSION.fullmatch(version.strip())
     if match is None:
         raise UserError(f"{version[:40]!r} is not a Blender version; write it as 5.1 or 5.1.2")
@@ -55,7 +55,12 @@ def same_version(asked: str, real: str) -> bool:
     """Whether ``real`` is what was asked for: the same minor version, and the same patch if one is named."""
     if minor_of(asked) != minor_of(real):
         return False
-    return asked.count(".") == 1 or asked.strip() == real.strip()
+    return asked.count(".") == 1 or version_key(asked) == version_key(real)
+
+
+def is_same_minor(one: str, other: str) -> bool:
+    """Whether two versions are of the same minor version; text without numbers is of none but its like."""
+    return version_key(one)[:2] == version_key(other)[:2]
 
 
 def releases() -> tuple[Release, ...]:

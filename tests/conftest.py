@@ -84,8 +84,8 @@ def _compiled(folder: Path) -> Path:
     from agents.blender.launch import make_launch
     from agents.blender.run_folder import RunFolder
     from agents.blender.supervisor import Supervisor
+    from simworlds.installed import installed_bpy
     from simworlds.sandbox.errors import BlenderError
-    from simworlds.sandbox.runtime import installed_bpy
 
     os.environ[SHADERS_VARIABLE] = str(folder / "kept")
     if installed_bpy() is not None:
@@ -109,7 +109,7 @@ def built_once(tmp_path_factory: pytest.TempPathFactory) -> Built:
     """What ``base`` is in: its home, and the miniature documentation that it was built from. Never write to it."""
     from built_base import build_miniature
 
-    from simworlds.sandbox.runtime import installed_bpy
+    from simworlds.installed import installed_bpy
 
     if installed_bpy() is None:
         pytest.skip("there is no Blender in this environment")

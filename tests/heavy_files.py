@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from simworlds.sandbox.runtime import clean_environment, installed_bpy
+from simworlds.installed import installed_bpy
+from simworlds.sandbox.runtime import clean_environment
 
 if TYPE_CHECKING:
     from pathlib import Path

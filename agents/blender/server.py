@@ -7,7 +7,6 @@ import logging
 from contextlib import asynccontextmanager
 from dataclasses import dataclass
 from functools import partial
-from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 import anyio
@@ -24,6 +23,7 @@ from agents.blender.tool_catalogue import FOR_CLIENTS, ONLINE, TOOLS, WITH_ASSET
 from agents.blender.tool_profiles import DEFAULT, Profile, first_profile, is_offered
 from agents.blender.tools.base import Call
 from agents.blender.tools.failures import describe_failure
+from simworlds.installed import own_version
 from simworlds.mcp_transport.sessions import SESSION, UNFINISHED, EndUnfinishedSessions
 from simworlds.mcp_transport.tool_listing import SCHEMAS, as_listed, schemas_text
 from simworlds.sandbox.errors import BlenderError
@@ -177,7 +177,7 @@ def make_server(
 
     return Server(
         "simworlds-blender",
-        version=_own_version(),
+        version=own_version(),
         title="SimWorlds: live Blender",
         instructions=instructions(names, served),
         lifespan=lifespan,
@@ -248,13 +248,6 @@ def _not_offered(name: str, offered: Iterable[str], profile: Profile | None) -> 
             f"--tools {first_profile(name)}."
         )
     return f"There is no tool {name[:80]!r}. Available: {', '.join(offered)}."
-
-
-def _own_version() -> str:
-    try:
-        return metadata.version("simworlds")
-    except metadata.PackageNotFoundError:  # run from its source
-        return ""
 
 
 def _client(context: _Context) -> str:

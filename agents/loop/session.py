@@ -6,7 +6,6 @@ import logging
 import os
 from contextlib import ExitStack
 from dataclasses import dataclass, replace
-from importlib import metadata
 from typing import TYPE_CHECKING, Literal, Protocol
 
 from pydantic import ValidationError
@@ -25,6 +24,7 @@ from agents.loop.reducer import read_run_state
 from agents.loop.run import SCENE, Run
 from agents.loop.tool_client import ToolClient
 from simworlds.folder_lock import locked
+from simworlds.installed import own_version
 from simworlds.llm.errors import ModelError, OverBudget
 from simworlds.llm.spending import Spending
 from simworlds.sandbox.confined_command import best_sandbox
@@ -171,7 +171,7 @@ def _run(root: Path, options: Options, journal: Journal, session: RunSession) ->
     stop = session.stop
     journal.note(
         RunBegan(
-            version=metadata.version("simworlds"),
+            version=own_version(),
             mode=options.mode,
             prompt=options.prompt,
             source=options.source_text,

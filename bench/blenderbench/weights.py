@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.blenderbench.errors import NoWeights
 from bench.blenderbench.n_clip import SHAPES, Tower
+from simworlds.files import sha256_of_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -49,7 +49,7 @@ def load_clip(name: str, tell: Callable[[str], object]) -> Clip:
     """
     file, source = _fetched(tell) if name == HUB else _found(Path(name).expanduser())
     tell(f"reading {file}")
-    return Clip(Tower(_read(file)), source, _digest(file))
+    return Clip(Tower(_read(file)), source, sha256_of_file(file))
 
 
 def _found(path: Path) -> tuple[Path, str]:
@@ -89,8 +89,3 @@ def _read(file: Path) -> dict[str, Any]:
             return {name: opened.get_tensor(name).astype("float32") for name in names}
     except (SafetensorError, OSError, ValueError, TypeError, MemoryError) as error:
         raise NoWeights(f"{file} cannot be read as safetensors: {error}. {_WITHOUT_NETWORK}") from error
-
-
-def _digest(file: Path) -> str:
-    with file.open("rb") as opened:
-        return hashlib.file_digest(opened, "sha256").hexdigest()

@@ -7,6 +7,8 @@ import json
 from functools import cache
 from typing import TYPE_CHECKING, Any
 
+from simworlds.files import sha256_of_file
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
     from pathlib import Path
@@ -25,8 +27,7 @@ def digest_of_bytes(content: bytes) -> str:
 
 def digest_of_file(path: Path) -> str:
     """SHA-256 of a file. Raises OSError."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
+    return sha256_of_file(path)
 
 
 def digests(folder: Path, files: Iterable[Path]) -> dict[str, str]:

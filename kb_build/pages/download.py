@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import queue
 import threading
@@ -13,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 from urllib.parse import urlsplit
 
 from kb_build.errors import SourceError
+from simworlds.files import sha256_of_file
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -96,8 +96,7 @@ def _accept(url: str, part: Path, target: Path, kind: ArchiveKind) -> str:
             start = file.read(40)
         part.unlink()
         raise SourceError(f"{url} is not a {kind.name} (it starts with {start!r})")
-    with part.open("rb") as file:
-        digest = hashlib.file_digest(file, "sha256").hexdigest()
+    digest = sha256_of_file(part)
     target.with_name(target.name + ".sha256").write_text(f"{digest}  {target.name}\n", encoding="ascii")
     part.replace(target)
     _validator_file(part).unlink(missing_ok=True)

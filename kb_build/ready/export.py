@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import io
 import json
 import lzma
@@ -17,7 +16,7 @@ from kb_build.base_file import open_base, read_meta
 from kb_build.errors import StoreError
 from kb_build.ready.manifest import BASE, LICENCES, MANIFEST, NOTICE, SUFFIX, Manifest, notice
 from kb_build.schema import SCHEMA_VERSION
-from simworlds.files import scratch_folder, staged_file
+from simworlds.files import scratch_folder, sha256_of_file, staged_file
 from simworlds.terminal.progress import Progress, silent
 
 if TYPE_CHECKING:
@@ -50,7 +49,7 @@ def export_base(base: Path, output: Path, *, progress: Progress = silent) -> Exp
             manifest = _manifest(draft)
             with part.open("wb") as raw, lzma.open(raw, "wb", preset=6) as packed:
                 _pack(packed, manifest, draft, progress)
-            size, digest = part.stat().st_size, _sha256(part)
+            size, digest = part.stat().st_size, sha256_of_file(part)
     except (OSError, sqlite3.Error) as error:
         raise StoreError(
             f"{output} cannot be written: {error}. Make room, or name another file with --output"
@@ -87,7 +86,7 @@ def _manifest(draft: Path) -> Manifest:
         blender=meta.get("blender", ""),
         schema_version=SCHEMA_VERSION,
         size=draft.stat().st_size,
-        sha256=_sha256(draft),
+        sha256=sha256_of_file(draft),
         built_at=meta.get("built_at", ""),
         simworlds=meta.get("simworlds", ""),
         licences=LICENCES,
@@ -119,8 +118,3 @@ class _Watched(io.RawIOBase):
         data = self._file.read(size)
         self._progress("packing the base", self._file.tell(), self._size)
         return data
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -7,7 +7,6 @@ the manifest; the SHA-256 of the base; its layout, statement by statement; and a
 from __future__ import annotations
 
 import hashlib
-import ipaddress
 import re
 import sqlite3
 from contextlib import closing
@@ -23,7 +22,8 @@ from kb_build.ready.export import ready_name
 from kb_build.ready.manifest import BASE, LARGEST_BASE, MANIFEST, MEMBERS, SUFFIX, Manifest, read_manifest
 from kb_build.schema import DDL, INDEXES, NoBase, open_read_only
 from kb_build.verify import verify_base
-from simworlds.files import scratch_folder
+from simworlds.files import scratch_folder, sha256_of_file
+from simworlds.loopback import is_loopback
 from simworlds.releases import minor_of
 from simworlds.settings import base_path, cache_folder
 from simworlds.terminal.progress import Progress, silent
@@ -121,7 +121,7 @@ def _downloaded(url: str, wanted: str, home: Path, progress: Progress) -> Path:
         raise ReadyBaseError(
             f"{url[:300]!r} is not an address to fetch from; give one that begins with https://"
         )
-    if parts.scheme == "http" and not wanted and not _is_loopback(parts.hostname or ""):
+    if parts.scheme == "http" and not wanted and not is_loopback(parts.hostname or ""):
         raise ReadyBaseError(
             f"{url} is not encrypted: whoever is on the way could change the base. Give an https:// address, or add "
             "#sha256= and the file's checksum"
@@ -131,16 +131,9 @@ def _downloaded(url: str, wanted: str, home: Path, progress: Progress) -> Path:
     return target
 
 
-def _is_loopback(host: str) -> bool:
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
-
-
 def _install(archive: Path, wanted: str, minor: str, home: Path, progress: Progress) -> Fetched:
     origin = str(archive)
-    if wanted and (real := _sha256(archive)) != wanted:
+    if wanted and (real := sha256_of_file(archive)) != wanted:
         raise ReadyBaseError(
             f"{origin} has the SHA-256 {real}, not {wanted}: it is another file, or was changed on the way"
         )
@@ -174,7 +167,7 @@ def _is_member(path: PurePosixPath) -> bool:
 
 def _check(base: Path, manifest: Manifest, origin: str) -> None:
     """Raises ReadyBaseError unless the base is the one of the manifest, laid out as ours are, and sound."""
-    size, digest = base.stat().st_size, _sha256(base)
+    size, digest = base.stat().st_size, sha256_of_file(base)
     if (size, digest) != (manifest.size, manifest.sha256):
         raise ReadyBaseError(
             f"{origin}: its base has {size:,} bytes and the SHA-256 {digest}, not {manifest.size:,} and "
@@ -215,8 +208,3 @@ def _statements(connection: sqlite3.Connection) -> dict[str, str]:
     rows = connection.execute("SELECT name, type || ' ' || coalesce(sql, '') FROM sqlite_schema")
     # ANALYZE writes a table of its own; indexes that SQLite makes have no statement.
     return {name: statement for name, statement in rows if name not in {"sqlite_stat1", "sqlite_stat4"}}
-
-
-def _sha256(path: Path) -> str:
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -10,10 +10,11 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simworlds.errors import UserError
+from simworlds.installed import installed_bpy
 from simworlds.releases import minor_of, release, same_version
 from simworlds.sandbox.errors import ProgramFailed, RuntimeMissing
 from simworlds.sandbox.program import Program
-from simworlds.sandbox.runtime import executable_version, find_runtime, installed_bpy, run_program
+from simworlds.sandbox.runtime import executable_version, find_runtime, run_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import contextlib
 import hmac
-import ipaddress
 import math
 import signal
 import socket
@@ -19,6 +18,7 @@ from starlette.datastructures import Headers
 from starlette.responses import Response
 
 from simworlds.errors import UserError
+from simworlds.loopback import is_loopback
 from simworlds.mcp_transport.connections import (
     PATIENCE_SECONDS,
     BoundedProtocol,
@@ -134,14 +134,6 @@ def check(address: Address) -> None:
             "--token) to a secret, which clients send as 'Authorization: Bearer …'. To make one: "
             "python -c 'import secrets; print(secrets.token_urlsafe())'. To do without, serve on 127.0.0.1."
         )
-
-
-def is_loopback(host: str) -> bool:
-    """Whether only this machine can reach ``host``."""
-    try:
-        return ipaddress.ip_address(host).is_loopback
-    except ValueError:
-        return host == "localhost"
 
 
 def _guarded(app: ASGIApp, address: Address) -> ASGIApp:

@@ -162,7 +162,7 @@ def group_parents() -> GroupParents | None:
     """Where this process may make control groups that limit memory; None where it may not."""
     try:
         return find_parents(Path("/proc/self/cgroup").read_text(), Path("/proc/self/mountinfo").read_text())
-    except (OSError, ValueError):
+    except (OSError, LookupError, ValueError):
         return None
 
 
@@ -234,5 +234,5 @@ def _mount_rows(text: str) -> Iterable[tuple[str, Path, str, str]]:
     """(root, mount point, file system, its options) of each mount."""
     for line in text.splitlines():
         before, _, after = line.partition(" - ")
-        words, kind = before.split(), after.split()
+        words, kind = before.split(" "), after.split(" ")  # an empty word counts: a mount may have no source
         yield words[3], Path(words[4]), kind[0], kind[2]

@@ -10,14 +10,14 @@ import sys
 import tempfile
 from collections.abc import Callable
 from dataclasses import dataclass
-from importlib import metadata
 from pathlib import Path
 from typing import Literal
 
 from simworlds.files import staged_folder
+from simworlds.installed import installed_bpy
 from simworlds.operating_system import SYSTEM
 from simworlds.processes import CommandFailed, run_group
-from simworlds.releases import USUAL, Release, minor_of, release, releases, same_version
+from simworlds.releases import USUAL, Release, minor_of, release, releases, same_version, version_key
 from simworlds.sandbox.errors import NotInstalled, ProgramFailed, RuntimeMissing
 from simworlds.sandbox.program import BOOT, Program
 
@@ -71,14 +71,6 @@ def find_runtime(
     if installed is not None and same_version(wanted, installed):
         return Runtime(Path(sys.executable), "environment", installed)
     return _managed(wanted, home / "runtimes", progress, install=install)
-
-
-def installed_bpy() -> str | None:
-    """The version of this environment's bpy, without importing it; None if there is none."""
-    try:
-        return metadata.version("bpy")
-    except metadata.PackageNotFoundError:
-        return None
 
 
 def run_program(runtime: Runtime, program: Program, args: list[str], *, timeout: float, log: Path) -> None:
@@ -180,7 +172,7 @@ def _managed(wanted: str, runtimes: Path, progress: Report | None, *, install: b
             f"there is no bpy package for Blender {wanted} (only for {known}); install that Blender and "
             f"{_NAME_IT}"
         )
-    version = entry.bpy if wanted.count(".") == 1 else wanted
+    version = entry.bpy if wanted.count(".") == 1 else ".".join(map(str, version_key(wanted)))
     folder = runtimes / version
     if not folder.is_dir():
         if not install:

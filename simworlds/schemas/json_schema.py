@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any, cast
 from pydantic.json_schema import GenerateJsonSchema
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Callable, Mapping
 
     from pydantic import BaseModel
 
@@ -56,8 +56,8 @@ def lean_schema_of(model: type[BaseModel]) -> dict[str, Any]:
 
 
 def lean_arguments(schema: Mapping[str, Any]) -> dict[str, Any]:
-    """A JSON Schema of arguments that are checked elsewhere, as a model needs it: without bounds, empty defaults, and
-    null where that only says that an argument is left out.
+    """A JSON Schema of arguments that are checked elsewhere, as a model needs it: without bounds, without defaults of
+    nothing (false, 0, an empty text or list), and without null where that only says that an argument is left out.
     """
     return cast("dict[str, Any]", _lean(_without_null(schema), set()))
 
@@ -68,9 +68,9 @@ def _without_null(schema: Any) -> Any:
     if not isinstance(schema, dict):
         return schema
     kept = {
-        key: _without_null(value)
-        for key, value in cast("dict[str, Any]", schema).items()
-        if key not in _BOUNDS and not (key == "default" and value in (False, [], ""))
+        key: value
+        for key, value in _below(cast("dict[str, Any]", schema), _without_null).items()
+        if key not in _BOUNDS and not (key == "default" and value is not None and not value)
     }
     choices = [one for one in kept.get("anyOf", ()) if one != {"type": "null"}]
     if len(choices) == 1 and kept.get("default", "") is None:
@@ -94,16 +94,19 @@ def _lean(schema: Any, described: set[str]) -> Any:
         if len(meaning) > SHORT_TEXT and meaning in described:
             del kept["description"]
         described.add(meaning)
-    lean = {
-        key: {name: _lean(below, described) for name, below in value.items()}
-        if key == "properties"
-        else _lean(value, described)
-        for key, value in kept.items()
-    }
+    lean = _below(kept, lambda part: _lean(part, described))
     items = lean.get("prefixItems")
     if items and all(item == items[0] for item in items):  # a vector
         lean["items"] = lean.pop("prefixItems")[0]
     return lean
+
+
+def _below(schema: Mapping[str, Any], change: Callable[[Any], Any]) -> dict[str, Any]:
+    """A schema with all that stands below it changed. Properties may have names that are words of schemas."""
+    return {
+        key: {name: change(part) for name, part in value.items()} if key == "properties" else change(value)
+        for key, value in schema.items()
+    }
 
 
 def _is_needless(key: str, value: Any) -> bool:

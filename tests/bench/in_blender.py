@@ -12,7 +12,8 @@ import pytest
 from pydantic import TypeAdapter
 
 from bench.audit.facts import Scene
-from simworlds.sandbox.runtime import clean_environment, installed_bpy
+from simworlds.installed import installed_bpy
+from simworlds.sandbox.runtime import clean_environment
 
 if TYPE_CHECKING:
     from typing import Any

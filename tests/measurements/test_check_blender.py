@@ -16,7 +16,7 @@ from measurements.check_blender import (
     packages,
     proof_of,
 )
-from simworlds.sandbox.runtime import installed_bpy
+from simworlds.installed import installed_bpy
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -9,11 +9,13 @@ import sys
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
+import click
 import pytest
 from click.testing import CliRunner
 from places import REPO
 
 from kb_build.cli import kb
+from simworlds.cli import main
 from simworlds.operating_system import SYSTEM, Posix, Windows, system_of
 
 if TYPE_CHECKING:
@@ -104,6 +106,14 @@ def test_windows_lowers_the_priority_of_this_process() -> None:
 def test_the_interpreter_of_an_environment_is_where_each_system_puts_it(tmp_path: Path) -> None:
     assert Posix().python_in(tmp_path) == tmp_path / "bin" / "python"
     assert Windows().python_in(tmp_path) == tmp_path / "Scripts" / "python.exe"
+
+
+def test_a_command_of_an_environment_is_called_and_quoted_as_each_system_does(tmp_path: Path) -> None:
+    assert Posix().script_in(tmp_path, "simworlds") == tmp_path / "bin" / "simworlds"
+    assert Windows().script_in(tmp_path, "simworlds") == tmp_path / "Scripts" / "simworlds.exe"
+    assert Posix().quoted("/a b/simworlds") == "'/a b/simworlds'"
+    assert Windows().quoted(r"C:\a b\simworlds.exe") == r'"C:\a b\simworlds.exe"'
+    assert Windows().quoted(r"C:\simworlds.exe") == r"C:\simworlds.exe"
 
 
 def test_only_what_popen_of_the_system_takes_begins_a_group() -> None:
@@ -207,6 +217,22 @@ def test_a_command_that_needs_a_live_blender_says_so_where_none_runs(command: st
     assert done.returncode == 2
     assert "WSL" in done.stderr
     assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize("command", ["docs cube", "check a.py", "serve"])
+def test_a_fault_of_a_command_that_needs_no_blender_is_not_laid_to_the_system(
+    command: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def broken(*_: object) -> None:
+        raise AttributeError("a fault of ours")
+
+    name, *arguments = command.split()
+    monkeypatch.setattr("simworlds.operating_system.SYSTEM", Windows(kernel=lambda: None))
+    loaded = main.get_command(click.Context(main), name)
+    assert loaded is not None
+    monkeypatch.setattr(loaded, "invoke", broken)
+    done = CliRunner().invoke(main, [name, *arguments])
+    assert isinstance(done.exception, AttributeError)
 
 
 def test_what_serves_and_checks_asks_for_nothing_that_only_some_systems_have() -> None:

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 import sys
 from importlib import metadata
 from pathlib import Path
+from typing import TYPE_CHECKING
 
-import pytest
-
+from simworlds.operating_system import Windows
 from simworlds.own_command import own_command
+
+if TYPE_CHECKING:
+    import pytest
 
 
 class Installed:
@@ -45,7 +47,16 @@ def test_on_path_it_is_its_name(monkeypatch: pytest.MonkeyPatch) -> None:
     assert own_command() == "simworlds"
 
 
-@pytest.mark.skipif(os.name == "nt", reason="scripts have another suffix there")
+def test_off_path_it_is_the_program_that_windows_has(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    program = tmp_path / "Scripts" / "simworlds.exe"
+    program.parent.mkdir()
+    program.touch()
+    monkeypatch.setenv("PATH", str(tmp_path))
+    monkeypatch.setattr(sys, "prefix", str(tmp_path))
+    monkeypatch.setattr("simworlds.own_command.SYSTEM", Windows())
+    assert own_command() == str(program)
+
+
 def test_off_path_it_is_a_path_that_runs(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setenv("PATH", str(tmp_path))
     done = subprocess.run([own_command(), "--version"], capture_output=True, text=True, check=False)

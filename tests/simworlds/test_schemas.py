@@ -9,7 +9,7 @@ import pytest
 from jsonschema import Draft202012Validator
 from pydantic import BaseModel, Field
 
-from simworlds.schemas.json_schema import lean_schema_of, schema_of
+from simworlds.schemas.json_schema import lean_arguments, lean_schema_of, schema_of
 from simworlds.schemas.notation import shape_of
 
 
@@ -55,6 +55,16 @@ def test_notation_is_short_and_has_each_description_once() -> None:
 
 def test_descriptions_given_before_are_not_repeated() -> None:
     assert "Wheel {\n" in shape_of(Cart, before="There is this: A wheel; `size` is in metres. And more.")
+
+
+def test_what_is_lean_keeps_arguments_of_any_name_and_defaults_that_say_something() -> None:
+    fields: dict[str, Any] = {
+        name: {"type": "integer", "default": 1}
+        for name in ("start", "minimum", "default", "title", "properties")
+    }
+    assert lean_arguments({"properties": fields}) == {"properties": fields}
+    empty = {"a": {"default": False}, "b": {"default": ""}, "c": {"default": []}, "d": {"default": 0}}
+    assert lean_arguments({"properties": empty}) == {"properties": {"a": {}, "b": {}, "c": {}, "d": {}}}
 
 
 def test_fields_that_are_left_out_are_not_told() -> None:

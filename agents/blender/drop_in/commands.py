@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import json
 import re
-from importlib import metadata
 from typing import TYPE_CHECKING, Any
 
 from agents.blender.drop_in.messages import parse
 from agents.blender.drop_in.tools import tools
 from agents.blender.tools.base import Call, Knowledge
 from agents.blender.tools.failures import describe_failure
+from simworlds.installed import own_version
+from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -96,7 +97,7 @@ class Commands:
     def _about(self, _params: dict[str, Any]) -> dict[str, Any]:
         return {
             "name": "SimWorlds",
-            "addon_version": _own_version(),
+            "addon_version": list(version_key(own_version())) or [0, 0, 0],
             "protocol_version": _PROTOCOL,
             "capabilities": sorted(self._known),
             "blender_version": self._version,
@@ -121,13 +122,6 @@ def _set_consent(params: dict[str, Any]) -> dict[str, Any]:
     if params.get("consent"):
         return {"error": "Consent stays off: nothing is recorded here."}
     return {"consent": False}
-
-
-def _own_version() -> list[int]:
-    try:
-        return [int(part) for part in re.findall(r"\d+", metadata.version("simworlds"))[:3]]
-    except metadata.PackageNotFoundError:  # run from its source
-        return [0, 0, 0]
 
 
 def _unknown(_version: str) -> Knowledge:

@@ -19,10 +19,11 @@ from sandboxes import skip_unless_it_works
 from whole import by_turns
 
 from agents.commands import doctor_checks
+from simworlds.installed import installed_bpy
 from simworlds.own_command import own_command
 from simworlds.sandbox import confine_self
 from simworlds.sandbox.confined_command import Sandbox, best_sandbox, bubblewrap_fault
-from simworlds.sandbox.runtime import Runtime, installed_bpy
+from simworlds.sandbox.runtime import Runtime
 from simworlds.sandbox.walls import WALLS, WITHOUT, Wall
 
 pytestmark = pytest.mark.blender

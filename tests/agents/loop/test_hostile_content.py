@@ -15,7 +15,8 @@ from running import run_here
 from sample_runs import Tape, write
 from whole import IS_WHOLE
 
-from simworlds.sandbox.runtime import clean_environment, installed_bpy
+from simworlds.installed import installed_bpy
+from simworlds.sandbox.runtime import clean_environment
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

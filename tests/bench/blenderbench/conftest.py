@@ -13,7 +13,8 @@ from bench.blenderbench.run import run
 from bench.blenderbench.systems import UneditedStart
 from bench.blenderbench.task_scenes import EditRenderSettings
 from bench.blenderbench.task_set import TaskSet, read_set
-from simworlds.sandbox.runtime import clean_environment, installed_bpy
+from simworlds.installed import installed_bpy
+from simworlds.sandbox.runtime import clean_environment
 
 HERE = Path(__file__).parent
 # The team that answers for all roles of an edit, with a Blender of its own, and a second provider's server.

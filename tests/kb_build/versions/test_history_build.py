@@ -10,8 +10,8 @@ from kb_build.errors import KBBuildError, StoreError
 from kb_build.versions.history import ApiHistory
 from kb_build.versions.history_builder import build_history
 from kb_build.versions.history_merge import merge_versions
+from simworlds.installed import installed_bpy
 from simworlds.releases import minor_of
-from simworlds.sandbox.runtime import installed_bpy
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -82,6 +82,13 @@ def test_links_to_folders_are_not_followed(tree: Path) -> None:
     assert find_files([tree / "self"]).faults == [f"There is no file or folder {tree / 'self'}."]
 
 
+def test_links_to_files_are_not_followed(tree: Path) -> None:
+    (tree / "scripts" / "link.py").symlink_to(tree / "addon" / "a.py")
+    (tree / "addon" / "link.py").symlink_to(tree / "scripts" / "e.py")
+    assert groups(tree, "scripts") == [["scripts/e.py"], ["scripts/f.py"]]
+    assert groups(tree, "addon/a.py") == [["(addon/__init__.py)", "(addon/sub/b.py)", "addon/a.py"]]
+
+
 def test_links_that_are_named_are_followed(tree: Path) -> None:
     (tree / "there").symlink_to("scripts")
     assert groups(tree, "there") == [["there/e.py"], ["there/f.py"]]

@@ -23,7 +23,8 @@ from mcp.client.streamable_http import streamable_http_client
 from running import COMMAND, REPO, HttpServer, environment, run_here
 
 from kb_serve.knowledge_base import KnowledgeBase
-from simworlds.mcp_transport.http import Address, CannotServe, check, is_loopback
+from simworlds.loopback import is_loopback
+from simworlds.mcp_transport.http import Address, CannotServe, check
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

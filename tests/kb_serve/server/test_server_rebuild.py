@@ -17,7 +17,8 @@ from running import COMMAND, REPO, Wire, environment
 
 from kb_serve.answer.budget import tokens
 from kb_serve.errors import BaseMissing
-from kb_serve.in_use import blender_in_use, minor
+from kb_serve.in_use import blender_in_use
+from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -34,7 +35,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.skipif(os.name == "nt", reason="executables are shell scripts here")
 
 IN_USE = blender_in_use() or "0.0.0"
-MINOR = minor(IN_USE)
+MINOR = minor_of(IN_USE)
 OLD = f"{MINOR}.0"
 WITHOUT_PAGES = {"options": {"pages": False, "summaries": "none"}, "sources": []}
 SECONDS = 120.0

@@ -10,7 +10,8 @@ import pytest
 
 from kb_serve.bases import Bases
 from kb_serve.errors import BaseMissing
-from kb_serve.in_use import blender_in_use, minor
+from kb_serve.in_use import blender_in_use
+from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -51,7 +52,7 @@ def test_the_version_named_answers(bases: Bases, make_base: Callable[..., Path])
     make_base("4.5.3")
     assert answers_for(bases.pick("4.5")) == "4.5.3"
     assert answers_for(bases.pick("4.5.1")) == "4.5.3"
-    assert answers_for(bases.pick(minor(IN_USE))) == IN_USE
+    assert answers_for(bases.pick(minor_of(IN_USE))) == IN_USE
 
 
 def test_by_default_the_blender_in_use_answers_though_there_is_a_newer_base(
@@ -78,7 +79,7 @@ def test_a_default_version_comes_before_the_blender_in_use(
     make_base("4.5.3")
     with closing(Bases(home, default="4.5")) as bases:
         assert answers_for(bases.pick()) == "4.5.3"
-        assert answers_for(bases.pick(minor(IN_USE))) == IN_USE
+        assert answers_for(bases.pick(minor_of(IN_USE))) == IN_USE
 
 
 @pytest.mark.skipif(os.name == "nt", reason="the executable is a shell script")
@@ -105,7 +106,7 @@ def test_a_version_that_was_not_built_is_named_with_those_that_were(
     bases: Bases, make_base: Callable[..., Path]
 ) -> None:
     make_base("4.5.3")
-    with pytest.raises(BaseMissing, match=rf"Built are: 4\.5, {minor(IN_USE)}.*simworlds kb build 4\.4"):
+    with pytest.raises(BaseMissing, match=rf"Built are: 4\.5, {minor_of(IN_USE)}.*simworlds kb build 4\.4"):
         bases.pick("4.4")
 
 

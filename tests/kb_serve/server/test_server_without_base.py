@@ -145,6 +145,45 @@ def test_it_builds_when_the_client_takes_up_its_offer(serve_from: ServeFrom, tmp
     assert "could not be built: " in missing(service)
 
 
+@pytest.mark.parametrize("version", ["v4.3", " 4.3.1", "v4.3.2"])
+@pytest.mark.usefixtures("without_blender")
+def test_a_version_may_be_written_in_any_usual_way(
+    serve_from: ServeFrom, tmp_path: Path, version: str
+) -> None:
+    service = serve_from(tmp_path, rebuild=True)
+    text = missing(service, version)
+    assert "no knowledge base for Blender 4.3" in text
+    assert "ask blender_docs 'kb build 4.3'" in text
+
+
+@pytest.mark.parametrize("version", ["next", "5", "v", "5.1beta"])
+def test_what_is_no_version_is_told_while_a_base_is_being_fetched(
+    serve_from: ServeFrom, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, version: str
+) -> None:
+    monkeypatch.setenv("SIMWORLDS_BASE_URL", "http://127.0.0.1:9")
+    service = serve_from(tmp_path, rebuild=True)
+    service.warm()
+    assert "is not a Blender version" in missing(service, version)
+
+
+@pytest.mark.skipif(os.name == "nt", reason="executables are shell scripts here")
+@pytest.mark.parametrize(("version", "is_passed"), [("98.1", True), ("2.79", False)])
+def test_an_executable_builds_the_base_of_its_own_version_alone(
+    serve_from: ServeFrom, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, version: str, is_passed: bool
+) -> None:
+    blender = tmp_path / "blender"
+    blender.write_text("#!/bin/sh\necho 'Blender 98.1.2'\n")
+    blender.chmod(0o755)
+    service = serve_from(tmp_path, blender_exe=blender, rebuild=True)
+    jobs: list[list[str]] = []
+    monkeypatch.setattr(type(service.upkeep), "_perform", lambda _, job: jobs.append(job.command))
+    assert service.upkeep.accept(f"kb build {version}") == version
+    for thread in threading.enumerate():
+        if thread.name == "build":
+            thread.join(SECONDS)
+    assert ("--blender-exe" in jobs[0]) is is_passed
+
+
 @pytest.mark.usefixtures("without_blender")
 def test_it_offers_nothing_that_it_may_not_do(serve_from: ServeFrom, tmp_path: Path) -> None:
     service = serve_from(tmp_path)

@@ -47,6 +47,19 @@ def test_without_a_group_that_may_be_used_there_is_none(tmp_path: Path) -> None:
     assert find_parents("", "") is None
 
 
+def test_a_mount_without_a_source_is_passed_over(tmp_path: Path) -> None:
+    mounts = "36 35 98:0 / /mnt rw - tmpfs  rw\n" + unified(tmp_path, "a.scope")
+    assert find_parents("0::/a.scope\n", mounts) == GroupParents(
+        2, tmp_path / "a.scope", tmp_path / "a.scope"
+    )
+
+
+@pytest.mark.parametrize("text", ["", "0::/\n", "nothing\n", "36 35\n"])
+def test_what_cannot_be_read_limits_nothing(monkeypatch: pytest.MonkeyPatch, text: str) -> None:
+    monkeypatch.setattr(Path, "read_text", lambda _: text)
+    assert group_parents.__wrapped__() is None
+
+
 def test_older_hierarchies_are_told_apart_by_controller(tmp_path: Path) -> None:
     rows = ""
     for number, name in enumerate(("memory", "pids")):

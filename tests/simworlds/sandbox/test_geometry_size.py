@@ -9,7 +9,8 @@ import sys
 import pytest
 from places import REPO
 
-from simworlds.sandbox.runtime import clean_environment, installed_bpy
+from simworlds.installed import installed_bpy
+from simworlds.sandbox.runtime import clean_environment
 
 pytestmark = pytest.mark.blender
 

@@ -16,9 +16,10 @@ import pytest
 from places import REPO
 
 from simworlds.errors import UserError
+from simworlds.installed import installed_bpy
 from simworlds.releases import release, releases
 from simworlds.sandbox.errors import ProgramFailed, RuntimeMissing
-from simworlds.sandbox.runtime import Runtime, executable_version, find_runtime, installed_bpy, run_script
+from simworlds.sandbox.runtime import Runtime, executable_version, find_runtime, run_script
 
 HERE = Runtime(Path(sys.executable), "environment", "0.0.0")
 
