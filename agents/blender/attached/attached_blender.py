@@ -145,20 +145,23 @@ class AttachedBlender:
         self._note = f"{self._note} {note}".strip()[-_LONGEST_NOTE:]
 
     def keep_copy(self) -> None:
-        """Keeps a copy of the file as the user has it, before the first change of a session to it."""
+        """Keeps a copy of the file as the user has it, before the first change of a session to it. Raises BlenderError.
+
+        There is none of a file that is too large. If it fails otherwise, so does the change: the next one tries again.
+        """
         about = self.about
         opened = self.call("opened", {}, int, timeout=60.0).value
         if self._copied == (about.process, opened):
             return
-        self._copied = about.process, opened
         path = self._copy_to(about)
         try:
             reply = self.call("write_copy", {"path": path, "seconds": _COPY_SECONDS}, dict, timeout=60.0)
-        except Refusal as error:
+        except TooLarge as error:
             self.add_note(f"No copy was kept before this first change: {error}")
         else:
             self._copy = path
             self.add_note(f"Before this first change, a copy was kept: {path} ({reply.seconds:.2f} s).")
+        self._copied = about.process, opened
 
     def end(self) -> None:
         """From any thread: a running call ends soon, and no other begins."""

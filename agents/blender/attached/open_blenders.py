@@ -11,6 +11,7 @@ from pathlib import Path
 from pydantic import Field, ValidationError
 
 from agents.blender.inside.attached import announcement
+from simworlds.operating_system import SYSTEM
 from simworlds.sandbox.errors import Refusal
 from simworlds.sandbox.replies import Claim, Name, Place
 
@@ -79,7 +80,7 @@ def open_blenders() -> list[OpenBlender]:
             announced = _Announced.model_validate(_read(path))
         except (OSError, ValueError, ValidationError):
             continue
-        if not _runs(announced.process):
+        if not SYSTEM.is_running(announced.process):
             path.unlink(missing_ok=True)
             continue
         about = About.model_validate(announced.model_dump(exclude={"port", "token"}))
@@ -94,18 +95,6 @@ def _read(path: Path) -> object:
         if sys.platform != "win32" and (status.st_uid != os.getuid() or status.st_mode & 0o077):
             raise ValueError("others can read it")
         return json.loads(file.read(_LARGEST))
-
-
-def _runs(process: int) -> bool:
-    if sys.platform == "win32":  # where a signal would end it
-        return True
-    try:
-        os.kill(process, 0)
-    except ProcessLookupError:
-        return False
-    except OSError:
-        return True
-    return True
 
 
 def choose(wanted: str) -> OpenBlender:

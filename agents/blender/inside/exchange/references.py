@@ -16,8 +16,16 @@ _MOST_JSON = 200_000_000  # bytes
 _MOST_ELEMENTS = 500_000_000  # of all accessors of a glTF file
 _MOST_LIBRARIES = 100  # .mtl files of an OBJ
 _LONGEST_MTL = 20_000_000  # bytes
+_LONGEST_NAME = 4000  # letters, with a texture's options
 _LISTED = 3
-_DRIVE = re.compile(r"^[a-zA-Z]:[\\/]|^\\\\")
+_DRIVE = re.compile(
+    r"[a-zA-Z]:/"
+)  # of another machine: the importer then looks for the name without its folders
+# The importers take any control character for a blank.
+_LIBRARY = re.compile(rb"[\x00-\x20]*mtllib[\x00-\x20]+(.*)", re.DOTALL)
+_IMAGE = re.compile(
+    rb"[\x00-\x20]*(?:map_\w+|bump|disp|decal|refl|norm)[\x00-\x20]+(.*)", re.DOTALL | re.IGNORECASE
+)
 
 
 def check_file(kind, path, root):
@@ -112,34 +120,54 @@ def _dicts(content, key):
 
 
 def _check_obj(path, root):
-    """Returns (folder, name) of the material libraries of an .obj, and of the images in them."""
-    folder, libraries = os.path.dirname(path), []
-    with open(path, "rb") as file:
-        for line in file:
-            if line.startswith(b"mtllib") and len(libraries) < _MOST_LIBRARIES:
-                libraries.append(_text(line[6:]))
+    """Returns (folder, name) of the material libraries of an .obj, and of the images in them. Raises ValueError."""
+    folder = os.path.dirname(path)
+    # The importer also looks for a library that is called as the file is, whether it is named or not.
+    libraries = {os.path.splitext(os.path.basename(path))[0] + ".mtl", *_libraries_of(path)}
     named = [(folder, name) for name in libraries]
     for name in libraries:
         library = os.path.join(folder, name)
-        if is_inside(library, root) and os.path.isfile(library) and os.path.getsize(library) <= _LONGEST_MTL:
-            with open(library, "rb") as file:
-                lines = [line.strip() for line in file]
-            named += [(folder, image) for line in lines if (image := _image_in(line))]
+        if is_inside(library, root) and os.path.isfile(library):
+            named += [(os.path.dirname(library), image) for image in _images_of(library)]
     return named
 
 
-def _image_in(line):
-    """The file that a line of an .mtl names; "" if it names none, or one on a drive of another machine."""
-    word, _, rest = line.partition(b" ")
-    if not word.lower().startswith((b"map_", b"bump", b"disp", b"decal", b"refl", b"norm")):
-        return ""
-    # Options come before the name and have values without letters, except for few: the name has the last word.
-    name = _text(rest) if not rest.strip().startswith(b"-") else _text(rest).rpartition(" ")[2]
-    return "" if _DRIVE.match(name) else name
+def _libraries_of(path):
+    """The material libraries that an .obj names. Raises ValueError for names that cannot be followed."""
+    libraries = set()
+    with open(path, "rb") as file:
+        for line in file:
+            if (named := _LIBRARY.match(line)) is None:
+                continue
+            if line.rstrip().endswith(b"\\"):
+                raise ValueError("the name of a material library goes on in another line")
+            libraries.add(_text(named[1]))
+            if len(libraries) > _MOST_LIBRARIES:
+                raise ValueError(f"it names more than {_MOST_LIBRARIES} material libraries")
+    return libraries
 
 
-def _text(line):
-    return line.decode("utf-8", "replace").strip().replace("\\", "/").replace("\0", "")
+def _images_of(library):
+    """The files that an .mtl may name as images, as the importer tries to find them. Raises ValueError."""
+    size = os.path.getsize(library)
+    if size > _LONGEST_MTL:
+        raise ValueError(f"its material library has {size / 1e6:.0f} MB, more than {_LONGEST_MTL / 1e6:.0f}")
+    images = set()
+    with open(library, "rb") as file:
+        for named in filter(None, map(_IMAGE.match, file)):
+            text = _text(named[1])
+            if len(text) > _LONGEST_NAME:
+                raise ValueError(f"its material library has a name of {len(text):,} letters")
+            # Options may come first. What is none of them belongs to the name: any word may begin it.
+            begins = [word.start() for word in re.finditer(r"\S+", text)] if text.startswith("-") else [0]
+            for name in (text[begin:] for begin in begins):
+                last = name.rpartition("/")[2]
+                images |= {last} if _DRIVE.match(name) else {name, last, name.replace("_", " ")}
+    return images
+
+
+def _text(name):
+    return name.decode("utf-8", "replace").strip().replace("\\", "/").replace("\0", "").replace('"', "")
 
 
 # STL

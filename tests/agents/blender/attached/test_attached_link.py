@@ -11,6 +11,7 @@ import socket
 import subprocess
 import sys
 import threading
+from types import SimpleNamespace
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -20,7 +21,8 @@ from agents.blender.attached.attached_blender import AttachedBlender
 from agents.blender.attached.open_blenders import choose, open_blenders
 from agents.blender.inside.attached import announcement, link
 from agents.blender.inside.attached.listener import Listener
-from simworlds.sandbox.errors import Refusal
+from simworlds.operating_system import Windows
+from simworlds.sandbox.errors import BlenderError, Refusal
 from simworlds.sandbox.replies import unread
 
 if TYPE_CHECKING:
@@ -94,6 +96,16 @@ def test_tells_several_apart(listener: Listener) -> None:
     assert [blender.about.process for blender in open_blenders()] == [os.getpid()]
 
 
+def test_files_of_blenders_that_have_ended_are_removed(
+    listener: Listener, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    kernel = SimpleNamespace(OpenProcess=lambda *_: 0, GetLastError=lambda: 0)
+    monkeypatch.setattr("agents.blender.attached.open_blenders.SYSTEM", Windows(lambda: kernel))
+    assert open_blenders() == []
+    monkeypatch.undo()
+    assert open_blenders() == []
+
+
 def test_files_that_others_can_read_do_not_count(listener: Listener, home: Path) -> None:
     (home / "open-blenders" / f"{os.getpid()}.json").chmod(0o644)
     assert open_blenders() == []
@@ -121,6 +133,63 @@ def test_a_call_is_answered_with_what_the_user_did(listener: Listener) -> None:
     assert reply.stdout == "hi"
     assert progress == [(1.0, 2.0, "half")]
     assert "The user has saved." in blender.take_note()
+    blender.close()
+
+
+class InBlender(threading.Thread):
+    """Answers each call in Blender's place, by its tool's name; ``asked`` are the names."""
+
+    def __init__(self, listener: Listener, answers: dict[str, list[dict[str, Any]]]) -> None:
+        super().__init__(daemon=True)
+        self.listener, self.answers = listener, answers
+        self.asked: list[str] = []
+        self.start()
+
+    def run(self) -> None:
+        while True:
+            request = self.listener.requests.get()
+            self.asked.append(request.tool)
+            answers = self.answers[request.tool]
+            with TURNS:
+                request.reply(**answers.pop(0) if len(answers) > 1 else answers[0], seconds=0.1, left=[])
+
+
+_COPIED = {"value": {}}
+
+
+@pytest.mark.parametrize(
+    "fault",
+    [
+        {"refused": "The user is busy.", "kind": "busy"},
+        {"refused": "The copy cannot be written: no space is left."},
+        {"failed": "KeyError: 1", "traceback": ""},
+    ],
+)
+def test_without_a_copy_of_the_file_nothing_is_changed(listener: Listener, fault: dict[str, Any]) -> None:
+    inside = InBlender(
+        listener, {"opened": [{"value": 1}], "write_copy": [fault, _COPIED], "apply": [{"value": 2}]}
+    )
+    blender = attached()
+    with pytest.raises(BlenderError):
+        blender.call("apply", {}, unread, timeout=10, changes=True)
+    assert "apply" not in inside.asked
+    blender.call("apply", {}, unread, timeout=10, changes=True)
+    assert "Before this first change, a copy was kept" in blender.take_note()
+    blender.call("apply", {}, unread, timeout=10, changes=True)
+    assert inside.asked.count("write_copy") == inside.asked.count("apply") == 2
+    blender.close()
+
+
+def test_a_file_too_large_to_be_copied_is_changed_and_that_is_told_once(listener: Listener) -> None:
+    large = {"refused": "The scene is too large.", "kind": "large"}
+    inside = InBlender(listener, {"opened": [{"value": 1}], "write_copy": [large], "apply": [{"value": 2}]})
+    blender = attached()
+    for _ in range(2):
+        blender.call("apply", {}, unread, timeout=10, changes=True)
+    assert (
+        blender.take_note().count("No copy was kept before this first change: The scene is too large.") == 1
+    )
+    assert inside.asked.count("write_copy") == 1
     blender.close()
 
 
