@@ -35,6 +35,8 @@ if TYPE_CHECKING:
 PATH = "/mcp"
 _LOOPBACK = ("127.0.0.1", "localhost", "[::1]")
 _ANY = {"0.0.0.0", "::"}  # noqa: S104 - compared with, not bound to
+_HERE = "127.0.0.1"  # by which this machine reaches a server on any address
+_HOSTS = {b"host", b"origin"}
 _BACKLOG = 1024
 _GRACE_SECONDS = 3
 
@@ -128,7 +130,7 @@ class _Server(uvicorn.Server):
 
 def check(address: Address) -> None:
     """Raises CannotServe for an address that other machines can reach, unless there is a token."""
-    if not address.token and not is_loopback(address.host):
+    if not address.token.strip() and not is_loopback(address.host):
         raise CannotServe(
             f"Other machines can reach the server on {address.host}, so it needs a token. Set SIMWORLDS_TOKEN (or "
             "--token) to a secret, which clients send as 'Authorization: Bearer …'. To make one: "
@@ -137,12 +139,25 @@ def check(address: Address) -> None:
 
 
 def _guarded(app: ASGIApp, address: Address) -> ASGIApp:
-    return RequireToken(app, address.token) if address.token else app
+    return _small_hosts(RequireToken(app, address.token.strip()) if address.token.strip() else app)
+
+
+def _small_hosts(app: ASGIApp) -> ASGIApp:
+    """The names of hosts in small letters, as they are compared."""
+
+    async def call(scope: Scope, receive: Receive, send: Send) -> None:
+        if scope["type"] == "http":
+            headers = [(key, value.lower() if key in _HOSTS else value) for key, value in scope["headers"]]
+            scope = {**scope, "headers": headers}
+        await app(scope, receive, send)
+
+    return call
 
 
 def url(host: str, listener: socket.socket) -> str:
     """The URL for clients on this machine."""
     port = listener.getsockname()[1]
+    host = _HERE if host in _ANY else host
     return f"http://{f'[{host}]' if ':' in host else host}:{port}{PATH}"
 
 
@@ -166,9 +181,12 @@ class RequireToken:
         await self._app(scope, receive, send)
 
     def _carries_token(self, headers: Headers) -> bool:
-        scheme, _, token = headers.get("authorization", "").partition(" ")
+        scheme, _, sent = headers.get("authorization", "").partition(" ")
+        token = sent.encode(
+            "latin-1"
+        ).strip()  # of bytes: letters of other alphabets may look like blanks here
         # In constant time: how long it takes must not tell how much of a guess is right.
-        is_right = hmac.compare_digest(token.strip().encode("latin-1"), self._token)
+        is_right = hmac.compare_digest(token, self._token)
         return is_right and scheme.lower() == "bearer"
 
 
@@ -177,7 +195,9 @@ def _security(address: Address) -> TransportSecuritySettings:
     names = dict.fromkeys([*_LOOPBACK, *_bracketed(address.host), *address.names])
     if address.host in _ANY:
         names |= dict.fromkeys(_own_names())
-    hosts = [entry for name in names for entry in (name, f"{name}:*")]
+    # Clients send names in small letters, and Windows calls itself in capitals.
+    lower = dict.fromkeys(name.lower() for name in names)
+    hosts = [entry for name in lower for entry in (name, f"{name}:*")]
     return TransportSecuritySettings(
         enable_dns_rebinding_protection=True,
         allowed_hosts=hosts,
@@ -202,7 +222,12 @@ def _own_names() -> list[str]:
 def _listen(address: Address) -> Listener:
     family = socket.AF_INET6 if ":" in address.host else socket.AF_INET
     try:
-        listener = socket.create_server((address.host, address.port), family=family, backlog=_BACKLOG)
+        listener = socket.create_server(
+            (address.host, address.port),
+            family=family,
+            backlog=_BACKLOG,
+            dualstack_ipv6=address.host in _ANY and family == socket.AF_INET6 and socket.has_dualstack_ipv6(),
+        )
     except OSError as error:
         raise CannotServe(
             f"Cannot listen on {address.host}, port {address.port}: {error.strerror or error}. "

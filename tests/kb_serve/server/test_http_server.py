@@ -160,8 +160,9 @@ def test_no_other_address_without_a_token(home_of_servers: Path, host: str) -> N
 
 def test_with_a_token_any_address_will_do() -> None:
     check(Address("0.0.0.0", token=TOKEN))
-    with pytest.raises(CannotServe):
-        check(Address("0.0.0.0"))
+    for token in ("", " \n"):
+        with pytest.raises(CannotServe):
+            check(Address("0.0.0.0", token=token))
 
 
 def test_loopback_is_decided_by_address_not_by_name() -> None:
@@ -181,7 +182,7 @@ def test_on_all_addresses_names_are_still_checked(home_of_servers: Path) -> None
         "--host",
         "0.0.0.0",
         "--allow-host",
-        "docs.example",
+        "Docs.Example",
         SIMWORLDS_TOKEN=TOKEN,
     ) as running:
         port = running.url.rpartition(":")[2].removesuffix("/mcp")
@@ -191,8 +192,22 @@ def test_on_all_addresses_names_are_still_checked(home_of_servers: Path) -> None
         assert (
             post(url, Authorization=authorization, Host=f"{socket.gethostname()}:{port}").status_code == 200
         )
+        assert running.url == url
+        name = f"{socket.gethostname().upper()}:{port}"
+        assert post(url, Authorization=authorization, Host=name).status_code == 200
         assert post(url, Authorization=authorization, Host="docs.example").status_code == 200
+        assert post(url, Authorization=authorization, Host="DOCS.EXAMPLE").status_code == 200
         assert post(url, Authorization=authorization, Host="evil.example").status_code == 421
+
+
+@pytest.mark.skipif(not socket.has_dualstack_ipv6(), reason="this system keeps IPv4 and IPv6 apart")
+def test_all_addresses_of_version_6_are_those_of_version_4_too(home_of_servers: Path) -> None:
+    # As a file of secrets often has it.
+    with HttpServer(home_of_servers, "--no-rebuild", "--host", "::", SIMWORLDS_TOKEN=f"{TOKEN}\n") as running:
+        port = running.url.rpartition(":")[2].removesuffix("/mcp")
+        assert running.url == f"http://127.0.0.1:{port}/mcp"
+        assert post(running.url, Authorization=f"Bearer {TOKEN}").status_code == 200
+        assert post(f"http://[::1]:{port}/mcp", Authorization=f"Bearer {TOKEN}").status_code == 200
 
 
 def test_a_port_that_is_taken_is_named(home_of_servers: Path) -> None:
