@@ -437,7 +437,11 @@ class MarkdownRenderer:
     def _empty_before(self, cls: Symbol) -> str:
         """Where a pointer that leads to instances of a class is None on new things: that, and what fills it."""
         pointer = empty_pointer_to(self.reader, cls)
-        return f"; `{pointer.name}` is {default_text(pointer)}" if pointer and fillers(pointer) else ""
+        if pointer is None:
+            return ""
+        if tree := self._assigned(pointer):
+            return f"; `{pointer.name}` is {default_text(pointer)}: assign `{tree}`"
+        return f"; `{pointer.name}` is {default_text(pointer)}" if fillers(pointer) else ""
 
     def _assigned(self, symbol: Symbol) -> str:
         """The call that makes the one kind of node tree that a pointer takes which is None on a new thing."""

@@ -183,6 +183,13 @@ def test_values_that_are_put_together_at_run_time_are_not_told_by_a_stand_in(kb:
     assert "`tree_type` enum —" in kb.query("bpy.types.SpaceNodeEditor", max_tokens=ALL).text
 
 
+def test_a_way_to_a_thing_says_what_is_none_on_it(kb: KnowledgeBase) -> None:
+    told = "; `compositing_node_group` is `None` on a new Scene: assign `bpy.data.node_groups.new("
+    assert told in kb.query("bpy.types.NodeTreeInterface.new_socket").text
+    assert "`animation_data_create()`" not in kb.query("bpy.types.Object.location").text
+    assert "made by `obj.animation_data_create()`" in kb.query("bpy.types.AnimData.action").text
+
+
 def test_a_module_lists_its_contents(kb: KnowledgeBase) -> None:
     text = kb.query("bpy.ops.rigidbody", max_tokens=ALL).text
     assert "**Contents**" in text
