@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 TYPES = "bpy.types."
 _MAKERS = ("new", "create", "add")
+_NEW_KIND = "new_"
 _ADDS = ("_add", "add")
 _NODE = f"{TYPES}Node"
 # Names by which scripts hold what is reached from the context.
@@ -33,8 +34,6 @@ _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTre
 # Only nodes of a class that a script registers take sockets of their own.
 _SOCKETS = (f"{TYPES}NodeInputs.new", f"{TYPES}NodeOutputs.new")
 _NEW_SOCKET = f"{TYPES}NodeTreeInterface.new_socket"
-_SOCKET = f"{TYPES}NodeSocket"
-_OF_INTERFACE = f"{TYPES}NodeTreeInterfaceSocket"
 
 # Class → the method that makes it, and a call.
 _METHODS = {"Driver": (f"{TYPES}bpy_struct.driver_add", 'obj.driver_add("location", 2).driver')}
@@ -75,14 +74,19 @@ class _Calls:
         self._symbols = {symbol.path: symbol for symbol in symbols}
         self._reached = reached
         self._below: dict[str, list[Symbol]] = defaultdict(list)
+        # class of a collection → its functions that make one kind of element
+        self._kinds: dict[str, list[Symbol]] = defaultdict(list)
         for symbol in self._symbols.values():
             if symbol.kind == "class" and symbol.base:
                 self._below[symbol.base].append(symbol)
+            elif symbol.kind == "function" and symbol.name.startswith(_NEW_KIND):
+                self._kinds[symbol.owner].append(symbol)
+        self._of_collections = {f"{TYPES}{holder.collection}" for holder in self._collections()}
 
     def found(self) -> Iterator[tuple[str, Creation]]:
         calls: dict[str, Creation] = dict(self._by_operators())
         for holder in sorted(self._collections(), key=self._far):
-            for cls, creation in self._by_collection(holder):
+            for cls, creation in (*self._by_collection(holder), *self._by_kind(holder)):
                 known = calls.get(cls)
                 if known is None or known.maker.startswith("bpy.ops."):
                     calls[cls] = creation
@@ -97,9 +101,11 @@ class _Calls:
             if symbol.kind == "property" and symbol.type == "collection" and symbol.collection:
                 yield symbol
 
-    def _far(self, holder: Symbol) -> tuple[bool, int, int]:
+    def _far(self, holder: Symbol) -> tuple[bool, bool, int, int]:
+        """How far a collection is from being the one that a class is thought to be made by: ``fcurves`` of FCurve."""
         owner = holder.owner.removeprefix(TYPES)
-        return owner not in _HOLDERS, self._owner(holder).count("."), len(holder.path)
+        is_called_so = key(holder.name).removesuffix("s") == key(holder.target)
+        return owner not in _HOLDERS, not is_called_so, self._owner(holder).count("."), len(holder.path)
 
     def _owner(self, holder: Symbol) -> str:
         name = holder.owner.removeprefix(TYPES)
@@ -136,20 +142,39 @@ class _Calls:
             given = self._arguments(maker, base, first, block=block)
             yield base.path, Creation(f"{head}({given})", maker.path)
 
+    def _by_kind(self, holder: Symbol) -> Iterator[tuple[str, Creation]]:
+        """What functions for one kind each make: ``strips.new_image`` an ImageStrip, ``new_effect`` those by type."""
+        base = self._symbols.get(TYPES + holder.target)
+        for maker in self._kinds.get(f"{TYPES}{holder.collection}", ()):
+            head = f"{self._owner(holder)}.{holder.name}.{maker.name}"
+            types = next((p for p in maker.parameters if p.name == "type"), None)
+            items = {item.identifier: item.name for item in types.enum_items} if types else {}
+            called = key(maker.name.removeprefix(_NEW_KIND) + holder.target)
+            for cls in self._descendants(base.path) if base else ():
+                choice = _choice(cls, base, items) if base and items else ""
+                if choice or (not items and key(cls.name) == called):
+                    given = self._arguments(maker, cls, choice, block="")
+                    yield cls.path, Creation(f"{head}({given})", maker.path, choice)
+
     def _of_interfaces(self) -> Iterator[tuple[str, Creation]]:
         """A group's sockets: the items of its interface, and what they become on its nodes."""
-        for path in self._symbols if _NEW_SOCKET in self._symbols else ():
-            kind = path.removeprefix(_OF_INTERFACE)
-            if kind not in {"", path} and _SOCKET + kind in self._symbols:
-                call = f"tree.interface.new_socket(\"Name\", in_out='INPUT', socket_type='NodeSocket{kind}')"
-                yield from ((cls, Creation(call, _NEW_SOCKET)) for cls in (path, _SOCKET + kind))
+        maker = self._symbols.get(_NEW_SOCKET)
+        for parameter in maker.parameters if maker else ():
+            for item in parameter.enum_items if parameter.name == "socket_type" else ():
+                call = f"tree.interface.new_socket(\"Name\", in_out='INPUT', socket_type='{item.identifier}')"
+                for cls in (item.identifier, f"NodeTreeInterface{item.identifier.removeprefix('Node')}"):
+                    if TYPES + cls in self._symbols:
+                        yield TYPES + cls, Creation(call, _NEW_SOCKET)
 
     def _arguments(self, maker: Symbol, cls: Symbol, choice: str, *, block: str) -> str:
-        return ", ".join(
+        given = [
             self._argument(parameter, cls, choice, block=block)
             for parameter in maker.parameters
             if parameter.required or (choice and parameter.name == "type")
-        )
+        ]
+        # Without these Blender refuses the choice, though they have defaults.
+        wanted = [name for refusal in maker.refusals if choice in refusal.values for name in refusal.given]
+        return ", ".join((*given, *(f"{name}={name}" for name in wanted)))
 
     def _argument(self, parameter: Parameter, cls: Symbol, choice: str, *, block: str) -> str:
         if parameter.name == "type" and choice:
@@ -184,7 +209,9 @@ class _Calls:
                 operator
                 and symbol.kind == "class"
                 and symbol.group == "data"
+                and symbol.path.startswith(TYPES)
                 and symbol.path not in self._below
+                and symbol.path not in self._of_collections
             ):
                 yield symbol.path, Creation(f"{operator.path}()", operator.path)
 

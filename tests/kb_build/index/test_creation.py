@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from statements_in_blender import run_statements
 
 from kb_build.blender.access_paths import reached_expressions
 from kb_build.index.creation import Creation, creation_calls
@@ -13,7 +14,11 @@ from kb_build.records import Symbol
 from kb_build.usage.examples import Example, Uses
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kb_build.blender.extract_reader import Extract
+
+STRIPS = "bpy.types.StripsTopLevel"
 
 
 @pytest.fixture(scope="module")
@@ -39,6 +44,14 @@ def calls(extract: Extract) -> dict[str, Creation]:
         ("ShaderNodeMath", 'tree.nodes.new("ShaderNodeMath")'),
         ("Driver", 'obj.driver_add("location", 2).driver'),
         ("RigidBodyWorld", "bpy.ops.rigidbody.world_add()"),
+        (
+            "NodeSocketFloat",
+            "tree.interface.new_socket(\"Name\", in_out='INPUT', socket_type='NodeSocketFloat')",
+        ),
+        (
+            "NodeTreeInterfaceSocketMenu",
+            "tree.interface.new_socket(\"Name\", in_out='INPUT', socket_type='NodeSocketMenu')",
+        ),
     ],
 )
 def test_a_class_is_made_as_scripts_make_it(calls: dict[str, Creation], cls: str, call: str) -> None:
@@ -54,6 +67,32 @@ def test_calls_are_functions_and_classes_that_exist(calls: dict[str, Creation], 
         types = next((p for p in symbols[creation.maker].parameters if p.name == "type"), None)
         items = {item.identifier for item in types.enum_items} if types else set[str]()
         assert not creation.choice or creation.choice in items | {symbols[path].name}
+
+
+def test_what_only_lists_things_or_is_a_value_is_not_made(calls: dict[str, Creation]) -> None:
+    assert not {"bpy.types.NlaTracks", "bpy.types.NodeSocketFloatFactor", "mathutils.Color"} & calls.keys()
+
+
+@pytest.mark.blender
+def test_blender_makes_a_strip_of_the_class_for_every_call(
+    calls: dict[str, Creation], tmp_path: Path
+) -> None:
+    strips = {
+        cls: creation.call for cls, creation in calls.items() if creation.maker.startswith(f"{STRIPS}.new_")
+    }
+    assert len(strips) > 20
+    starting = [
+        "import bpy", "scene = bpy.context.scene", "strips = scene.sequence_editor_create().strips",
+        "filepath, channel, frame_start, length = 'none', 5, 1, 9", "mask = bpy.data.masks.new('a')",
+        "input1, input2 = (strips.new_effect('a', 'COLOR', n, 1, length=9) for n in (1, 2))",
+    ]  # fmt: skip
+    made = [f"made = {call}" for call in strips.values()]
+    watched = dict.fromkeys(range(len(starting), len(starting) + len(made)), "type(made).__name__")
+    answers = run_statements(tmp_path, [*starting, *made], watched)[len(starting) :]
+    # A film must be there.
+    rows = {cls: row for cls, row in zip(strips, answers, strict=True) if "MovieStrip" not in cls}
+    assert {cls: row[0] for cls, row in rows.items() if row[0]} == {}
+    assert {f"bpy.types.{row[2][1:-1]}" for row in rows.values()} == rows.keys()
 
 
 @pytest.mark.blender
