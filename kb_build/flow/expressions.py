@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
@@ -31,6 +32,8 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     members,
+    telling,
+    tells,
     union,
     without_none,
 )
@@ -39,7 +42,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Sequence as Rows
 
-_BUILTINS = frozenset(
+_ERRORS = frozenset(
+    name
+    for name, kind in vars(builtins).items()
+    if isinstance(kind, type) and issubclass(kind, BaseException)
+)
+_BUILTINS = _ERRORS | frozenset(
     (  # noqa: SIM905
         "abs all any bool dict enumerate filter float frozenset getattr hasattr int isinstance iter len list map max "
         "min next open print range repr reversed round set setattr sorted str sum super tuple type zip delattr "
@@ -108,10 +116,7 @@ class Expressions(Members):
             )  # fmt: skip
         if known is not None:
             return known
-        kind = found.type
-        if self.version and found.symbols == [VERSION]:
-            return Tuple(tuple(Plain("int", part, VERSION) for part in self.version))
-        return kind
+        return found.type
 
     def _subscript(self, node: ast.Subscript) -> Type:
         owner = self.evaluate(node.value)
@@ -247,6 +252,8 @@ class Expressions(Members):
                     self.check_value(right, left_node, "compared")
             if len(node.ops) == 1:
                 result = self._decided_here(left, operator, right, right_node)
+            if result == BOOL:
+                result = telling(BOOL, tells(left) or tells(right))
             left, left_node = right, right_node
         return result
 
@@ -315,7 +322,10 @@ class Expressions(Members):
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
         if isinstance(test, Plain) and isinstance(test.value, bool):
-            return self.evaluate(node.body if test.value else node.orelse)  # the other is for other versions
+            chosen = self.evaluate(
+                node.body if test.value else node.orelse
+            )  # the other is for other versions
+            return telling(chosen, VERSION, value=True) if is_decided(test) else chosen
         before = self.scope.state
         self.scope.state = before.copy()
         self.narrow(node.test, holds=True)
@@ -415,7 +425,7 @@ class Expressions(Members):
         found: list[str] = []
         for member in members(kind):
             plain = member.element if isinstance(member, Sequence) else member
-            if isinstance(plain, Plain) and plain.source:
+            if isinstance(plain, Plain) and plain.source and not tells(plain):
                 found.append(plain.source)
             elif plain is not NONE:
                 return ()

@@ -12,12 +12,14 @@ from kb_build.flow.core import ANY
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.expressions import is_decided, is_math
 from kb_build.flow.facts import DISCRIMINANTS, PARAMETERS, T
+from kb_build.flow.guards import assigned_names
 from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
 from kb_build.flow.trees import walk
 from kb_build.flow.types import (
     NONE,
     STR,
     UNKNOWN,
+    Builtin,
     ClassObject,
     Function,
     Instance,
@@ -53,6 +55,7 @@ _FORGIVING = frozenset(
         "BaseException",
         "ImportError",
         "KeyError",
+        "LookupError",
         "ModuleNotFoundError",
         "TypeError",
         "RuntimeError",
@@ -79,6 +82,7 @@ class Statements(Calls):
 
     def bind_target(self, target: ast.expr, kind: Type, value: ast.expr | None = None) -> None:
         """See :class:`core.Core`."""
+        kind = self.told(kind, value)
         match target:
             case ast.Name():
                 self.scope.bind(target.id, kind)
@@ -242,32 +246,21 @@ class Statements(Calls):
         # Only another version's code is left out: a switch may be set by whoever reads the script.
         truth = literal(test) if is_decided(test) else None
         before = self.scope.state
-        asks = truth is None and (self._asks_version(node.test) or _is_for_type_checkers(node.test))
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
             if isinstance(truth, bool) and truth is not holds:
                 continue
             self.scope.state = before.copy()
             self.narrow(node.test, holds=holds)
-            if asks:
-                self.scope.state.doubted |= {EVERYTHING}
             ways.append(self._way(self.scope.state, body))
         reached = self._meet(ways, before)
         if None not in ways:
             self.scope.state.doubted = before.doubted
+        if flags := assigned_names([*node.body, *node.orelse]):
+            decided = truth is not None
+            asked = frozenset({EVERYTHING}) if decided else self.asked(node.test)
+            self.tell(flags, asked, decided=decided)
         return reached
-
-    def _asks_version(self, test: ast.expr) -> bool:
-        """Whether a condition asks for Blender's version by a function of the script, whose answer is not known."""
-        for node in walk(test):
-            kind = self.types.get(node.func) if isinstance(node, ast.Call) else None
-            if isinstance(kind, LocalFunction):
-                function = self.functions[kind.number]
-                if function.asks_version is None:
-                    function.asks_version = _reads_version(function.node)
-                if function.asks_version:
-                    return True
-        return False
 
     def _loop(self, body: Rows[ast.stmt], orelse: Rows[ast.stmt], enter: Callable[[], None]) -> bool:
         """Reads a loop's body twice, so that what one turn binds is known in the next."""
@@ -321,14 +314,15 @@ class Statements(Calls):
             kind = self.evaluate(item.context_expr)
             if item.optional_vars is not None:
                 self.bind_target(item.optional_vars, kind)
-        forgiving = any(_suppresses(item.context_expr) for item in node.items)
+        forgiving = any(self._suppresses(item.context_expr) for item in node.items)
         self.tolerant += forgiving
         reached = self.read_body(node.body)
         self.tolerant -= forgiving
         return reached or forgiving
 
     def _try(self, node: ast.Try) -> bool:
-        forgiving = any(_forgives(handler) for handler in node.handlers)
+        forgives = [self._forgives(handler) for handler in node.handlers]
+        forgiving = any(forgives)
         before = self.scope.state
         self.tolerant += forgiving
         after = self._way(before.copy(), node.body)
@@ -337,26 +331,48 @@ class Statements(Calls):
         if after is not None and node.orelse:
             after = self._way(after, node.orelse)
         ways = [after]
-        for handler in node.handlers:
+        for handler, is_ready in zip(node.handlers, forgives, strict=True):
             self.scope.state = within.copy()
-            if handler.type is not None:
-                self.evaluate(handler.type)
             if handler.name:
                 self.scope.bind(handler.name, UNKNOWN)
             # What is done where a name is lacking may be for another Blender.
-            self.tolerant += _forgives(handler)
+            self.tolerant += is_ready
             ways.append(self._way(self.scope.state, handler.body))
-            self.tolerant -= _forgives(handler)
+            self.tolerant -= is_ready
         reached = self._meet(ways, within.copy())
+        if forgiving:
+            handled = [statement for handler in node.handlers for statement in handler.body]
+            self.tell(assigned_names([*node.body, *node.orelse, *handled]), self.lacked(node.body))
         return self.read_body(node.finalbody) and reached
+
+    def _forgives(self, handler: ast.ExceptHandler) -> bool:
+        """Whether a handler is ready for a name that does not exist."""
+        return handler.type is None or self._is_forgiving(handler.type)
+
+    def _suppresses(self, manager: ast.expr) -> bool:
+        """Whether a context manager, which was read, is ready for a name that does not exist.
+
+        ``contextlib.suppress(AttributeError)`` is, and so is what else is given such an error: ``assertRaises``.
+        """
+        return isinstance(manager, ast.Call) and any(map(self._is_forgiving, manager.args))
+
+    def _is_forgiving(self, errors: ast.expr) -> bool:
+        """Whether one of the classes that an expression stands for is that of a missing name's error."""
+        kinds = [*members(self.evaluate(errors))]
+        for kind in kinds:  # it grows
+            if isinstance(kind, Tuple):
+                kinds += kind.items
+        return any(isinstance(kind, Builtin) and kind.name in _FORGIVING for kind in kinds)
 
     def _match(self, node: ast.Match) -> bool:
         subject = self.evaluate(node.subject)
         before = self.scope.state
+        otherwise = before.copy()
+        otherwise.doubted |= self.asked(node.subject)
         ways: list[State | None] = []
         whole = False
         for case in node.cases:
-            self.scope.state = before.copy()
+            self.scope.state = otherwise.copy()
             self._bind_pattern(case.pattern, subject, node.subject)
             if case.guard is not None:
                 self.evaluate(case.guard)
@@ -366,8 +382,12 @@ class Statements(Calls):
             )
             ways.append(self._way(self.scope.state, case.body))
         if not whole:
-            ways.append(before)
-        return self._meet(ways, before)
+            ways.append(otherwise)
+        reached = self._meet(ways, before)
+        if None not in ways:
+            self.scope.state.doubted = before.doubted
+        self.tell(assigned_names(part for case in node.cases for part in case.body), self.asked(node.subject))
+        return reached
 
     def _bind_pattern(self, pattern: ast.pattern, subject: Type, node: ast.expr) -> None:
         if isinstance(pattern, ast.MatchValue):
@@ -388,7 +408,7 @@ class Statements(Calls):
         return True
 
     def _return(self, node: ast.Return) -> bool:
-        kind = self.evaluate(node.value) if node.value is not None else NONE
+        kind = self.told(self.evaluate(node.value), node.value) if node.value is not None else NONE
         if self.function is not None:
             before, kind = self.function.returned, bounded(kind)
             self.function.returned = kind if before is None else join(before, kind)
@@ -400,9 +420,11 @@ class Statements(Calls):
         return False
 
     def _assert(self, node: ast.Assert) -> bool:
-        self.evaluate(node.test)
+        holds = self.evaluate(node.test)
         self.narrow(node.test, holds=True)
-        return True
+        if node.msg is not None:
+            self.evaluate(node.msg)
+        return not is_decided(holds) or literal(holds) is True
 
     def _delete(self, node: ast.Delete) -> bool:
         for target in node.targets:
@@ -744,23 +766,6 @@ def _used_names(function: ast.AST) -> dict[str, set[str]]:
     return used
 
 
-def _reads_version(function: ast.AST) -> bool:
-    """Whether a function looks at ``app.version``."""
-    return any(
-        isinstance(node, ast.Attribute)
-        and node.attr == "version"
-        and isinstance(node.value, (ast.Attribute, ast.Name))
-        and (node.value.attr if isinstance(node.value, ast.Attribute) else node.value.id) == "app"
-        for node in walk(function)
-    )
-
-
-def _is_for_type_checkers(test: ast.expr) -> bool:
-    """Whether what follows a condition never runs: it may name what only stubs have."""
-    name = test.attr if isinstance(test, ast.Attribute) else test.id if isinstance(test, ast.Name) else ""
-    return name == "TYPE_CHECKING"
-
-
 def _differs(before: State, after: State) -> bool:
     """Whether a loop's first turn bound something that its beginning has otherwise."""
     return any(
@@ -768,24 +773,3 @@ def _differs(before: State, after: State) -> bool:
         for name, kind in after.names.items()
         if name in before.names
     )
-
-
-def _forgives(handler: ast.ExceptHandler) -> bool:
-    """Whether a handler is ready for a name that does not exist."""
-    if handler.type is None:
-        return True
-    names = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-    return any(map(_is_forgiving, names))
-
-
-def _suppresses(manager: ast.expr) -> bool:
-    """Whether a context manager is ready for a name that does not exist: ``contextlib.suppress(AttributeError)``."""
-    if not isinstance(manager, ast.Call):
-        return False
-    function = manager.func
-    name = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
-    return name == "suppress" and any(map(_is_forgiving, manager.args))
-
-
-def _is_forgiving(error: ast.expr) -> bool:
-    return isinstance(error, ast.Name) and error.id in _FORGIVING
