@@ -12,7 +12,7 @@ from kb_build.flow.source_files import SourceFile, keeps_annotations, module_nam
 from kb_build.flow.statements import Statements
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping
 
     from kb_build.flow.api import Api
     from kb_build.flow.types import Resolution, Type
@@ -30,7 +30,8 @@ class Analysis:
     """What a script is. ``tree`` is None, and ``error`` says why, when it cannot be read.
 
     ``types`` has every expression that was reached, ``resolutions`` every part that stands for something of the
-    API. ``complete`` is False where the script was too large to be read to its end.
+    API. ``complete`` is False where the script was too large to be read to its end. ``doubted`` are the statements, and
+    parts of them, that stand behind a condition on Blender's version which is not decided.
 
     What the script, or one that is analysed with it, adds to the API: ``own_operators`` are operators (paths below
     bpy.ops, their modules too), ``registered`` the properties of classes (class, name), ``own_types`` the names of
@@ -45,6 +46,7 @@ class Analysis:
     own_operators: frozenset[str] = frozenset()
     registered: frozenset[tuple[str, str]] = frozenset()
     own_types: frozenset[str] = frozenset()
+    doubted: Collection[ast.stmt | ast.expr] = ()
 
 
 class Analyzer(Statements):
@@ -138,7 +140,9 @@ def analyse_files(files: Mapping[str, str], api: Api, version: tuple[int, ...] =
     analyzer.read()
     own = frozenset(analyzer.own_operators), frozenset(analyzer.registered), frozenset(analyzer.own_types)
     return {
-        path: Analysis(source.tree, source.types, source.resolutions, source.error, source.complete, *own)
+        path: Analysis(
+            source.tree, source.types, source.resolutions, source.error, source.complete, *own, source.doubted
+        )
         for path, source in sources.items()
     }
 

@@ -186,7 +186,8 @@ class Core:
         number = self.numbers.get(node)
         if number is None:
             number = self.numbers[node] = len(self.functions)
-            self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file))
+            doubted = self.scope.state.doubted_names
+            self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file, doubted=doubted))
         return number
 
     def ancestors(self, number: int) -> Iterator[Type]:

@@ -86,6 +86,12 @@ class Expressions(Members):
         self.types[node] = kind
         return kind
 
+    def _behind(self, node: ast.expr) -> Type:
+        """Evaluates what stands behind a condition."""
+        if self.scope.state.doubts():
+            self.file.doubted.add(node)
+        return self.evaluate(node)
+
     # Names, attributes, items.
 
     def _name(self, node: ast.Name) -> Type:
@@ -300,7 +306,7 @@ class Expressions(Members):
         holds = isinstance(node.op, ast.And)
         settles = Plain("bool", not holds, VERSION)  # what follows it is for other versions
         for place, value in enumerate(node.values):
-            kinds.append(self.evaluate(value))
+            kinds.append(self._behind(value))
             if kinds[-1] == settles:
                 break
             if place < len(node.values) - 1:
@@ -329,10 +335,10 @@ class Expressions(Members):
         before = self.scope.state
         self.scope.state = before.copy()
         self.narrow(node.test, holds=True)
-        first = self.evaluate(node.body)
+        first = self._behind(node.body)
         self.scope.state = before.copy()
         self.narrow(node.test, holds=False)
-        second = self.evaluate(node.orelse)
+        second = self._behind(node.orelse)
         self.scope.state = before
         return join(first, second)
 
@@ -362,13 +368,13 @@ class Expressions(Members):
 
     def _comprehension(self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp) -> Type:
         element: list[Type] = []
-        self._inside(node.generators, lambda: element.append(self.evaluate(node.elt)))
+        self._inside(node.generators, lambda: element.append(self._behind(node.elt)))
         return Sequence(_KINDS.get(type(node), "list"), element[0] if element else UNKNOWN)
 
     def _dict_comprehension(self, node: ast.DictComp) -> Type:
         kinds: list[Type] = []
         self._inside(
-            node.generators, lambda: kinds.extend((self.evaluate(node.key), self.evaluate(node.value)))
+            node.generators, lambda: kinds.extend((self._behind(node.key), self._behind(node.value)))
         )
         return Mapping(kinds[0], kinds[1]) if len(kinds) == 2 else UNKNOWN
 

@@ -54,6 +54,11 @@ class State:
         """Whether what is read here, or from this chain, may be for another Blender."""
         return bool(self.doubted) and (text in self.doubted or EVERYTHING in self.doubted)
 
+    @property
+    def doubted_names(self) -> frozenset[str]:
+        """What is doubted whatever the names here hold: EVERYTHING, members that were asked for."""
+        return frozenset(doubt for doubt in self.doubted if doubt == EVERYTHING or doubt.startswith("."))
+
 
 def name_doubt(name: str) -> str:
     """What says in ``State.doubted`` that members of this name are doubted, whatever has them."""

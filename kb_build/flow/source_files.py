@@ -23,7 +23,8 @@ class SourceFile:
     """One file: its module's dotted name, its text as a tree (None with an ``error``), and what was found in it.
 
     ``keeps_annotations``: Python leaves its annotations unread. ``steps_left`` is what may still be spent on reading
-    it, ``complete`` whether that was enough, ``readings`` what its module took from definitions.
+    it, ``complete`` whether that was enough, ``readings`` what its module took from definitions, ``doubted`` the
+    statements and parts of them that may all be for another Blender.
     """
 
     name: str
@@ -36,6 +37,7 @@ class SourceFile:
     types: dict[ast.expr, Type] = field(default_factory=dict["ast.expr", "Type"])
     resolutions: dict[ast.AST, Resolution] = field(default_factory=dict["ast.AST", "Resolution"])
     readings: Readings = field(default_factory=Readings)
+    doubted: set[ast.stmt | ast.expr] = field(default_factory=set["ast.stmt | ast.expr"])
     started: bool = False
     complete: bool = True
 

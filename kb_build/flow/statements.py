@@ -73,6 +73,8 @@ class Statements(Calls):
         """Reads statements one after the other; whether what follows them can be reached."""
         for statement in body:
             self.statement = statement
+            if self.scope.state.doubted and self.scope.state.doubts():
+                self.file.doubted.add(statement)
             reader = self._statement_readers.get(type(statement))
             if reader is not None and not reader(self, statement):
                 return False
@@ -594,7 +596,8 @@ class Statements(Calls):
         function.seen = self.stamp(function)
         function.readings = {}
         try:
-            with self.inside(function.file or self.file, Scope(function.scope), function):
+            scope = Scope(function.scope, state=State(doubted=function.doubted))
+            with self.inside(function.file or self.file, scope, function):
                 self._read_function(function)
         finally:
             function.running = False

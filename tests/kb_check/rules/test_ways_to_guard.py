@@ -181,3 +181,19 @@ def test_what_is_not_guarded_is_found(rule_checker: Checker, code: str) -> None:
 def test_the_guards_work(tmp_path: Path) -> None:
     done = run_statements(tmp_path, [AROUND + dedent(guard) for guard in GUARDS.values()])
     assert {name: row[0] for name, row in zip(GUARDS, done, strict=True) if row[0]} == {}
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "if {}:\n    def f():\n        ob.draw_type",
+        "if {}:\n    class C:\n        def f(self):\n            return ob.draw_type",
+        "if {}:\n    import bmesh\n    bmesh.ops.create_cube(bmesh.new())['faces']",
+        "import bmesh\nx = {} and bmesh.ops.create_cube(bmesh.new())['faces']",
+        "import bmesh\nx = [bmesh.ops.create_cube(bmesh.new())['faces'] for _ in range(3) if {}]",
+        "if {}:\n    class Grow(bpy.types.Operator):\n        bl_label = ''\n        bl_idname = 'OBJECT_OT_growAll'",
+    ],
+)
+def test_no_rule_finds_an_error_behind_an_open_question(rule_checker: Checker, code: str) -> None:
+    assert _errors(rule_checker, code.format("bpy.app.version_string < '2.80'")) == []
+    assert _errors(rule_checker, code.format("ob.name")) != []
