@@ -30,8 +30,8 @@ class Analysis:
     """What a script is. ``tree`` is None, and ``error`` says why, when it cannot be read.
 
     ``types`` has every expression that was reached, ``resolutions`` every part that stands for something of the
-    API. ``complete`` is False where the script was too large to be read to its end. ``doubted`` are the statements, and
-    parts of them, that stand behind a condition on Blender's version which is not decided.
+    API. ``complete`` is False where the script was too large, or too deep, to be read to its end. ``doubted`` are the
+    statements, and parts of them, that stand behind a condition on Blender's version which is not decided.
 
     What the script, or one that is analysed with it, adds to the API: ``own_operators`` are operators (paths below
     bpy.ops, their modules too), ``registered`` the properties of classes (class, name), ``own_types`` the names of
@@ -82,12 +82,14 @@ class Analyzer(Statements):
     def _guarded_read(self, file: SourceFile) -> None:
         assert file.tree is not None
         for statement in file.tree.body:
-            depth = self.depth
+            depth, doubted = self.depth, file.module.state.doubted
             try:
-                if not self.read_body([statement]):
-                    break
+                with self.inside(file, file.module, None):
+                    if not self.read_body([statement]):
+                        break
             except RecursionError:
-                self.depth, self.scope, self.function = depth, file.module, None
+                self.depth, file.module.state.doubted = depth, doubted
+                file.unread.add(statement)
 
     def _read_functions(self) -> bool:
         """Reads the functions that were not read yet, or that know more now; whether there were any."""
@@ -105,7 +107,7 @@ class Analyzer(Statements):
             try:
                 self.run(number)
             except RecursionError:
-                pass
+                file.unread.add(self.functions[number].node.args)
             except StepsExhausted:
                 file.complete = False
             file.steps_left = self.steps_left
@@ -141,7 +143,7 @@ def analyse_files(files: Mapping[str, str], api: Api, version: tuple[int, ...] =
     own = frozenset(analyzer.own_operators), frozenset(analyzer.registered), frozenset(analyzer.own_types)
     return {
         path: Analysis(
-            source.tree, source.types, source.resolutions, source.error, source.complete, *own, source.doubted
+            source.tree, source.types, source.resolutions, source.error, source.is_read, *own, source.doubted
         )
         for path, source in sources.items()
     }

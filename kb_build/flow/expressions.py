@@ -10,7 +10,8 @@ from typing import TYPE_CHECKING, ClassVar
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, MORE_VALUES, PRODUCTS, SUMS, VERSION, T
 from kb_build.flow.members import Members
-from kb_build.flow.scopes import State, chain_text
+from kb_build.flow.scopes import chain_text
+from kb_build.flow.trees import children
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
@@ -77,14 +78,22 @@ class Expressions(Members):
         self.steps_left -= 1
         if self.steps_left < 0:
             raise StepsExhausted
-        reader = self._evaluators.get(type(node))
-        if reader is None or self.depth > DEEPEST:
+        if self.depth > DEEPEST:
+            self.file.unread.add(node)
             return UNKNOWN
+        reader = self._evaluators.get(type(node), Expressions._parts)
         self.depth += 1
         kind = reader(self, node)
         self.depth -= 1
         self.types[node] = kind
         return kind
+
+    def _parts(self, node: ast.expr) -> Type:
+        """Evaluates the parts of an expression of which no more is known."""
+        for part in children(node):
+            if isinstance(part, ast.expr):
+                self.evaluate(part)
+        return UNKNOWN
 
     def _behind(self, node: ast.expr) -> Type:
         """Evaluates what stands behind a condition."""
@@ -126,12 +135,9 @@ class Expressions(Members):
 
     def _subscript(self, node: ast.Subscript) -> Type:
         owner = self.evaluate(node.value)
-        if isinstance(node.slice, ast.Slice):
-            for part in (node.slice.lower, node.slice.upper, node.slice.step):
-                if part is not None:
-                    self.evaluate(part)
-            return self._sliced(owner, node.slice)
         key = self.evaluate(node.slice)
+        if isinstance(node.slice, ast.Slice):
+            return self._sliced(owner, node.slice)
         return self.item(owner, key, node) if owner is not UNKNOWN else UNKNOWN
 
     def _sliced(self, owner: Type, part: ast.Slice) -> Type:
@@ -164,9 +170,7 @@ class Expressions(Members):
         return Plain(kind, value) if isinstance(value, (str, int, float)) else UNKNOWN
 
     def _text(self, node: ast.JoinedStr) -> Type:
-        for part in node.values:
-            if isinstance(part, ast.FormattedValue):
-                self.evaluate(part.value)
+        self._parts(node)
         return STR
 
     def _tuple(self, node: ast.Tuple | ast.List) -> Type:
@@ -208,8 +212,14 @@ class Expressions(Members):
     # Operations.
 
     def _binary(self, node: ast.BinOp) -> Type:
-        left, right = self.evaluate(node.left), self.evaluate(node.right)
-        return self.operation(node, left, right)
+        long = [node]  # a sum of many terms is read from its first on
+        while isinstance(first := long[-1].left, ast.BinOp):
+            long.append(first)
+        left = self.evaluate(first)
+        for part in reversed(long):
+            left = self.operation(part, left, self.evaluate(part.right))
+            self.types[part] = left
+        return left
 
     def operation(self, node: ast.BinOp | ast.AugAssign, left: Type, right: Type) -> Type:
         """What an operation gives; a product that mathutils refuses is recorded."""
@@ -362,9 +372,16 @@ class Expressions(Members):
     # What has names of its own.
 
     def _lambda(self, node: ast.Lambda) -> Type:
+        self.read_defaults(node.args)
         number = self.define_function(node)
         self.functions[number].stale = self.functions[number].runs == 0
         return LocalFunction(number)
+
+    def read_defaults(self, arguments: ast.arguments) -> None:
+        """Evaluates the values that a function's parameters have by default, where it is defined."""
+        for default in (*arguments.defaults, *arguments.kw_defaults):
+            if default is not None:
+                self.evaluate(default)
 
     def _comprehension(self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp) -> Type:
         element: list[Type] = []
@@ -469,15 +486,6 @@ class Expressions(Members):
                 unsure = True
         if having or (lacking and not unsure):
             self.resolve(node, use, value, having, lacking)
-
-    def with_state(self, state: State, read: Callable[[], None]) -> State:
-        """Reads something from a state on; returns the state after it."""
-        before, self.scope.state = self.scope.state, state
-        try:
-            read()
-            return self.scope.state
-        finally:
-            self.scope.state = before
 
     _evaluators: ClassVar[dict[type, Callable[..., Type]]] = {
         ast.Name: _name,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -14,7 +15,7 @@ from kb_build.flow.expressions import is_decided, is_math
 from kb_build.flow.facts import DISCRIMINANTS, PARAMETERS, T
 from kb_build.flow.guards import assigned_names
 from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
-from kb_build.flow.trees import walk
+from kb_build.flow.trees import children, walk
 from kb_build.flow.types import (
     NONE,
     STR,
@@ -95,7 +96,7 @@ class Statements(Calls):
                 self._unpack(target, kind)
             case ast.Subscript():
                 owner = self.evaluate(target.value)
-                key = self.evaluate(target.slice) if not isinstance(target.slice, ast.Slice) else UNKNOWN
+                key = self.evaluate(target.slice)
                 if owner is not UNKNOWN:
                     self.item(owner, key, target)
                 self._fill(target, owner, key, kind)
@@ -399,6 +400,14 @@ class Statements(Calls):
             self.narrow(compared, holds=True)
             return
         for part in walk(pattern):
+            match part:
+                case ast.MatchValue(value=value) | ast.MatchClass(cls=value):
+                    self.evaluate(value)
+                case ast.MatchMapping(keys=keys):
+                    for key in keys:
+                        self.evaluate(key)
+                case _:
+                    pass
             name = getattr(part, "name", None) or getattr(part, "rest", None)
             if isinstance(name, str):
                 self.scope.bind(name, UNKNOWN)
@@ -417,8 +426,9 @@ class Statements(Calls):
         return False
 
     def _raise(self, node: ast.Raise) -> bool:
-        if node.exc is not None:
-            self.evaluate(node.exc)
+        for part in (node.exc, node.cause):
+            if part is not None:
+                self.evaluate(part)
         return False
 
     def _assert(self, node: ast.Assert) -> bool:
@@ -530,16 +540,18 @@ class Statements(Calls):
                     pass
                 case _:
                     kind = UNKNOWN if cls is None else kind
-        for default in (*node.args.defaults, *node.args.kw_defaults):
-            if default is not None:
-                self.evaluate(default)
+        self.read_defaults(node.args)
+        self._read_type_parameters(node)
         self.scope.bind(node.name, kind)
         return True
 
     def _define_class(self, node: ast.ClassDef) -> bool:
         for decorator in node.decorator_list:
             self.evaluate(decorator)
+        self._read_type_parameters(node)
         bases = tuple(self._base(base) for base in node.bases)
+        for keyword in node.keywords:
+            self.evaluate(keyword.value)
         number = self.numbers.get(node)
         if number is None:
             number = self.numbers[node] = len(self.classes)
@@ -560,6 +572,27 @@ class Statements(Calls):
         for name, kind in scope.ever.items():
             definition.bind(name, general(kind) if isinstance(kind, Plain) else kind)
         self.scope.bind(node.name, LocalClass(number))
+        return True
+
+    def _read_type_parameters(self, node: ast.stmt) -> None:
+        """Evaluates what ``[T: bound]`` and ``type X = value`` name, which Python reads when it is asked for."""
+        self.tolerant += 1
+        for parameter in getattr(node, "type_params", ()):
+            for part in children(parameter):
+                if isinstance(part, ast.expr):
+                    self.evaluate(part)
+        self.tolerant -= 1
+
+    def _type_alias(self, node: ast.stmt) -> bool:
+        self._read_type_parameters(node)
+        match children(node):
+            case [ast.Name(id=name), *_, ast.expr() as value]:
+                self.tolerant += 1
+                self.evaluate(value)
+                self.tolerant -= 1
+                self.scope.bind(name, UNKNOWN)
+            case _:
+                pass
         return True
 
     def _add_to_api(self, name: str, number: int, identifier: Type | None) -> None:
@@ -634,6 +667,9 @@ class Statements(Calls):
             self.scope.bind(
                 argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg))
             )
+        for rest in (arguments.vararg, arguments.kwarg):
+            if rest is not None and rest.annotation is not None:
+                self._annotated(rest.annotation)
         if arguments.vararg is not None:
             self.scope.bind(arguments.vararg.arg, Sequence("tuple", UNKNOWN))
         if arguments.kwarg is not None:
@@ -743,6 +779,7 @@ class Statements(Calls):
         ast.FunctionDef: _define_function,
         ast.AsyncFunctionDef: _define_function,
         ast.ClassDef: _define_class,
+        **({ast.TypeAlias: _type_alias} if sys.version_info >= (3, 12) else {}),
     }
 
 
