@@ -12,7 +12,7 @@ from kb_build.flow.source_files import SourceFile, keeps_annotations, module_nam
 from kb_build.flow.statements import Statements
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping
+    from collections.abc import Collection, Mapping, Sequence
 
     from kb_build.flow.api import Api
     from kb_build.flow.types import Resolution, Type
@@ -32,6 +32,7 @@ class Analysis:
     ``types`` has every expression that was reached, ``resolutions`` every part that stands for something of the
     API. ``complete`` is False where the script was too large, or too deep, to be read to its end. ``doubted`` are the
     statements, and parts of them, that stand behind a condition on Blender's version which is not decided.
+    ``functions`` and ``classes`` are the definitions by the numbers that LocalFunction and LocalClass have.
 
     What the script, or one that is analysed with it, adds to the API: ``own_operators`` are operators (paths below
     bpy.ops, their modules too), ``registered`` the properties of classes (class, name), ``own_types`` the names of
@@ -47,6 +48,8 @@ class Analysis:
     registered: frozenset[tuple[str, str]] = frozenset()
     own_types: frozenset[str] = frozenset()
     doubted: Collection[ast.stmt | ast.expr] = ()
+    functions: Sequence[ast.AST] = ()
+    classes: Sequence[ast.ClassDef] = ()
 
 
 class Analyzer(Statements):
@@ -141,9 +144,17 @@ def analyse_files(files: Mapping[str, str], api: Api, version: tuple[int, ...] =
     analyzer = Analyzer(api, version, list(sources.values()))
     analyzer.read()
     own = frozenset(analyzer.own_operators), frozenset(analyzer.registered), frozenset(analyzer.own_types)
+    definitions = [one.node for one in analyzer.functions], [one.node for one in analyzer.classes]
     return {
         path: Analysis(
-            source.tree, source.types, source.resolutions, source.error, source.is_read, *own, source.doubted
+            source.tree,
+            source.types,
+            source.resolutions,
+            source.error,
+            source.is_read,
+            *own,
+            source.doubted,
+            *definitions,
         )
         for path, source in sources.items()
     }
