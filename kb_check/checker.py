@@ -85,6 +85,7 @@ class Checker:
             package = self.package([read])
         script = self.script(read, package)
         found = [finding for rule in all_rules().values() for finding in rule.check(script)]
+        found = [finding for finding in found if not script.is_doubted(finding.span)]
         ignores = Ignores(read.code)
         kept = ignores.kept(found)
         if read.error is None and read.analysis.complete:

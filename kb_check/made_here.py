@@ -11,7 +11,7 @@ from kb_build.symbol_lines import fillers
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_check.script import Script
 
@@ -41,12 +41,22 @@ def named_words(script: Script) -> frozenset[str]:
 
 def named_before(script: Script, place: ast.expr) -> frozenset[str]:
     """Those of the words that may have had an effect when the script comes to a place: all, within a function."""
-    for number, statement in enumerate(script.tree.body):
-        if statement.lineno <= place.lineno <= (statement.end_lineno or 0):
-            if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
-                break
-            return frozenset[str]().union(*_words_by_statement(script)[: number + 1])
-    return named_words(script)
+    number = statement_of(script.tree.body, place)
+    if number < 0 or isinstance(
+        script.tree.body[number], (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
+    ):
+        return named_words(script)
+    return frozenset[str]().union(*_words_by_statement(script)[: number + 1])
+
+
+def statement_of(body: Sequence[ast.stmt], node: ast.expr) -> int:
+    """The place of the statement of a body that a node is in; -1 for none."""
+    at = node.lineno, node.col_offset
+    for place, statement in enumerate(body):
+        end = statement.end_lineno or statement.lineno, statement.end_col_offset or 0
+        if (statement.lineno, statement.col_offset) <= at < end:
+            return place
+    return -1
 
 
 @once_per_script

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from bisect import bisect_right
 from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from typing import TYPE_CHECKING, TypeVar, cast
@@ -128,6 +129,22 @@ class Script:
         """The type of an expression; None if it was not reached."""
         return self.analysis.types.get(node)
 
+    def is_doubted(self, span: Span) -> bool:
+        """Whether what stands here may be for another Blender: the script asks for the version in an open way."""
+        at = bisect_right(self._doubted, (span.line, span.column), key=_begin) - 1
+        return at >= 0 and (span.end_line, span.end_column) <= _end(self._doubted[at])
+
+    @cached_property
+    def _doubted(self) -> list[Span]:
+        """The doubted parts in order, without those that lie in others."""
+        found: list[Span] = []
+        for span in sorted(
+            map(self.span, self.analysis.doubted), key=lambda one: (_begin(one), [-n for n in _end(one)])
+        ):
+            if not found or _end(span) > _end(found[-1]):
+                found.append(span)
+        return found
+
     def span(self, node: ast.AST) -> Span:
         """Where a node stands."""
         line, column = _start(node)
@@ -190,6 +207,14 @@ def once_per_script(find: Callable[[Script], _T]) -> Callable[[Script], _T]:
         return known
 
     return found
+
+
+def _begin(span: Span) -> tuple[int, int]:
+    return span.line, span.column
+
+
+def _end(span: Span) -> tuple[int, int]:
+    return span.end_line, span.end_column
 
 
 def _start(node: ast.AST) -> tuple[int, int]:

@@ -17,7 +17,7 @@ from kb_serve.tool import parsed, reading_tool
 
 if TYPE_CHECKING:
     from kb_check.checker import Checker
-    from kb_check.findings import Finding
+    from kb_check.findings import Finding, Span
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.service import Service
 
@@ -53,7 +53,7 @@ class CheckFinding(BaseModel):
     fix: str = Field(description="The mended line or lines; empty where there is no certain edit.")
     sure: bool = Field(description="Whether the fix does what was meant; else it is a likely correction.")
     absent: list[str] = Field(description="The paths that do not exist, if it is about that.")
-    reached: bool = Field(description="Whether running the code as a whole comes to the line.")
+    reached: bool = Field(description="Whether running the code as a whole surely comes to it.")
 
 
 class CheckReply(BaseModel):
@@ -113,7 +113,7 @@ def _checked(base: KnowledgeBase, code: str, max_tokens: int, note: str) -> Chec
     version = base.meta.get("blender", "")
     lines = split_lines(code)
     tree = read.analysis.tree
-    reach = RunReach(tree) if tree is not None and findings else None
+    reach = RunReach(tree, read.analysis) if tree is not None and findings else None
 
     def listed(finding: Finding) -> CheckFinding:
         return CheckFinding(
@@ -126,8 +126,11 @@ def _checked(base: KnowledgeBase, code: str, max_tokens: int, note: str) -> Chec
             fix=mended(lines, finding.fix),
             sure=finding.fix is not None and finding.fix.sure,
             absent=list(finding.absent),
-            reached=reach is None or reach.comes_to(finding.span.line),
+            reached=reach is None or reach.comes_to(finding.span.line, column_in_bytes(finding.span)),
         )
+
+    def column_in_bytes(span: Span) -> int:
+        return len(lines[span.line - 1][: span.column].encode()) if span.line <= len(lines) else span.column
 
     def is_known(module: str) -> bool:
         return checker.api.symbols.symbol(module) is not None

@@ -113,7 +113,7 @@ def predicted_error(checker: Checker, sample: Sample) -> str:
     for path, read in reads.items():
         reach = _reach(read)
         for finding in checker.check(read, package):
-            if finding.severity == "error" and reach.comes_to(finding.span.line):
+            if finding.severity == "error" and reach.comes_to(finding.span.line, finding.span.column):
                 return f"{path}:{finding.span.line} {finding.message}"
     return ""
 
@@ -121,7 +121,7 @@ def predicted_error(checker: Checker, sample: Sample) -> str:
 def _reach(read: Read) -> RunReach:
     """What a run comes to where Blender calls ``register`` and ``unregister`` after it has read the file."""
     calls = ast.parse("register()\nunregister()").body
-    return RunReach(ast.Module([*read.tree.body, *calls], []))
+    return RunReach(ast.Module([*read.tree.body, *calls], []), read.analysis)
 
 
 def migrated(migrator: Migrator, sample: Sample, folder: Path) -> tuple[Path, list[FileMigration]]:

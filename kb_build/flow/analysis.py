@@ -12,7 +12,7 @@ from kb_build.flow.source_files import SourceFile, keeps_annotations, module_nam
 from kb_build.flow.statements import Statements
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Collection, Mapping, Sequence
 
     from kb_build.flow.api import Api
     from kb_build.flow.types import Resolution, Type
@@ -30,7 +30,9 @@ class Analysis:
     """What a script is. ``tree`` is None, and ``error`` says why, when it cannot be read.
 
     ``types`` has every expression that was reached, ``resolutions`` every part that stands for something of the
-    API. ``complete`` is False where the script was too large to be read to its end.
+    API. ``complete`` is False where the script was too large, or too deep, to be read to its end. ``doubted`` are the
+    statements, and parts of them, that stand behind a condition on Blender's version which is not decided.
+    ``functions`` and ``classes`` are the definitions by the numbers that LocalFunction and LocalClass have.
 
     What the script, or one that is analysed with it, adds to the API: ``own_operators`` are operators (paths below
     bpy.ops, their modules too), ``registered`` the properties of classes (class, name), ``own_types`` the names of
@@ -45,6 +47,9 @@ class Analysis:
     own_operators: frozenset[str] = frozenset()
     registered: frozenset[tuple[str, str]] = frozenset()
     own_types: frozenset[str] = frozenset()
+    doubted: Collection[ast.stmt | ast.expr] = ()
+    functions: Sequence[ast.AST] = ()
+    classes: Sequence[ast.ClassDef] = ()
 
 
 class Analyzer(Statements):
@@ -80,12 +85,14 @@ class Analyzer(Statements):
     def _guarded_read(self, file: SourceFile) -> None:
         assert file.tree is not None
         for statement in file.tree.body:
-            depth = self.depth
+            depth, doubted = self.depth, file.module.state.doubted
             try:
-                if not self.read_body([statement]):
-                    break
+                with self.inside(file, file.module, None):
+                    if not self.read_body([statement]):
+                        break
             except RecursionError:
-                self.depth, self.scope, self.function = depth, file.module, None
+                self.depth, file.module.state.doubted = depth, doubted
+                file.unread.add(statement)
 
     def _read_functions(self) -> bool:
         """Reads the functions that were not read yet, or that know more now; whether there were any."""
@@ -103,7 +110,7 @@ class Analyzer(Statements):
             try:
                 self.run(number)
             except RecursionError:
-                pass
+                file.unread.add(self.functions[number].node.args)
             except StepsExhausted:
                 file.complete = False
             file.steps_left = self.steps_left
@@ -137,8 +144,18 @@ def analyse_files(files: Mapping[str, str], api: Api, version: tuple[int, ...] =
     analyzer = Analyzer(api, version, list(sources.values()))
     analyzer.read()
     own = frozenset(analyzer.own_operators), frozenset(analyzer.registered), frozenset(analyzer.own_types)
+    definitions = [one.node for one in analyzer.functions], [one.node for one in analyzer.classes]
     return {
-        path: Analysis(source.tree, source.types, source.resolutions, source.error, source.complete, *own)
+        path: Analysis(
+            source.tree,
+            source.types,
+            source.resolutions,
+            source.error,
+            source.is_read,
+            *own,
+            source.doubted,
+            *definitions,
+        )
         for path, source in sources.items()
     }
 

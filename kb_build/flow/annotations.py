@@ -64,6 +64,7 @@ def annotated(node: ast.expr, evaluate: Callable[[ast.expr], Type], depth: int =
                 return Instance(kind.cls)
             return LocalInstance(kind.number) if isinstance(kind, LocalClass) else UNKNOWN
         case _:
+            evaluate(node)
             return UNKNOWN
 
 
@@ -86,4 +87,5 @@ def _generic(node: ast.Subscript, evaluate: Callable[[ast.expr], Type], depth: i
     if name in {"dict", "Dict", "Mapping"} and len(inside) == 2:
         key, value = (annotated(item, evaluate, depth) for item in inside)
         return Mapping(key, value)
+    evaluate(node)
     return UNKNOWN

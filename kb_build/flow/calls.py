@@ -408,6 +408,8 @@ class Calls(Narrowing):
         if name in _PLAIN_RESULTS:
             return _PLAIN_RESULTS[name]
         first = arguments[0] if arguments else UNKNOWN
+        if name in {"list", "tuple"} and isinstance(first, Tuple):
+            return first
         if name in _ITERATORS:
             return Sequence(_ITERATORS[name], self.iterated(first) if arguments else UNKNOWN)
         match name:

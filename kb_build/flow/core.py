@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
+from kb_build.flow.scopes import name_doubt
 from kb_build.flow.source_files import SourceFile
 from kb_build.flow.types import (
     UNKNOWN,
@@ -137,7 +138,8 @@ class Core:
         """Records what a part of the script stands for; a later reading of the same part replaces it."""
         self.resolutions[node] = Resolution(
             node, kind, value, _once(symbols), _once(missing), _once(possible),
-            sure and not self.guessing, guarded or self.tolerant > 0 or self.scope.state.doubts(), self.statement,
+            sure and not self.guessing,
+            guarded or self.tolerant > 0 or self.scope.state.doubts(name_doubt(value)), self.statement,
         )  # fmt: skip
         if missing:
             self._denials.append((self.resolutions, node, self.function or self.file))
@@ -184,7 +186,8 @@ class Core:
         number = self.numbers.get(node)
         if number is None:
             number = self.numbers[node] = len(self.functions)
-            self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file))
+            doubted = self.scope.state.doubted_names
+            self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file, doubted=doubted))
         return number
 
     def ancestors(self, number: int) -> Iterator[Type]:

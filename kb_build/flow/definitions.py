@@ -22,7 +22,8 @@ class FunctionDefinition:
     ``received`` joins what calls pass as far as it is known; ``unknown`` names the parameters for which some pass
     something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
     ``used`` are the attributes that it reads from each name, ``asks_version`` whether it looks at Blender's version,
-    once they were asked for. ``file`` is where it stands, ``readings`` what the last run took from other definitions.
+    once they were asked for. ``file`` is where it stands, ``doubted`` what is doubted there, ``readings`` what the last
+    run took from other definitions.
     """
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -41,6 +42,7 @@ class FunctionDefinition:
     used: dict[str, set[str]] | None = None
     asks_version: bool | None = None
     file: SourceFile | None = None
+    doubted: frozenset[str] = frozenset()
     readings: Readings = field(default_factory=Readings)
 
 

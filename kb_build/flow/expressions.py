@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import ast
+import builtins
 import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, MORE_VALUES, PRODUCTS, SUMS, VERSION, T
 from kb_build.flow.members import Members
-from kb_build.flow.scopes import State, chain_text
+from kb_build.flow.scopes import chain_text
+from kb_build.flow.trees import children
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
@@ -31,6 +33,8 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     members,
+    telling,
+    tells,
     union,
     without_none,
 )
@@ -39,7 +43,12 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Sequence as Rows
 
-_BUILTINS = frozenset(
+_ERRORS = frozenset(
+    name
+    for name, kind in vars(builtins).items()
+    if isinstance(kind, type) and issubclass(kind, BaseException)
+)
+_BUILTINS = _ERRORS | frozenset(
     (  # noqa: SIM905
         "abs all any bool dict enumerate filter float frozenset getattr hasattr int isinstance iter len list map max "
         "min next open print range repr reversed round set setattr sorted str sum super tuple type zip delattr "
@@ -69,14 +78,28 @@ class Expressions(Members):
         self.steps_left -= 1
         if self.steps_left < 0:
             raise StepsExhausted
-        reader = self._evaluators.get(type(node))
-        if reader is None or self.depth > DEEPEST:
+        if self.depth > DEEPEST:
+            self.file.unread.add(node)
             return UNKNOWN
+        reader = self._evaluators.get(type(node), Expressions._parts)
         self.depth += 1
         kind = reader(self, node)
         self.depth -= 1
         self.types[node] = kind
         return kind
+
+    def _parts(self, node: ast.expr) -> Type:
+        """Evaluates the parts of an expression of which no more is known."""
+        for part in children(node):
+            if isinstance(part, ast.expr):
+                self.evaluate(part)
+        return UNKNOWN
+
+    def _behind(self, node: ast.expr) -> Type:
+        """Evaluates what stands behind a condition."""
+        if self.scope.state.doubts():
+            self.file.doubted.add(node)
+        return self.evaluate(node)
 
     # Names, attributes, items.
 
@@ -108,19 +131,13 @@ class Expressions(Members):
             )  # fmt: skip
         if known is not None:
             return known
-        kind = found.type
-        if self.version and found.symbols == [VERSION]:
-            return Tuple(tuple(Plain("int", part, VERSION) for part in self.version))
-        return kind
+        return found.type
 
     def _subscript(self, node: ast.Subscript) -> Type:
         owner = self.evaluate(node.value)
-        if isinstance(node.slice, ast.Slice):
-            for part in (node.slice.lower, node.slice.upper, node.slice.step):
-                if part is not None:
-                    self.evaluate(part)
-            return self._sliced(owner, node.slice)
         key = self.evaluate(node.slice)
+        if isinstance(node.slice, ast.Slice):
+            return self._sliced(owner, node.slice)
         return self.item(owner, key, node) if owner is not UNKNOWN else UNKNOWN
 
     def _sliced(self, owner: Type, part: ast.Slice) -> Type:
@@ -153,9 +170,7 @@ class Expressions(Members):
         return Plain(kind, value) if isinstance(value, (str, int, float)) else UNKNOWN
 
     def _text(self, node: ast.JoinedStr) -> Type:
-        for part in node.values:
-            if isinstance(part, ast.FormattedValue):
-                self.evaluate(part.value)
+        self._parts(node)
         return STR
 
     def _tuple(self, node: ast.Tuple | ast.List) -> Type:
@@ -197,8 +212,14 @@ class Expressions(Members):
     # Operations.
 
     def _binary(self, node: ast.BinOp) -> Type:
-        left, right = self.evaluate(node.left), self.evaluate(node.right)
-        return self.operation(node, left, right)
+        long = [node]  # a sum of many terms is read from its first on
+        while isinstance(first := long[-1].left, ast.BinOp):
+            long.append(first)
+        left = self.evaluate(first)
+        for part in reversed(long):
+            left = self.operation(part, left, self.evaluate(part.right))
+            self.types[part] = left
+        return left
 
     def operation(self, node: ast.BinOp | ast.AugAssign, left: Type, right: Type) -> Type:
         """What an operation gives; a product that mathutils refuses is recorded."""
@@ -247,6 +268,8 @@ class Expressions(Members):
                     self.check_value(right, left_node, "compared")
             if len(node.ops) == 1:
                 result = self._decided_here(left, operator, right, right_node)
+            if result == BOOL:
+                result = telling(BOOL, tells(left) or tells(right))
             left, left_node = right, right_node
         return result
 
@@ -293,7 +316,7 @@ class Expressions(Members):
         holds = isinstance(node.op, ast.And)
         settles = Plain("bool", not holds, VERSION)  # what follows it is for other versions
         for place, value in enumerate(node.values):
-            kinds.append(self.evaluate(value))
+            kinds.append(self._behind(value))
             if kinds[-1] == settles:
                 break
             if place < len(node.values) - 1:
@@ -315,14 +338,17 @@ class Expressions(Members):
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
         if isinstance(test, Plain) and isinstance(test.value, bool):
-            return self.evaluate(node.body if test.value else node.orelse)  # the other is for other versions
+            chosen = self.evaluate(
+                node.body if test.value else node.orelse
+            )  # the other is for other versions
+            return telling(chosen, VERSION, value=True) if is_decided(test) else chosen
         before = self.scope.state
         self.scope.state = before.copy()
         self.narrow(node.test, holds=True)
-        first = self.evaluate(node.body)
+        first = self._behind(node.body)
         self.scope.state = before.copy()
         self.narrow(node.test, holds=False)
-        second = self.evaluate(node.orelse)
+        second = self._behind(node.orelse)
         self.scope.state = before
         return join(first, second)
 
@@ -346,19 +372,26 @@ class Expressions(Members):
     # What has names of its own.
 
     def _lambda(self, node: ast.Lambda) -> Type:
+        self.read_defaults(node.args)
         number = self.define_function(node)
         self.functions[number].stale = self.functions[number].runs == 0
         return LocalFunction(number)
 
+    def read_defaults(self, arguments: ast.arguments) -> None:
+        """Evaluates the values that a function's parameters have by default, where it is defined."""
+        for default in (*arguments.defaults, *arguments.kw_defaults):
+            if default is not None:
+                self.evaluate(default)
+
     def _comprehension(self, node: ast.ListComp | ast.SetComp | ast.GeneratorExp) -> Type:
         element: list[Type] = []
-        self._inside(node.generators, lambda: element.append(self.evaluate(node.elt)))
+        self._inside(node.generators, lambda: element.append(self._behind(node.elt)))
         return Sequence(_KINDS.get(type(node), "list"), element[0] if element else UNKNOWN)
 
     def _dict_comprehension(self, node: ast.DictComp) -> Type:
         kinds: list[Type] = []
         self._inside(
-            node.generators, lambda: kinds.extend((self.evaluate(node.key), self.evaluate(node.value)))
+            node.generators, lambda: kinds.extend((self._behind(node.key), self._behind(node.value)))
         )
         return Mapping(kinds[0], kinds[1]) if len(kinds) == 2 else UNKNOWN
 
@@ -415,7 +448,7 @@ class Expressions(Members):
         found: list[str] = []
         for member in members(kind):
             plain = member.element if isinstance(member, Sequence) else member
-            if isinstance(plain, Plain) and plain.source:
+            if isinstance(plain, Plain) and plain.source and not tells(plain):
                 found.append(plain.source)
             elif plain is not NONE:
                 return ()
@@ -453,15 +486,6 @@ class Expressions(Members):
                 unsure = True
         if having or (lacking and not unsure):
             self.resolve(node, use, value, having, lacking)
-
-    def with_state(self, state: State, read: Callable[[], None]) -> State:
-        """Reads something from a state on; returns the state after it."""
-        before, self.scope.state = self.scope.state, state
-        try:
-            read()
-            return self.scope.state
-        finally:
-            self.scope.state = before
 
     _evaluators: ClassVar[dict[type, Callable[..., Type]]] = {
         ast.Name: _name,

@@ -15,6 +15,7 @@ from kb_build.flow.facts import (
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
     SOMETIMES,
+    VERSION,
     T,
 )
 from kb_build.flow.types import (
@@ -224,7 +225,15 @@ class Members(Core):
             found.types.append(UNKNOWN)
             return
         found.symbols.append(member.symbol.path)
-        found.types.append(self._held(member.type, kind, name))
+        found.types.append(self._of_version(member.symbol.path) or self._held(member.type, kind, name))
+
+    def _of_version(self, path: str) -> Type | None:
+        """What Blender tells of its version under a path: its numbers, or texts."""
+        if not self.version or not path.startswith(VERSION):
+            return None
+        if path != VERSION:
+            return Plain("str", None, VERSION)
+        return Tuple(tuple(Plain("int", part, VERSION) for part in self.version))
 
     def local_module(self, name: str) -> Type:
         """A module of the files that are analysed together, which is read first; UNKNOWN for no such module."""

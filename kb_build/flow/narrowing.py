@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from dataclasses import replace
 
-from kb_build.flow.expressions import Expressions
 from kb_build.flow.facts import DISCRIMINANTS, T
+from kb_build.flow.guards import Guards
 from kb_build.flow.scopes import chain_text
 from kb_build.flow.types import (
     NONE,
@@ -28,20 +28,24 @@ from kb_build.flow.types import (
 _OBJECT = f"{T}Object"
 
 
-class Narrowing(Expressions):
+class Narrowing(Guards):
     """Applies conditions to what names and chains hold."""
 
-    def narrow(self, test: ast.expr, *, holds: bool) -> None:  # noqa: PLR0912 - one case a form
+    def narrow(self, test: ast.expr, *, holds: bool) -> None:
         """See :class:`core.Core`."""
+        self.doubt(test, holds=holds)
+        self._narrow(test, holds=holds)
+
+    def _narrow(self, test: ast.expr, *, holds: bool) -> None:  # noqa: PLR0912 - one case a form
         match test:
             case ast.UnaryOp(op=ast.Not()):
-                self.narrow(test.operand, holds=not holds)
+                self._narrow(test.operand, holds=not holds)
             case ast.BoolOp(op=ast.And()) if holds:
                 for value in test.values:
-                    self.narrow(value, holds=True)
+                    self._narrow(value, holds=True)
             case ast.BoolOp(op=ast.Or()) if not holds:
                 for value in test.values:
-                    self.narrow(value, holds=False)
+                    self._narrow(value, holds=False)
             case ast.BoolOp(op=ast.Or()) if holds:
                 self._any_of(test.values)
             case ast.Name() | ast.Attribute() | ast.NamedExpr():
@@ -64,9 +68,9 @@ class Narrowing(Expressions):
             node = node.value
         asked = self.scope.asked_by(node.id) if isinstance(node, ast.Name) else node
         if isinstance(asked, ast.Call):
-            self.narrow(asked, holds=holds)
+            self._narrow(asked, holds=holds)
 
-    def _doubt(self, text: str) -> None:
+    def _doubt_chain(self, text: str) -> None:
         if text:
             self.scope.state.doubted |= {text}
 
@@ -95,7 +99,7 @@ class Narrowing(Expressions):
         kinds: dict[str, list[Type]] = {}
         for test in tests:
             self.scope.state = before.copy()
-            self.narrow(test, holds=True)
+            self._narrow(test, holds=True)
             for name, kind in self.scope.state.names.items():
                 if before.names.get(name) is not kind:
                     kinds.setdefault(name, []).append(kind)
@@ -109,8 +113,7 @@ class Narrowing(Expressions):
         if isinstance(right, ast.Constant) and right.value is None:
             if not positive:
                 self._without_none(left.target if isinstance(left, ast.NamedExpr) else left)
-            else:
-                self._answered(left, holds=False)
+            self._answered(left, holds=not positive)
             return
         if not positive or not isinstance(left, ast.Attribute) or left.attr not in DISCRIMINANTS:
             return
@@ -162,7 +165,7 @@ class Narrowing(Expressions):
         subject, answer = call.args[:2]
         text, attribute = chain_text(subject), literal_text(self._type_of(answer))
         if not holds:
-            self._doubt(text)
+            self._doubt_chain(text)
             return
         owner = self._type_of(subject)
         if not text or not attribute or owner is UNKNOWN or owner is NONE:
@@ -171,7 +174,7 @@ class Narrowing(Expressions):
         if found.missing or found.possible:
             self.scope.state.chains[f"{text}.{attribute}"] = found.type
         if found.missing:
-            self._doubt(text)
+            self._doubt_chain(text)
 
     @staticmethod
     def _instance(kind: Type) -> Type:

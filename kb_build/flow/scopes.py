@@ -38,7 +38,8 @@ class State:
     """What is known at one place of one scope: of names, and of chains (``context.object``) by their text.
 
     ``doubted`` are names and chains of which the script has found here that they lack a member, as those of another
-    Blender do: what it reads from them is not for this one.
+    Blender do: what it reads from them is not for this one; members (``.draw_type``) that it has asked for; or
+    EVERYTHING.
     """
 
     names: dict[str, Type] = field(default_factory=dict[str, Type])
@@ -52,6 +53,16 @@ class State:
     def doubts(self, text: str = EVERYTHING) -> bool:
         """Whether what is read here, or from this chain, may be for another Blender."""
         return bool(self.doubted) and (text in self.doubted or EVERYTHING in self.doubted)
+
+    @property
+    def doubted_names(self) -> frozenset[str]:
+        """What is doubted whatever the names here hold: EVERYTHING, members that were asked for."""
+        return frozenset(doubt for doubt in self.doubted if doubt == EVERYTHING or doubt.startswith("."))
+
+
+def name_doubt(name: str) -> str:
+    """What says in ``State.doubted`` that members of this name are doubted, whatever has them."""
+    return f".{name}"
 
 
 def joined(states: Sequence[State]) -> State:

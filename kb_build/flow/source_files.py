@@ -23,7 +23,9 @@ class SourceFile:
     """One file: its module's dotted name, its text as a tree (None with an ``error``), and what was found in it.
 
     ``keeps_annotations``: Python leaves its annotations unread. ``steps_left`` is what may still be spent on reading
-    it, ``complete`` whether that was enough, ``readings`` what its module took from definitions.
+    it, ``complete`` whether that was enough, ``readings`` what its module took from definitions, ``doubted`` the
+    statements and parts of them that may all be for another Blender, ``unread`` what was too deep inside to be read at
+    some time.
     """
 
     name: str
@@ -36,8 +38,15 @@ class SourceFile:
     types: dict[ast.expr, Type] = field(default_factory=dict["ast.expr", "Type"])
     resolutions: dict[ast.AST, Resolution] = field(default_factory=dict["ast.AST", "Resolution"])
     readings: Readings = field(default_factory=Readings)
+    doubted: set[ast.stmt | ast.expr] = field(default_factory=set["ast.stmt | ast.expr"])
+    unread: set[ast.AST] = field(default_factory=set["ast.AST"])
     started: bool = False
     complete: bool = True
+
+    @property
+    def is_read(self) -> bool:
+        """Whether all of it was read that a run may come to."""
+        return self.complete and self.unread <= self.types.keys()
 
     @cached_property
     def given_names(self) -> Mapping[str, Sequence[ast.expr | None]]:

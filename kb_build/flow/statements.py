@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+import sys
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -12,12 +13,14 @@ from kb_build.flow.core import ANY
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.expressions import is_decided, is_math
 from kb_build.flow.facts import DISCRIMINANTS, PARAMETERS, T
+from kb_build.flow.guards import assigned_names
 from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
-from kb_build.flow.trees import walk
+from kb_build.flow.trees import children, walk
 from kb_build.flow.types import (
     NONE,
     STR,
     UNKNOWN,
+    Builtin,
     ClassObject,
     Function,
     Instance,
@@ -53,6 +56,7 @@ _FORGIVING = frozenset(
         "BaseException",
         "ImportError",
         "KeyError",
+        "LookupError",
         "ModuleNotFoundError",
         "TypeError",
         "RuntimeError",
@@ -70,6 +74,8 @@ class Statements(Calls):
         """Reads statements one after the other; whether what follows them can be reached."""
         for statement in body:
             self.statement = statement
+            if self.scope.state.doubted and self.scope.state.doubts():
+                self.file.doubted.add(statement)
             reader = self._statement_readers.get(type(statement))
             if reader is not None and not reader(self, statement):
                 return False
@@ -79,6 +85,7 @@ class Statements(Calls):
 
     def bind_target(self, target: ast.expr, kind: Type, value: ast.expr | None = None) -> None:
         """See :class:`core.Core`."""
+        kind = self.told(kind, value)
         match target:
             case ast.Name():
                 self.scope.bind(target.id, kind)
@@ -89,7 +96,7 @@ class Statements(Calls):
                 self._unpack(target, kind)
             case ast.Subscript():
                 owner = self.evaluate(target.value)
-                key = self.evaluate(target.slice) if not isinstance(target.slice, ast.Slice) else UNKNOWN
+                key = self.evaluate(target.slice)
                 if owner is not UNKNOWN:
                     self.item(owner, key, target)
                 self._fill(target, owner, key, kind)
@@ -242,32 +249,21 @@ class Statements(Calls):
         # Only another version's code is left out: a switch may be set by whoever reads the script.
         truth = literal(test) if is_decided(test) else None
         before = self.scope.state
-        asks = truth is None and (self._asks_version(node.test) or _is_for_type_checkers(node.test))
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
             if isinstance(truth, bool) and truth is not holds:
                 continue
             self.scope.state = before.copy()
             self.narrow(node.test, holds=holds)
-            if asks:
-                self.scope.state.doubted |= {EVERYTHING}
             ways.append(self._way(self.scope.state, body))
         reached = self._meet(ways, before)
         if None not in ways:
             self.scope.state.doubted = before.doubted
+        if flags := assigned_names([*node.body, *node.orelse]):
+            decided = truth is not None
+            asked = frozenset({EVERYTHING}) if decided else self.asked(node.test)
+            self.tell(flags, asked, decided=decided)
         return reached
-
-    def _asks_version(self, test: ast.expr) -> bool:
-        """Whether a condition asks for Blender's version by a function of the script, whose answer is not known."""
-        for node in walk(test):
-            kind = self.types.get(node.func) if isinstance(node, ast.Call) else None
-            if isinstance(kind, LocalFunction):
-                function = self.functions[kind.number]
-                if function.asks_version is None:
-                    function.asks_version = _reads_version(function.node)
-                if function.asks_version:
-                    return True
-        return False
 
     def _loop(self, body: Rows[ast.stmt], orelse: Rows[ast.stmt], enter: Callable[[], None]) -> bool:
         """Reads a loop's body twice, so that what one turn binds is known in the next."""
@@ -321,14 +317,15 @@ class Statements(Calls):
             kind = self.evaluate(item.context_expr)
             if item.optional_vars is not None:
                 self.bind_target(item.optional_vars, kind)
-        forgiving = any(_suppresses(item.context_expr) for item in node.items)
+        forgiving = any(self._suppresses(item.context_expr) for item in node.items)
         self.tolerant += forgiving
         reached = self.read_body(node.body)
         self.tolerant -= forgiving
         return reached or forgiving
 
     def _try(self, node: ast.Try) -> bool:
-        forgiving = any(_forgives(handler) for handler in node.handlers)
+        forgives = [self._forgives(handler) for handler in node.handlers]
+        forgiving = any(forgives)
         before = self.scope.state
         self.tolerant += forgiving
         after = self._way(before.copy(), node.body)
@@ -337,26 +334,48 @@ class Statements(Calls):
         if after is not None and node.orelse:
             after = self._way(after, node.orelse)
         ways = [after]
-        for handler in node.handlers:
+        for handler, is_ready in zip(node.handlers, forgives, strict=True):
             self.scope.state = within.copy()
-            if handler.type is not None:
-                self.evaluate(handler.type)
             if handler.name:
                 self.scope.bind(handler.name, UNKNOWN)
             # What is done where a name is lacking may be for another Blender.
-            self.tolerant += _forgives(handler)
+            self.tolerant += is_ready
             ways.append(self._way(self.scope.state, handler.body))
-            self.tolerant -= _forgives(handler)
+            self.tolerant -= is_ready
         reached = self._meet(ways, within.copy())
+        if forgiving:
+            handled = [statement for handler in node.handlers for statement in handler.body]
+            self.tell(assigned_names([*node.body, *node.orelse, *handled]), self.lacked(node.body))
         return self.read_body(node.finalbody) and reached
+
+    def _forgives(self, handler: ast.ExceptHandler) -> bool:
+        """Whether a handler is ready for a name that does not exist."""
+        return handler.type is None or self._is_forgiving(handler.type)
+
+    def _suppresses(self, manager: ast.expr) -> bool:
+        """Whether a context manager, which was read, is ready for a name that does not exist.
+
+        ``contextlib.suppress(AttributeError)`` is, and so is what else is given such an error: ``assertRaises``.
+        """
+        return isinstance(manager, ast.Call) and any(map(self._is_forgiving, manager.args))
+
+    def _is_forgiving(self, errors: ast.expr) -> bool:
+        """Whether one of the classes that an expression stands for is that of a missing name's error."""
+        kinds = [*members(self.evaluate(errors))]
+        for kind in kinds:  # it grows
+            if isinstance(kind, Tuple):
+                kinds += kind.items
+        return any(isinstance(kind, Builtin) and kind.name in _FORGIVING for kind in kinds)
 
     def _match(self, node: ast.Match) -> bool:
         subject = self.evaluate(node.subject)
         before = self.scope.state
+        otherwise = before.copy()
+        otherwise.doubted |= self.asked(node.subject)
         ways: list[State | None] = []
         whole = False
         for case in node.cases:
-            self.scope.state = before.copy()
+            self.scope.state = otherwise.copy()
             self._bind_pattern(case.pattern, subject, node.subject)
             if case.guard is not None:
                 self.evaluate(case.guard)
@@ -366,8 +385,12 @@ class Statements(Calls):
             )
             ways.append(self._way(self.scope.state, case.body))
         if not whole:
-            ways.append(before)
-        return self._meet(ways, before)
+            ways.append(otherwise)
+        reached = self._meet(ways, before)
+        if None not in ways:
+            self.scope.state.doubted = before.doubted
+        self.tell(assigned_names(part for case in node.cases for part in case.body), self.asked(node.subject))
+        return reached
 
     def _bind_pattern(self, pattern: ast.pattern, subject: Type, node: ast.expr) -> None:
         if isinstance(pattern, ast.MatchValue):
@@ -377,6 +400,14 @@ class Statements(Calls):
             self.narrow(compared, holds=True)
             return
         for part in walk(pattern):
+            match part:
+                case ast.MatchValue(value=value) | ast.MatchClass(cls=value):
+                    self.evaluate(value)
+                case ast.MatchMapping(keys=keys):
+                    for key in keys:
+                        self.evaluate(key)
+                case _:
+                    pass
             name = getattr(part, "name", None) or getattr(part, "rest", None)
             if isinstance(name, str):
                 self.scope.bind(name, UNKNOWN)
@@ -388,21 +419,24 @@ class Statements(Calls):
         return True
 
     def _return(self, node: ast.Return) -> bool:
-        kind = self.evaluate(node.value) if node.value is not None else NONE
+        kind = self.told(self.evaluate(node.value), node.value) if node.value is not None else NONE
         if self.function is not None:
             before, kind = self.function.returned, bounded(kind)
             self.function.returned = kind if before is None else join(before, kind)
         return False
 
     def _raise(self, node: ast.Raise) -> bool:
-        if node.exc is not None:
-            self.evaluate(node.exc)
+        for part in (node.exc, node.cause):
+            if part is not None:
+                self.evaluate(part)
         return False
 
     def _assert(self, node: ast.Assert) -> bool:
-        self.evaluate(node.test)
+        holds = self.evaluate(node.test)
         self.narrow(node.test, holds=True)
-        return True
+        if node.msg is not None:
+            self.evaluate(node.msg)
+        return not is_decided(holds) or literal(holds) is True
 
     def _delete(self, node: ast.Delete) -> bool:
         for target in node.targets:
@@ -506,16 +540,18 @@ class Statements(Calls):
                     pass
                 case _:
                     kind = UNKNOWN if cls is None else kind
-        for default in (*node.args.defaults, *node.args.kw_defaults):
-            if default is not None:
-                self.evaluate(default)
+        self.read_defaults(node.args)
+        self._read_type_parameters(node)
         self.scope.bind(node.name, kind)
         return True
 
     def _define_class(self, node: ast.ClassDef) -> bool:
         for decorator in node.decorator_list:
             self.evaluate(decorator)
+        self._read_type_parameters(node)
         bases = tuple(self._base(base) for base in node.bases)
+        for keyword in node.keywords:
+            self.evaluate(keyword.value)
         number = self.numbers.get(node)
         if number is None:
             number = self.numbers[node] = len(self.classes)
@@ -536,6 +572,27 @@ class Statements(Calls):
         for name, kind in scope.ever.items():
             definition.bind(name, general(kind) if isinstance(kind, Plain) else kind)
         self.scope.bind(node.name, LocalClass(number))
+        return True
+
+    def _read_type_parameters(self, node: ast.stmt) -> None:
+        """Evaluates what ``[T: bound]`` and ``type X = value`` name, which Python reads when it is asked for."""
+        self.tolerant += 1
+        for parameter in getattr(node, "type_params", ()):
+            for part in children(parameter):
+                if isinstance(part, ast.expr):
+                    self.evaluate(part)
+        self.tolerant -= 1
+
+    def _type_alias(self, node: ast.stmt) -> bool:
+        self._read_type_parameters(node)
+        match children(node):
+            case [ast.Name(id=name), *_, ast.expr() as value]:
+                self.tolerant += 1
+                self.evaluate(value)
+                self.tolerant -= 1
+                self.scope.bind(name, UNKNOWN)
+            case _:
+                pass
         return True
 
     def _add_to_api(self, name: str, number: int, identifier: Type | None) -> None:
@@ -572,7 +629,8 @@ class Statements(Calls):
         function.seen = self.stamp(function)
         function.readings = {}
         try:
-            with self.inside(function.file or self.file, Scope(function.scope), function):
+            scope = Scope(function.scope, state=State(doubted=function.doubted))
+            with self.inside(function.file or self.file, scope, function):
                 self._read_function(function)
         finally:
             function.running = False
@@ -609,6 +667,9 @@ class Statements(Calls):
             self.scope.bind(
                 argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg))
             )
+        for rest in (arguments.vararg, arguments.kwarg):
+            if rest is not None and rest.annotation is not None:
+                self._annotated(rest.annotation)
         if arguments.vararg is not None:
             self.scope.bind(arguments.vararg.arg, Sequence("tuple", UNKNOWN))
         if arguments.kwarg is not None:
@@ -718,6 +779,7 @@ class Statements(Calls):
         ast.FunctionDef: _define_function,
         ast.AsyncFunctionDef: _define_function,
         ast.ClassDef: _define_class,
+        **({ast.TypeAlias: _type_alias} if sys.version_info >= (3, 12) else {}),
     }
 
 
@@ -744,23 +806,6 @@ def _used_names(function: ast.AST) -> dict[str, set[str]]:
     return used
 
 
-def _reads_version(function: ast.AST) -> bool:
-    """Whether a function looks at ``app.version``."""
-    return any(
-        isinstance(node, ast.Attribute)
-        and node.attr == "version"
-        and isinstance(node.value, (ast.Attribute, ast.Name))
-        and (node.value.attr if isinstance(node.value, ast.Attribute) else node.value.id) == "app"
-        for node in walk(function)
-    )
-
-
-def _is_for_type_checkers(test: ast.expr) -> bool:
-    """Whether what follows a condition never runs: it may name what only stubs have."""
-    name = test.attr if isinstance(test, ast.Attribute) else test.id if isinstance(test, ast.Name) else ""
-    return name == "TYPE_CHECKING"
-
-
 def _differs(before: State, after: State) -> bool:
     """Whether a loop's first turn bound something that its beginning has otherwise."""
     return any(
@@ -768,24 +813,3 @@ def _differs(before: State, after: State) -> bool:
         for name, kind in after.names.items()
         if name in before.names
     )
-
-
-def _forgives(handler: ast.ExceptHandler) -> bool:
-    """Whether a handler is ready for a name that does not exist."""
-    if handler.type is None:
-        return True
-    names = handler.type.elts if isinstance(handler.type, ast.Tuple) else [handler.type]
-    return any(map(_is_forgiving, names))
-
-
-def _suppresses(manager: ast.expr) -> bool:
-    """Whether a context manager is ready for a name that does not exist: ``contextlib.suppress(AttributeError)``."""
-    if not isinstance(manager, ast.Call):
-        return False
-    function = manager.func
-    name = function.attr if isinstance(function, ast.Attribute) else getattr(function, "id", "")
-    return name == "suppress" and any(map(_is_forgiving, manager.args))
-
-
-def _is_forgiving(error: ast.expr) -> bool:
-    return isinstance(error, ast.Name) and error.id in _FORGIVING

@@ -9,6 +9,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import VERSION
+
 if TYPE_CHECKING:
     import ast
     from collections.abc import Iterable, Iterator
@@ -31,7 +33,8 @@ class NoneValue:
 class Plain:
     """A number, a text, a truth value. ``value`` is the literal where it is known, else None.
 
-    ``source`` is the property or parameter that it was read from, which knows its values.
+    ``source`` is the property or parameter that it was read from, which knows its values; of what tells of this very
+    Blender, it is ``bpy.app.version``, or the names that Blender was asked for, each behind a dot: ``.draw_type``.
     """
 
     kind: str
@@ -215,6 +218,32 @@ def general(kind: Type) -> Type:
     """A type without its literal value: what a name can hold besides its first value."""
     if isinstance(kind, Plain) and kind.value is not None:
         return Plain(kind.kind, None, kind.source)
+    return kind
+
+
+def tells(kind: Type) -> str:
+    """The source (see :class:`Plain`) by which a value, or a part of it, tells of this Blender; empty for none."""
+    for member in members(kind):
+        found = ""
+        if isinstance(member, Plain):
+            found = member.source if member.source.startswith((VERSION, ".")) else ""
+        elif isinstance(member, Tuple):
+            found = next(filter(None, map(tells, member.items)), "")
+        elif isinstance(member, Sequence):
+            found = tells(member.element)
+        if found:
+            return found
+    return ""
+
+
+def telling(kind: Type, source: str, *, value: bool = False) -> Type:
+    """A plain type as one that tells of this Blender, by ``source`` if any; its literal stays with ``value``."""
+    if not source:
+        return kind
+    if isinstance(kind, Union):
+        return union(telling(member, source) for member in kind.members)
+    if isinstance(kind, Plain) and not kind.source:
+        return Plain(kind.kind, kind.value if value else None, source)
     return kind
 
 

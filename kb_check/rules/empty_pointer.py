@@ -133,9 +133,14 @@ def _is_active(script: Script, node: ast.Attribute) -> bool:
     if row is None or not _ACTIVE.issuperset(row.symbols) or "active" in named_words(script):
         return False
     made = [call for call in script.resolutions("call") if any(map(_PRIMITIVE.fullmatch, call.symbols))]
-    before = any(getattr(call.node, "end_lineno", 0) <= node.lineno for call in made)
+    here = node.lineno, node.col_offset
+    before = any(isinstance(call.node, ast.Call) and _end(call.node) <= here for call in made)
     computed = any(node.id == "getattr" for node in script.all(ast.Name))
     return before and not computed and has_plain_operators_only(script)
+
+
+def _end(node: ast.expr) -> tuple[int, int]:
+    return node.end_lineno or 0, node.end_col_offset or 0
 
 
 RULE = Rule("empty-pointer", "warning", "Something read from what is None on a new thing", _check)

@@ -20,7 +20,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.records import WHEN_PAIRED
 from kb_check.findings import Finding
-from kb_check.made_here import is_new, knows_all, named_words
+from kb_check.made_here import is_new, knows_all, named_words, statement_of
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 
@@ -101,22 +101,14 @@ def _is_paired_later(script: Script, node: ast.Subscript) -> bool:
     """Whether every pairing stands further down, all of them in the body of the module itself."""
     own = list(script.tree.body)
     plain = (ast.Expr, ast.Assign, ast.AnnAssign)
-    here = _place(own, node)
+    here = statement_of(own, node)
     calls = [part for part in script.all(ast.Attribute) if part.attr == _PAIRING]
-    places = [_place(own, call) for call in calls]
+    places = [statement_of(own, call) for call in calls]
     return (
         here >= 0
         and isinstance(own[here], plain)
         and all(place > here and isinstance(own[place], plain) for place in places)
     )
-
-
-def _place(body: list[ast.stmt], node: ast.Subscript | ast.Attribute) -> int:
-    """The statement of a body that a node is in; -1 for none."""
-    for place, statement in enumerate(body):
-        if statement.lineno <= node.lineno <= (statement.end_lineno or statement.lineno):
-            return place
-    return -1
 
 
 RULE = Rule("hidden-socket", "error", "A socket that the node's mode does not have", _check)

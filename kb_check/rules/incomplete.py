@@ -1,7 +1,7 @@
-"""A script that is too large to be checked to its end.
+"""A script that is too large, or too deeply nested, to be checked to its end.
 
-Scripts of up to 2,000,000 characters are read, and each gets a share of work by its length. What was read is checked;
-of the rest nothing is said.
+Scripts of up to 2,000,000 characters are read, and each gets a share of work by its length; statements and expressions
+are read to a depth that hardly a script has. What was read is checked; of the rest nothing is said.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ if TYPE_CHECKING:
 def _check(script: Script) -> Iterator[Finding]:
     if not script.analysis.complete:
         read = "a part" if script.tree.body else "nothing"
-        message = f"The script is too large ({len(script.code):,} characters): {read} of it was checked."
+        why = f"too large ({len(script.code):,} characters) or too deeply nested"
+        message = f"The script is {why}: {read} of it was checked."
         yield Finding(RULE.id, "warning", Span(1, 0, 1, 0), message)
 
 

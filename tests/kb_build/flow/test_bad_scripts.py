@@ -36,7 +36,6 @@ def test_what_cannot_be_parsed_says_why(api: Api, code: str) -> None:
     "code",
     [
         "import bpy\nx = " + "+".join(["bpy.context.object.location.x"] * 500),
-        "import bpy\nx = bpy" + ".context" * 600,
         "import bpy\n" + "".join(f"{' ' * n}if x:\n" for n in range(90)) + " " * 90 + "bpy.data",
         "def f(x):\n    return g(x)\ndef g(x):\n    return f(x)\nf(1)",
         "class A(A): pass\nclass B(C): pass\nclass C(B): pass\nB().x\nA().y",
@@ -70,3 +69,22 @@ def test_what_takes_too_much_work_is_left(api: Api, monkeypatch: pytest.MonkeyPa
     found = analyse("import bpy\n" + "bpy.context.object.location\n" * 1_000, api)
     assert not found.complete
     assert len(found.resolutions) > 100
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "import bpy\nx = bpy" + ".context" * 600,
+        "import bpy\nif x: pass\n" + "elif x: bpy.data\n" * 3_000,
+        "import bpy\ndef f():\n    if x: pass\n" + "    elif x: bpy.data\n" * 3_000,
+        "import bpy\nx = " + "-" * 180 + "bpy.data",
+        "import bpy\nx = " + "(bpy.data, " * 170 + "1" + ")" * 170,
+    ],
+)
+def test_what_is_too_deep_is_told(api: Api, code: str) -> None:
+    found = analyse(code + "\nbpy.context.object.draw_type", api)
+    assert found.error is None
+    assert not found.complete
+    row = next(row for row in found.resolutions.values() if row.value == "draw_type")
+    assert row.missing
+    assert not row.guarded

@@ -57,3 +57,10 @@ def test_what_functions_fill_may_be_filled_before(rule_checker: Checker) -> None
     fill = "def fill(ob):\n    ob.animation_data_create()\n"
     found = rule_checker.check(f"import bpy\ndef read():\n{read}{fill}", rules=["empty-pointer"])
     assert 6 not in {one.span.line for one in found}
+
+
+def test_the_order_on_one_line_counts(rule_checker: Checker) -> None:
+    made = "import bpy\nob = bpy.data.objects.new('a', None); m = ob.modifiers.new('f', 'FLUID'); "
+    fill, read = "m.fluid_type = 'DOMAIN'; ", "m.domain_settings.domain_type = 'GAS'; "
+    assert rule_checker.check(made + fill + read, rules=["empty-pointer"]) == []
+    assert rule_checker.check(made + read + fill, rules=["empty-pointer"])

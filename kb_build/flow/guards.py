@@ -1,0 +1,139 @@
+"""What a script asks of Blender before it goes on: its version, and whether a name exists.
+
+What stands behind such a condition may be for another Blender. A condition that this Blender decides leaves the other
+way out; behind one that is not decided, everything is *doubted*, or the names that were asked for.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.expressions import Expressions, is_decided
+from kb_build.flow.facts import VERSION
+from kb_build.flow.scopes import EVERYTHING, name_doubt
+from kb_build.flow.trees import children, walk
+from kb_build.flow.types import (
+    UNKNOWN,
+    LocalFunction,
+    Plain,
+    Type,
+    Union,
+    literal,
+    literal_text,
+    telling,
+    tells,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+
+class Guards(Expressions):
+    """Finds what conditions ask, and which names hold the answers."""
+
+    def doubt(self, test: ast.expr, *, holds: bool) -> None:
+        """Doubts what is read from here on, where a condition, which was read, holds or does not."""
+        kind = self.types.get(test, UNKNOWN)
+        if is_decided(kind):
+            asked = frozenset({EVERYTHING}) if literal(kind) is not holds else frozenset[str]()
+        else:
+            asked = self.asked(test)
+        self.scope.state.doubted |= asked
+
+    def asked(self, node: ast.expr) -> frozenset[str]:
+        """What an expression, which was read, asks without being decided: doubts, as State has them."""
+        found: set[str] = set()
+        waiting: list[ast.AST] = [node]
+        for part in waiting:
+            if isinstance(part, ast.BoolOp):  # the sides that are decided leave the answer to the others
+                waiting += (side for side in part.values if not is_decided(self.types.get(side, UNKNOWN)))
+                continue
+            if isinstance(part, ast.expr):
+                found |= _doubts(tells(self.types.get(part, UNKNOWN)))
+            match part:
+                case ast.Name(id="TYPE_CHECKING") | ast.Attribute(attr="TYPE_CHECKING"):
+                    found.add(EVERYTHING)  # what follows never runs: it may name what only stubs have
+                case ast.Call():
+                    found.update(map(name_doubt, self._texts(part.args)))
+                    if self._calls_for_version(part):
+                        found.add(EVERYTHING)
+                case ast.Compare(ops=[ast.In() | ast.NotIn()]):
+                    found.update(map(name_doubt, self._texts([part.left])))
+                case _:
+                    pass
+            waiting += children(part)
+        return frozenset(found)
+
+    def told(self, kind: Type, value: ast.expr | None) -> Type:
+        """A value as a name holds it: one that is computed from what Blender told tells it on."""
+        if not self.version or value is None or isinstance(value, ast.Constant) or not _may_tell(kind):
+            return kind
+        return telling(kind, _as_source(self.asked(value)))
+
+    def tell(self, names: Iterable[str], doubts: frozenset[str], *, decided: bool = False) -> None:
+        """Names hold what they do because of what Blender told: flags that are set behind a condition."""
+        source = _as_source(doubts)
+        held = self.scope.state.names
+        for name in names if source else ():
+            kind = held.get(name, UNKNOWN)
+            if _may_tell(kind):
+                self.scope.bind(name, telling(kind, source, value=decided))
+
+    def lacked(self, statements: Iterable[ast.stmt]) -> frozenset[str]:
+        """The names in statements, which were read, that this Blender lacks, as doubts."""
+        rows = (self.resolutions.get(node) for statement in statements for node in walk(statement))
+        return frozenset(name_doubt(row.value) for row in rows if row is not None and row.missing)
+
+    def _texts(self, nodes: Iterable[ast.expr]) -> Iterator[str]:
+        for node in nodes:
+            text = literal_text(self.types.get(node, UNKNOWN))
+            if text is not None:
+                yield text
+
+    def _calls_for_version(self, call: ast.Call) -> bool:
+        """Whether a function of the script is called that looks at Blender's version."""
+        kind = self.types.get(call.func)
+        if not isinstance(kind, LocalFunction):
+            return False
+        function = self.functions[kind.number]
+        if function.asks_version is None:
+            function.asks_version = _reads_version(function.node)
+        return function.asks_version
+
+
+def assigned_names(statements: Iterable[ast.stmt]) -> list[str]:
+    """The names that statements assign to in their own scope, as far as that is plainly written."""
+    found: list[str] = []
+    for statement in statements:
+        if isinstance(statement, ast.Assign):
+            found += [target.id for target in statement.targets if isinstance(target, ast.Name)]
+    return found
+
+
+def _doubts(source: str) -> frozenset[str]:
+    """What a value makes doubted that tells of this Blender by a source (see types.Plain)."""
+    names = source.split(".")[1:] if source.startswith(".") else []
+    return frozenset({EVERYTHING} if source == VERSION else map(name_doubt, names))
+
+
+def _as_source(doubts: frozenset[str]) -> str:
+    """The same as a source."""
+    return VERSION if EVERYTHING in doubts else "".join(sorted(doubts))
+
+
+def _may_tell(kind: Type) -> bool:
+    return isinstance(kind, Plain) or (
+        isinstance(kind, Union) and any(isinstance(member, Plain) for member in kind.members)
+    )
+
+
+def _reads_version(function: ast.AST) -> bool:
+    """Whether a function looks at ``app.version``."""
+    return any(
+        isinstance(node, ast.Attribute)
+        and node.attr.startswith("version")
+        and isinstance(node.value, (ast.Attribute, ast.Name))
+        and (node.value.attr if isinstance(node.value, ast.Attribute) else node.value.id) == "app"
+        for node in walk(function)
+    )

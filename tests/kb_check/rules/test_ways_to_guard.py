@@ -1,0 +1,199 @@
+"""Every usual way to ask for Blender's version, or for a name, keeps what stands behind it from being an error."""
+
+from __future__ import annotations
+
+from textwrap import dedent, indent
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+
+# ``draw_type`` went in 2.80: each of these runs without an error.
+GUARDS = {
+    "version": "if bpy.app.version < (2, 80):\n    ob.draw_type",
+    "imported version": "from bpy.app import version\nif version < (2, 80):\n    ob.draw_type",
+    "version by another name": "from bpy.app import version as v\nif v < (2, 80):\n    ob.draw_type",
+    "module in a name": "app = bpy.app\nif app.version < (2, 80):\n    ob.draw_type",
+    "version in a name": "v = bpy.app.version\nif v < (2, 80):\n    ob.draw_type",
+    "constant": "OLD = bpy.app.version < (2, 80)\nif OLD:\n    ob.draw_type",
+    "constant in a function": "OLD = bpy.app.version < (2, 80)\ndef f():\n    if OLD:\n        ob.draw_type\nf()",
+    "constant of a class": "class C:\n    OLD = bpy.app.version < (2, 80)\nif C.OLD:\n    ob.draw_type",
+    "constant of its own class": """
+        class C:
+            OLD = bpy.app.version < (2, 80)
+            def f(self):
+                if self.OLD:
+                    ob.draw_type
+        C().f()
+    """,
+    "attribute of an instance": """
+        class C:
+            def __init__(self):
+                self.old = bpy.app.version < (2, 80)
+            def f(self):
+                if self.old:
+                    ob.draw_type
+        C().f()
+    """,
+    "flag that is set": "OLD = False\nif bpy.app.version < (2, 80):\n    OLD = True\nif OLD:\n    ob.draw_type",
+    "flag that is set both ways": """
+        if bpy.app.version < (2, 80):
+            OLD = True
+        else:
+            OLD = False
+        if OLD:
+            ob.draw_type
+    """,
+    "flag in a function": """
+        OLD = False
+        if bpy.app.version < (2, 80):
+            OLD = True
+        def f():
+            if OLD:
+                ob.draw_type
+        f()
+    """,
+    "flag by a choice": "OLD = True if bpy.app.version < (2, 80) else False\nif OLD:\n    ob.draw_type",
+    "flag that is compared": "NEW = bpy.app.version >= (2, 80)\nif NEW is False:\n    ob.draw_type",
+    "bool": "if bool(bpy.app.version < (2, 80)):\n    ob.draw_type",
+    "any": "if any([bpy.app.version < (2, 80)]):\n    ob.draw_type",
+    "tuple": "if tuple(bpy.app.version) < (2, 80):\n    ob.draw_type",
+    "list": "if list(bpy.app.version[:2]) < [2, 80]:\n    ob.draw_type",
+    "index": "if bpy.app.version[0] < 3 and bpy.app.version[1] < 80:\n    ob.draw_type",
+    "one number": "v = bpy.app.version\nV = v[0] * 100 + v[1]\nif V < 280:\n    ob.draw_type",
+    "unpacked": "major, minor, _ = bpy.app.version\nif major * 100 + minor < 280:\n    ob.draw_type",
+    "float of text": 'if float("%d.%d" % bpy.app.version[:2]) < 2.8:\n    ob.draw_type',
+    "text begins": 'if bpy.app.version_string.startswith("2.7"):\n    ob.draw_type',
+    "text is less": 'if bpy.app.version_string < "2.80":\n    ob.draw_type',
+    "formatted": 'V = f"{bpy.app.version[0]}.{bpy.app.version[1]}"\nif V == "2.79":\n    ob.draw_type',
+    "joined": 'V = ".".join(map(str, bpy.app.version))\nif V.startswith("2.7"):\n    ob.draw_type',
+    "match": "match bpy.app.version:\n    case (2, 79, _):\n        ob.draw_type",
+    "match in a function": """
+        def f():
+            match bpy.app.version[0]:
+                case 2:
+                    return ob.draw_type
+        f()
+    """,
+    "assert": "try:\n    assert bpy.app.version < (2, 80)\n    ob.draw_type\nexcept AssertionError:\n    pass",
+    "getattr of the version": 'if getattr(bpy.app, "version") < (2, 80):\n    ob.draw_type',
+    "early return": "def f():\n    if bpy.app.version_string > '2.80':\n        return\n    ob.draw_type\nf()",
+    "early continue": "for i in range(2):\n    if bpy.app.version_string > '2.80':\n        continue\n    ob.draw_type",
+    "choice": "x = ob.draw_type if bpy.app.version_string < '2.80' else ob.display_type",
+    "and": "x = bpy.app.version_string < '2.80' and ob.draw_type",
+    "or": "x = bpy.app.version_string > '2.80' or ob.draw_type",
+    "elif": "if not ob:\n    pass\nelif bpy.app.version_string < '2.80':\n    ob.draw_type",
+    "while": "while bpy.app.version_string < '2.80':\n    ob.draw_type",
+    "comprehension": "x = [o.draw_type for o in bpy.data.objects if bpy.app.version_string < '2.80']",
+    "parameter": "def f(old):\n    if old:\n        ob.draw_type\nf(bpy.app.version < (2, 80))",
+    "parameter's default": "def f(old=bpy.app.version < (2, 80)):\n    if old:\n        ob.draw_type\nf()",
+    "dictionary": "IS = {'old': bpy.app.version < (2, 80)}\nif IS['old']:\n    ob.draw_type",
+    "function that answers": """
+        def is_old():
+            major, minor = bpy.app.version[:2]
+            return major * 100 + minor < 280
+        if is_old():
+            ob.draw_type
+    """,
+    "dir": 'if "draw_type" in dir(ob):\n    ob.draw_type',
+    "dir in a name": 'has = "draw_type" in dir(ob)\nif has:\n    ob.draw_type',
+    "getattr is not None": 'if getattr(ob, "draw_type", None) is not None:\n    ob.draw_type',
+    "getattr in a name": 'kind = getattr(ob, "draw_type", None)\nif kind is not None:\n    ob.draw_type',
+    "hasattr": 'if hasattr(ob, "draw_type"):\n    ob.draw_type',
+    "name in a name": 'attr = "draw_type"\nif hasattr(ob, attr):\n    ob.draw_type',
+    "hasattr of the class": 'OLD = hasattr(bpy.types.Object, "draw_type")\nif OLD:\n    ob.draw_type',
+    "hasattr in a class": """
+        class C:
+            OLD = hasattr(bpy.types.Object, "draw_type")
+        def f():
+            if C.OLD:
+                ob.draw_type
+        f()
+    """,
+    "properties": 'P = bpy.types.Object.bl_rna.properties\nif "draw_type" in P:\n    ob.draw_type',
+    "properties' keys": 'if "draw_type" in bpy.types.Object.bl_rna.properties.keys():\n    ob.draw_type',
+    "properties' get": 'if bpy.types.Object.bl_rna.properties.get("draw_type"):\n    ob.draw_type',
+    "early return by name": 'def f():\n    if "draw_type" not in dir(ob):\n        return\n    ob.draw_type\nf()',
+    "except": "try:\n    ob.draw_type\nexcept AttributeError:\n    pass",
+    "except a named tuple": "ERR = (AttributeError,)\ntry:\n    ob.draw_type\nexcept ERR:\n    pass",
+    "except a parent": "try:\n    bpy.types.Object['x']\n    ob.draw_type\nexcept (LookupError, Exception):\n    pass",
+    "suppress": "import contextlib\nwith contextlib.suppress(AttributeError):\n    ob.draw_type",
+    "suppress by another name": """
+        from contextlib import suppress as s
+        with s(AttributeError):
+            ob.draw_type
+    """,
+    "assertRaises": """
+        import unittest
+        class T(unittest.TestCase):
+            def test(self):
+                with self.assertRaises(AttributeError):
+                    ob.draw_type
+        T("test").test()
+    """,
+    "what the try told": """
+        try:
+            ob.draw_type
+            OLD = True
+        except AttributeError:
+            OLD = False
+        if OLD:
+            ob.draw_type
+    """,
+}  # fmt: skip
+# Not run: pytest is not in Blender.
+PYTEST = "import pytest\nwith pytest.raises(AttributeError):\n    ob.draw_type"
+NO_GUARDS = {
+    "nothing": "ob.draw_type",
+    "another condition": "if ob.name:\n    ob.draw_type",
+    "this version": "if bpy.app.version >= (2, 80):\n    ob.draw_type",
+    "behind it": "if bpy.app.version_string < '2.80':\n    pass\nob.draw_type",
+    "another name": 'if "gone" in dir(ob):\n    ob.draw_type',
+    "another error": "try:\n    ob.draw_type\nexcept ZeroDivisionError:\n    pass",
+    "an error of its own": "class E(Exception):\n    pass\ntry:\n    ob.draw_type\nexcept E:\n    pass",
+    "a name that was a flag": "OLD = bpy.app.version_string < '2.80'\nOLD = ob\nif OLD:\n    ob.draw_type",
+    "beside the version": "if ob and bpy.app.version >= (4, 0):\n    pass\nelse:\n    ob.draw_type",
+}
+AROUND = "import bpy\nob = bpy.data.objects.new('x', None)\n"
+
+
+def _errors(checker: Checker, lines: str) -> list[str]:
+    findings = checker.check(AROUND + dedent(lines))
+    return [finding.symbol for finding in findings if finding.severity == "error"]
+
+
+@pytest.mark.parametrize("guard", [*GUARDS.values(), PYTEST], ids=[*GUARDS, "pytest.raises"])
+def test_a_guarded_name_is_no_error(rule_checker: Checker, guard: str) -> None:
+    assert _errors(rule_checker, guard) == []
+    assert _errors(rule_checker, "def of_a_function():\n" + indent(dedent(guard), "    ")) == []
+
+
+@pytest.mark.parametrize("code", NO_GUARDS.values(), ids=NO_GUARDS)
+def test_what_is_not_guarded_is_found(rule_checker: Checker, code: str) -> None:
+    assert _errors(rule_checker, code) == ["bpy.types.Object.draw_type"]
+
+
+def test_the_guards_work(tmp_path: Path) -> None:
+    done = run_statements(tmp_path, [AROUND + dedent(guard) for guard in GUARDS.values()])
+    assert {name: row[0] for name, row in zip(GUARDS, done, strict=True) if row[0]} == {}
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "if {}:\n    def f():\n        ob.draw_type",
+        "if {}:\n    class C:\n        def f(self):\n            return ob.draw_type",
+        "if {}:\n    import bmesh\n    bmesh.ops.create_cube(bmesh.new())['faces']",
+        "import bmesh\nx = {} and bmesh.ops.create_cube(bmesh.new())['faces']",
+        "import bmesh\nx = [bmesh.ops.create_cube(bmesh.new())['faces'] for _ in range(3) if {}]",
+        "if {}:\n    class Grow(bpy.types.Operator):\n        bl_label = ''\n        bl_idname = 'OBJECT_OT_growAll'",
+    ],
+)
+def test_no_rule_finds_an_error_behind_an_open_question(rule_checker: Checker, code: str) -> None:
+    assert _errors(rule_checker, code.format("bpy.app.version_string < '2.80'")) == []
+    assert _errors(rule_checker, code.format("ob.name")) != []
