@@ -108,6 +108,7 @@ def _roles(_context: click.Context, _parameter: click.Parameter, value: str | No
 @click.option("--jobs", type=click.IntRange(1, 64), default=2, show_default=True, help="Processes at most.")
 @click.option("--force", is_flag=True, help="Build even if nothing has changed.")
 @click.option("--offline", is_flag=True, help="Download no documentation.")
+@click.option("--fresh", is_flag=True, help="Download documentation again that was downloaded before.")
 @click.option("--out", type=_PATH, help="Write the base to this file.")
 @reports_errors
 def build(version: str | None, **given: Any) -> None:
@@ -138,6 +139,7 @@ def build(version: str | None, **given: Any) -> None:
         jobs=given["jobs"],
         force=given["force"],
         offline=given["offline"],
+        fresh=given["fresh"],
         output=given["out"].expanduser().absolute() if given["out"] else None,
     )
     with shown_progress() as progress:

@@ -37,3 +37,7 @@ class StoreError(KBBuildError):
 
 class ReadyBaseError(KBBuildError):
     """A ready base cannot be fetched, or is not what it says."""
+
+
+class FetchedElsewhere(ReadyBaseError):  # noqa: N818 - reads as the state it names
+    """Another process is downloading a ready base into the same folder."""

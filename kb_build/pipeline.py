@@ -57,7 +57,8 @@ class BuildOptions:
 
     ``blender_exe``, ``manual``, ``guides`` and ``corpora`` are paths; ``require`` names roles whose absence
     is an error; ``max_cost`` (US dollars) and ``model`` are for Claude's summaries, None for their defaults;
-    ``output`` is the base's file (default: in the home folder, named after the version).
+    ``fresh`` downloads documentation again that was downloaded before; ``output`` is the base's file (default: in
+    the home folder, named after the version).
     """
 
     blender_exe: Path | None = None
@@ -72,6 +73,7 @@ class BuildOptions:
     jobs: int = 2
     force: bool = False
     offline: bool = False
+    fresh: bool = False
     output: Path | None = None
 
 
@@ -180,6 +182,7 @@ def _find_sources(work: _Build) -> None:
         corpora=options.corpora,
         before=_sources_before(work.path),
         allow_download=not options.offline,
+        fresh=options.fresh,
         progress=work.progress,
     )
     for missing in work.missing:

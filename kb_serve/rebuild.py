@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
     from kb_serve.bases import Bases
 
-_BUILDING_ELSEWHERE = 3
+_ELSEWHERE = 3  # another process is building, or fetching
 _LONGEST_REASON = 300
 _ACCEPTED = re.compile(r"(?:simworlds )?kb build (\d{1,2}\.\d{1,2})")
 
@@ -187,11 +187,11 @@ class Upkeep:
         with self._process as process:
             last = self._follow(process)
         code = process.returncode
-        if code in {0, _BUILDING_ELSEWHERE}:
+        if code in {0, _ELSEWHERE}:
             self.state = "idle"
         else:
             self.state, self.reason = "failed", (last or f"exit code {code}")[:_LONGEST_REASON]
-        then = "is there" if code == 0 else self.reason or "is being built by another process"
+        then = "is there" if code == 0 else self.reason or f"is being {job.doing} by another process"
         write_line(sys.stderr, f"The knowledge base of Blender {job.version}: {then}")
 
     def _follow(self, process: subprocess.Popen[bytes]) -> str:
@@ -286,7 +286,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     try:
         with _alone(given.home) as is_alone:
             if not is_alone:
-                return _BUILDING_ELSEWHERE
+                return _ELSEWHERE
             try:
                 build_base(given, given.summaries)
             except Exception:

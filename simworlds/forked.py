@@ -7,6 +7,7 @@ import multiprocessing
 import os
 import threading
 from collections.abc import Callable
+from functools import partial
 from typing import TYPE_CHECKING, Any, TypeVar
 
 from simworlds.end_with_parent import end_with_parent
@@ -30,21 +31,22 @@ def can_fork() -> bool:
 def forked(work: Work) -> Generator[Connection]:
     """Runs ``work`` in a forked process; gives the end of the pipe to which it sends, where EOF means it died.
 
-    The process and all that it started are killed when the body ends, and when this process is killed.
+    The process and all that it started are killed when the body ends, and when this process is killed. Raises OSError
+    where none can be started: too little memory, too many processes or open files.
     """
     context = multiprocessing.get_context("fork")
     ours, theirs = context.Pipe(duplex=False)
     process = context.Process(target=_run, args=(work, theirs, ours, os.getpid()))
-    process.start()
-    try:
-        theirs.close()
-        yield ours
-    finally:
-        process.kill()
-        if process.pid is not None:
-            kill_group(process.pid)
-        process.join()
-        ours.close()
+    with ours:
+        with theirs:
+            process.start()
+        try:
+            yield ours
+        finally:
+            process.kill()
+            if process.pid is not None:
+                kill_group(process.pid)
+            process.join()
 
 
 def _run(work: Work, messages: Connection, theirs: Connection, parent: int) -> None:
@@ -72,18 +74,19 @@ def beside(function: Callable[[], _T]) -> Generator[Callable[[], _T]]:
             outcome = ("error", error)
         messages.send(outcome)
 
-    if not can_fork():
-        yield function
-        return
-    with forked(work) as messages:
+    with contextlib.ExitStack() as stack:
+        try:
+            messages = stack.enter_context(forked(work)) if can_fork() else None
+        except OSError:
+            messages = None
+        yield function if messages is None else partial(_received, messages, function)
 
-        def result() -> _T:
-            try:
-                kind, outcome = messages.recv()
-            except EOFError:
-                return function()
-            if kind == "error":
-                raise outcome
-            return outcome
 
-        yield result
+def _received(messages: Connection, function: Callable[[], _T]) -> _T:
+    try:
+        kind, outcome = messages.recv()
+    except EOFError:
+        return function()
+    if kind == "error":
+        raise outcome
+    return outcome

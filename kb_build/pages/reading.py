@@ -53,7 +53,8 @@ class PageReader:
                 self._pages[source.role] = kept
         if self._unread and can_fork():
             job = _Job(self._unread, self._cache, self._jobs, self._scratch())
-            self._messages = self._cleanup.enter_context(forked(partial(_work, job)))
+            with contextlib.suppress(OSError):  # where no process can be started, pages are read here
+                self._messages = self._cleanup.enter_context(forked(partial(_work, job)))
         return self
 
     @property

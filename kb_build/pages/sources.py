@@ -73,6 +73,7 @@ def find_sources(  # noqa: PLR0913 - each names one place to look in
     corpora: Path | None = None,
     before: Mapping[str, Origin] | None = None,
     allow_download: bool = True,
+    fresh: bool = False,
     base_url: str | None = None,
     patience: DownloadPatience | None = None,
     progress: Progress | None = None,
@@ -81,13 +82,14 @@ def find_sources(  # noqa: PLR0913 - each names one place to look in
 
     ``manual`` and ``guides`` are folders or archives named by the user, taken whatever their version;
     ``corpora`` is a folder with sources of several versions; ``before`` tells by role where the last build had
-    them from; ``cache`` keeps downloads, unpacked archives and
-    digests; ``base_url`` replaces the official site; silent addresses cost what ``patience`` allows
-    (ten seconds), both roles together. Raises SourceError when a path that the user named cannot be used.
+    them from; ``cache`` keeps downloads, unpacked archives and digests; with ``fresh``, what was downloaded is
+    downloaded again, and counts where that fails; ``base_url`` replaces the official site; silent addresses cost
+    what ``patience`` allows (ten seconds), both roles together. Raises SourceError when a path that the user named
+    cannot be used.
     """
     waits = patience or DownloadPatience()
     search = _Search(
-        minor_of(version), cache, corpora, before or {}, allow_download, base_url, waits, progress
+        minor_of(version), cache, corpora, before or {}, allow_download, fresh, base_url, waits, progress
     )
     given = {"manual": manual, "guides": guides}
     results = [search.find(role, given[role]) for role in ROLES]
@@ -106,6 +108,7 @@ class _Search:
     corpora: Path | None
     before: Mapping[str, Origin]
     allow_download: bool
+    fresh: bool
     base_url: str | None
     patience: DownloadPatience
     progress: Progress | None
@@ -122,7 +125,9 @@ class _Search:
         if given is not None:
             return self._open(role, given.expanduser().absolute(), given=True)
         faults: list[str] = []
-        attempts = (self._among_corpora, self._among_downloads, self._as_before, self._from_site)
+        attempts = [self._among_corpora, self._among_downloads, self._as_before, self._from_site]
+        if self.fresh:
+            attempts.insert(1, attempts.pop())
         for attempt in attempts:
             if source := attempt(role, faults):
                 return source

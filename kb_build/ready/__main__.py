@@ -11,9 +11,12 @@ import sys
 from pathlib import Path
 from typing import NoReturn
 
+from kb_build.errors import FetchedElsewhere
 from kb_build.ready.fetch import fetch_base, is_one_file
 from simworlds.errors import UserError
 from simworlds.terminal.progress import shown_progress
+
+_ELSEWHERE = 3
 
 
 def _terminated(_number: int, _frame: object) -> NoReturn:
@@ -22,7 +25,7 @@ def _terminated(_number: int, _frame: object) -> NoReturn:
 
 
 def main() -> int:
-    """Fetches one base. Returns 0, or 1 when it failed."""
+    """Fetches one base. Returns 0, 1 when it failed, or 3 when another process is fetching."""
     parser = argparse.ArgumentParser(prog="python -m kb_build.ready", description=__doc__)
     parser.add_argument("version")
     parser.add_argument("--from", dest="source", required=True)
@@ -36,6 +39,8 @@ def main() -> int:
     try:
         with shown_progress() as progress:
             fetch_base(version, given.source, home=given.home, progress=progress)
+    except FetchedElsewhere:
+        return _ELSEWHERE
     except UserError as error:
         sys.stderr.write(f"{error}\n")
         return 1

@@ -74,10 +74,28 @@ def _public_meta(meta: Mapping[str, str]) -> dict[str, str]:
         source["origin"] = origin if "://" in origin else origin.rpartition("/")[2]
         source["given"] = False  # there is no such path to read again elsewhere
     runtime: dict[str, Any] = json.loads(meta.get("runtime", "{}"))
-    return {
-        "sources": json.dumps(sources),
-        "runtime": json.dumps({"kind": runtime.get("kind", "")}),
+    # The reasons tell of the folders and archives in which nothing was found.
+    missing = [
+        {
+            "role": row["role"],
+            "reason": f"this base was made without; build it anew with --{row['role']} PATH",
+        }
+        for row in json.loads(meta.get("missing", "[]"))
+    ]
+    rows = {
+        "sources": sources,
+        "runtime": {"kind": runtime.get("kind", "")},
+        "missing": missing,
+        "faults": [_public_fault(fault) for fault in json.loads(meta.get("faults", "[]"))],
     }
+    return {name: json.dumps(value, ensure_ascii=False) for name, value in rows.items()}
+
+
+def _public_fault(fault: str) -> str:
+    """The step that failed and the kind of its error, without the traceback and the message."""
+    step, _, told = fault.partition(":")
+    last = told.strip().rpartition("\n")[2]
+    return f"{step}: {last.partition(':')[0]}"
 
 
 def _manifest(draft: Path) -> Manifest:

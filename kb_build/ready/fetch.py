@@ -9,13 +9,13 @@ from __future__ import annotations
 import hashlib
 import re
 import sqlite3
-from contextlib import closing
+from contextlib import closing, contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 from urllib.parse import urldefrag, urlsplit
 
-from kb_build.errors import KBBuildError, ReadyBaseError, SourceError
+from kb_build.errors import FetchedElsewhere, KBBuildError, ReadyBaseError, SourceError
 from kb_build.pages.archives import ArchiveLimits, unpack
 from kb_build.pages.download import ArchiveKind, DownloadPatience, download
 from kb_build.ready.export import ready_name
@@ -23,12 +23,15 @@ from kb_build.ready.manifest import BASE, LARGEST_BASE, MANIFEST, MEMBERS, SUFFI
 from kb_build.schema import DDL, INDEXES, NoBase, open_read_only
 from kb_build.verify import verify_base
 from simworlds.files import scratch_folder, sha256_of_file
+from simworlds.folder_lock import locked
 from simworlds.loopback import is_loopback
 from simworlds.releases import minor_of
+from simworlds.sandbox.errors import Refusal
 from simworlds.settings import base_path, cache_folder
 from simworlds.terminal.progress import Progress, silent
 
 if TYPE_CHECKING:
+    from collections.abc import Generator
     from pathlib import PurePosixPath
 
 _XZ = b"\xfd7zXZ\x00"
@@ -59,27 +62,41 @@ def fetch_base(version: str, source: str, *, home: Path, progress: Progress = si
 
     ``source`` is a file or its address, or a folder or address with files named as ``ready_name`` says; it may end
     in ``#sha256=…``, which the file must then have. With an empty ``version``, a file is taken for whichever version
-    it is of. Raises KBBuildError; the base that was there before stays then.
+    it is of. Raises KBBuildError, FetchedElsewhere while another process downloads one; the base that was there
+    before stays then.
     """
     minor = minor_of(version) if version else ""
     place, wanted = _split(source)
     try:
-        if "://" in place:
-            archive = _downloaded(_address(place, minor), wanted, home, progress)
-        else:
-            archive = _local_file(place, minor)
-        try:
+        with _archive(place, minor, wanted, home, progress) as archive:
             return _install(archive, wanted, minor, home, progress)
-        finally:
-            if "://" in place:
-                archive.unlink(missing_ok=True)
-                archive.with_name(archive.name + ".sha256").unlink(missing_ok=True)
+    except Refusal as error:
+        raise FetchedElsewhere(
+            "No base was fetched: another SimWorlds is fetching one here. Wait until it has ended"
+        ) from error
     except SourceError as error:
         raise ReadyBaseError(f"No base was fetched: {error}") from error
     except OSError as error:
         raise ReadyBaseError(
             f"No base was fetched: {error}. Make room there, or set SIMWORLDS_HOME to another folder"
         ) from error
+
+
+@contextmanager
+def _archive(place: str, minor: str, wanted: str, home: Path, progress: Progress) -> Generator[Path]:
+    """The ready base as a file; a download is removed afterwards. Raises Refusal while another process has one here."""
+    if "://" not in place:
+        yield _local_file(place, minor)
+        return
+    folder = cache_folder(home) / "bases"
+    folder.mkdir(parents=True, exist_ok=True)
+    with locked(folder):
+        archive = _downloaded(_address(place, minor), wanted, folder, progress)
+        try:
+            yield archive
+        finally:
+            archive.unlink(missing_ok=True)
+            archive.with_name(archive.name + ".sha256").unlink(missing_ok=True)
 
 
 def _split(source: str) -> tuple[str, str]:
@@ -115,7 +132,7 @@ def _local_file(place: str, minor: str) -> Path:
     return path
 
 
-def _downloaded(url: str, wanted: str, home: Path, progress: Progress) -> Path:
+def _downloaded(url: str, wanted: str, folder: Path, progress: Progress) -> Path:
     parts = urlsplit(url)
     if parts.scheme not in {"https", "http"}:
         raise ReadyBaseError(
@@ -126,7 +143,7 @@ def _downloaded(url: str, wanted: str, home: Path, progress: Progress) -> Path:
             f"{url} is not encrypted: whoever is on the way could change the base. Give an https:// address, or add "
             "#sha256= and the file's checksum"
         )
-    target = cache_folder(home) / "bases" / f"{hashlib.sha256(url.encode()).hexdigest()[:16]}{SUFFIX}"
+    target = folder / f"{hashlib.sha256(url.encode()).hexdigest()[:16]}{SUFFIX}"
     download(url, target, patience=DownloadPatience(_PATIENCE_SECONDS), progress=progress, kind=_KIND)
     return target
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 import json
 import shutil
 import tempfile
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from simworlds.errors import UserError
-from simworlds.installed import installed_bpy
-from simworlds.releases import minor_of, release, same_version
+from simworlds.releases import minor_of
 from simworlds.sandbox.errors import ProgramFailed, RuntimeMissing
 from simworlds.sandbox.program import Program
-from simworlds.sandbox.runtime import executable_version, find_runtime, run_program
+from simworlds.sandbox.runtime import find_runtime, run_program
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -71,17 +71,11 @@ def runtime_at_hand(version: str, home: Path) -> Runtime | None:
     Nothing is downloaded.
     """
     version = minor_of(version)
-    entry = release(version)
-    installed = installed_bpy()
-    here = installed is not None and same_version(version, installed)
-    if here or (entry is not None and (home / "runtimes" / entry.bpy).is_dir()):
-        return find_runtime(version, home=home)
+    with suppress(RuntimeMissing):
+        return find_runtime(version, home=home, install=False)
     program = shutil.which("blender")
-    try:
-        if program and same_version(version, executable_version(Path(program))):
-            return find_runtime(version, home=home, blender_exe=Path(program))
-    except RuntimeMissing:
-        return None
+    with suppress(RuntimeMissing):
+        return find_runtime(version, home=home, blender_exe=Path(program)) if program else None
     return None
 
 

@@ -78,6 +78,10 @@ class Attempt(Protocol):
         """The tokens so far."""
         ...
 
+    def fault_of(self, error: Exception) -> Fault | None:
+        """The fault of the server that an error of this attempt tells of; None for an error of ours."""
+        ...
+
 
 class Api(Protocol):
     """A server, as one of the packages reaches it."""
@@ -98,10 +102,6 @@ class Api(Protocol):
 
     def attempt(self, ask: Ask) -> Attempt:
         """A new attempt; nothing is sent before it is read."""
-        ...
-
-    def fault_of(self, error: Exception) -> Fault | None:
-        """The fault of the server that an error tells of; None for an error of ours."""
         ...
 
 
@@ -165,7 +165,7 @@ class Attempts:
                 yield text
             attempt.turn()
         except Exception as error:
-            fault = self._api.fault_of(error)
+            fault = attempt.fault_of(error)
             if fault is None:
                 raise
             raise _ServerFault(fault, error) from error

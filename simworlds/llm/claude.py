@@ -88,26 +88,6 @@ class _MessagesApi:
     def attempt(self, ask: Ask) -> _MessagesAttempt:
         return _MessagesAttempt(self.client, ask, self._settings.longest, self._clock)
 
-    def fault_of(self, error: Exception) -> Fault | None:
-        if not isinstance(error, _FAULTS):
-            return None
-        if not isinstance(error, APIStatusError):
-            if isinstance(error, BrokenStream):
-                return Fault(one_line(f"the answer is incomplete: {error}"))
-            # The package hides what the network raised behind its own words.
-            cause = (isinstance(error, AnthropicError) and error.__cause__) or error
-            return Fault(one_line(f"{type(cause).__name__}: {cause}".rstrip(": ")))
-        words = error.api_message or error.message
-        if error.response.is_success:  # the server failed after it had begun to answer
-            return Fault(
-                one_line(f"the server broke off with {error.type}: {words}"),
-                is_lasting=error.type in _LASTING,
-            )
-        status, headers = error.status_code, error.response.headers
-        return Fault(
-            one_line(f"{status} {words}"), status, not is_passing(status, headers), requested_pause(headers)
-        )
-
 
 class _MessagesAttempt:
     """An Attempt, see ``attempts``."""
@@ -129,6 +109,26 @@ class _MessagesAttempt:
 
     def usage(self) -> Usage:
         return self._answer.usage()
+
+    def fault_of(self, error: Exception) -> Fault | None:
+        if not isinstance(error, _FAULTS):
+            return None
+        if not isinstance(error, APIStatusError):
+            if isinstance(error, BrokenStream):
+                return Fault(one_line(f"the answer is incomplete: {error}"))
+            # The package hides what the network raised behind its own words.
+            cause = (isinstance(error, AnthropicError) and error.__cause__) or error
+            return Fault(one_line(f"{type(cause).__name__}: {cause}".rstrip(": ")))
+        words = error.api_message or error.message
+        if error.response.is_success:  # the server failed after it had begun to answer
+            return Fault(
+                one_line(f"the server broke off with {error.type}: {words}"),
+                is_lasting=error.type in _LASTING,
+            )
+        status, headers = error.status_code, error.response.headers
+        return Fault(
+            one_line(f"{status} {words}"), status, not is_passing(status, headers), requested_pause(headers)
+        )
 
 
 def _client(settings: Settings) -> Anthropic:

@@ -35,6 +35,8 @@ _ADVICE = {
     403: " Check that the key may use this model.",
     404: " Check the model's name, and that the address (OPENAI_BASE_URL) ends in /v1.",
 }
+# What the limit on an answer is called: some servers know the older name alone.
+_NEWER, _OLDER = "max_completion_tokens", "max_tokens"
 _NO_KEY = "none"  # for servers that need none: the package insists on a word
 
 
@@ -69,11 +71,11 @@ class _ChatApi:
     advice = _ADVICE
 
     def __init__(self, settings: Settings, clock: Callable[[], float]) -> None:
-        self._package = _package()
-        self._longest = settings.longest
-        self._clock = clock
-        self.client = _client(self._package, settings)
-        self._limit = "max_completion_tokens"
+        self.package = _package()
+        self.longest = settings.longest
+        self.clock = clock
+        self.client = _client(self.package, settings)
+        self.limit = _NEWER
 
     @property
     def address(self) -> str:
@@ -83,12 +85,32 @@ class _ChatApi:
         self.client.close()
 
     def attempt(self, ask: Ask) -> _ChatAttempt:
-        return _ChatAttempt(
-            self.client, chat_params_of(ask) | {self._limit: ask.max_tokens}, self._longest, self._clock
-        )
+        return _ChatAttempt(self, chat_params_of(ask) | {self.limit: ask.max_tokens})
+
+
+class _ChatAttempt:
+    """An Attempt, see ``attempts``."""
+
+    def __init__(self, api: _ChatApi, params: dict[str, Any]) -> None:
+        self._api, self._params = api, params
+        self._answer = ChatAnswer()
+
+    def read(self) -> Generator[str]:
+        with self._api.client.chat.completions.create(**self._params) as stream:
+            yield ""  # the server has answered
+            response = stream.response
+            response.stream = LimitedBytes(response.stream, self._api.longest, self._api.clock)
+            chunks = (chunk.to_dict(warnings=False) for chunk in stream)
+            yield from self._answer.read(chunks)
+
+    def turn(self) -> Turn:
+        return self._answer.turn()
+
+    def usage(self) -> Usage:
+        return self._answer.usage()
 
     def fault_of(self, error: Exception) -> Fault | None:
-        package = self._package
+        package = self._api.package
         known = (package.OpenAIError, httpx2.HTTPError, httpx2.StreamError, httpx2.InvalidURL)
         if isinstance(error, BrokenStream):
             return Fault(one_line(f"the answer is incomplete: {error}"))
@@ -103,33 +125,9 @@ class _ChatApi:
         status, headers = reply.status_code, reply.response.headers
         words = one_line(f"{status} {reply.message}")
         lasting = not is_passing(status, headers)
-        if status in (400, 422) and self._limit in words and self._limit != "max_tokens":
-            self._limit, lasting = "max_tokens", False  # the older name, which is all that some servers know
+        if status in (400, 422) and _NEWER in self._params and _NEWER in words:
+            self._api.limit, lasting = _OLDER, False
         return Fault(words, status, lasting, requested_pause(headers))
-
-
-class _ChatAttempt:
-    """An Attempt, see ``attempts``."""
-
-    def __init__(
-        self, client: Any, params: dict[str, Any], longest: float, clock: Callable[[], float]
-    ) -> None:
-        self._client, self._params, self._longest, self._clock = client, params, longest, clock
-        self._answer = ChatAnswer()
-
-    def read(self) -> Generator[str]:
-        with self._client.chat.completions.create(**self._params) as stream:
-            yield ""  # the server has answered
-            response = stream.response
-            response.stream = LimitedBytes(response.stream, self._longest, self._clock)
-            chunks = (chunk.to_dict(warnings=False) for chunk in stream)
-            yield from self._answer.read(chunks)
-
-    def turn(self) -> Turn:
-        return self._answer.turn()
-
-    def usage(self) -> Usage:
-        return self._answer.usage()
 
 
 def _package() -> ModuleType:

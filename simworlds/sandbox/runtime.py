@@ -174,9 +174,10 @@ def _managed(wanted: str, runtimes: Path, progress: Report | None, *, install: b
         )
     version = entry.bpy if wanted.count(".") == 1 else ".".join(map(str, version_key(wanted)))
     folder = runtimes / version
-    if not folder.is_dir():
+    if not SYSTEM.python_in(folder).is_file():  # a link to a Python that may have been removed since
         if not install:
             raise NotInstalled(version)
+        shutil.rmtree(folder, ignore_errors=True)
         _install(version, entry, folder, progress)
     return Runtime(SYSTEM.python_in(folder), "managed", version)
 

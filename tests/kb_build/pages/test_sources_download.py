@@ -106,6 +106,20 @@ def test_downloads_are_not_requested_again(tmp_path: Path, site: Site) -> None:
     assert site.requests == []
 
 
+def test_a_newer_manual_is_fetched_when_it_is_asked_for(tmp_path: Path, site: Site) -> None:
+    first = source(look(tmp_path, site.url)["manual"])
+    site.files[MANUAL_PATH] = archive("blender_manual_v510_en.html", "cloth.html")
+    assert source(look(tmp_path, site.url)["manual"]) == first
+    newer = source(look(tmp_path, site.url, fresh=True)["manual"])
+    assert newer.sha256 == hashlib.sha256(site.files[MANUAL_PATH]).hexdigest() != first.sha256
+    assert source(look(tmp_path, site.url)["manual"]) == newer
+
+
+def test_what_was_downloaded_is_taken_where_no_newer_one_can_be_had(tmp_path: Path, site: Site) -> None:
+    first = look(tmp_path, site.url)
+    assert look(tmp_path, closed_port(), fresh=True) == first
+
+
 def test_nothing_is_asked_for_when_downloads_are_off(tmp_path: Path, site: Site) -> None:
     assert "downloads are off" in reason(look(tmp_path, site.url, allow_download=False)["manual"])
     assert site.requests == []

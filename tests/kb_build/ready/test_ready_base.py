@@ -8,6 +8,8 @@ import json
 import lzma
 import shutil
 import sqlite3
+import subprocess
+import sys
 import tarfile
 import threading
 from contextlib import closing
@@ -17,13 +19,16 @@ from typing import TYPE_CHECKING
 import pytest
 from click.testing import CliRunner
 from download_site import Handler, Site
+from places import REPO
 
 from kb_build.base_file import read_meta
+from kb_build.base_report import base_facts, base_lines
 from kb_build.cli import kb
-from kb_build.errors import KBBuildError, ReadyBaseError, StoreError
+from kb_build.errors import FetchedElsewhere, KBBuildError, ReadyBaseError, StoreError
 from kb_build.ready.export import Exported, export_base
 from kb_build.ready.fetch import fetch_base
 from kb_serve.knowledge_base import KnowledgeBase
+from simworlds.folder_lock import locked
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -137,6 +142,30 @@ def test_no_folder_of_this_machine_is_in_it(small_base: Path, ready: Ready) -> N
     assert not [place for place in places if place.encode() in base]
 
 
+def test_what_was_missing_or_failed_is_told_without_the_places(small_base: Path, tmp_path: Path) -> None:
+    here = "/home/somebody/their work"
+    rows = {
+        "missing": [{"role": "guides", "reason": f"no API guides: {here}/corpora has none"}],
+        "faults": [
+            f"context: Traceback\n  File \"{here}/a.py\", line 1, in <module>\nKeyError: '{here}'\n",
+            "new things: Blender crashed in make_cloth",
+        ],
+    }
+    base = tmp_path / "base.sqlite"
+    shutil.copyfile(small_base, base)
+    with closing(sqlite3.connect(base, isolation_level=None)) as connection:
+        for name, value in rows.items():
+            connection.execute("UPDATE meta SET value = ? WHERE name = ?", (json.dumps(value), name))
+    exported = export_base(base, tmp_path / "ready.tar.xz")
+    content = unpacked(exported.path.read_bytes())["base.sqlite"]
+    assert here.encode() not in content
+    base.write_bytes(content)
+    told = "\n".join(base_lines(base_facts(base)))
+    assert "guides: this base was made without; build it anew with --guides PATH" in told
+    assert "KeyError" in told
+    assert "Blender crashed in make_cloth" in told
+
+
 def test_what_is_no_base_is_not_packed(tmp_path: Path) -> None:
     path = tmp_path / "other.sqlite"
     with closing(sqlite3.connect(path)) as connection:
@@ -166,7 +195,7 @@ def test_a_fetched_base_answers_as_the_one_that_was_packed(
     with KnowledgeBase(fetched.path) as theirs, KnowledgeBase(small_base) as ours:
         assert theirs.query("ClothSettings.quality").text == ours.query("ClothSettings.quality").text
     assert any(label.startswith("downloading") and done == total for label, done, total in seen)
-    assert [path.name for path in (tmp_path / "cache" / "bases").iterdir()] == []
+    assert [path.name for path in (tmp_path / "cache" / "bases").iterdir()] == [".lock"]
 
 
 def test_the_command_exports_the_same_bytes_again_and_fetches_from_them(
@@ -193,6 +222,20 @@ def test_a_transfer_that_breaks_off_is_continued(ready: Ready, site: Site, tmp_p
     first, second = [wanted for _, wanted in site.requests][:2]
     assert first is None
     assert 0 < resumed_at(second) <= half
+
+
+def test_one_process_at_a_time_downloads(
+    ready: Ready, site: Site, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    folder = tmp_path / "cache" / "bases"
+    folder.mkdir(parents=True)
+    words = [sys.executable, "-m", "kb_build.ready", ready.minor, "--from", site.url, "--home", str(tmp_path)]
+    with locked(folder):
+        with pytest.raises(FetchedElsewhere, match="another SimWorlds is fetching one here"):
+            fetch_base(ready.minor, site.url, home=tmp_path)
+        assert subprocess.run(words, cwd=REPO, capture_output=True, check=False).returncode == 3
+    assert site.requests == []
+    assert fetch_base(ready.minor, site.url, home=tmp_path).path.is_file()
 
 
 def test_the_next_call_goes_on_where_the_last_one_ended(ready: Ready, site: Site, tmp_path: Path) -> None:

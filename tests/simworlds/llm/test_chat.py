@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import json
 import random
+import threading
+from concurrent.futures import ThreadPoolExecutor
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -86,6 +88,25 @@ def test_a_server_that_knows_the_older_name_of_the_limit_is_asked_by_it(server: 
     assert model.answer(ask()).text == "Hello."
     assert model.answer(ask()).text == "Hello."
     assert ["max_tokens" in body for body in server.requests] == [False, True, True]
+
+
+def test_requests_that_are_under_way_together_learn_the_older_name_too(
+    server: FakeChatAPI, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    server.takes = "max_tokens"
+    model = model_of(server)
+    together, respond = threading.Barrier(4), server.respond
+
+    def once_all_have_asked(path: str, authorization: str, body: Any) -> tuple[int, Any]:
+        if server.takes not in body:
+            together.wait()
+        return respond(path, authorization, body)
+
+    monkeypatch.setattr(server, "respond", once_all_have_asked)
+    with ThreadPoolExecutor(4) as threads:
+        turns = list(threads.map(lambda _: model.answer(ask()), range(4)))
+    assert [turn.text for turn in turns] == ["Hello."] * 4
+    assert sorted("max_tokens" in body for body in server.requests) == [False] * 4 + [True] * 4
 
 
 def test_a_form_is_a_structured_output(server: FakeChatAPI) -> None:

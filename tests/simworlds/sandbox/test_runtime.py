@@ -17,8 +17,9 @@ from places import REPO
 
 from simworlds.errors import UserError
 from simworlds.installed import installed_bpy
+from simworlds.operating_system import SYSTEM
 from simworlds.releases import release, releases
-from simworlds.sandbox.errors import ProgramFailed, RuntimeMissing
+from simworlds.sandbox.errors import NotInstalled, ProgramFailed, RuntimeMissing
 from simworlds.sandbox.runtime import Runtime, executable_version, find_runtime, run_script
 
 HERE = Runtime(Path(sys.executable), "environment", "0.0.0")
@@ -174,10 +175,30 @@ def test_every_release_names_one_wheel_and_the_python_it_is_for() -> None:
 
 
 def test_an_environment_that_was_made_is_used_again(tmp_path: Path) -> None:
-    made = tmp_path / "runtimes" / "4.2.0"
-    made.mkdir(parents=True)
+    python = SYSTEM.python_in(tmp_path / "runtimes" / "4.2.0")
+    python.parent.mkdir(parents=True)
+    python.touch()
     runtime = find_runtime("4.2.0", home=tmp_path)
-    assert runtime == Runtime(made / "bin" / "python", "managed", "4.2.0")
+    assert runtime == Runtime(python, "managed", "4.2.0")
+
+
+def test_an_environment_whose_python_was_removed_is_made_anew(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def made(command: list[str], **_: object) -> None:
+        if "venv" in command:
+            python = SYSTEM.python_in(Path(command[-1]))
+            python.parent.mkdir(parents=True)
+            python.touch()
+
+    python = SYSTEM.python_in(tmp_path / "runtimes" / "4.2.0")
+    python.parent.mkdir(parents=True)
+    python.symlink_to(tmp_path / "gone")
+    with pytest.raises(NotInstalled):
+        find_runtime("4.2.0", home=tmp_path, install=False)
+    monkeypatch.setattr("simworlds.sandbox.runtime.run_group", made)
+    assert find_runtime("4.2.0", home=tmp_path).executable == python
+    assert python.is_file()
 
 
 def test_a_wheel_that_cannot_be_installed_is_named_with_uvs_words(tmp_path: Path) -> None:
