@@ -178,4 +178,4 @@ def _write_judgement(task: SceneTask, judgement: Judgement) -> File:
 
 
 def _step_fields(key: str, began: float) -> dict[str, Any]:
-    return step_fields(DueStep(key, code_of("bench.judge.judge", "judge/prompts/*")), began)
+    return step_fields(DueStep(key, code_of("bench.judge.judge", "bench/judge/prompts/*")), began)
