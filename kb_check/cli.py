@@ -77,9 +77,11 @@ def _check(paths: tuple[Path, ...], form: str | None, choices: dict[str, Any]) -
     written = choices["blender"].split(",") if choices["blender"] else configuration.blender
     versions = list(dict.fromkeys(version.strip() for version in written if version.strip()))
     several = len(versions) > 1
-    if several and (choices["fix"] or choices["diff"] or form not in {None, "json"}):
+    if several and (choices["fix"] or choices["diff"] or form == "github"):
         names = ", ".join(versions)
-        raise click.UsageError(f"For several versions ({names}) there are only the table and --json.")
+        raise click.UsageError(
+            f"For several versions ({names}) there are only the table, --json and --sarif."
+        )
     base = None if several else _base(versions[0] if versions else None)
     faults: list[str] = []
     run = _Inputs(configuration, _groups(paths, configuration, faults, choices), faults, choices)
@@ -139,8 +141,7 @@ def _several_versions(
     inputs: _Inputs, versions: list[str], cache: ResultCache | None, form: str | None
 ) -> list[Report]:
     """Checks for several Blenders, and prints what breaks where."""
-    from kb_check.formats.json_format import dump  # noqa: PLC0415 - for several versions alone
-    from kb_check.versions import check_versions  # noqa: PLC0415
+    from kb_check.versions import check_versions  # noqa: PLC0415 - for several versions alone
 
     with _progress() as progress:
         report = check_versions(
@@ -154,7 +155,13 @@ def _several_versions(
             progress=progress,
         )
     if form == "json":
+        from kb_check.formats.json_format import dump  # noqa: PLC0415 - one of them is used
+
         click.echo(dump(report.as_json()))
+    elif form == "sarif":
+        from kb_check.formats.sarif import as_sarif  # noqa: PLC0415
+
+        click.echo(as_sarif(*report.reports))
     else:
         for line in report.text_lines():
             click.echo(line)

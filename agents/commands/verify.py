@@ -79,7 +79,7 @@ def verify(scenes: tuple[Path, ...], form: str | None, rules: str | None, **choi
                 _print_error(error, form, logs)
                 done = _UNCHECKED
             code = max(code, done)
-        _print_logs(logs)
+        _print_logs(scenes, logs)
     except KeyboardInterrupt:
         click.echo("Interrupted.", err=True)
         code = _INTERRUPTED
@@ -255,12 +255,19 @@ def _draw(blender: Supervisor, report: Report, call: Call, checked: Verification
 # Output
 
 
-def _print_logs(logs: list[dict[str, Any]]) -> None:
-    """Prints logs of SARIF as one."""
+def _print_logs(scenes: tuple[Path, ...], logs: list[dict[str, Any]]) -> None:
+    """Prints logs of SARIF, one of each scene, as one.
+
+    Code hosts take several runs of one tool only if each says which it is.
+    """
     from agents.protocol.report.json_report import dump_json  # noqa: PLC0415 - not for --help
 
+    runs = [run for log in logs for run in log["runs"]]
+    if len(runs) > 1:
+        for scene, run in zip(scenes, runs, strict=True):
+            run["automationDetails"] = {"id": f"simworlds-verify/{scene.as_posix()}/"}
     if logs:
-        click.echo(dump_json({**logs[0], "runs": [run for log in logs for run in log["runs"]]}))
+        click.echo(dump_json({**logs[0], "runs": runs}))
 
 
 def _print(report: Report, checked: VerificationScope, form: str | None, logs: list[dict[str, Any]]) -> None:

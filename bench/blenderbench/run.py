@@ -12,7 +12,7 @@ from bench.blenderbench.edit_system import EditOutput
 from bench.blenderbench.errors import BadResults, TaskFailed
 from bench.blenderbench.results import RunSetup, SetRun, TaskRecord, read, read_run, task_folder, write
 from bench.sweep.content_hash import digests
-from bench.sweep.provenance import code_of, provenance
+from bench.sweep.provenance import IN_BLENDER, code_of, provenance
 from simworlds.folder_lock import locked
 from simworlds.sandbox.errors import Refusal
 
@@ -135,4 +135,6 @@ def _done(
 
 
 def _provenance(blender: str | None = None) -> Provenance:
-    return provenance(code_of(__name__, "blenderbench/inside/*.py", "audit/inside/*.py"), blender)
+    return provenance(
+        code_of(__name__, "bench/blenderbench/inside/*.py", "bench/audit/inside/*.py", IN_BLENDER), blender
+    )

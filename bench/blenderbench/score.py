@@ -76,7 +76,7 @@ def _scored(place: TaskFolder, record: TaskRecord, rule: ScoringRule) -> Score:
         convention=rule.convention,
         best_round=rule.best_round,
         clip=rule.clip.identity if rule.clip else None,
-        provenance=provenance(code_of(__name__, "blenderbench/prompts/*.md")),
+        provenance=provenance(code_of(__name__, "bench/blenderbench/prompts/*.md")),
     )
     if record.why is not None:
         return bare.model_copy(update={"missing": dict.fromkeys(rule.metrics, record.why)})

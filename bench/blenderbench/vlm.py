@@ -87,8 +87,7 @@ def judge_edit(
     ingredients = {
         "instruction": instruction,
         "pictures": [_digest(picture) for picture in plain],
-        "provider": provider.name,
-        "model": provider.model,
+        "judge": provider.identity,
         "prompt": prompt_version(),
     }
 

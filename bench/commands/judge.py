@@ -158,9 +158,11 @@ def _as_json(
 def _dry_run(request: JudgeRequest | None, given: dict[str, Any]) -> None:
     from bench.judge.estimate import JudgeRequest, estimate  # noqa: PLC0415
     from bench.judge.judgement_text import question_lines, sum_lines  # noqa: PLC0415
+    from bench.judge.providers import identity_of  # noqa: PLC0415
     from bench.scenes.spec import specs  # noqa: PLC0415
     from simworlds.llm.prices import Prices  # noqa: PLC0415 - not for --help
 
+    identity = identity_of(given["provider"], given["model"], given["base_url"])
     prices = Prices({given["model"]: given["price"]} if given["price"] else None)
     requests = (
         [request] if request else [JudgeRequest(spec.prompt, spec.category == "static") for spec in specs()]
@@ -170,8 +172,7 @@ def _dry_run(request: JudgeRequest | None, given: dict[str, Any]) -> None:
         for question in requests
         for question in estimate(
             question,
-            given["provider"],
-            given["model"],
+            identity,
             prices=prices,
             cache=given["cache"],
             repeat=given["repeat"],

@@ -29,6 +29,15 @@ CHECKLISTS: dict[Dimension, tuple[str, ...]] = {
 }
 
 
+def fixed_items() -> dict[str, str]:
+    """Id → the statement to judge, of all fixed items."""
+    return {
+        f"{name}.{number}": text
+        for name, listed in CHECKLISTS.items()
+        for number, text in enumerate(listed, 1)
+    }
+
+
 def dimensions(*, static: bool) -> tuple[Dimension, ...]:
     """The dimensions of a scene; a still has no actions."""
     return tuple(dimension for dimension in DIMENSIONS if not (static and dimension == "actions_visible"))

@@ -14,7 +14,7 @@ from PIL import Image
 from pydantic import BaseModel, ConfigDict
 
 from bench.judge.answer_cache import AnswerCache
-from bench.judge.dimensions import CHECKLISTS
+from bench.judge.dimensions import fixed_items
 from bench.judge.items import cached_items
 from bench.judge.judge import checked_prompt, verdicts_key
 from bench.judge.pictures import read_frames
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from pathlib import Path
 
+    from bench.judge.providers import JudgeIdentity
     from simworlds.llm.messages import Ask
     from simworlds.llm.prices import Prices
 
@@ -70,8 +71,8 @@ class JudgeRequest:
     scene: str = ""
 
 
-def estimate(  # noqa: PLR0913
-    request: JudgeRequest, provider: str, model: str, *, prices: Prices, cache: Path | None, repeat: int = 1
+def estimate(
+    request: JudgeRequest, judge: JudgeIdentity, *, prices: Prices, cache: Path | None, repeat: int = 1
 ) -> tuple[QuestionEstimate, QuestionEstimate]:
     """The question for the items and the one for the verdicts. Raises NotJudged."""
     prompt, static = checked_prompt(request.prompt), request.static
@@ -79,18 +80,18 @@ def estimate(  # noqa: PLR0913
     items = cached_items(prompt, static=static, answers=answers)
     frames = read_frames(request.frames, static=static) if request.frames else None
     pictures = frames.pictures if frames else _assumed_pictures(static=static)
-    texts = items.texts() if items else _fixed_items()
+    texts = items.texts() if items else fixed_items()
     missing = repeat
     if items and frames:
         keys = [
-            verdicts_key(prompt, items, frames, provider, model, static=static, repetition=number)
+            verdicts_key(prompt, items, frames, judge, static=static, repetition=number)
             for number in range(repeat)
         ]
         missing = sum(answers.load("verdicts", key, CachedVerdicts) is None for key in keys)
     unknown = 0 if items else ASSUMED_ITEMS * _ITEM_TOKENS
     return (
-        _question(enumeration(prompt, static=static), model, prices, 0 if items else 1),
-        _question(judging(prompt, texts, pictures, static=static), model, prices, missing, unknown),
+        _question(enumeration(prompt, static=static), judge.model, prices, 0 if items else 1),
+        _question(judging(prompt, texts, pictures, static=static), judge.model, prices, missing, unknown),
     )
 
 
@@ -121,14 +122,6 @@ def _describe_block(block: Text | Picture) -> str:
         return block.text
     with Image.open(io.BytesIO(block.data)) as image:
         return f"[picture, {image.width} × {image.height}, about {tokens.of_picture(block)} tokens]"
-
-
-def _fixed_items() -> dict[str, str]:
-    return {
-        f"{name}.{number}": text
-        for name, listed in CHECKLISTS.items()
-        for number, text in enumerate(listed, 1)
-    }
 
 
 def _assumed_pictures(*, static: bool) -> tuple[Picture, ...]:

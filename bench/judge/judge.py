@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
     from pathlib import Path
 
-    from bench.judge.providers import JudgeProvider
+    from bench.judge.providers import JudgeIdentity, JudgeProvider
 
 LONGEST_PROMPT = 4000
 
@@ -48,9 +48,7 @@ def judge(  # noqa: PLR0913
     answers = AnswerCache(cache)
     tell("Listing the prompt's items")
     items = items_of(text, static=static, provider=provider, answers=answers)
-    key = verdicts_key(
-        text, items, pictures, provider.name, provider.model, static=static, repetition=repetition
-    )
+    key = verdicts_key(text, items, pictures, provider.identity, static=static, repetition=repetition)
 
     def ask() -> CachedVerdicts:
         question = judging(text, items.texts(), pictures.pictures, static=static)
@@ -91,8 +89,7 @@ def verdicts_key(  # noqa: PLR0913
     prompt: str,
     items: PromptItems,
     frames: JudgedFrames,
-    provider: str,
-    model: str,
+    who: JudgeIdentity,
     *,
     static: bool,
     repetition: int,
@@ -100,8 +97,7 @@ def verdicts_key(  # noqa: PLR0913
     """The cache key of the verdicts: everything they depend on, and the repetition."""
     ingredients = {
         "prompt_version": prompt_version(),
-        "provider": provider,
-        "model": model,
+        "judge": who,
         "prompt": prompt,
         "static": static,
         "items": items.texts(),

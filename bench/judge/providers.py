@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import json
+import os
 import threading
 from dataclasses import replace
 from importlib.util import find_spec
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from bench.judge.errors import NotJudged
 from simworlds.llm.attempts import Settings
@@ -22,10 +23,25 @@ if TYPE_CHECKING:
 
     from simworlds.llm.messages import Ask, Model, Turn
     from simworlds.llm.prices import Price
+    from simworlds.llm.providers import ProviderName
     from simworlds.llm.retries import Retry
 
 
 _STRUCTURED = ("openai",)  # providers with structured outputs
+
+
+class JudgeIdentity(NamedTuple):
+    """Who judges: one name of a model may stand for several on servers with the same API."""
+
+    provider: str
+    model: str
+    base_url: str | None = None
+
+
+def identity_of(name: ProviderName, model: str | None = None, base_url: str | None = None) -> JudgeIdentity:
+    """The judge that these options name, with what the environment says of the server."""
+    server = base_url or os.environ.get(f"{name.upper()}_BASE_URL", "").strip() or None
+    return JudgeIdentity(name, model or DEFAULT_MODELS[name], server)
 
 
 class JudgeProvider:
@@ -37,16 +53,15 @@ class JudgeProvider:
 
     def __init__(
         self,
-        name: str,
-        model: str,
+        identity: JudgeIdentity,
         connect: Callable[[], Model],
         *,
         spending: Spending | None = None,
         prices: Prices | None = None,
     ) -> None:
         """``connect`` may raise Rejected if a key is missing. ``spending`` counts the cost and holds the limit."""
-        self.name = name
-        self.model = model
+        self.identity = identity
+        self.name, self.model = identity.provider, identity.model
         self.prices = prices or Prices()
         self.spending = spending or Spending(prices=self.prices)
         self._connect = connect
@@ -89,14 +104,13 @@ def provider_of(  # noqa: PLR0913
     """
     if name not in PROVIDERS:
         raise ValueError(f"There is no provider {name!r}. Choose {' or '.join(PROVIDERS)}.")
-    chosen = model or DEFAULT_MODELS[name]
-    prices = Prices({chosen: price} if price else None)
+    identity = identity_of(name, model, base_url)
+    prices = Prices({identity.model: price} if price else None)
     settings = Settings(base_url=base_url, prices=prices)
     if name == "openai" and find_spec("openai") is None:
         raise NotJudged("not set up", NO_PACKAGE)
     return JudgeProvider(
-        name,
-        chosen,
+        identity,
         lambda: connect(name, settings, tell),
         spending=Spending(max_cost, prices),
         prices=prices,

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 
 from pydantic import BaseModel, ConfigDict, Field
 
+from bench.judge.dimensions import fixed_items
 from simworlds.llm.canonical import form_of
 from simworlds.llm.messages import Ask, Picture, Text, Tool, user
 from simworlds.schemas.json_schema import schema_of
@@ -88,14 +89,17 @@ def judging(prompt: str, items: Mapping[str, str], pictures: Sequence[Picture], 
 
 @cache
 def prompt_version() -> str:
-    """The version of the prompts, which changes with any wording: a digest of both questions about an example."""
+    """The version of the prompts, which changes with any wording: a digest of both questions about an example.
+
+    The items are the fixed ones, which are wording too.
+    """
     blank = (Picture(b""),)
     asked = [
         ask
         for static in (True, False)
         for ask in (
             enumeration("An example.", static=static),
-            judging("An example.", {"id": "text"}, blank if static else blank * 2, static=static),
+            judging("An example.", fixed_items(), blank if static else blank * 2, static=static),
         )
     ]
     return hashlib.sha256("".join(form_of(ask).digest for ask in asked).encode()).hexdigest()[

@@ -21,6 +21,12 @@ class CheckRow(_Part):
     seen: dict[str, Any] = {}
 
 
+class ActorEvidence(_Part):
+    """The part of ``bench.audit.actors.ActorResolution.evidence`` that is shown."""
+
+    objects: tuple[str, ...] = ()
+
+
 class ActorRow(_Part):
     """See ``bench.audit.audit.ActorAudit``."""
 
@@ -28,7 +34,7 @@ class ActorRow(_Part):
     role: str
     outcome: str
     by: str = ""
-    evidence: dict[str, Any] = {}
+    evidence: ActorEvidence = ActorEvidence()
     checks: tuple[CheckRow, ...] = ()
     score: float | None = None
 

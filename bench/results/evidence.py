@@ -36,6 +36,7 @@ _QUALITY = 74
 _MOST_PIXELS = 20_000_000
 _LARGEST = 64 << 20  # bytes of a file of the results
 _LONGEST_SEEN = 260  # letters
+_LONGEST_SHARE = 3  # digits of a frame's place in the film, in percent
 
 
 @dataclass(frozen=True, slots=True)
@@ -187,7 +188,7 @@ def _mechanism(audit: AuditFile) -> Iterator[EvidencePart]:
 
 
 def _actor_subtitle(actor: ActorRow) -> str:
-    objects = ", ".join(map(str, actor.evidence.get("objects", ())[:6]))
+    objects = ", ".join(actor.evidence.objects[:6])
     how = f"{actor.outcome} by {actor.by}: {objects}" if objects else actor.outcome
     return f"{actor.role.replace('_', ' ')}, {how}"
 
@@ -255,9 +256,9 @@ def _frames(scene: SceneResult) -> Iterator[PageFrame]:
     framed = scene.record.framed
     for file in framed.frames if framed is not None else ():
         content = _read_file(scene.folder, file)
-        frame = _picture(
-            content, f"{int(stem)} %" if (stem := PurePosixPath(file.path).stem).isdecimal() else ""
-        )
+        stem = PurePosixPath(file.path).stem
+        share = f"{int(stem)} %" if stem.isdecimal() and len(stem) <= _LONGEST_SHARE else ""
+        frame = _picture(content, share)
         if frame is not None:
             yield frame
 

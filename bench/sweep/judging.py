@@ -112,7 +112,7 @@ def judge_scene(task: SceneTask, who: SweepJudge) -> SceneRecord:
             **_step_fields("", began), frames=frames, why=who.why if paths else _no_frames(record)
         )
     else:
-        key = _key(task, who.options, who.provider, frames)
+        key = _key(task, who.provider, frames)
         if before is not None and before.key == key and before.why is None:
             return record
         judged = _judged(task, who.provider, paths, who.options.cache, key).model_copy(
@@ -129,13 +129,13 @@ def _no_frames(record: SceneRecord) -> str:
     return f"no frames: {(record.framed.why if record.framed is not None else None) or 'none were taken'}"
 
 
-def _key(task: SceneTask, options: JudgeOptions, provider: JudgeProvider, frames: str) -> str:
+def _key(task: SceneTask, provider: JudgeProvider, frames: str) -> str:
     return digest_of(
         {
             "prompt": task.spec.prompt,
             "static": task.is_static,
             "frames": frames,
-            "provider": [provider.name, provider.model, options.base_url],
+            "provider": provider.identity,
             "prompts": prompt_version(),
         }
     )
@@ -178,4 +178,4 @@ def _write_judgement(task: SceneTask, judgement: Judgement) -> File:
 
 
 def _step_fields(key: str, began: float) -> dict[str, Any]:
-    return step_fields(DueStep(key, code_of("bench.judge.judge", "judge/prompts/*")), began)
+    return step_fields(DueStep(key, code_of("bench.judge.judge", "bench/judge/prompts/*")), began)

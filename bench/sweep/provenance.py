@@ -17,8 +17,10 @@ from bench.sweep.records import Provenance
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_BENCH = Path(__file__).resolve().parent.parent
-_INSIDE, _FRAMES = "audit/inside", "frames.py"
+_ROOT = Path(__file__).resolve().parent.parent.parent
+_INSIDE, _FRAMES = "bench/audit/inside", "frames.py"
+IN_BLENDER = "simworlds/sandbox/inside/*.py"
+"""What opens, refuses and repairs files in each Blender of ours, for ``code_of``."""
 _PACKAGES = (
     *("anthropic", "av", "bpy", "huggingface-hub", "numpy"),
     *("openai", "pillow", "pydantic", "ray", "safetensors"),
@@ -27,20 +29,25 @@ _PACKAGES = (
 
 @cache
 def code_of(module: str, *beside: str) -> str:
-    """Digest of a module of ``bench`` with all of ``bench`` that it imports, and of further files (globs in bench)."""
-    paths = {*_closure(module), *(path for pattern in beside for path in _BENCH.glob(pattern))}
-    return digest_of({path.relative_to(_BENCH).as_posix(): digest_of_file(path) for path in paths})
+    """Digest of a module of ``bench`` with all of ``bench`` that it imports, and of further files (globs).
+
+    What ``bench`` takes of ``simworlds`` starts programs and carries their answers, and does not count.
+    """
+    paths = {*_closure(module), *(path for pattern in beside for path in _ROOT.glob(pattern))}
+    return digest_of({path.relative_to(_ROOT).as_posix(): digest_of_file(path) for path in paths})
 
 
 def code_of_audit() -> str:
     """Digest of the audit's code, with that in Blender."""
-    inside = sorted(path.name for path in (_BENCH / _INSIDE).glob("*.py") if path.name != _FRAMES)
-    return code_of("bench.audit.audit", *(f"{_INSIDE}/{name}" for name in inside))
+    inside = sorted(path.name for path in (_ROOT / _INSIDE).glob("*.py") if path.name != _FRAMES)
+    return code_of("bench.audit.audit", *(f"{_INSIDE}/{name}" for name in inside), IN_BLENDER)
 
 
 def code_of_frames() -> str:
     """Digest of the code that takes frames. What it shares with the audit matters only for unbaked physics."""
-    return code_of("bench.frames.clip_frames", f"{_INSIDE}/{_FRAMES}", "frames/decode_video.py")
+    return code_of(
+        "bench.frames.clip_frames", f"{_INSIDE}/{_FRAMES}", "bench/frames/decode_video.py", IN_BLENDER
+    )
 
 
 def provenance(code: str, blender: str | None = None) -> Provenance:
@@ -81,9 +88,9 @@ def _imported(tree: ast.Module) -> Iterator[str]:
 
 def _file_of(module: str) -> Path | None:
     top, *parts = module.split(".")
-    if top != _BENCH.name or not parts:
+    if top != "bench" or not parts:
         return None
-    path = _BENCH.joinpath(*parts).with_suffix(".py")
+    path = _ROOT.joinpath(top, *parts).with_suffix(".py")
     return path if path.is_file() else None
 
 
@@ -98,7 +105,7 @@ def _version(package: str) -> str | None:
 @cache
 def _commit() -> tuple[str | None, bool | None]:
     """The commit of the checkout, and whether tracked files differ from it; None where there is no checkout."""
-    if not (_BENCH.parent / ".git").exists():
+    if not (_ROOT / ".git").exists():
         return None, None
     commit = _git("rev-parse", "HEAD")
     changes = _git("status", "--porcelain", "--untracked-files=no")
@@ -108,7 +115,7 @@ def _commit() -> tuple[str | None, bool | None]:
 def _git(*words: str) -> str | None:
     try:
         done = subprocess.run(
-            ["git", "-C", str(_BENCH.parent), *words], capture_output=True, text=True, check=False, timeout=20
+            ["git", "-C", str(_ROOT), *words], capture_output=True, text=True, check=False, timeout=20
         )
     except (OSError, subprocess.SubprocessError):
         return None

@@ -20,9 +20,12 @@ if TYPE_CHECKING:
     from bench.scenes.spec import Spec
     from bench.validity.proof import Property
 
-_BENCH = Path(__file__).parent.parent
+_ROOT = Path(__file__).parent.parent.parent
 # The code of audits and variants: a change of any of it invalidates every proof.
-_CODE = ("audit/**/*.py", "scenes/*.py", "validity/**/*.py")
+_CODE = (
+    *("bench/audit/**/*.py", "bench/scenes/*.py", "bench/validity/**/*.py"),
+    "simworlds/sandbox/inside/*.py",
+)
 
 
 class _Kept(BaseModel):
@@ -65,8 +68,8 @@ def _path(scene: str, about: Property) -> Path:
 @cache
 def _code() -> str:
     digest = hashlib.sha256()
-    for path in sorted({path for pattern in _CODE for path in _BENCH.glob(pattern)}):
-        digest.update(f"{path.relative_to(_BENCH)}\0".encode())
+    for path in sorted({path for pattern in _CODE for path in _ROOT.glob(pattern)}):
+        digest.update(f"{path.relative_to(_ROOT)}\0".encode())
         digest.update(path.read_bytes())
     return digest.hexdigest()
 

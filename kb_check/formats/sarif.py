@@ -21,12 +21,23 @@ _SCHEMA = "https://docs.oasis-open.org/sarif/sarif/v2.1.0/errata01/os/schemas/sa
 _CONTEXT = 120  # letters on each side of a place that tell it from others
 
 
-def as_sarif(report: Report) -> str:
-    """The report as one run; what could not be checked is a notification of it."""
+def as_sarif(*reports: Report) -> str:
+    """Reports for different Blenders, each as a run; what could not be checked is a notification of it.
+
+    Code hosts take several runs of one tool only if each says which it is.
+    """
+    runs = [_run(report) for report in reports]
+    if len(runs) > 1:
+        for run, report in zip(runs, reports, strict=True):
+            run["automationDetails"] = {"id": f"simworlds-check/blender-{report.blender}/"}
+    return dump({"$schema": _SCHEMA, "version": "2.1.0", "runs": runs})
+
+
+def _run(report: Report) -> dict[str, Any]:
     rules = list(all_rules())
     files = [file for file in report.files if file.findings]
     places = {file.name: place for place, file in enumerate(files)}
-    run: dict[str, Any] = {
+    return {
         "tool": {"driver": {"name": "simworlds check", "rules": [_rule(rule) for rule in all_rules().values()]}},
         "columnKind": "unicodeCodePoints",
         "invocations": [
@@ -43,7 +54,6 @@ def as_sarif(report: Report) -> str:
         ],
         "properties": {"blender": report.blender, "files": len(report.files)},
     }  # fmt: skip
-    return dump({"$schema": _SCHEMA, "version": "2.1.0", "runs": [run]})
 
 
 def _rule(rule: Rule) -> dict[str, Any]:

@@ -80,6 +80,20 @@ def test_findings_become_sarif_and_an_exit_code(run: RunStep, tmp_path: Path, ba
     assert [result["ruleId"] for entry in log["runs"] for result in entry["results"]] == ["unknown-keyword"]
 
 
+def test_several_versions_are_runs_of_one_file(run: RunStep, tmp_path: Path, base: Path) -> None:
+    """One base stands for two versions."""
+    minor = base.stem.removeprefix("blender-")
+    os.link(base, tmp_path / "home" / "kb" / "blender-9.9.sqlite")
+    (tmp_path / "door.py").write_text("import bpy\nbpy.ops.mesh.primitive_cube_add(radius=1)\n")
+    code, outputs = run(
+        "Look for findings", command="check", paths=".", blender=f"{minor}, 9.9", sarif_file="out.sarif"
+    )
+    assert (code, outputs) == (0, "code=1\n")
+    runs = json.loads((tmp_path / "out.sarif").read_text())["runs"]
+    assert [[result["ruleId"] for result in entry["results"]] for entry in runs] == [["unknown-keyword"]] * 2
+    assert [entry["properties"]["blender"] for entry in runs] == [minor, "9.9"]
+
+
 def test_an_input_is_never_run(run: RunStep, tmp_path: Path, base: Path) -> None:
     minor = base.stem.removeprefix("blender-")
     run(

@@ -1,4 +1,4 @@
-"""A folder of assets, catalogued: what it has is read once, by a confined Blender, and kept by the files' contents."""
+"""A folder of assets, catalogued: what it has is read once by each Blender, confined, and kept by the contents."""
 
 from __future__ import annotations
 
@@ -88,6 +88,9 @@ class AssetLibrary:
         self._cache = cache
         self._assets: list[LibraryAsset] | None = None
         self._seen: tuple[FolderFile, ...] = ()
+        self._ended: dict[
+            str, _Kept
+        ] = {}  # what has ended a Blender, which may have been a matter of the day
         self.faults: list[str] = []
 
     def assets(self, blender: Supervisor, told: Told | None = None) -> list[LibraryAsset]:
@@ -167,12 +170,12 @@ class AssetLibrary:
                 try:
                     digest = digests.setdefault(_stamp(self.root, file), "") or self._digest(file)
                     digests[_stamp(self.root, file)] = digest
-                    entry = self._load(digest)
+                    key = f"{digest}-{blender.launch.runtime.version}"
+                    entry = self._ended.get(key) or self._load(key)
                     if entry is None:
                         if second is None or not second[0].alive:
                             second = stack.enter_context(second_blender(blender.launch, self.root))
-                        entry = self._read(file, *second, blender.pictures)
-                        self._store(digest, entry)
+                        entry = self._read(file, key, *second, blender.pictures)
                 except (OSError, BlenderError) as error:
                     self.faults.append(f"{file.name}: {str(error)[:300]}")
                     continue
@@ -184,9 +187,14 @@ class AssetLibrary:
         return found
 
     def _read(
-        self, file: FolderFile, process: BlenderProcess, ground: HostileGround, decoder: PictureDecoder
+        self,
+        file: FolderFile,
+        key: str,
+        process: BlenderProcess,
+        ground: HostileGround,
+        decoder: PictureDecoder,
     ) -> _Kept:
-        """Lets the second Blender read a file. What it says cannot be read is kept; what ends it is, too."""
+        """Lets the second Blender read a file, and keeps what it says; of a file that ends it, in this library only."""
         folder = "pictures"
         request: dict[str, Any] = {
             "path": str(self.root / file.name),
@@ -196,7 +204,9 @@ class AssetLibrary:
             reply = process.call("read_assets", request, ReadAssets.model_validate, timeout=_FILE_SECONDS)
         except Lost as error:
             fault = f"it ends the Blender that reads it: {str(error)[:200]}"
-            return _Kept(read=ReadAssets(assets=[], size=None, picture="", fault=fault))
+            return self._ended.setdefault(
+                key, _Kept(read=ReadAssets(assets=[], size=None, picture="", fault=fault))
+            )
         read = reply.value
         pictures: dict[str, str] = {}
         for name in {read.picture, *(asset.picture for asset in read.assets)} - {""}:
@@ -205,7 +215,9 @@ class AssetLibrary:
                 pictures[name] = hashlib.sha256(png).hexdigest()
                 write_whole(self._cache / f"{pictures[name]}.png", png, durable=False)
         ground.remove(folder)
-        return _Kept(read=read, pictures=pictures)
+        kept = _Kept(read=read, pictures=pictures)
+        write_whole(self._cache / f"{key}.json", kept.model_dump_json(), durable=False)
+        return kept
 
     def _digest(self, file: FolderFile) -> str:
         digest = hashlib.sha256(f"{_VERSION}".encode())
@@ -214,13 +226,10 @@ class AssetLibrary:
                 digest.update(data)
         return digest.hexdigest()
 
-    def _load(self, digest: str) -> _Kept | None:
+    def _load(self, key: str) -> _Kept | None:
         with suppress(OSError, ValidationError):
-            return _Kept.model_validate_json((self._cache / f"{digest}.json").read_bytes())
+            return _Kept.model_validate_json((self._cache / f"{key}.json").read_bytes())
         return None
-
-    def _store(self, digest: str, kept: _Kept) -> None:
-        write_whole(self._cache / f"{digest}.json", kept.model_dump_json(), durable=False)
 
     @property
     def _index(self) -> Path:

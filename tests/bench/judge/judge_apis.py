@@ -11,7 +11,7 @@ from fake_chat_api import FakeChatAPI, Said
 from fake_messages_api import FakeMessagesAPI, Reply
 from PIL import Image, PngImagePlugin
 
-from bench.judge.providers import JudgeProvider
+from bench.judge.providers import JudgeIdentity, JudgeProvider
 from simworlds.llm.attempts import Settings
 from simworlds.llm.claude import Claude
 from simworlds.llm.openai_chat import OpenAIChat
@@ -102,10 +102,18 @@ class Anthropic:
         self.script = Script()
         self.pauses: list[float] = []
 
-    def provider(self, *, model: str = "", max_cost: float | None = None, tries: int = 4) -> JudgeProvider:
+    def provider(
+        self,
+        *,
+        model: str = "",
+        max_cost: float | None = None,
+        tries: int = 4,
+        said_address: str | None = None,
+    ) -> JudgeProvider:
         settings = Settings(api_key="key", base_url=self.server.base_url, patience=RetryPolicy(tries=tries))
         connect = lambda: Claude(settings, pause=self.pauses.append)  # noqa: E731
-        return JudgeProvider(self.name, model or self.model, connect, spending=Spending(max_cost))
+        identity = JudgeIdentity(self.name, model or self.model, said_address)
+        return JudgeProvider(identity, connect, spending=Spending(max_cost))
 
     def fail(self, *faults: Any) -> None:
         self.server.fail("POST /v1/messages", *faults)
@@ -151,10 +159,18 @@ class OpenAI:
         self.script = Script()
         self.pauses: list[float] = []
 
-    def provider(self, *, model: str = "", max_cost: float | None = None, tries: int = 4) -> JudgeProvider:
+    def provider(
+        self,
+        *,
+        model: str = "",
+        max_cost: float | None = None,
+        tries: int = 4,
+        said_address: str | None = None,
+    ) -> JudgeProvider:
         settings = Settings(api_key="key", base_url=self.server.base_url, patience=RetryPolicy(tries=tries))
         connect = lambda: OpenAIChat(settings, pause=self.pauses.append)  # noqa: E731
-        return JudgeProvider(self.name, model or self.model, connect, spending=Spending(max_cost))
+        identity = JudgeIdentity(self.name, model or self.model, said_address)
+        return JudgeProvider(identity, connect, spending=Spending(max_cost))
 
     def fail(self, *faults: Any) -> None:
         self.server.fail(*faults)

@@ -10,8 +10,9 @@ from judge_apis import LISTS, PROMPT, STILL, STILL_LISTS, film
 from PIL import Image
 
 from bench.judge import questions
-from bench.judge.dimensions import DIMENSIONS
+from bench.judge.dimensions import CHECKLISTS, DIMENSIONS
 from bench.judge.judge import judge
+from bench.judge.providers import identity_of
 from bench.judge.verdicts import Judgement
 
 
@@ -141,6 +142,23 @@ def test_another_judge_judges_the_same_items(api, frames, store):
     assert (other.model, other.items_by) == ("another-model", first.items_by)
 
 
+def test_a_model_of_one_name_on_another_server_is_another_judge(claude, frames, store):
+    judged(claude, frames, store)
+    other = claude.provider(said_address="https://elsewhere.example/v1")
+    judged(claude, frames, store, provider=other)
+    assert claude.stages() == ["items", "verdicts", "verdicts"]
+
+
+def test_a_judge_is_known_by_the_server_that_the_environment_names(monkeypatch):
+    monkeypatch.delenv("OPENAI_BASE_URL", raising=False)
+    plain = identity_of("openai", "some-model")
+    monkeypatch.setenv("OPENAI_BASE_URL", "http://localhost:11434/v1")
+    assert identity_of("openai", "some-model") != plain
+    assert identity_of("openai", "some-model").base_url == "http://localhost:11434/v1"
+    assert identity_of("openai", "some-model", "http://other/v1").base_url == "http://other/v1"
+    assert identity_of("anthropic").base_url != "http://localhost:11434/v1"
+
+
 def test_a_repetition_is_asked_and_cached_separately(claude, frames, store):
     judged(claude, frames, store)
     claude.script.fails = ()
@@ -157,7 +175,7 @@ def test_a_frame_is_identified_by_its_pixels_not_its_metadata(claude, store, tmp
     assert claude.stages() == ["items", "verdicts"]
 
 
-@pytest.mark.parametrize("change", ["a pixel", "the order", "the prompt", "the wording"])
+@pytest.mark.parametrize("change", ["a pixel", "the order", "the prompt", "the wording", "a fixed item"])
 def test_a_changed_input_makes_a_new_judgement(claude, store, frames, tmp_path, monkeypatch, change):
     judged(claude, frames, store)
     prompt, shown, asked = PROMPT, list(frames), ["verdicts"]
@@ -169,6 +187,12 @@ def test_a_changed_input_makes_a_new_judgement(claude, store, frames, tmp_path, 
         shown.reverse()
     elif change == "the prompt":
         prompt, asked = f"{PROMPT} The crate is blue.", ["items", "verdicts"]
+    elif change == "a fixed item":
+        before = questions.prompt_version()
+        monkeypatch.setitem(CHECKLISTS, "aesthetics", ("Something else.",))
+        questions.prompt_version.cache_clear()
+        asked = ["items", "verdicts"]
+        assert questions.prompt_version() != before
     else:
         other = tmp_path / "prompts"
         shutil.copytree(questions.FOLDER, other)

@@ -219,6 +219,39 @@ def test_damaged_or_missing_evidence_is_left_out(name: str, full: Written) -> No
     assert "A red tablecloth" in page_of(full).text
 
 
+@pytest.mark.parametrize("objects", [5, [[1]], {"a": 1}, None])
+def test_an_audit_with_values_of_other_kinds_is_left_out(objects: object, full: Written) -> None:
+    actor = {**AUDIT["actors"][0], "evidence": {"objects": objects}}
+    full.add("mine", "cloth_D1_01", 0.5, 0.0, audit={**AUDIT, "actors": [actor]})
+    seen = page_of(full)
+    assert "A red tablecloth" in seen.text
+    assert "frames 12, frames expected 60" not in seen.text
+
+
+def test_a_frame_with_any_name_is_shown(full: Written) -> None:
+    folder = full.folder / "mine" / "cloth_D1_01"
+    found = read_record(folder)
+    assert found is not None
+    assert found.framed is not None
+    frame = found.framed.frames[0]
+    path = f"frames/{'0' * 100}.png"
+    (folder / frame.path).rename(folder / path)
+    frames = (frame.model_copy(update={"path": path}), *found.framed.frames[1:])
+    write_record(
+        folder,
+        found.model_copy(update={"framed": found.framed.model_copy(update={"frames": frames})}),
+    )
+    labels = [str(image["alt"]) for image in page_of(full).of("img") if image.get("src")]
+    assert labels[:2] == ["cloth_D1_01 by mine", "cloth_D1_01 by mine at 25 %"]
+
+
+def test_a_frame_that_no_file_can_be_called_is_left_out(full: Written) -> None:
+    folder = full.folder / "mine" / "cloth_D1_01"
+    record = (folder / "record.json").read_text()
+    (folder / "record.json").write_text(record.replace("frames/000.png", f"frames/{'1' * 5000}.png"))
+    assert len([image for image in page_of(full).of("img") if image.get("src")]) == 4
+
+
 # The command
 
 

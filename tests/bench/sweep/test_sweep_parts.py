@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import io
-from typing import TYPE_CHECKING
+import shutil
+from pathlib import Path
 
 import pytest
 from pydantic import ValidationError
@@ -19,9 +20,6 @@ from bench.sweep.sweep_view import LiveSweepView, SweepView
 from bench.sweep.systems.folder import FolderSystem
 from simworlds.files import write_whole
 from simworlds.terminal.console import Console
-
-if TYPE_CHECKING:
-    from pathlib import Path
 
 SCENE = "cloth_D1_01"
 INFO = SystemInfo(name="theirs", kind="folder")
@@ -152,11 +150,11 @@ def test_the_digest_of_a_step_covers_only_the_code_that_it_imports(
     }.items():
         (bench / name).parent.mkdir(parents=True, exist_ok=True)
         (bench / name).write_text(text)
-    monkeypatch.setattr(origin, "_BENCH", bench)
+    monkeypatch.setattr(origin, "_ROOT", tmp_path)
 
     def code() -> str:
         origin.code_of.cache_clear()
-        return origin.code_of("bench.audit.audit", "inside/*.py")
+        return origin.code_of("bench.audit.audit", "bench/inside/*.py")
 
     before = code()
     (bench / "other.py").write_text("changed = True")
@@ -168,6 +166,33 @@ def test_the_digest_of_a_step_covers_only_the_code_that_it_imports(
         (bench / name).write_text(text)
     assert code() == before
     origin.code_of.cache_clear()
+
+
+def test_the_digests_of_steps_cover_what_runs_in_blender(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    root = Path(origin.__file__).parents[2]
+    for part in ("bench", "simworlds/sandbox/inside"):
+        shutil.copytree(root / part, tmp_path / part, ignore=shutil.ignore_patterns("__pycache__"))
+    monkeypatch.setattr(origin, "_ROOT", tmp_path)
+
+    def codes() -> tuple[str, str]:
+        origin.code_of.cache_clear()
+        return origin.code_of_audit(), origin.code_of_frames()
+
+    try:
+        before = codes()
+        with (tmp_path / "simworlds/sandbox/inside/open_blend.py").open("a") as file:
+            file.write("changed = True\n")
+        changed = codes()
+        assert changed[0] != before[0]
+        assert changed[1] != before[1]
+        with (tmp_path / "bench/audit/inside/shapes.py").open("a") as file:
+            file.write("changed = True\n")
+        assert codes()[0] != changed[0]
+        assert codes()[1] == changed[1]
+    finally:
+        origin.code_of.cache_clear()
 
 
 def test_a_record_of_another_shape_is_named(tmp_path: Path) -> None:

@@ -146,7 +146,7 @@ def test_without_a_base_the_way_to_one_is_said(command: Command) -> None:
         ["--jobs", "0"],
         ["-", "--fix"],
         ["--blender", "4.5,5.1", "--fix"],
-        ["--blender", "4.5,5.1", "--sarif"],
+        ["--blender", "4.5,5.1", "--github"],
         ["--blender", "x,y"],
     ],
 )

@@ -64,6 +64,7 @@ RUN = obj(
         )
     ),
     artifacts=array(obj(location=LOCATION), unique=True), results=array(RESULT), properties={"type": "object"},
+    automationDetails=obj(id=TEXT),
 )  # fmt: skip
 LOG = obj(
     "version runs", **{"$schema": {"type": "string", "format": "uri"}},
@@ -78,13 +79,15 @@ def sarif(*files: FileReport, faults: tuple[str, ...] = ()) -> dict[str, Any]:
 def judge(log: dict[str, Any]) -> None:
     """Raises ValidationError for what the standard does not allow, or what points nowhere."""
     Draft202012Validator(LOG).validate(log)
-    (run,) = log["runs"]
-    rules, artifacts = run["tool"]["driver"]["rules"], run["artifacts"]
-    for result in run["results"]:
-        assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
-        for place in result["locations"]:
-            location = place["physicalLocation"]["artifactLocation"]
-            assert artifacts[location["index"]]["location"]["uri"] == location["uri"]
+    for run in log["runs"]:
+        rules, artifacts = run["tool"]["driver"]["rules"], run["artifacts"]
+        for result in run["results"]:
+            assert rules[result["ruleIndex"]]["id"] == result["ruleId"]
+            for place in result["locations"]:
+                location = place["physicalLocation"]["artifactLocation"]
+                assert artifacts[location["index"]]["location"]["uri"] == location["uri"]
+    names = [run.get("automationDetails") for run in log["runs"]]
+    assert len({str(name) for name in names}) == len(names), "a code host takes only one of them"
 
 
 @pytest.fixture(scope="module")
@@ -120,6 +123,24 @@ def test_what_is_really_found_is_too(checker: Checker) -> None:
         "unknown-attribute",
         "syntax-error",
     }
+
+
+def test_each_of_several_versions_is_a_run_of_its_own() -> None:
+    found = [Finding("unknown-name", "error", Span(1, 0, 1, 1), "wrong")]
+    older, newer = (
+        Report(version, [FileReport("a.py", Source("x\n"), findings)])
+        for version, findings in (("4.5", []), ("5.1", found))
+    )
+    log = json.loads(as_sarif(older, newer))
+    judge(log)
+    assert [(run["properties"]["blender"], len(run["results"])) for run in log["runs"]] == [
+        ("4.5", 0),
+        ("5.1", 1),
+    ]
+    assert [run["automationDetails"]["id"] for run in log["runs"]] == [
+        "simworlds-check/blender-4.5/",
+        "simworlds-check/blender-5.1/",
+    ]
 
 
 @pytest.mark.parametrize(

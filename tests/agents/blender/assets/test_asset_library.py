@@ -4,18 +4,21 @@ from __future__ import annotations
 
 import shutil
 from dataclasses import replace
-from typing import TYPE_CHECKING, Any
+from types import SimpleNamespace
+from typing import TYPE_CHECKING, Any, cast
 
 import pytest
 from live_session import LiveSession
 from mcp import Client
 from serving import over_stdio
 
-from agents.blender.assets.library import AssetLibrary, find_assets
+from agents.blender.assets.library import AssetLibrary, _Kept, find_assets
 from agents.blender.assets.licence import NOTE_FILE, LicenceNote
+from agents.blender.assets.replies import ReadAssets
 from agents.blender.tools.assets import TOOL
 from agents.blender.tools.base import Call
-from simworlds.sandbox.errors import Refusal
+from simworlds.sandbox.blender_process import BlenderProcess
+from simworlds.sandbox.errors import Refusal, TookTooLong
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -251,6 +254,55 @@ def test_damaged_files_are_named_and_the_others_found(shelf: Shelf) -> None:
     finally:
         (shelf.root / "broken.blend").unlink()
         (shelf.root / "broken.hdr").unlink()
+
+
+def test_what_one_blender_could_not_read_another_version_is_asked_for(
+    shelf: Shelf, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """The real one refuses the file; that of another version is played by one that reads everything."""
+    broken = shelf.root / "broken.hdr"
+    broken.write_bytes(b"nothing")
+    try:
+        shelf.again().assets(shelf.session.blender)
+        assert len(shelf.library.faults) == 1
+        monkeypatch.setattr(AssetLibrary, "_read", lambda *_: readable())
+        shelf.again().assets(shelf.session.blender)
+        assert len(shelf.library.faults) == 1
+        launch = shelf.session.blender.launch
+        other = replace(launch, runtime=replace(launch.runtime, version="3.0.0"))
+        shelf.again().assets(cast("Any", SimpleNamespace(launch=other, pictures=None)))
+        assert shelf.library.faults == []
+    finally:
+        broken.unlink()
+
+
+def test_a_file_that_ended_a_blender_once_is_tried_again(
+    shelf: Shelf, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    evening = shelf.root / "evening.hdr"
+    evening.write_bytes((shelf.root / "sunset.hdr").read_bytes() + b"\n")
+    calls: list[str] = []
+
+    def too_long(_process: object, tool: str, *_: Any, **_more: Any) -> Any:
+        calls.append(tool)
+        raise TookTooLong("it took more than 120 s")
+
+    try:
+        with monkeypatch.context() as busy:
+            busy.setattr(BlenderProcess, "call", too_long)
+            for _ in range(2):  # in one library, it is not tried again because another file has changed
+                shelf.library.assets(shelf.session.blender)
+                (shelf.root / "sunset.hdr").touch()
+            assert calls == ["read_assets"]
+            assert "it ends the Blender that reads it: it took more than 120 s" in shelf.library.faults[0]
+        assert "evening.hdr" in {asset.id for asset in shelf.again().assets(shelf.session.blender)}
+        assert shelf.library.faults == []
+    finally:
+        evening.unlink()
+
+
+def readable() -> _Kept:
+    return _Kept(read=ReadAssets(assets=[], size=(1, 1), picture="", fault=""))
 
 
 def test_the_licence_of_what_was_fetched_is_told(shelf: Shelf) -> None:

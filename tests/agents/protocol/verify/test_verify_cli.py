@@ -106,6 +106,10 @@ def test_several_files_have_one_log_and_the_worst_exit_code(session: LiveSession
     done = verify(tmp_path, "sound.blend", "missing.blend", "--sarif")
     assert done.returncode == 2
     first, second = json.loads(done.stdout)["runs"]
+    assert [run["automationDetails"]["id"] for run in (first, second)] == [
+        "simworlds-verify/sound.blend/",
+        "simworlds-verify/missing.blend/",
+    ]
     assert first["results"] == []
     assert second["invocations"][0]["executionSuccessful"] is False
     done = verify(tmp_path, "sound.blend", "missing.blend", "--json")
