@@ -449,7 +449,10 @@ class Calls(Narrowing):
                 return self._class_of(first)
             case "setattr" if len(arguments) == 3:
                 declared = self.is_declared(node.args[2])
-                self.register(first, literal_text(arguments[1]) or ANY, arguments[2], declared=declared)
+                name = literal_text(arguments[1])
+                self.register(first, name or ANY, arguments[2], declared=declared)
+                if name and isinstance(first, (LocalInstance, LocalClass)):
+                    self.classes[first.number].bind(name, arguments[2])
                 return NONE
             case "hasattr":
                 text = literal_text(arguments[1]) if len(arguments) == 2 else None
@@ -512,6 +515,13 @@ class Calls(Narrowing):
             return BOOL if name == "operator.poll" else UNKNOWN
         if isinstance(receiver, Mapping):
             match name:
+                case "update":
+                    self._grow(receiver, UNKNOWN)
+                    return NONE
+                case "setdefault" if len(arguments) > 1:
+                    kind = join(self.item(receiver, first, ast.Pass()), arguments[1])
+                    self._grow(receiver, arguments[1])
+                    return kind
                 case "get" | "pop" | "setdefault":
                     kind = self.item(receiver, first, ast.Pass())
                     return join(kind, arguments[1]) if len(arguments) > 1 else kind
@@ -542,15 +552,20 @@ class Calls(Narrowing):
                 return UNKNOWN
 
     def _grow(self, receiver: Type, kind: Type) -> None:
-        """A list that a name holds gets one more element: the name's type follows."""
-        for scope in (self.scope,):
-            for name, held in scope.state.names.items():
-                if held is receiver and isinstance(held, (Sequence, Tuple)):
-                    before = held.element if isinstance(held, Sequence) else union(held.items)
-                    after = kind if before is UNKNOWN else join(before, kind)
-                    grown = Sequence(held.kind if isinstance(held, Sequence) else "list", after)
-                    scope.bind(name, grown)
-                    return
+        """A list or a dictionary that names hold gets one more element: their types follow."""
+        grown: Type
+        match receiver:
+            case Sequence() | Tuple():
+                before = receiver.element if isinstance(receiver, Sequence) else union(receiver.items)
+                after = kind if before is UNKNOWN else join(before, kind)
+                grown = Sequence(receiver.kind if isinstance(receiver, Sequence) else "list", after)
+            case Mapping():
+                is_empty = receiver.value is UNKNOWN and not receiver.items
+                grown = Mapping(UNKNOWN, kind if is_empty else join(receiver.value, kind))
+            case _:
+                return
+        for name in [name for name, held in self.scope.state.names.items() if held is receiver]:
+            self.scope.bind(name, grown)
 
     _callers: ClassVar[dict[type, Callable[..., Type]]] = {
         Operator: _operator,

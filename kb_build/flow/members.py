@@ -44,11 +44,12 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     union,
+    unsure,
 )
 
 if TYPE_CHECKING:
     import ast
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from kb_build.flow.types import Resolution
 
@@ -91,8 +92,10 @@ class Members(Core):
                     if len(found.missing) > lacking:
                         lost += found.types[known:]
                         del found.types[known:]
-            if not (found.symbols or found.possible):  # else who goes on has a member that has it
+            if not found.types:  # else who goes on has a member that has it
                 found.types += lost
+            elif not (found.symbols or found.possible):
+                found.missing.clear()  # the script's own thing has it
         else:
             self._read(kind, name, found)
         if not found.types:
@@ -277,10 +280,20 @@ class Members(Core):
 
     def _of_local_instance(self, kind: LocalInstance, name: str, found: Lookup) -> None:
         if own := self.class_attribute(kind.number, name):
-            found.types.append(self.bound(own[0], kind))
+            held = self.bound(own[0], kind)
+            if any(file.computes_attributes for file in self.sources):
+                held = unsure(held)
+            found.types.append(union((held, *self._overriding(kind.number, name, own[0]))))
             return
         bases, known = self.api_bases(kind.number)
         self._of_bases([Instance(base) for base in bases], name, found, known=known)
+
+    def _overriding(self, number: int, name: str, own: Type) -> Iterator[Type]:
+        """What the classes that derive from one have in the place of its attribute."""
+        for other in self.derived.get(number, ()):
+            found = self.class_attribute(other, name)
+            if found is not None and found[0] != own:
+                yield self.bound(found[0], LocalInstance(other))
 
     def _of_bases(self, bases: list[Type], name: str, found: Lookup, *, known: bool) -> None:
         inner = Lookup()

@@ -17,6 +17,7 @@ from kb_build.flow.types import (
     Union,
     bounded,
     join,
+    unsure,
 )
 from kb_build.flow.types import Sequence as ListType
 
@@ -89,7 +90,8 @@ class Loop:
 class Scope:
     """A module, a function or a class. ``ever`` joins all that a name was bound to: what other scopes see.
 
-    ``asked`` are the names that hold what ``hasattr`` or ``getattr`` said, with the expression.
+    ``asked`` are the names that hold what ``hasattr`` or ``getattr`` said, with the expression. ``shared`` are names
+    that functions bind or fill which are not theirs: what one holds depends on what was called before.
     """
 
     parent: Scope | None = None
@@ -99,10 +101,13 @@ class Scope:
     ever: dict[str, Type] = field(default_factory=dict[str, Type])
     elsewhere: set[str] = field(default_factory=set[str])
     asked: dict[str, ast.expr] = field(default_factory=dict[str, ast.expr])
+    shared: frozenset[str] = frozenset()
     changes: int = 0
 
     def lookup(self, name: str) -> Type | None:
         """What a name holds here; None for a name that the script does not bind."""
+        if name in self.shared:
+            return self._shared(name)
         if name not in self.elsewhere:
             found = self.state.names.get(name)
             if found is not None:
@@ -113,6 +118,15 @@ class Scope:
                 found = scope.ever.get(name)
                 if found is not None:
                     return found
+            scope = scope.parent
+        return None
+
+    def _shared(self, name: str) -> Type | None:
+        """All that a shared name ever held, none of it for sure."""
+        scope: Scope | None = self
+        while scope is not None:
+            if name in scope.ever and (scope is self or not scope.is_class):
+                return unsure(scope.ever[name])
             scope = scope.parent
         return None
 
@@ -139,6 +153,18 @@ class Scope:
         if self.state.chains:
             self.forget(name)
         self.remember(name, kind)
+
+    def fill_outside(self, name: str, kind: Type) -> None:
+        """Adds to what a name of a scope around this one holds."""
+        scope = self.parent
+        while scope is not None:
+            if not scope.is_class and name in scope.ever:
+                held = scope.state.names.get(name)
+                if held is not None:
+                    scope.state.names[name] = join(held, kept(kind))
+                scope.remember(name, kept(kind))
+                return
+            scope = scope.parent
 
     def remember(self, name: str, kind: Type) -> None:
         """Adds to what a name ever held."""

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     from kb_build.flow.types import Resolution, Type
 
+_FILLING = frozenset({"append", "appendleft", "add", "insert", "extend", "update", "setdefault"})
+
 
 @dataclass
 class SourceFile:
@@ -42,6 +44,22 @@ class SourceFile:
     unread: set[ast.AST] = field(default_factory=set["ast.AST"])
     started: bool = False
     complete: bool = True
+
+    @cached_property
+    def shared_names(self) -> frozenset[str]:
+        """The names that functions bind or fill though they belong to the module, or to a function around."""
+        found: set[str] = set()
+        for node in ast.walk(self.tree) if self.tree else ():
+            if isinstance(node, (ast.Global, ast.Nonlocal)):
+                found.update(node.names)
+            elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+                found |= _filled_outside(node)
+        return frozenset(found)
+
+    @cached_property
+    def computes_attributes(self) -> bool:
+        """Whether it may set attributes of its own things whose names it does not write down."""
+        return any(map(_computes_attributes, ast.walk(self.tree))) if self.tree else False
 
     @property
     def is_read(self) -> bool:
@@ -74,6 +92,33 @@ class SourceFile:
         parts = self.name.split(".")
         parts = parts[: len(parts) - level + self.is_package]
         return ".".join([*parts, module] if module else parts) if parts else ""
+
+
+def _filled_outside(function: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) -> set[str]:
+    """The names that a function fills by items or by methods and that it does not bind itself."""
+    own: set[str] = set()
+    filled: set[str] = set()
+    for node in ast.walk(function):
+        match node:
+            case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
+                own.add(name)
+            case ast.Subscript(value=ast.Name(id=name), ctx=ast.Store() | ast.Del()):
+                filled.add(name)
+            case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr=method)) if method in _FILLING:
+                filled.add(name)
+            case _:
+                pass
+    return filled - own
+
+
+def _computes_attributes(node: ast.AST) -> bool:
+    match node:
+        case ast.Attribute(attr="__dict__") | ast.Name(id="vars" | "globals" | "locals"):
+            return True
+        case ast.Call(func=ast.Name(id="setattr"), args=[_, name, _]):
+            return not isinstance(name, ast.Constant)
+        case _:
+            return False
 
 
 def _sought(node: ast.AST) -> list[ast.expr]:

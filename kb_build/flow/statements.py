@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import ast
 import sys
-from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.annotations import annotated
@@ -35,13 +34,12 @@ from kb_build.flow.types import (
     Sequence,
     Tuple,
     Type,
-    Union,
     bounded,
     general,
     join,
     literal,
     members,
-    union,
+    unsure,
 )
 
 if TYPE_CHECKING:
@@ -119,15 +117,29 @@ class Statements(Calls):
                 self.bind_target(item, element)
 
     def _fill(self, target: ast.Subscript, owner: Type, key: Type, kind: Type) -> None:
-        """An empty dictionary that a name holds learns what it is filled with."""
-        if (
-            isinstance(target.value, ast.Name)
-            and isinstance(owner, Mapping)
-            and target.value.id in self.scope.state.names
-        ):
-            value = kind if owner.value is UNKNOWN and not owner.items else join(owner.value, kind)
-            known = key if owner.key is UNKNOWN else join(owner.key, key)
-            self.scope.bind(target.value.id, Mapping(general(known), value))
+        """A dictionary or a list that a name or an attribute holds learns what it is filled with."""
+        filled: Type
+        match owner:
+            case Mapping():
+                value = kind if owner.value is UNKNOWN and not owner.items else join(owner.value, kind)
+                known = key if owner.key is UNKNOWN else join(owner.key, key)
+                filled = Mapping(general(known), value)
+            case Tuple() | Sequence(kind="list"):
+                held = self.iterated(kind) if isinstance(target.slice, ast.Slice) else kind
+                filled = Sequence("list", join(self.iterated(owner), held))
+            case _:
+                return
+        match target.value:
+            case ast.Name(id=name) if name in self.scope.state.names:
+                self.scope.bind(name, filled)
+            case ast.Name(id=name):
+                self.scope.fill_outside(name, filled)
+            case ast.Attribute(value=value, attr=name):
+                of = self.types.get(value, UNKNOWN)
+                if isinstance(of, (LocalInstance, LocalClass)):
+                    self.classes[of.number].bind(name, filled)
+            case _:
+                pass
 
     def _store(self, target: ast.Attribute, kind: Type, value: ast.expr | None) -> None:
         owner = self.evaluate(target.value)
@@ -629,8 +641,9 @@ class Statements(Calls):
         function.seen = self.stamp(function)
         function.readings = {}
         try:
-            scope = Scope(function.scope, state=State(doubted=function.doubted))
-            with self.inside(function.file or self.file, scope, function):
+            file = function.file or self.file
+            scope = Scope(function.scope, state=State(doubted=function.doubted), shared=file.shared_names)
+            with self.inside(file, scope, function):
                 self._read_function(function)
         finally:
             function.running = False
@@ -690,8 +703,10 @@ class Statements(Calls):
         if argument.arg in function.unknown and received is not UNKNOWN:
             # Some calls pass what is not known: the others tell no more than what may be passed.
             self.guessing = self.guessing or not _can_be_unsure(received)
-            received = _unsure(received)
+            received = unsure(received)
         fallback = self.types.get(default, UNKNOWN) if default is not None else UNKNOWN
+        if argument.arg in function.unknown:
+            fallback = unsure(fallback)
         if received is not UNKNOWN and received is not NONE:
             return received if fallback is UNKNOWN else join(received, general(fallback))
         if fallback is not UNKNOWN and fallback is not NONE:
@@ -786,15 +801,6 @@ class Statements(Calls):
 def _can_be_unsure(kind: Type) -> bool:
     """Whether a type itself can say that it is not sure."""
     return all(isinstance(member, (Plain, Instance, NoneValue)) for member in members(kind))
-
-
-def _unsure(kind: Type) -> Type:
-    """A type that is only one of those that a value may have."""
-    if isinstance(kind, Union):
-        return union(_unsure(member) for member in kind.members)
-    if isinstance(kind, Instance):
-        return replace(kind, sure=False)
-    return Plain(kind.kind) if isinstance(kind, Plain) else kind
 
 
 def _used_names(function: ast.AST) -> dict[str, set[str]]:

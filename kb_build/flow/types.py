@@ -221,6 +221,26 @@ def general(kind: Type) -> Type:
     return kind
 
 
+def unsure(kind: Type) -> Type:  # noqa: PLR0911 - one return a type
+    """A type that is only one of those that a value may have."""
+    match kind:
+        case Union():
+            return union(map(unsure, kind.members))
+        case Instance():
+            return replace(kind, sure=False)
+        case Plain():
+            return Plain(kind.kind, None, tells(kind))
+        case Sequence():
+            return replace(kind, element=unsure(kind.element))
+        case Tuple():
+            return Tuple(tuple(map(unsure, kind.items)))
+        case Mapping():
+            items = tuple((name, unsure(value)) for name, value in kind.items)
+            return Mapping(kind.key, unsure(kind.value), items)
+        case _:
+            return kind
+
+
 def tells(kind: Type) -> str:
     """The source (see :class:`Plain`) by which a value, or a part of it, tells of this Blender; empty for none."""
     for member in members(kind):
