@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, ClassVar
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, MORE_VALUES, PRODUCTS, SUMS, VERSION, T
 from kb_build.flow.members import Members
-from kb_build.flow.scopes import State, chain_text
+from kb_build.flow.scopes import chain_text
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
@@ -453,15 +453,6 @@ class Expressions(Members):
                 unsure = True
         if having or (lacking and not unsure):
             self.resolve(node, use, value, having, lacking)
-
-    def with_state(self, state: State, read: Callable[[], None]) -> State:
-        """Reads something from a state on; returns the state after it."""
-        before, self.scope.state = self.scope.state, state
-        try:
-            read()
-            return self.scope.state
-        finally:
-            self.scope.state = before
 
     _evaluators: ClassVar[dict[type, Callable[..., Type]]] = {
         ast.Name: _name,
