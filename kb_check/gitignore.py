@@ -49,7 +49,11 @@ class GitIgnore:
 
 
 def _read(folder: Path) -> GitIgnoreSpec | None:
-    """What a folder's own file says; None where it has none. Lines that git would not take either are passed over."""
+    """What a folder's own file says; None where it has none.
+
+    Lines that git would not take either are passed over, and those with more stars than can be compared quickly: what
+    such a line leaves out is checked, and what it takes back in (``!``) is not.
+    """
     try:
         with (folder / _FILE).open(encoding="utf-8", errors="replace") as file:
             lines = file.read(_MOST_CHARACTERS).splitlines()

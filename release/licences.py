@@ -41,20 +41,28 @@ _SPELLINGS = {
     "apache license, version 2.0": "Apache-2.0",
     "3-clause bsd license": "BSD-3-Clause",
     "mit license": "MIT",
-    "mit, bsd": "MIT AND BSD-3-Clause",
     "gpl-3.0": "GPL-3.0-only",
     "apache software license": "Apache-2.0",
-    "bsd license": "BSD-3-Clause",
     "mozilla public license 2.0 (mpl 2.0)": "MPL-2.0",
     "public domain": "LicenseRef-Public-Domain",
-    "gnu general public license (gpl)": "GPL-3.0-or-later",
 }
-# Needed on other systems only, so that nothing is installed here to ask.
-_ELSEWHERE = {
-    "colorama": "BSD-3-Clause",
-    "pywin32": "PSF-2.0",
-    "exceptiongroup": "MIT",
+# As the packages' own licence files have it: their metadata leaves open which of several of a name is meant, or they
+# are needed on other systems only, so that nothing is installed here to ask.
+_BY_FILE = {
+    "alabaster": "BSD-3-Clause",
     "bpy": "GPL-3.0-only",
+    "colorama": "BSD-3-Clause",
+    "docutils": "LicenseRef-Public-Domain AND BSD-2-Clause",
+    "exceptiongroup": "MIT",
+    "jinja2": "BSD-3-Clause",
+    "pystemmer": "MIT AND BSD-3-Clause",
+    "pywin32": "PSF-2.0",
+    "sphinxcontrib-applehelp": "BSD-2-Clause",
+    "sphinxcontrib-devhelp": "BSD-2-Clause",
+    "sphinxcontrib-htmlhelp": "BSD-2-Clause",
+    "sphinxcontrib-jsmath": "BSD-2-Clause",
+    "sphinxcontrib-qthelp": "BSD-2-Clause",
+    "sphinxcontrib-serializinghtml": "BSD-2-Clause",
 }
 _NAMES_OF_SYSTEMS = {"linux": ("Linux", "posix"), "darwin": ("Darwin", "posix"), "win32": ("Windows", "nt")}
 _PYTHONS = ("3.11", "3.12", "3.13")
@@ -154,10 +162,14 @@ def _environments(extras: Iterable[str]) -> Iterator[dict[str, str]]:
 
 def licence_of(name: str) -> str:
     """A package's licence as an expression of SPDX; empty if it does not say one that is known."""
+    return _by_metadata(name) or _BY_FILE.get(name, "")
+
+
+def _by_metadata(name: str) -> str:
     try:
         facts = metadata.metadata(name)
     except metadata.PackageNotFoundError:
-        return _ELSEWHERE.get(name, "")
+        return ""
     said = next((text for key in ("License-Expression", "License") for text in facts.get_all(key, [])), "")
     if said:
         return _spelled(said.strip())

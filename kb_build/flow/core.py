@@ -12,7 +12,6 @@ from kb_build.flow.source_files import SourceFile
 from kb_build.flow.types import (
     UNKNOWN,
     ClassObject,
-    Instance,
     LocalClass,
     LocalFunction,
     LocalInstance,
@@ -263,10 +262,6 @@ class Core:
                 self.run(kind.number)
             return self.returned(kind.number) or UNKNOWN
         return LocalFunction(kind.number, receiver)
-
-    def instance_of(self, kind: Type) -> Type:
-        """An instance of what a name in an annotation or in isinstance means."""
-        return Instance(kind.cls) if isinstance(kind, ClassObject) else UNKNOWN
 
 
 def _once(paths: Sequence[str]) -> tuple[str, ...]:

@@ -22,9 +22,10 @@ MANY = examples(300)
 
 
 def paths(reader: BaseReader, kind: str, count: int = MANY, where: str = "1") -> list[str]:
-    """A sample of the paths of one kind."""
+    """A sample of the paths of one kind: never none, which would prove nothing."""
     rows = reader.rows(f"SELECT path FROM symbols WHERE kind = ? AND {where} ORDER BY path", kind)
     found = [row[0] for row in rows]
+    assert found, f"the base has no {kind} where {where}"
     return random.Random(SEED).sample(found, min(count, len(found)))
 
 

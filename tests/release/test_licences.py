@@ -34,6 +34,7 @@ def test_what_is_needed_of_what_is_needed_is_among_them(rows: list[Dependency]) 
     assert not by_name["starlette"].direct
     assert by_name["bpy"].extras == {"blender"}
     assert by_name["colorama"].licence == "BSD-3-Clause", "on Windows"
+    assert by_name["docutils"].licence == "LicenseRef-Public-Domain AND BSD-2-Clause", "by its licence file"
     assert "pytest" not in by_name
 
 
@@ -72,6 +73,9 @@ def test_alternatives_and_parts_are_told_apart(expression: str, fits: bool) -> N
             "",
         ),
         ({"Classifier": ["License :: OSI Approved :: MIT License"]}, "MIT"),
+        ({"Classifier": ["License :: OSI Approved :: BSD License"]}, ""),
+        ({"Classifier": ["License :: OSI Approved :: GNU General Public License (GPL)"]}, ""),
+        ({"License": ["MIT, BSD"]}, ""),
     ],
 )
 def test_what_is_not_known_is_no_licence(

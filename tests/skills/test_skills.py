@@ -51,7 +51,9 @@ def front_matter(path: Path) -> dict[str, str]:
 
 
 def blocks(path: Path, language: str) -> list[str]:
-    return [code for kind, code in FENCED.findall(path.read_text(encoding="utf-8")) if kind == language]
+    found = [code for kind, code in FENCED.findall(path.read_text(encoding="utf-8")) if kind == language]
+    assert found, f"{path} has no code in {language}"
+    return found
 
 
 def prose(path: Path) -> str:
@@ -76,6 +78,7 @@ def test_the_form_is_what_clients_read(path: Path) -> None:
 def test_tools_rules_and_stages_are_called_by_their_names(path: Path) -> None:
     text = path.read_text(encoding="utf-8")
     named = {name.rstrip("_") for name in re.findall(r"\bblender_\w+", text)}
+    assert named
     assert named <= TOOLS
     assert all(is_offered(name, DEFAULT) for name in named)
     rules = set(re.findall(r"\b[CGVWRT]\d+\b", prose(path)))

@@ -8,6 +8,7 @@ on where a transfer broke off.
 from __future__ import annotations
 
 import hashlib
+import math
 import re
 import shutil
 import time
@@ -64,6 +65,7 @@ _MAPS = {
     "emissive": "emission",
 }
 _PACKED = ("arm", "ao")  # used where the three maps are not there by themselves
+_LIST_SECONDS = 3600.0  # how long a list of assets counts
 _FORMATS = ("jpg", "png", "exr")
 Words = list[Annotated[str, Field(max_length=300)]]
 
@@ -113,10 +115,17 @@ class FetchedAsset:
 class PolyHaven:
     """The API at ``api``; files may come from ``origins`` (scheme and host) only."""
 
-    def __init__(self, api: str = _API, origins: frozenset[str] = _ORIGINS) -> None:
+    def __init__(
+        self,
+        api: str = _API,
+        origins: frozenset[str] = _ORIGINS,
+        clock: Callable[[], float] = time.monotonic,
+    ) -> None:
+        """``clock`` gives seconds."""
         self._api = api
         self._origins = origins
-        self._lists: dict[Kind, dict[str, OnlineAsset]] = {}
+        self._clock = clock
+        self._lists: dict[Kind, tuple[float, dict[str, OnlineAsset]]] = {}  # with the time when it was read
 
     def search(self, words: str, kind: Kind) -> list[tuple[str, OnlineAsset]]:
         """(id, asset) of those that have every word in their name, tags or categories. Raises Refusal."""
@@ -178,9 +187,12 @@ class PolyHaven:
     # What the API says
 
     def _list(self, kind: Kind) -> dict[str, OnlineAsset]:
-        if kind not in self._lists:
-            self._lists[kind] = self._read(f"/assets?type={kind}", _Listing)
-        return self._lists[kind]
+        """The assets of a kind by id. A server may run for days, in which new ones appear."""
+        read_at, assets = self._lists.get(kind, (-math.inf, {}))
+        if self._clock() - read_at >= _LIST_SECONDS:
+            assets = self._read(f"/assets?type={kind}", _Listing)
+            self._lists[kind] = (self._clock(), assets)
+        return assets
 
     def _info(self, name: str) -> OnlineAsset:
         if not re.fullmatch(_ID, name):

@@ -63,7 +63,9 @@ async def test_the_exact_version_names_its_base_too(service: Service) -> None:
 
 async def test_every_hit_of_an_answer_can_be_read(service: Service) -> None:
     base = service.bases.pick()
-    for hit in base.query("cloth").hits:
+    hits = base.query("cloth").hits
+    assert {"manual", "class"} <= {hit.kind for hit in hits}
+    for hit in hits:
         part = "page" if hit.kind in {"manual", "guide", "template"} else "symbol"
         assert (await read(service, f"blender://5.1/{part}/{quote(hit.id)}")).text
 

@@ -183,6 +183,17 @@ def test_searches_find_names_tags_and_categories(haven: Haven) -> None:
     assert {agent for _, agent, _ in haven.asked} == {"SimWorlds asset library"}
 
 
+def test_new_assets_are_found_by_a_server_that_runs_for_long(haven: Haven) -> None:
+    seconds = [0.0]
+    source = PolyHaven(haven.origin, frozenset({haven.origin}), clock=lambda: seconds[0])
+    assert source.search("floor", "textures")
+    old = next(name for name, info in haven.info.items() if info["type"] == 1)
+    haven.info = {**haven.info, "cobble_floor": {**haven.info[old], "name": "Cobble Floor"}}
+    assert "cobble_floor" not in dict(source.search("floor", "textures"))
+    seconds[0] = 3700.0
+    assert "cobble_floor" in dict(source.search("floor", "textures"))
+
+
 def test_a_texture_comes_with_all_its_maps_and_its_licence(haven: Haven, tmp_path: Path) -> None:
     fetched = online(haven).fetch("brick_floor_003", "1k", tmp_path)
     names = [path.relative_to(tmp_path).as_posix() for path in tmp_path.rglob("*") if path.is_file()]
