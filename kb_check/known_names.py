@@ -104,7 +104,7 @@ class KnownNames:
         removed = removed or self._lookup.of_path(f"{owner}:{value}")
         if removed:
             return self._removed(removed)
-        return self._no_part(owner, value, values, f"{value!r} is no value of `{owner}`", "It takes")
+        return self._no_part(owner, value, values, f"{value!r} is not a value of `{owner}`", "It takes")
 
     def socket(self, node: str, name: str, names: Iterable[str]) -> Lacking:
         """A socket that a node lacks; ``names`` are those that it has."""

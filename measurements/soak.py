@@ -1,8 +1,8 @@
 """Measures both servers under mixed load for a long time: whether they keep their memory, processes and manners.
 
-Beside clients that ask one thing after another there are some that vanish in mid-call, cancel, and send what is no MCP.
-The polite ones must be answered all along. Memory of the last third is compared with that of the second, by when all is
-loaded; what is left of the servers' processes afterwards is counted by a mark in their environment.
+Beside clients that ask one thing after another there are some that vanish in mid-call, cancel, and send what is not
+MCP. The polite ones must be answered all along. Memory of the last third is compared with that of the second, by when
+all is loaded; what is left of the servers' processes afterwards is counted by a mark in their environment.
 """
 
 from __future__ import annotations
@@ -162,7 +162,7 @@ def _table(name: str, soaked: _Soaked, seconds: float) -> Table:
     )
     quoted = "; ".join(dict.fromkeys(soaked.errors[:_QUOTED]))
     note = (
-        "Rude: clients that vanished in mid-call, cancelled, or sent what is no MCP. MB: resident memory of the "
+        "Rude: clients that vanished in mid-call, cancelled, or sent what is not MCP. MB: resident memory of the "
         "server's own process. Growth: of the last third by the second."
         + (f" Errors: {quoted}" if quoted else "")
     )

@@ -261,7 +261,7 @@ def _mechanism_faults(plan: ScenePlan) -> Iterator[Fault]:
         elif roles.get(joint.part, "rigid") != "rigid":
             yield Fault(
                 f"joints[{place}].part",
-                f"{joint.part!r} is no rigid body; its role is {roles[joint.part]!r}.",
+                f"{joint.part!r} is not a rigid body; its role is {roles[joint.part]!r}.",
             )
 
 

@@ -74,10 +74,10 @@ class Tower:
         for name, shape in SHAPES.items():
             tensor = self.weights.get(name)
             if tensor is None:
-                raise NoWeights(f"These are no weights of CLIP ViT-B/32: {name} is missing.")
+                raise NoWeights(f"These are not the weights of CLIP ViT-B/32: {name} is missing.")
             if tensor.shape != shape:
                 raise NoWeights(
-                    f"These are no weights of CLIP ViT-B/32: {name} has the shape {tensor.shape}, not {shape}."
+                    f"These are not the weights of CLIP ViT-B/32: {name} has the shape {tensor.shape}, not {shape}."
                 )
 
     def embed(self, pictures: Iterable[Image.Image]) -> Array:
@@ -91,7 +91,7 @@ class Tower:
         lengths = np.linalg.norm(found, axis=1, keepdims=True)
         if not np.all(np.isfinite(lengths)) or not np.all(lengths):
             raise NoWeights(
-                "These weights of CLIP come to no embedding: they hold values that are no numbers."
+                "These weights of CLIP come to no embedding: they hold values that are not numbers."
             )
         return found / lengths
 

@@ -97,7 +97,9 @@ def _info(kind: Any, name: str, ablations: tuple[Ablation, ...], settings: dict[
     try:
         return SystemInfo(name=name, kind=kind, ablations=ablations, settings=settings)
     except ValidationError:
-        raise click.UsageError(f"{name!r} is no name: give letters, digits, '.', '_', '+' and '-'.") from None
+        raise click.UsageError(
+            f"{name!r} is not a valid name: give letters, digits, '.', '_', '+' and '-'."
+        ) from None
 
 
 def _as_name(name: str) -> str:

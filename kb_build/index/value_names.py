@@ -1,7 +1,7 @@
 """What a script writes for the choices that the manual lists: ``'MODULAR'`` beside **Modular**.
 
 They stand right below the label of an enumeration (:mod:`kb_build.index.passages`). What is listed among them and is
-none of its items in this version is said to be none: manuals keep choices that Blender has dropped. The same goes for
+none of its items in this version is named as such: manuals keep choices that Blender has dropped. The same goes for
 what the text calls one ("the Final cache type").
 """
 
@@ -108,7 +108,7 @@ class _Choices:
         items = [f"`{item.identifier!r}`" for item in symbol.enum_items]
         more = ", …" if len(items) > _SHOWN_VALUES else ""
         return (
-            f"(“{lacking}” is no value of `{symbol.path.removeprefix(_TYPES)}` in this Blender, which has "
+            f"(“{lacking}” is not a value of `{symbol.path.removeprefix(_TYPES)}` in this Blender, which has "
             f"{', '.join(items[:_SHOWN_VALUES])}{more})"
         )
 

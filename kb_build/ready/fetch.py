@@ -107,7 +107,7 @@ def _split(source: str) -> tuple[str, str]:
     match = _SHA256.fullmatch(fragment)
     if match is None:
         raise ReadyBaseError(
-            f"{source[:300]!r} ends in something that is no checksum; write it as #sha256= and 64 hexadecimal digits"
+            f"{source[:300]!r} ends in something that is not a checksum; write it as #sha256= and 64 hexadecimal digits"
         )
     return place, match[1].lower()
 

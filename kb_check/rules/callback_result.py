@@ -1,4 +1,4 @@
-"""What `execute`, `invoke` or `modal` returns, where it is no set of what Blender knows.
+"""What `execute`, `invoke` or `modal` returns, where it is not a set of what Blender knows.
 
 Blender refuses anything but a set of `'FINISHED'`, `'CANCELLED'`, `'RUNNING_MODAL'`, `'PASS_THROUGH'` and
 `'INTERFACE'`, None included: the call of the operator ends with a RuntimeError, after the work is done.

@@ -97,7 +97,7 @@ def _refusal(script: Script, node: ast.Subscript, kind: Type) -> str:
     step = node.slice.step if isinstance(node.slice, ast.Slice) else None
     match kind:
         case Module() | Operator():
-            return f"`{kind.path}` is no collection: its members are attributes."
+            return f"`{kind.path}` is not a collection: its members are attributes."
         case Plain(kind="int" | "float" | "bool") if node.value in script.analysis.resolutions:
             return f"{_subject(script, node)} is one {kind.kind}: it has no items."
         case Collection():

@@ -54,8 +54,8 @@ def _finding(script: Script, node: ast.Constant, name: str, path: str) -> Findin
     edit = script.renamed(node, better) if better else None
     return Finding(
         RULE.id, "error", script.span(node),
-        f"{name!r} is no operator's name: Blender registers one with lower-case letters, digits and underscores, one "
-        f"dot between, {_LONGEST} characters at most.{instead}",
+        f"{name!r} is not an operator's name: Blender registers one with lower-case letters, digits and underscores, "
+        f"one dot between, {_LONGEST} characters at most.{instead}",
         f"{path}.bl_idname", (), Fix(f"Write {better}", (edit,)) if edit else None,
     )  # fmt: skip
 

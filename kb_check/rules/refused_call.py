@@ -1,7 +1,7 @@
 """A call that Blender refuses although its arguments are those that the signature asks for.
 
 What is refused was tried: without arguments that may be left out and are wanted all the same, by what is of another
-kind, a second time. So are calls of what is no function.
+kind, a second time. So are calls of what is not a function.
 
 ```python
 strips = scene.sequence_editor.strips

@@ -8,7 +8,7 @@ print "hello"  # reported: Python 2, which Blender took until 2.49
 print("hello")
 ```
 
-A file whose encoding Python does not take, and a notebook that is none, are reported too.
+A file whose encoding Python does not take is reported too, and so is an `.ipynb` that is not a notebook.
 """
 
 from __future__ import annotations

@@ -1,7 +1,7 @@
 """A socket that a node does not have, or does not find by what it is asked for.
 
 Sockets are asked for by the name that the node shows, or by identifier; a few nodes take names only. What the running
-Blender still takes by a former name is no finding.
+Blender still takes by a former name is not a finding.
 
 ```python
 principled = nodes.new("ShaderNodeBsdfPrincipled")

@@ -267,7 +267,7 @@ def read_turns(record: Path | Iterable[Mapping[str, Any]]) -> list[RecordedTurn]
                 )
         except (ValidationError, KeyError) as error:
             why = "an answer to no question" if isinstance(error, KeyError) else str(error)
-            raise UnreadableRecord(f"{name}, row {number}, is no part of a record: {why}") from error
+            raise UnreadableRecord(f"{name}, row {number}, is not part of a record: {why}") from error
     return turns
 
 

@@ -43,7 +43,7 @@ def _decode(data: bytes, formats: list[str], longest: int, most: int, under: tup
     try:
         picture = Image.open(io.BytesIO(data), formats=formats)
     except UnidentifiedImageError:
-        raise ValueError(f"it is no {' or '.join(formats)}") from None
+        raise ValueError(f"it is not {' or '.join(formats)}") from None
     before = picture.size
     if before[0] * before[1] > most:
         raise ValueError(f"it has {before[0]} × {before[1]} pixels; the limit is {most:,} in all")

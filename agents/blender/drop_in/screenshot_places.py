@@ -24,7 +24,7 @@ class ScreenshotPlaces:
         """Writes a picture, whole or not at all. Raises Refusal."""
         ground, relative = self._find(path)
         if not png.startswith(_PNG):
-            raise Refusal(f"What is to be written to {path[:300]} is no PNG.")
+            raise Refusal(f"What is to be written to {path[:300]} is not a PNG.")
         try:
             ground.write(relative, png, over=_PNG)
         except Refusal as error:

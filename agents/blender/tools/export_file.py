@@ -130,7 +130,8 @@ def _place(context: ToolContext, name: str, known: Format) -> _Place:
     folder = target.with_name(f"{target.stem}_{ending[1:]}")
     if folder.exists() and not (folder / target.name).is_file():
         raise Refusal(
-            f"{folder.name} is there already, and is no export of that name; choose another name than {target.name}."
+            f"{folder.name} is there already, and is not an export of that name; choose another name than "
+            f"{target.name}."
         )
     return _Place(known.kind, folder, target.name, in_folder=True)
 

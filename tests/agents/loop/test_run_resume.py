@@ -183,9 +183,9 @@ def _changed(root: Path, kind: str, change: Callable[[dict[str, Any]], object]) 
 @pytest.mark.parametrize(
     ("kind", "change", "says"),
     [
-        ("model.answered", lambda row: row.pop("turn"), "is no part of a record"),
+        ("model.answered", lambda row: row.pop("turn"), "is not part of a record"),
         pytest.param(
-            "model.asked", lambda row: row.pop("n"), "is no part of a record", marks=pytest.mark.whole
+            "model.asked", lambda row: row.pop("n"), "is not part of a record", marks=pytest.mark.whole
         ),
         ("tool.answered", lambda row: row.pop("content"), "not a valid 'tool.answered' row"),
         pytest.param(

@@ -182,7 +182,7 @@ def changed(path: str, value: Any) -> dict[str, Any]:
             "joints",
             [{"kind": "hinge", "part": "Table", "host": "Bowl"}],
             "joints[0].part",
-            "'Table' is no rigid body; its role is 'static'.",
+            "'Table' is not a rigid body; its role is 'static'.",
         ),
         ("relations[3].fould", 4, "relations[3].fould", "did you mean 'fold' (fields: when, kind, members, "),
         ("relations[3].spacing", "wide", "relations[3].spacing", "Write a number or a list of two numbers."),

@@ -20,6 +20,9 @@ if TYPE_CHECKING:
     from agents.protocol.findings import Finding, Report
     from agents.protocol.measures.requests import Answer, Measures, Request
 
+SOON = 150.0
+"""Seconds for what takes some where nothing else runs, and hours or all memory where it is done wrongly."""
+
 TOOLS = '''
 import math
 

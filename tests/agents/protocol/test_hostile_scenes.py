@@ -6,7 +6,7 @@ import time
 from typing import TYPE_CHECKING, Any
 
 import pytest
-from scenes import a_plan, build, verified
+from scenes import SOON, a_plan, build, verified
 
 from simworlds.sandbox.errors import Refusal
 
@@ -173,7 +173,7 @@ def test_endless_instances_are_told_in_seconds(session: LiveSession) -> None:
     )
     began = time.perf_counter()
     report = verified(session, "V,R4", plan())
-    assert time.perf_counter() - began < 20
+    assert time.perf_counter() - began < SOON
     assert {(one.rule, one.objects, one.outcome) for one in report.findings} == {
         ("V1", ("Tower", "Slab"), "undecided"),
         ("V2", ("Tower",), "undecided"),
@@ -193,7 +193,7 @@ def test_a_mesh_that_is_being_edited_is_measured_as_it_is(session: LiveSession) 
 def test_a_long_simulation_that_is_not_baked_is_undecided_at_once(session: LiveSession) -> None:
     began = time.perf_counter()
     report = judged(session, SCENE + "rigid(crate)\nscene.frame_end = 100_000", "V1,V2,R3,T2")
-    assert time.perf_counter() - began < 20
+    assert time.perf_counter() - began < SOON
     told = [one for one in report.findings if one.outcome == "undecided"]
     assert {one.rule for one in told} == {"V1", "V2", "R3"}
     assert all("bake first" in one.message for one in told)
@@ -236,7 +236,7 @@ def test_a_thousand_rules_breaches_do_not_stop_a_report(session: LiveSession) ->
     )
     began = time.perf_counter()
     report = verified(session, "C3,V2")
-    assert time.perf_counter() - began < 60
+    assert time.perf_counter() - began < SOON
     assert len(of(report, "C3")) == 400
     crossing = of(report, "V2")
     assert len(crossing) == 2 * 19 * 20 + 2 * 19 * 19

@@ -7,7 +7,7 @@ import time
 from typing import TYPE_CHECKING
 
 import pytest
-from scenes import build, measured, measures
+from scenes import SOON, build, measured, measures
 
 from agents.protocol.measures.geometry import (
     CrossingsRequest,
@@ -450,7 +450,7 @@ def test_meshes_of_a_million_vertices_are_measured_in_seconds(
     )
     began = time.perf_counter()
     found = measures(session, surface, apart, crossing)
-    assert time.perf_counter() - began < 40  # some seconds where nothing else runs
+    assert time.perf_counter() - began < SOON
     assert found[surface].vertices > vertices
     assert found[apart].distance == pytest.approx(0.01, abs=1e-6)
     assert [{pair.a, pair.b} for pair in found[crossing].pairs] == [{"A", "C"}]
@@ -477,4 +477,4 @@ def test_thousands_of_parts_are_looked_at_in_seconds(session: LiveSession) -> No
     began = time.perf_counter()
     assert len(measured(session, PiecesRequest(names, 0.002, 0.005, 0.01)).pieces) == 1
     assert depth(session, *names) is None
-    assert time.perf_counter() - began < 20
+    assert time.perf_counter() - began < SOON

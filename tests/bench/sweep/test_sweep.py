@@ -216,7 +216,7 @@ def test_two_sweeps_cannot_use_one_folder(made: Path, tmp_path: Path) -> None:
         (["--system", "replay", "--no-stages"], "--no-stages means nothing with --system replay"),
         (["--system", "replay", "--scenes", "cloth_D9"], "matches no scene"),
         (["--system", "replay", "--scenes", ","], "names no scene"),
-        (["--system", "replay", "--name", "../up"], "is no name"),
+        (["--system", "replay", "--name", "../up"], "is not a valid name"),
         (["--system", "replay", "--frame-size", "big"], "WIDTHxHEIGHT"),
     ],
 )

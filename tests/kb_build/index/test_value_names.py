@@ -81,7 +81,7 @@ def test_words_that_say_nothing_are_not_taken_for_each_other() -> None:
 def test_a_choice_that_blender_has_not_is_said_to_be_none() -> None:
     assert (
         beside(f"{LISTED}  - **Final:** At once.\n")["Final"]
-        == f"(“Final” is no value of `Domain.cache_type` {HAS}"
+        == f"(“Final” is not a value of `Domain.cache_type` {HAS}"
     )
 
 
@@ -99,7 +99,7 @@ def test_a_choice_that_blender_has_not_is_said_to_be_none() -> None:
 def test_what_need_not_be_a_choice_is_passed_over(more: str) -> None:
     setting = Symbol(f"{CLASS}.resumable", "property", CLASS, label="Resumable", type="boolean")
     assert "Final" not in "".join(beside(LISTED + more, enumeration(), setting).values())
-    assert "no value" not in "".join(beside(LISTED + more, enumeration(), setting).values())
+    assert "not a value" not in "".join(beside(LISTED + more, enumeration(), setting).values())
 
 
 @pytest.mark.parametrize(
@@ -130,7 +130,7 @@ def test_below_a_heading_several_choices_make_a_list() -> None:
     ],
 )
 def test_text_that_names_a_choice_that_is_none(said: str, *, is_denied: bool) -> None:
-    assert any("no value" in names for names in beside(f"{LISTED}\n{said}").values()) is is_denied
+    assert any("not a value" in names for names in beside(f"{LISTED}\n{said}").values()) is is_denied
 
 
 @pytest.fixture(scope="module")

@@ -90,7 +90,7 @@ def test_only_what_ipython_alone_understands_is_left_out(cell: str, text: str) -
 )  # fmt: skip
 def test_what_is_no_notebook_is_a_fault(data: bytes) -> None:
     source = read_source(data, "a.ipynb")
-    assert source.fault.startswith("this is no notebook")
+    assert source.fault.startswith("this is not a notebook")
     assert source.text == ""
 
 

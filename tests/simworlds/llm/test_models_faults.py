@@ -395,7 +395,7 @@ Claude(Settings("key", {address!r})).answer(ask())
 """
 
 
-@pytest.mark.parametrize("fault", [Hang(20), Stall(700, 20)])
+@pytest.mark.parametrize("fault", [Hang(200), Stall(700, 200)])
 def test_ctrl_c_leaves_at_once(api, fault):
     api.fail(MESSAGES, fault)
     code = ASKING.format(tests=str(Path(__file__).parent), repository=str(REPO), address=api.base_url)
@@ -403,13 +403,11 @@ def test_ctrl_c_leaves_at_once(api, fault):
     try:
         api.wait_for(MESSAGES)
         time.sleep(0.5)  # until the client waits: Python drops an interrupt that meets a destructor
-        begin = time.monotonic()
         asking.send_signal(signal.SIGINT)
-        _, said = asking.communicate(timeout=60)
+        _, said = asking.communicate(timeout=60)  # before the server would have let go
     finally:
         asking.kill()
     assert said.rstrip().endswith("KeyboardInterrupt"), said
-    assert time.monotonic() - begin < 15  # before the server would have let go
 
 
 def test_ctrl_c_in_a_pause_is_not_taken_for_a_fault(api):

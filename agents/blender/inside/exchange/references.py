@@ -104,11 +104,11 @@ def _check_tree(content):
         children = node.get("children", [])
         for child in children if isinstance(children, list) else ():
             if not isinstance(child, int) or child in seen:
-                raise ValueError("its nodes are no tree: one has several parents")
+                raise ValueError("its nodes do not form a tree: one has several parents")
             seen.add(child)
     for scene in _dicts(content, "scenes"):
         if any(root in seen for root in scene.get("nodes", []) if isinstance(root, int)):
-            raise ValueError("its nodes are no tree: one is both a root and a child")
+            raise ValueError("its nodes do not form a tree: one is both a root and a child")
 
 
 def _dicts(content, key):

@@ -23,7 +23,7 @@ def matter(request, solids):
     obj, graph = actor.objects[0], bpy.context.evaluated_depsgraph_get()
     domain = domain_of(obj)
     if domain is None:
-        raise Unmeasurable(f"{obj.name!r} is no domain of a fluid")
+        raise Unmeasurable(f"{obj.name!r} is not the domain of a fluid")
     state = actor.state_at(graph)
     if state is None:
         return {}

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import stat
 import time
 from dataclasses import replace
@@ -140,14 +141,18 @@ def test_answers_500_calls(direct: Callable[[], AttachedBlender]) -> None:
     assert frames == {1}
 
 
-def test_a_client_that_disappears_in_mid_call_leaves_one_step(direct: Callable[[], AttachedBlender]) -> None:
+def test_a_client_that_disappears_in_mid_call_leaves_one_step(
+    direct: Callable[[], AttachedBlender], tmp_path: Path
+) -> None:
     blender = direct()
-    code = "import time\nbpy.data.objects['Cube'].location.x = 3\ntime.sleep(3)"
+    pipe = tmp_path / "pipe"  # its two ends wait for each other
+    os.mkfifo(pipe)
+    code = f"bpy.data.objects['Cube'].location.x = 3\nopen({str(pipe)!r}).read()"
     arguments = {"code": code, "seconds": 30, "rehearsed": True, "step": "left alone"}
     blender.call("user_state", {}, unread, timeout=60)  # Blender is there, and has drawn its window
     blender._connected().send({"ticket": "t", "tool": "apply", "arguments": arguments, "seconds": 30})
-    time.sleep(1.5)  # not before it has begun
-    blender.close()
+    with pipe.open("w"):  # once the code has begun
+        blender.close()
     other = direct()
     undone = other.call("undo", {"count": 1}, dict, timeout=60).value
     assert undone == {"undone": ["SimWorlds: left alone"], "matches": True, "left": 0}

@@ -78,7 +78,7 @@ def test_nothing_but_pictures_is_replaced_and_no_link_followed(temporary: Path, 
 
 
 def test_what_is_no_picture_is_not_written(temporary: Path) -> None:
-    with pytest.raises(Refusal, match="no PNG"):
+    with pytest.raises(Refusal, match="not a PNG"):
         ScreenshotPlaces().write(str(temporary / "shot.png"), b"#!/bin/sh")
     assert not list(temporary.iterdir())
 
@@ -119,7 +119,7 @@ def test_pictures_are_delivered_once_and_again_when_they_change(temporary: Path,
     delivery.deliver(folder)
     assert meant.read_bytes() == PNG + b"newer"
     own.write_bytes(b"words")
-    assert ["no PNG" in fault for fault in delivery.deliver(folder)] == [True]
+    assert ["not a PNG" in fault for fault in delivery.deliver(folder)] == [True]
     own.unlink()
     own.symlink_to("/etc/passwd")
     assert len(delivery.deliver(folder)) == 1

@@ -245,7 +245,7 @@ def test_an_export_replaces_its_own_and_nothing_else(session: LiveSession) -> No
     root = session.blender.folder.root
     (root / "mine_obj").mkdir()
     (root / "mine_obj" / "letter.txt").write_text("dear")
-    with pytest.raises(Refusal, match="is no export of that name"):
+    with pytest.raises(Refusal, match="is not an export of that name"):
         export(session, "mine.obj")
     assert (root / "mine_obj" / "letter.txt").read_text() == "dear"
 
