@@ -291,9 +291,9 @@ class Members(Core):
     def _overriding(self, number: int, name: str, own: Type) -> Iterator[Type]:
         """What the classes that derive from one have in the place of its attribute."""
         for other in self.derived.get(number, ()):
-            found = self.class_attribute(other, name)
-            if found is not None and found[0] != own:
-                yield self.bound(found[0], LocalInstance(other))
+            found = self.classes[other].attributes.get(name)
+            if found is not None and found != own:
+                yield self.bound(found, LocalInstance(other))
 
     def _of_bases(self, bases: list[Type], name: str, found: Lookup, *, known: bool) -> None:
         inner = Lookup()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.scopes import Scope
+from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Readings
 
 if TYPE_CHECKING:
@@ -49,17 +50,17 @@ class SourceFile:
     def shared_names(self) -> frozenset[str]:
         """The names that functions bind or fill though they belong to the module, or to a function around."""
         found: set[str] = set()
-        for node in ast.walk(self.tree) if self.tree else ():
-            if isinstance(node, (ast.Global, ast.Nonlocal)):
-                found.update(node.names)
-            elif isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
-                found |= _filled_outside(node)
+        scopes: list[ast.AST] = [self.tree] if self.tree else []
+        for scope in scopes:  # it grows
+            own, inner = _shared_by(scope)
+            scopes += inner
+            found |= own
         return frozenset(found)
 
     @cached_property
     def computes_attributes(self) -> bool:
         """Whether it may set attributes of its own things whose names it does not write down."""
-        return any(map(_computes_attributes, ast.walk(self.tree))) if self.tree else False
+        return any(map(_computes_attributes, walk(self.tree))) if self.tree else False
 
     @property
     def is_read(self) -> bool:
@@ -94,21 +95,34 @@ class SourceFile:
         return ".".join([*parts, module] if module else parts) if parts else ""
 
 
-def _filled_outside(function: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda) -> set[str]:
-    """The names that a function fills by items or by methods and that it does not bind itself."""
+def _shared_by(scope: ast.AST) -> tuple[set[str], list[ast.AST]]:
+    """The names that a module or a function shares with those around, and the functions right within it."""
+    shared: set[str] = set()
     own: set[str] = set()
     filled: set[str] = set()
-    for node in ast.walk(function):
-        match node:
-            case ast.Name(id=name, ctx=ast.Store()) | ast.arg(arg=name):
-                own.add(name)
-            case ast.Subscript(value=ast.Name(id=name), ctx=ast.Store() | ast.Del()):
-                filled.add(name)
-            case ast.Call(func=ast.Attribute(value=ast.Name(id=name), attr=method)) if method in _FILLING:
-                filled.add(name)
-            case _:
-                pass
-    return filled - own
+    inner: list[ast.AST] = []
+    waiting = children(scope)
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Name):
+            if isinstance(node.ctx, ast.Store):
+                own.add(node.id)
+            continue
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+            inner.append(node)
+            continue
+        if isinstance(node, ast.Subscript):
+            if isinstance(node.value, ast.Name) and not isinstance(node.ctx, ast.Load):
+                filled.add(node.value.id)
+        elif isinstance(node, ast.Attribute):
+            if node.attr in _FILLING and isinstance(node.value, ast.Name):
+                filled.add(node.value.id)
+        elif isinstance(node, ast.arg):
+            own.add(node.arg)
+        elif isinstance(node, (ast.Global, ast.Nonlocal)):
+            shared.update(node.names)
+        waiting += children(node)
+    return (shared if isinstance(scope, ast.Module) else shared | (filled - own)), inner
 
 
 def _computes_attributes(node: ast.AST) -> bool:

@@ -137,7 +137,9 @@ class Migrator:
 
     def _proposals(self, place: Place) -> Iterator[Change]:
         for rewrite in all_rewrites():
-            yield from rewrite.propose(place)
+            for change in rewrite.propose(place):
+                if not any(place.script.is_doubted(edit.span) for edit in change.edits):
+                    yield change
         for finding in place.findings:
             if finding.fix is not None and finding.fix.sure and finding.severity != "note":
                 yield place.change(

@@ -86,6 +86,14 @@ def test_no_second_guard_within_a_guard(checker: Checker) -> None:
     assert migrated(checker, code, (4, 2)).new.count("bpy.app.version") == 1
 
 
+@pytest.mark.parametrize(
+    "line", ["ob.draw_type", "ob.matrix_world * ob.location", "bpy.context.scene.objects.link(ob)"]
+)
+def test_what_an_open_question_about_the_version_keeps_stays(checker: Checker, line: str) -> None:
+    code = f"import bpy\nob = bpy.context.object\nif bpy.app.version_string < '2.80':\n    {line}\n"
+    assert migrated(checker, code).new == code
+
+
 def test_a_guard_that_cannot_be_written_is_left_to_a_person(checker: Checker) -> None:
     code = "from bpy import context\ncontext.scene.render.engine = 'BLENDER_EEVEE_NEXT'\n"
     file = migrated(checker, code, (4, 2))

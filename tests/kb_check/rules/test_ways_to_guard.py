@@ -197,3 +197,27 @@ def test_the_guards_work(tmp_path: Path) -> None:
 def test_no_rule_finds_an_error_behind_an_open_question(rule_checker: Checker, code: str) -> None:
     assert _errors(rule_checker, code.format("bpy.app.version_string < '2.80'")) == []
     assert _errors(rule_checker, code.format("ob.name")) != []
+
+
+@pytest.mark.parametrize(
+    ("compat", "code"),
+    [
+        ("OLD = bpy.app.version < (2, 80)", "from .compat import OLD\nif OLD:\n    ob.draw_type"),
+        (
+            "class V:\n    OLD = bpy.app.version < (2, 80)",
+            "from .compat import V\nif V.OLD:\n    ob.draw_type",
+        ),
+        (
+            "ERRORS = (AttributeError,)",
+            "from . import compat\ntry:\n    ob.draw_type\nexcept compat.ERRORS:\n    pass",
+        ),
+        (
+            "def has(x, name):\n    return x",
+            "from .compat import has\nif has(ob, 'draw_type'):\n    ob.draw_type",
+        ),
+    ],
+)
+def test_another_file_may_ask(rule_checker: Checker, compat: str, code: str) -> None:
+    files = {"addon/compat.py": f"import bpy\n{compat}", "addon/__init__.py": AROUND + code}
+    read = rule_checker.read_files(files)["addon/__init__.py"]
+    assert not [finding for finding in rule_checker.check(read) if finding.severity == "error"]
