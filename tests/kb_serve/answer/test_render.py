@@ -177,7 +177,7 @@ def test_a_node_that_no_tree_takes_is_not_said_to_be_made(kb: KnowledgeBase) -> 
 
 
 def test_values_that_are_put_together_at_run_time_are_not_told_by_a_stand_in(kb: KnowledgeBase) -> None:
-    text = kb.query("bpy.types.ColorManagedInputColorspaceSettings.name").text
+    text = kb.query("bpy.types.CompositorNodeImage.layer").text
     assert "'NONE'" not in text
     assert "put together while Blender runs" in text
 
