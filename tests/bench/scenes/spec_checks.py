@@ -10,11 +10,12 @@ from collections import Counter
 from itertools import combinations, pairwise
 from typing import TYPE_CHECKING
 
+from levels import SOLVER_GROUPS, level_of, solver_groups
+
 from bench.audit.audit import check_predicates
 from bench.audit.names import match_name, words_of
 from bench.audit.predicates.catalogue import PREDICATES
 from bench.audit.predicates.particle import DEFORMERS
-from bench.scenes.levels import SOLVER_GROUPS, level_of, solver_groups
 from bench.scenes.spec import CATEGORIES, FOLDER, BadSpec
 
 if TYPE_CHECKING:

@@ -6,11 +6,11 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 import yaml
+from levels import level_of
 from spec_checks import PUBLISHED, faults, faults_together
 
 from bench.audit.names import match_name
 from bench.audit.predicates.catalogue import PREDICATES
-from bench.scenes.levels import level_of
 from bench.scenes.spec import FOLDER, BadSpec, Spec, read_spec, spec_of, specs
 
 if TYPE_CHECKING:
