@@ -7,6 +7,7 @@ that all things have.
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -15,7 +16,7 @@ from kb_build.index.analysis import key
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from kb_build.records import Parameter, Symbol
+    from kb_build.records import EnumItem, Parameter, Symbol
 
 TYPES = "bpy.types."
 _MAKERS = ("new", "create", "add")
@@ -33,6 +34,7 @@ _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTre
 
 # Only nodes of a class that a script registers take sockets of their own.
 _SOCKETS = (f"{TYPES}NodeInputs.new", f"{TYPES}NodeOutputs.new")
+_KIND_OF_TREE = re.compile(r"(\w+) node tree")  # in where a value is taken
 _NEW_SOCKET = f"{TYPES}NodeTreeInterface.new_socket"
 
 # Class → the method that makes it, and a call.
@@ -159,9 +161,14 @@ class _Calls:
     def _of_interfaces(self) -> Iterator[tuple[str, Creation]]:
         """A group's sockets: the items of its interface, and what they become on its nodes."""
         maker = self._symbols.get(_NEW_SOCKET)
-        for parameter in maker.parameters if maker else ():
+        if maker is None:
+            return
+        for parameter in maker.parameters:
             for item in parameter.enum_items if parameter.name == "socket_type" else ():
-                call = f"tree.interface.new_socket(\"Name\", in_out='INPUT', socket_type='{item.identifier}')"
+                tree = _tree_taking(item)
+                call = (
+                    f"{tree}.interface.new_socket(\"Name\", in_out='INPUT', socket_type='{item.identifier}')"
+                )
                 for cls in (item.identifier, f"NodeTreeInterface{item.identifier.removeprefix('Node')}"):
                     if TYPES + cls in self._symbols:
                         yield TYPES + cls, Creation(call, _NEW_SOCKET)
@@ -214,6 +221,12 @@ class _Calls:
                 and symbol.path not in self._of_collections
             ):
                 yield symbol.path, Creation(f"{operator.path}()", operator.path)
+
+
+def _tree_taking(socket: EnumItem) -> str:
+    """``tree``, or ``geometry_tree`` where not every kind of tree takes a socket."""
+    kinds = _KIND_OF_TREE.findall(socket.where)
+    return f"{min(kinds)}_tree" if kinds else "tree"
 
 
 def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:
