@@ -259,6 +259,11 @@ class BaseReader:
             names.update(dict.fromkeys(self.members(ancestor.path)))
         return list(names or self.members(owner))
 
+    def members_called(self, owner: str, stem: str) -> list[str]:
+        """The names of a class's own members that are ``stem``, or begin with it and go on behind a ``_``."""
+        sql = "SELECT name FROM symbols WHERE owner = ? AND (name = ? OR substr(name, 1, ?) = ?) ORDER BY id"
+        return [row[0] for row in self.rows(sql, owner, stem, len(stem) + 1, f"{stem}_")]
+
     def descends(self, cls: str, ancestor: str) -> bool:
         """Whether a class is ``ancestor`` or derives from it."""
         return any(entry.path == ancestor for entry in self.lineage(cls))

@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 _FEW = 8  # of all nodes and IDs each has its own pointers
+_FAR = 3  # dots of what leads through another pointer: ``bpy.context.scene.world``
 
 
 def empty_pointer_to(reader: BaseReader, cls: Symbol) -> Symbol | None:
@@ -19,19 +20,23 @@ def empty_pointer_to(reader: BaseReader, cls: Symbol) -> Symbol | None:
     before, _, name = cls.reached.rpartition(".")
     if not name.isidentifier():
         return None
-    for path in reader.pointers_called(name, cls.name):
-        pointer = reader.symbol(path)
-        owner = _reached_as(reader, pointer.owner, before) if pointer else None
-        if pointer and owner:
+    pointers = [
+        pointer for path in reader.pointers_called(name, cls.name) if (pointer := reader.symbol(path))
+    ]
+    for pointer in pointers:
+        owner = reader.symbol(pointer.owner)
+        if owner and owner.reached == before:
             return pointer if empty_when_new(pointer) else empty_pointer_to(reader, owner)
+    if before.count(".") >= _FAR and len(pointers) == 1:
+        owner = _below(reader, pointers[0].owner, before)
+        return empty_pointer_to(reader, owner) if owner else None
     return None
 
 
-def _reached_as(reader: BaseReader, cls: str, expression: str) -> Symbol | None:
-    """Of a class and those below it the one whose instances an expression gives."""
-    below = islice(reader.descendants(cls), _FEW)
-    for path in (cls, *(entry.path for entry in below)):
-        symbol = reader.symbol(path)
+def _below(reader: BaseReader, cls: str, expression: str) -> Symbol | None:
+    """Of the first few classes below a class the one whose instances an expression gives."""
+    for entry in islice(reader.descendants(cls), _FEW):
+        symbol = reader.symbol(entry.path)
         if symbol and symbol.reached == expression:
             return symbol
     return None

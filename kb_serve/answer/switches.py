@@ -8,13 +8,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import key
 from kb_build.symbol_lines import usual_default
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
 
     from kb_build.records import Symbol
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.reader import BaseReader
 
 _SWITCH = "use_"
 _MOST = 6
@@ -22,35 +23,41 @@ _LEAST_CHOICES = 2
 
 
 def switch_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
-    """What goes with a switch, and what switches a property on, where the names alone tell it."""
-    if symbol.kind != "property" or reader.panel_tests(symbol.path):
+    """What goes with a switch, and what switches a property on: for those of which panels tell nothing."""
+    if symbol.kind != "property":
         return
-    names = reader.members(symbol.owner)
-    yield from _chosen_by(symbol, names, reader)
+    yield from _chosen_by(symbol, reader)
     if not symbol.name.startswith(_SWITCH):
-        parts = symbol.name.split("_")
-        stems = ("_".join(parts[:count]) for count in range(len(parts), 0, -1))
-        switch = next((name for stem in stems if (name := _SWITCH + stem) in names), "")
-        if switch:
-            found = reader.symbol(names[switch].path)
-            off = " (a new one has it off)" if found and usual_default(found) is False else ""
-            yield f"goes with `{switch}`{off}"
+        yield from _switched_by(symbol, reader)
     elif symbol.type == "boolean":
-        stem = symbol.name.removeprefix(_SWITCH)
-        alike = [name for name in names if name == stem or name.startswith(f"{stem}_")]
+        alike = reader.members_called(symbol.owner, symbol.name.removeprefix(_SWITCH))
         if alike:
             more = f" and {len(alike) - _MOST} more" if len(alike) > _MOST else ""
             yield f"goes with {', '.join(f'`{name}`' for name in alike[:_MOST])}{more}"
 
 
-def _chosen_by(symbol: Symbol, names: Mapping[str, SymbolEntry], reader: BaseReader) -> Iterator[str]:
+def _switched_by(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
+    """The switch that has the beginning of a property's name."""
+    parts = symbol.name.split("_")
+    stems = ["_".join(parts[:count]) for count in range(len(parts), 0, -1)]
+    paths = [f"{symbol.owner}.{_SWITCH}{stem}" for stem in stems]
+    reader.entry.load(paths)
+    path = next((path for path in paths if reader.entry(path)), "")
+    if switch := reader.symbol(path) if path else None:
+        off = " (a new one has it off)" if usual_default(switch) is False else ""
+        yield f"goes with `{switch.name}`{off}"
+
+
+def _chosen_by(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
     """The enumeration beside a property that chooses between it and others: its values are called as they are."""
-    for entry in names.values():
-        if entry.type != "enum" or entry.name == symbol.name:
+    for path, value, _ in reader.enum_owners(key(symbol.name)):
+        enum = reader.symbol(path) if path.rpartition(".")[0] == symbol.owner != path else None
+        if enum is None or value != symbol.name.upper() or enum.name == symbol.name:
             continue
-        found = reader.symbol(entry.path)
-        values = [item.identifier for item in found.enum_items] if found else []
-        named = [value for value in values if value.lower() in names]
-        if symbol.name.upper() in named and len(named) >= max(_LEAST_CHOICES, len(values) - 1):
-            has = f" (a new one has `{usual_default(found)!r}`)" if found and usual_default(found) else ""
-            yield f"goes with `{entry.name} = {symbol.name.upper()!r}`{has}"
+        values = [item.identifier for item in enum.enum_items]
+        paths = [f"{symbol.owner}.{item.lower()}" for item in values]
+        reader.entry.load(paths)
+        named = sum(reader.entry(path) is not None for path in paths)
+        if named >= max(_LEAST_CHOICES, len(values) - 1):
+            has = f" (a new one has `{usual_default(enum)!r}`)" if usual_default(enum) else ""
+            yield f"goes with `{enum.name} = {value!r}`{has}"

@@ -28,7 +28,6 @@ if TYPE_CHECKING:
             ["goes with `operand_type = 'COLLECTION'` (a new one has `'OBJECT'`)"],
         ),
         ("BooleanModifier.solver", []),
-        ("CameraDOFSettings.focus_distance", []),  # its panel says it
         ("Mesh.vertices", []),
     ],
 )
