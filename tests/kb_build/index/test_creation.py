@@ -50,7 +50,7 @@ def calls(extract: Extract) -> dict[str, Creation]:
         ),
         (
             "NodeTreeInterfaceSocketMenu",
-            "tree.interface.new_socket(\"Name\", in_out='INPUT', socket_type='NodeSocketMenu')",
+            "geometry_tree.interface.new_socket(\"Name\", in_out='INPUT', socket_type='NodeSocketMenu')",
         ),
     ],
 )
