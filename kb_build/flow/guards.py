@@ -86,9 +86,10 @@ class Guards(Expressions):
         return frozenset(name_doubt(row.value) for row in rows if row is not None and row.missing)
 
     def _texts(self, nodes: Iterable[ast.expr]) -> Iterator[str]:
+        """The texts among expressions that may be names."""
         for node in nodes:
             text = literal_text(self.types.get(node, UNKNOWN))
-            if text is not None:
+            if text is not None and text.isidentifier():
                 yield text
 
     def _calls_for_version(self, call: ast.Call) -> bool:
