@@ -35,6 +35,7 @@ _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTre
 # Only nodes of a class that a script registers take sockets of their own.
 _SOCKETS = (f"{TYPES}NodeInputs.new", f"{TYPES}NodeOutputs.new")
 _USUAL_TREE = "geometry"  # which most scripts make groups of
+_NOT = "not "
 _KIND_OF_TREE = re.compile(r"(\w+) node tree")  # in where a value is taken
 _NEW_SOCKET = f"{TYPES}NodeTreeInterface.new_socket"
 
@@ -226,10 +227,11 @@ class _Calls:
 
 def _tree_taking(socket: EnumItem) -> str:
     """``tree``, or ``geometry_tree`` where not every kind of tree takes a socket."""
-    kinds = _KIND_OF_TREE.findall(socket.where)
+    kinds = set(_KIND_OF_TREE.findall(socket.where))
     if not kinds:
         return "tree"
-    return f"{_USUAL_TREE if _USUAL_TREE in kinds else min(kinds)}_tree"
+    takes_usual = (_USUAL_TREE in kinds) != socket.where.startswith(_NOT)
+    return f"{_USUAL_TREE if takes_usual else min(kinds)}_tree"
 
 
 def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:

@@ -143,7 +143,7 @@ def test_no_folder_of_this_machine_is_in_it(small_base: Path, ready: Ready) -> N
 
 
 def test_what_was_missing_or_failed_is_told_without_the_places(small_base: Path, tmp_path: Path) -> None:
-    here = "/home/somebody/their work"
+    here = "/srv/somebody/their work"
     rows = {
         "missing": [{"role": "guides", "reason": f"no API guides: {here}/corpora has none"}],
         "faults": [
