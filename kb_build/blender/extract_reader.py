@@ -53,7 +53,6 @@ _UNTOLD = {
     "enum": "...",
     **dict.fromkeys(("boolean[1]", "float[1]", "int[1]"), "..."),
 }
-_BY = " by "  # in what new things are called, before the operator that made them
 _INDEXABLE = re.compile(r"[\[*?]")
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
@@ -185,16 +184,16 @@ def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
 
 
 def _add_locked(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds where Blender does not let it be assigned: on what, whichever names fewer things, or in which modes."""
-    if row is None:
-        return
-    locked, free = seen.get("on", ()), seen.get("free_on", ())
-    prefix, labels = (FREE_ON, free) if 0 < len(free) < len(locked) else (LOCKED_ON, locked)
-    plain = [label for label in labels if _BY not in label]
-    told = [prefix + label for label in plain or labels] if free else [LOCKED_ON + ANY] * bool(locked)
-    told += [LOCKED_WITH + mode for mode in seen.get("modes", ())]
-    told += [FREED_BY + seen["freed_by"]] if seen.get("freed_by") else []
-    row["flags"] = [*row.get("flags", ()), *told]
+    """Adds where Blender does not let it be assigned: on what, or in which modes, and what frees it."""
+    if row is not None:
+        row["flags"] = [
+            *row.get("flags", ()),
+            *([LOCKED_ON + ANY] if seen.get("is_always") else ()),
+            *(LOCKED_ON + label for label in seen.get("on", ())),
+            *(FREE_ON + label for label in seen.get("free_on", ())),
+            *(LOCKED_WITH + mode for mode in seen.get("modes", ())),
+            *([FREED_BY + seen["freed_by"]] if seen.get("freed_by") else ()),
+        ]
 
 
 def _add_empty(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:

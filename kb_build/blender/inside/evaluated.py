@@ -11,7 +11,7 @@ import bpy
 
 from .instances import AROUND, DEPTH, NOT_ASKED, UNREADABLE
 from .new_things import attempts, choices, mesh_object, scratch_scene
-from .rna import declaring_class
+from .rna import path_of
 
 FRAMES = 4
 # More elements than these are all alike.
@@ -50,7 +50,7 @@ def differing(original, evaluated, left=DEPTH):
         if prop.type not in {"COLLECTION", "POINTER"} or name in AROUND or name in NOT_ASKED:
             continue
         pair = getattr(original, name, None), getattr(evaluated, name, None)
-        path = f"bpy.types.{declaring_class(original.bl_rna, name)}.{name}"
+        path = path_of(original.bl_rna, name)
         if prop.type == "COLLECTION":
             try:
                 sizes = [len(side) for side in pair]

@@ -14,7 +14,7 @@ import bpy
 from .locked import Locked
 from .new_things import by_operator
 from .own_names import OwnNames
-from .rna import ancestry, declaring_class, default_of, read_items
+from .rna import ancestry, declaring_class, default_of, path_of, read_items
 from .wire import plain
 
 DEPTH = 3
@@ -117,7 +117,7 @@ class Field:
 
     def __init__(self, rna, prop):
         self.name = prop.identifier
-        self.path = f"bpy.types.{declaring_class(rna, prop.identifier)}.{prop.identifier}"
+        self.path = path_of(rna, prop.identifier)
         self.default = default_of(prop)
         self.is_enum = prop.type == "ENUM"
         self.is_flag = self.is_enum and prop.is_enum_flag
@@ -154,7 +154,8 @@ def computed_choices(rna):
 
 class Layout:
     """What there is to read in the instances of a class; ``pointers`` and ``collections``: name → path where it is
-    declared. ``unassigned`` are the pointers to what a script cannot make by itself and assign.
+    declared. ``unassigned`` are the pointers to what a script cannot make by itself and assign, ``writable`` all that
+    RNA lets be assigned.
     """
 
     def __init__(self, rna):
@@ -164,16 +165,19 @@ class Layout:
         self.pointers = {}
         self.unassigned = {}
         self.collections = {}
+        self.writable = {}
         for prop in rna.properties:
             name = prop.identifier
+            if not (prop.is_readonly or prop.is_registered or prop.type == "COLLECTION"):
+                self.writable[name] = path_of(rna, name)
             if prop.type == "POINTER":
                 if name not in NOT_ASKED:
-                    self.pointers[name] = f"bpy.types.{declaring_class(rna, name)}.{name}"
+                    self.pointers[name] = path_of(rna, name)
                     if prop.is_readonly or not is_data_block(prop.fixed_type):
                         self.unassigned[name] = self.pointers[name]
             elif prop.type == "COLLECTION":
                 if name not in NOT_ASKED:
-                    self.collections[name] = f"bpy.types.{declaring_class(rna, name)}.{name}"
+                    self.collections[name] = path_of(rna, name)
             elif (
                 not prop.is_readonly
                 and (name not in left_out or prop.type == "ENUM")
@@ -347,7 +351,7 @@ class Observer:
                     self.pointers.add(path, label, getattr(struct, name, None) is not None)
                 if not by_operator(label):
                     self.count(struct)
-                self.locked.look(label, struct, root)
+                self.locked.look(label, struct, root, self.layout(struct).writable)
             for field, value in before.items():
                 if not field.is_chosen or label == field.unasked:
                     self.add(seen.setdefault(field.path, []), plain(value), label)
@@ -465,7 +469,7 @@ class Observer:
                     empty -= filled
                 self.ask(struct, label + place, mode, enums)
                 if is_first:
-                    self.locked.look_in_mode(struct, mode)
+                    self.locked.look_in_mode(struct, mode, self.layout(struct).writable)
                 for part in self.belonging(struct):
                     if part.as_pointer() not in known:
                         self.look(f"{label} with {mode}", part, is_new=is_new)

@@ -5,7 +5,8 @@ Each instance is asked (``bpy_struct.is_property_readonly``) when it is new and 
 its own that is turned over makes the difference.
 """
 
-from .rna import ancestry, declaring_class
+from .new_things import by_operator
+from .rna import ancestry
 
 SWITCHES = "use_"
 
@@ -20,25 +21,15 @@ class Locked:
         self.modes = {}
         # path → the setting that frees it, empty where no switch does
         self.freed_by = {}
-        self._properties = {}
 
-    def properties(self, struct):
-        """(name, path) of each property that RNA lets be assigned, of the instance's class."""
-        rna = struct.bl_rna
-        known = self._properties.get(rna.identifier)
-        if known is None:
-            known = self._properties[rna.identifier] = [
-                (prop.identifier, f"bpy.types.{declaring_class(rna, prop.identifier)}.{prop.identifier}")
-                for prop in rna.properties
-                if not (prop.is_readonly or prop.is_registered or prop.type == "COLLECTION")
-            ]
-        return known
+    def look(self, label, struct, root, writable):
+        """Asks an instance; ``root`` is what it belongs to, made as ``label`` says, and not another of its kind.
 
-    def look(self, label, struct, root):
-        """Asks an instance; ``root`` is what it belongs to, made as ``label`` says, and not another of its kind."""
+        ``writable``: name → path of what RNA lets be assigned.
+        """
         if struct != root and ancestry(struct.bl_rna)[-1] == ancestry(root.bl_rna)[-1]:
             return
-        for name, path in self.properties(struct):
+        for name, path in writable.items():
             is_locked = struct.is_property_readonly(name)
             self.found.setdefault(path, {True: {}, False: {}})[is_locked][label] = None
             if is_locked and path not in self.freed_by:
@@ -58,25 +49,34 @@ class Locked:
                 return f"{name} = {not before}"
         return ""
 
-    def look_in_mode(self, struct, mode):
+    def look_in_mode(self, struct, mode, writable):
         """Asks an instance that has been put into a mode for what it lets be assigned when it is new."""
-        for name, path in self.properties(struct):
+        for name, path in writable.items():
             if struct.is_property_readonly(name) and not self.found.get(path, {}).get(True):
                 self.modes.setdefault(path, {})[mode] = None
 
     def write(self, write):
         """A ``locked`` record for each property that was locked somewhere.
 
-        ``on`` and ``free_on``: the labels of what has it locked, and free; ``freed_by`` the setting that frees it;
-        ``modes`` those that lock it where it is free before.
+        ``is_always``: on all that was made. Else ``on`` are the labels of what has it locked, or ``free_on`` of what
+        has it free if these are fewer. ``freed_by`` is the setting that frees it; ``modes`` those that lock it where
+        it is free before.
         """
         for path in sorted(self.modes.keys() | {path for path, found in self.found.items() if found[True]}):
             found = self.found.get(path, {True: {}, False: {}})
+            locked, free = list(found[True]), [label for label in found[False] if label not in found[True]]
+            is_told_by_free = 0 < len(free) < len(locked)
             write(
                 "locked",
                 path=path,
-                on=list(found[True]),
-                free_on=[label for label in found[False] if label not in found[True]],
+                is_always=bool(locked) and not free,
+                on=[] if is_told_by_free or not free else plainest(locked),
+                free_on=plainest(free) if is_told_by_free else [],
                 freed_by=self.freed_by.get(path, ""),
                 modes=list(self.modes.get(path, {})),
             )
+
+
+def plainest(labels):
+    """The labels of what no operator made, or all if there are none."""
+    return [label for label in labels if not by_operator(label)] or labels

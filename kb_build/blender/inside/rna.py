@@ -43,6 +43,11 @@ def declaring_class(rna, name):
     return rna.identifier
 
 
+def path_of(rna, name):
+    """The full path of a class's property, where it is declared."""
+    return f"bpy.types.{declaring_class(rna, name)}.{name}"
+
+
 def ancestry(rna):
     """The identifiers of a class and of those that it inherits from."""
     names = []
