@@ -13,7 +13,7 @@ import sys
 from typing import TYPE_CHECKING
 
 from kb_build.flow.expressions import is_decided
-from kb_build.flow.trees import children, walk
+from kb_build.flow.trees import called_name, children, walk
 from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, literal
 
 if TYPE_CHECKING:
@@ -97,7 +97,8 @@ class RunReach:
             case ast.For():
                 blocks = [node.body] if self._has_turns(node.iter) else []
             case ast.With():
-                blocks = [node.body] if all(map(_passes_errors, node.items)) else []
+                managers = {called_name(item.context_expr) for item in node.items}
+                blocks = [node.body] if managers <= _PASSING_ERRORS else []
             case ast.Try() | ast.TryStar():
                 blocks = [node.finalbody] if node.handlers else [node.body, node.finalbody]
             case ast.ClassDef():
@@ -202,21 +203,13 @@ def _leaving(tree: ast.Module) -> set[ast.AST]:
         if isinstance(node, _APART):
             continue
         below = children(node)
-        if isinstance(node, ast.Return) or _is_exit(node) or not returning.isdisjoint(below):
+        if isinstance(node, ast.Return) or called_name(node) in _LEAVING or not returning.isdisjoint(below):
             returning.add(node)
         if isinstance(node, (ast.Break, ast.Continue)) or (
             not isinstance(node, _LOOPS) and not breaking.isdisjoint(below)
         ):
             breaking.add(node)
     return returning | breaking
-
-
-def _is_exit(node: ast.AST) -> bool:
-    match node:
-        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
-            return name in _LEAVING
-        case _:
-            return False
 
 
 def _plain_functions(tree: ast.Module) -> dict[str, _Function]:
@@ -264,14 +257,6 @@ def _holds(node: ast.AST, line: int, column: int) -> bool:
     start: tuple[int, int] = getattr(first, "lineno", 0), getattr(first, "col_offset", 0)
     end: tuple[int, int] = getattr(node, "end_lineno", 0), getattr(node, "end_col_offset", 0)
     return start <= (line, column) < end
-
-
-def _passes_errors(item: ast.withitem) -> bool:
-    match item.context_expr:
-        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
-            return name in _PASSING_ERRORS
-        case _:
-            return False
 
 
 def _yields(function: ast.FunctionDef) -> bool:

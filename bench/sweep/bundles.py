@@ -6,8 +6,8 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from bench.sweep.content_hash import digest_of_bytes, digest_of_file, files_below
-from simworlds.files import write_whole
+from bench.sweep.content_hash import digest_of_bytes, files_below
+from simworlds.files import sha256_of_file, write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
@@ -47,7 +47,7 @@ def bundle_files(folder: Path, files: Iterable[Path]) -> Bundle:
 def bundle_changes(folder: Path, before: Mapping[str, str]) -> Bundle:
     """Bundles what has changed in a folder since ``before`` ({path: SHA-256}). Raises OSError."""
     files = {path.relative_to(folder).as_posix(): path for path in files_below(folder)}
-    changed = [path for name, path in files.items() if before.get(name) != digest_of_file(path)]
+    changed = [path for name, path in files.items() if before.get(name) != sha256_of_file(path)]
     return Bundle(bundle_files(folder, changed).files, tuple(sorted({*before} - {*files})))
 
 

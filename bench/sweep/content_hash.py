@@ -25,11 +25,6 @@ def digest_of_bytes(content: bytes) -> str:
     return hashlib.sha256(content).hexdigest()
 
 
-def digest_of_file(path: Path) -> str:
-    """SHA-256 of a file. Raises OSError."""
-    return sha256_of_file(path)
-
-
 def digests(folder: Path, files: Iterable[Path]) -> dict[str, str]:
     """{path below ``folder``: SHA-256} of its ``files``, sorted. Raises OSError."""
     result: dict[str, str] = {}
@@ -43,7 +38,7 @@ def digests(folder: Path, files: Iterable[Path]) -> dict[str, str]:
 def _digest(path: Path, size: int, changed: int) -> str:
     """The digest of a file, computed once in each process: many scenes share files."""
     del size, changed
-    return digest_of_file(path)
+    return sha256_of_file(path)
 
 
 def files_below(folder: Path) -> list[Path]:

@@ -16,12 +16,12 @@ from bench.judge.errors import NotJudged
 from bench.judge.judge import judge
 from bench.judge.providers import JudgeProvider, provider_of
 from bench.judge.questions import prompt_version
-from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file
+from bench.sweep.content_hash import digest_of, digest_of_bytes
 from bench.sweep.provenance import code_of
 from bench.sweep.records import JUDGEMENT, File, Judged, SceneRecord, read_record, write_record
 from bench.sweep.run_steps import step_fields
 from bench.sweep.steps import DueStep
-from simworlds.files import write_whole
+from simworlds.files import sha256_of_file, write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -105,7 +105,7 @@ def judge_scene(task: SceneTask, who: SweepJudge) -> SceneRecord:
     """Judges one scene's frames, if they are not judged yet. A judgement stays until there is a new one."""
     record = read_record(task.folder) or SceneRecord(scene=task.spec.id, system=task.system.info)
     paths = [task.path(file) for file in record.framed.frames] if record.framed is not None else []
-    frames = digest_of([digest_of_file(path) for path in paths])
+    frames = digest_of([sha256_of_file(path) for path in paths])
     before, began = record.judged, time.monotonic()
     if who.provider is None or not paths:
         judged = Judged(

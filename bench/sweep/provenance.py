@@ -7,12 +7,13 @@ import os
 import platform
 import subprocess
 from functools import cache
-from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from bench.sweep.content_hash import digest_of, digest_of_file
+from bench.sweep.content_hash import digest_of
 from bench.sweep.records import Provenance
+from simworlds.files import sha256_of_file
+from simworlds.installed import installed_version
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -34,7 +35,7 @@ def code_of(module: str, *beside: str) -> str:
     What ``bench`` takes of ``simworlds`` starts programs and carries their answers, and does not count.
     """
     paths = {*_closure(module), *(path for pattern in beside for path in _ROOT.glob(pattern))}
-    return digest_of({path.relative_to(_ROOT).as_posix(): digest_of_file(path) for path in paths})
+    return digest_of({path.relative_to(_ROOT).as_posix(): sha256_of_file(path) for path in paths})
 
 
 def code_of_audit() -> str:
@@ -54,12 +55,12 @@ def provenance(code: str, blender: str | None = None) -> Provenance:
     """The provenance of a step that runs now. ``code``: digest of its code; ``blender``: version that it uses."""
     commit, dirty = _commit()
     return Provenance(
-        simworlds=_version("simworlds") or "from source",
+        simworlds=installed_version("simworlds") or "from source",
         commit=commit,
         dirty=dirty,
         code=code,
         python=platform.python_version(),
-        packages={name: version for name in _PACKAGES if (version := _version(name))},
+        packages=_packages(),
         blender=blender,
         machine=f"{platform.system()} {platform.machine()}, {os.cpu_count()} cores",
     )
@@ -95,11 +96,8 @@ def _file_of(module: str) -> Path | None:
 
 
 @cache
-def _version(package: str) -> str | None:
-    try:
-        return metadata.version(package)
-    except metadata.PackageNotFoundError:
-        return None
+def _packages() -> dict[str, str]:
+    return {name: version for name in _PACKAGES if (version := installed_version(name))}
 
 
 @cache

@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING, Any
 from bench.audit.audit import audit
 from bench.audit.untrusted_blend import NotScored
 from bench.frames.clip_frames import SECONDS, kind_of, take_frames
-from bench.sweep.content_hash import digest_of, digest_of_bytes, digest_of_file
+from bench.sweep.content_hash import digest_of, digest_of_bytes
 from bench.sweep.provenance import code_of, code_of_audit, code_of_frames
 from bench.sweep.records import AUDIT, FINAL, FRAMES, WORK, Audited, File, Framed, Produced
-from simworlds.files import write_whole
+from simworlds.files import sha256_of_file, write_whole
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -85,7 +85,7 @@ def _file(task: SceneTask, path: Path | None) -> File | None:
     source = task.system.source
     return File(
         path=path.relative_to(source or task.folder).as_posix(),
-        sha256=digest_of_file(path),
+        sha256=sha256_of_file(path),
         bytes=path.stat().st_size,
         source=source is not None,
     )
@@ -98,7 +98,7 @@ def _audit_due(task: SceneTask, record: SceneRecord) -> DueStep | None:
     code = code_of_audit()
 
     def inputs(blend: Path, beside: str, blender: str) -> dict[str, Any]:
-        on = {"blend": digest_of_file(blend), "beside": beside}
+        on = {"blend": sha256_of_file(blend), "beside": beside}
         return {**on, "spec": _spec(task), "code": code, "blender": blender}
 
     return _due(task, record, record.audited, code, inputs)
@@ -128,7 +128,7 @@ def _frames_due(task: SceneTask, record: SceneRecord) -> DueStep | None:
 
     def inputs(blend: Path, beside: str, blender: str) -> dict[str, Any]:
         video = _video(task, record)
-        on = {"source": digest_of_file(video or blend), "static": task.is_static, "code": code}
+        on = {"source": sha256_of_file(video or blend), "static": task.is_static, "code": code}
         if video is None:
             on |= {"beside": beside, "blender": blender}
             on |= {"pixels": task.look.pixels, "samples": task.look.samples}
@@ -148,7 +148,7 @@ def _frames(task: SceneTask, record: SceneRecord, due: DueStep, tell: Tell) -> d
     except NotScored as error:
         return {"why": str(error)}
     frames = tuple(
-        File(path=f"{FRAMES}/{path.name}", sha256=digest_of_file(path), bytes=path.stat().st_size)
+        File(path=f"{FRAMES}/{path.name}", sha256=sha256_of_file(path), bytes=path.stat().st_size)
         for path in taken.paths
     )
     seed = 0 if taken.source == "blend" else None
@@ -227,7 +227,7 @@ def _is_unchanged(task: SceneTask, result: Audited | Framed) -> bool:
     """Whether the files of a result are as they were written."""
     files = result.frames if isinstance(result, Framed) else (result.file,)
     try:
-        return all(file is not None and digest_of_file(task.path(file)) == file.sha256 for file in files)
+        return all(file is not None and sha256_of_file(task.path(file)) == file.sha256 for file in files)
     except OSError:
         return False
 

@@ -56,6 +56,15 @@ def children(node: ast.AST) -> list[ast.AST]:
     return found
 
 
+def called_name(node: ast.AST) -> str:
+    """The last name of what a node calls: ``exit`` of ``sys.exit()``; empty where it calls nothing that has a name."""
+    match node:
+        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
+            return name
+        case _:
+            return ""
+
+
 def walk(node: ast.AST) -> Iterator[ast.AST]:
     """A node and all below it, in the order of ast.walk."""
     waiting = [node]

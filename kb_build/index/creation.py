@@ -115,6 +115,10 @@ class _Calls:
         name = holder.owner.removeprefix(TYPES)
         return _HOLDERS.get(name) or held(self._reached.get(holder.owner, name.lower()))
 
+    def _head(self, holder: Symbol, maker: Symbol) -> str:
+        """A call's beginning, up to its arguments."""
+        return f"{self._owner(holder)}.{holder.name}.{maker.name}"
+
     def _by_collection(self, holder: Symbol) -> Iterator[tuple[str, Creation]]:
         for name in _MAKERS:
             maker = self._symbols.get(f"{TYPES}{holder.collection}.{name}")
@@ -127,9 +131,7 @@ class _Calls:
         )
         if base is None:
             return
-        head = f"{self._owner(holder)}.{holder.name}.{maker.name}"
-        types = next((p for p in maker.parameters if p.name == "type"), None)
-        items = {item.identifier: item.name for item in types.enum_items} if types else {}
+        head, types, items = self._head(holder, maker), _types(maker), _kinds_of(maker)
         # What takes the name of any class is a string, or an enumeration whose items come at run time.
         are_classes = bool(items) and all(TYPES + item in self._symbols for item in items)
         by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"} or are_classes)
@@ -150,9 +152,7 @@ class _Calls:
         """What functions for one kind each make: ``strips.new_image`` an ImageStrip, ``new_effect`` those by type."""
         base = self._symbols.get(TYPES + holder.target)
         for maker in self._kinds.get(f"{TYPES}{holder.collection}", ()):
-            head = f"{self._owner(holder)}.{holder.name}.{maker.name}"
-            types = next((p for p in maker.parameters if p.name == "type"), None)
-            items = {item.identifier: item.name for item in types.enum_items} if types else {}
+            head, items = self._head(holder, maker), _kinds_of(maker)
             called = key(maker.name.removeprefix(_NEW_KIND) + holder.target)
             for cls in self._descendants(base.path) if base else ():
                 choice = _choice(cls, base, items) if base and items else ""
@@ -223,6 +223,17 @@ class _Calls:
                 and symbol.path not in self._of_collections
             ):
                 yield symbol.path, Creation(f"{operator.path}()", operator.path)
+
+
+def _types(maker: Symbol) -> Parameter | None:
+    """The argument of a function that decides which class it makes."""
+    return next((parameter for parameter in maker.parameters if parameter.name == "type"), None)
+
+
+def _kinds_of(maker: Symbol) -> dict[str, str]:
+    """Identifier → name of what that argument can be."""
+    types = _types(maker)
+    return {item.identifier: item.name for item in types.enum_items} if types else {}
 
 
 def _tree_taking(socket: EnumItem) -> str:

@@ -23,6 +23,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.flow.trees import called_name
 from kb_check.calls import callee_of
 from kb_check.findings import Finding, Fix
 from kb_check.literals import set_of
@@ -132,20 +133,11 @@ def _ends(function: FunctionDefinition) -> _Ends:
             continue
         yields = yields or isinstance(node, (ast.Yield, ast.YieldFrom))
         # A loop may have no end.
-        raises = raises or isinstance(node, (ast.Raise, ast.While)) or _may_end(node)
+        raises = raises or isinstance(node, (ast.Raise, ast.While)) or called_name(node) in _MAY_END
         if isinstance(node, ast.Return):
             returns.append(node)
         queue.extend(ast.iter_child_nodes(node))
     return _Ends(sorted(returns, key=lambda node: node.lineno), yields, raises)
-
-
-def _may_end(node: ast.AST) -> bool:
-    """Whether a node is a call that may not come back."""
-    match node:
-        case ast.Call(func=ast.Name(id=name) | ast.Attribute(attr=name)):
-            return name in _MAY_END
-        case _:
-            return False
 
 
 def _returns_nothing(ends: _Ends) -> bool:
@@ -162,7 +154,7 @@ def _runs_past(body: list[ast.stmt]) -> bool:
     last = body[-1]
     return (
         isinstance(last, _SIMPLE)
-        and not (isinstance(last, ast.Expr) and _may_end(last.value))
+        and not (isinstance(last, ast.Expr) and called_name(last.value) in _MAY_END)
         and not any(
             isinstance(statement, (ast.Return, ast.Raise, ast.While, ast.Try, ast.Match))
             for statement in body

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.index.analysis import stem, terms, words
+from kb_build.index.analysis import terms
 from kb_build.records import NOT_TAKEN
 
 if TYPE_CHECKING:
@@ -87,8 +87,8 @@ class _Told:
     def _asked(self, text: str, argument: str, *names: str) -> Iterator[AskedValue]:
         """One, if all words of one of its names are asked for, and one that is not the symbol's own."""
         for name in names:
-            own = [stem(word) for word in words(name)]
-            places = [self._places.get(word, -1) for word in terms(name)]
+            own = terms(name)
+            places = [self._places.get(word, -1) for word in own]
             if places and min(places) >= 0 and not self._left.isdisjoint(own):
                 yield AskedValue(text, argument, len(places), places == sorted(places))
                 return

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from PIL import Image
 
-from bench.sweep.content_hash import digest_of_bytes, digest_of_file
+from bench.sweep.content_hash import digest_of_bytes
 from bench.sweep.records import (
     Ablation,
     Audited,
@@ -20,6 +20,7 @@ from bench.sweep.records import (
     SystemInfo,
     write_record,
 )
+from simworlds.files import sha256_of_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -116,5 +117,5 @@ def _frames(folder: Path, count: int) -> tuple[File, ...]:
     for number in range(count):
         path = folder / "frames" / f"{25 * number:03}.png"
         Image.new("RGB", (64, 36), (50 * number, 80, 90)).save(path)
-        found.append(File(path=f"frames/{path.name}", sha256=digest_of_file(path), bytes=path.stat().st_size))
+        found.append(File(path=f"frames/{path.name}", sha256=sha256_of_file(path), bytes=path.stat().st_size))
     return tuple(found)

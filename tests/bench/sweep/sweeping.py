@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from places import REPO
 
-from bench.sweep.content_hash import digest_of_file
+from simworlds.files import sha256_of_file
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -81,7 +81,7 @@ def record(results: Path, scene: str) -> dict[str, Any]:
 def content(results: Path) -> dict[str, str]:
     """{path: SHA-256} of audits and frames: what does not depend on when it was made."""
     return {
-        path.relative_to(results).as_posix(): digest_of_file(path)
+        path.relative_to(results).as_posix(): sha256_of_file(path)
         for pattern in ("*/audit.json", "*/frames/*.png")
         for path in results.glob(pattern)
     }
