@@ -71,7 +71,7 @@ class Analyzer(Statements):
         if file.started or file.tree is None or self.importing > _DEEPEST_IMPORT:
             return
         file.started = True
-        file.module.shared = file.shared_names
+        file.module.shared = file.shared_names[file.tree]
         self.importing += 1
         steps_left, depth, self.steps_left = self.steps_left, self.depth, file.steps_left
         try:

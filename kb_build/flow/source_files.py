@@ -10,15 +10,14 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.scopes import Scope
-from kb_build.flow.trees import children, walk
+from kb_build.flow.shared_names import shared_names
+from kb_build.flow.trees import walk
 from kb_build.flow.types import Readings
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
     from kb_build.flow.types import Resolution, Type
-
-_FILLING = frozenset({"append", "appendleft", "add", "insert", "extend", "update", "setdefault"})
 
 
 @dataclass
@@ -47,15 +46,9 @@ class SourceFile:
     complete: bool = True
 
     @cached_property
-    def shared_names(self) -> frozenset[str]:
-        """The names that functions bind or fill though they belong to the module, or to a function around."""
-        found: set[str] = set()
-        scopes: list[ast.AST] = [self.tree] if self.tree else []
-        for scope in scopes:  # it grows
-            own, inner = _shared_by(scope)
-            scopes += inner
-            found |= own
-        return frozenset(found)
+    def shared_names(self) -> Mapping[ast.AST, frozenset[str]]:
+        """Module, function or lambda → the names there that functions bind or fill though they are not their own."""
+        return shared_names(self.tree) if self.tree else {}
 
     @cached_property
     def computes_attributes(self) -> bool:
@@ -93,36 +86,6 @@ class SourceFile:
         parts = self.name.split(".")
         parts = parts[: len(parts) - level + self.is_package]
         return ".".join([*parts, module] if module else parts) if parts else ""
-
-
-def _shared_by(scope: ast.AST) -> tuple[set[str], list[ast.AST]]:
-    """The names that a module or a function shares with those around, and the functions right within it."""
-    shared: set[str] = set()
-    own: set[str] = set()
-    filled: set[str] = set()
-    inner: list[ast.AST] = []
-    waiting = children(scope)
-    while waiting:
-        node = waiting.pop()
-        if isinstance(node, ast.Name):
-            if isinstance(node.ctx, ast.Store):
-                own.add(node.id)
-            continue
-        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
-            inner.append(node)
-            continue
-        if isinstance(node, ast.Subscript):
-            if isinstance(node.value, ast.Name) and not isinstance(node.ctx, ast.Load):
-                filled.add(node.value.id)
-        elif isinstance(node, ast.Attribute):
-            if node.attr in _FILLING and isinstance(node.value, ast.Name):
-                filled.add(node.value.id)
-        elif isinstance(node, ast.arg):
-            own.add(node.arg)
-        elif isinstance(node, (ast.Global, ast.Nonlocal)):
-            shared.update(node.names)
-        waiting += children(node)
-    return (shared if isinstance(scope, ast.Module) else shared | (filled - own)), inner
 
 
 def _computes_attributes(node: ast.AST) -> bool:

@@ -642,7 +642,8 @@ class Statements(Calls):
         function.readings = {}
         try:
             file = function.file or self.file
-            scope = Scope(function.scope, state=State(doubted=function.doubted), shared=file.shared_names)
+            shared = file.shared_names.get(function.node, frozenset())
+            scope = Scope(function.scope, state=State(doubted=function.doubted), shared=shared)
             with self.inside(file, scope, function):
                 self._read_function(function)
         finally:

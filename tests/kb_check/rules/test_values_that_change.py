@@ -40,6 +40,31 @@ CHANGED = {
             ob.foo
         main()
     """,
+    "global in another function's inner one": """
+        ob = cube
+        def f():
+            ob = 1
+            def g():
+                global ob
+                ob = other
+            g()
+        def main():
+            f()
+            ob.foo
+        main()
+    """,
+    "nonlocal two functions further in": """
+        def main():
+            x = cube
+            def g():
+                def h():
+                    nonlocal x
+                    x = other
+                h()
+            g()
+            return x.foo
+        main()
+    """,
     "nonlocal": """
         def main():
             x = cube
@@ -218,6 +243,41 @@ KEPT = {
             x = 2
         f()
         cube.foo
+    """,
+    "a name that another function takes from the module": """
+        def f():
+            global ob
+            ob = other
+        def g():
+            ob = cube
+            ob.foo
+        f()
+        g()
+    """,
+    "a name that another function fills": """
+        held = []
+        def f():
+            held.append(other)
+        def g():
+            held = cube
+            held.foo
+        f()
+        g()
+    """,
+    "what a function around names": """
+        def f():
+            x = other
+            def g():
+                x = cube
+                def h():
+                    x.foo
+                h()
+            def k():
+                nonlocal x
+                x = None
+            k()
+            g()
+        f()
     """,
     "what was appended": """
         l = []

@@ -1,0 +1,84 @@
+"""The names that functions share: one binds or fills what belongs to the module, or to a function around it."""
+
+from __future__ import annotations
+
+import ast
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kb_build.flow.trees import children
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_FILLING = frozenset({"append", "appendleft", "add", "insert", "extend", "update", "setdefault"})
+
+
+@dataclass(slots=True)
+class _Part:
+    """A module or a function. ``own`` are the names that it binds, ``outer`` those that it binds or fills in parts
+    around it, ``in_module`` those that it says are the module's.
+    """
+
+    node: ast.AST
+    around: _Part | None
+    own: set[str] = field(default_factory=set[str])
+    outer: set[str] = field(default_factory=set[str])
+    in_module: set[str] = field(default_factory=set[str])
+    shared: set[str] = field(default_factory=set[str])
+
+
+def shared_names(tree: ast.Module) -> Mapping[ast.AST, frozenset[str]]:
+    """Module, function or lambda → the names there that functions bind or fill though they are not their own.
+
+    What such a name holds depends on which functions were called before.
+    """
+    module = _Part(tree, None)
+    parts = [module]
+    for part in parts:  # it grows
+        parts += _read(part)
+    for part in reversed(parts):
+        part.shared |= part.outer
+        if part.around is not None:
+            part.around.shared |= part.outer
+            # It is shared on the way to whose name it is, too.
+            part.around.outer |= part.outer - part.around.own
+            module.shared |= part.in_module
+    for part in parts:
+        if part.around is not None:
+            part.shared |= part.in_module | (part.around.shared - part.own)
+    return {part.node: frozenset(part.shared) for part in parts}
+
+
+def _read(part: _Part) -> list[_Part]:
+    """Notes what a part does with names. Returns the functions right within it."""
+    inner: list[_Part] = []
+    elsewhere: set[str] = set()
+    filled: set[str] = set()
+    waiting = children(part.node)
+    while waiting:
+        node = waiting.pop()
+        if isinstance(node, ast.Name):
+            if isinstance(node.ctx, ast.Store):
+                part.own.add(node.id)
+            continue
+        if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
+            inner.append(_Part(node, part))
+            continue
+        if isinstance(node, ast.Subscript):
+            if isinstance(node.value, ast.Name) and not isinstance(node.ctx, ast.Load):
+                filled.add(node.value.id)
+        elif isinstance(node, ast.Attribute):
+            if node.attr in _FILLING and isinstance(node.value, ast.Name):
+                filled.add(node.value.id)
+        elif isinstance(node, ast.arg):
+            part.own.add(node.arg)
+        elif isinstance(node, ast.Global):
+            part.in_module.update(node.names)
+        elif isinstance(node, ast.Nonlocal):
+            elsewhere.update(node.names)
+        waiting += children(node)
+    part.own -= elsewhere | part.in_module
+    if part.around is not None:
+        part.outer = elsewhere | (filled - part.own - part.in_module)
+    return inner
