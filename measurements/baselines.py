@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import sqlite3
 from contextlib import closing
-from functools import cache
+from functools import cache, cached_property
 from itertools import chain
 from typing import TYPE_CHECKING, Any
 from urllib.parse import quote
@@ -59,16 +59,23 @@ class Baselines:
         def found(texts: Iterable[str]) -> list[str]:
             return list(chain.from_iterable(analysed(text) for text in texts if text))
 
-        names = [found((*unit.name, *unit.heading)) for unit in units]
-        rests = [found((*unit.context, *unit.body, *unit.related, *unit.expansions)) for unit in units]
+        self._names = [found((*unit.name, *unit.heading)) for unit in units]
+        self._rests = [found((*unit.context, *unit.body, *unit.related, *unit.expansions)) for unit in units]
         self._index = sqlite3.connect(":memory:")
         self._index.execute("CREATE VIRTUAL TABLE flat USING fts5 (name, rest, content='', detail=full)")
         self._index.executemany(
             "INSERT INTO flat (rowid, name, rest) VALUES (?, ?, ?)",
-            ((n, " ".join(a), " ".join(b)) for n, (a, b) in enumerate(zip(names, rests, strict=True))),
+            (
+                (number, " ".join(name), " ".join(rest))
+                for number, (name, rest) in enumerate(zip(self._names, self._rests, strict=True))
+            ),
         )
-        documents = [name * NAME_WEIGHT + rest for name, rest in zip(names, rests, strict=True)]
-        self._okapi: Any = BM25Okapi(documents)
+
+    @cached_property
+    def _okapi(self) -> Any:
+        return BM25Okapi(
+            [name * NAME_WEIGHT + rest for name, rest in zip(self._names, self._rests, strict=True)]
+        )
 
     def close(self) -> None:
         """Frees the index."""

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import os
 import subprocess
+import sys
 import tempfile
 import time
 from dataclasses import dataclass
@@ -128,13 +129,33 @@ def _whole(folder: Path, figures: list[TargetFigure], rows: list[tuple[str, ...]
     say(f"builds: {BLENDER} with manual and guides")
     home = folder / "whole"
     took = run_build(home, "--require", "manual,guides")
+    alone = _sphinx(folder)
     figures.append(TargetFigure("build", took.wall, "empty home"))
+    figures.append(TargetFigure("build_times", took.wall / alone.wall, f"Sphinx here {alone.wall:.1f} s"))
     figures.append(TargetFigure("size", base_path(home, BLENDER).stat().st_size / 1e6, "just built"))
     rows.append(_row("with manual and guides, empty home", took, _size(home)))
     again = _again(home)
     figures.append(TargetFigure("build_again", again.wall, "median of 3"))
     rows.append(_row("with manual and guides, nothing changed", again, "the same base"))
     rows.append(_row("with manual and guides, forced", run_build(home, "--force"), _size(home)))
+    rows.append(_row("Sphinx alone, writing nothing", alone, "the manual's pages read"))
+
+
+def _sphinx(folder: Path) -> BuildTime:
+    """What Sphinx itself takes to read the manual's pages. Raises BuildFailed."""
+    found, _ = find_sources(BLENDER, cache=folder / "cache", corpora=corpora(), allow_download=False)
+    manual = next((source.path for source in found if source.role == "manual"), None)
+    if manual is None:
+        raise BuildFailed("there is no manual among the documentation sources")
+    say("builds: the manual by Sphinx alone")
+    # No configuration, no warnings, and a builder that writes nothing.
+    command = [sys.executable, "-m", "sphinx", "-C", "-Q", "-b", "dummy", "-j", str(_JOBS)]
+    began, used = time.perf_counter(), _children_cpu()
+    try:
+        subprocess.run([*command, manual, folder / "sphinx"], check=True, timeout=_LONGEST)
+    except (OSError, subprocess.SubprocessError) as error:
+        raise BuildFailed(f"Sphinx alone: {error}") from error
+    return BuildTime(time.perf_counter() - began, _children_cpu() - used)
 
 
 def _size(home: Path) -> str:

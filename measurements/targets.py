@@ -102,6 +102,7 @@ _ROWS = (
         "ranked_p50", "in process, ranked: p50", "ms", 1, False, "FTS5 1.2 · rank-bm25 11 · official 860 ms"
     ),
     Target("ranked_p95", "in process, ranked: p95", "ms", 10, False, "official 12.5 s (first broad query)"),
+    Target("ranked_times", "… beside FTS5's ranking alone", "times", 0.83, False, "FTS5 1 ×"),
     Target("mcp_p50", "MCP over stdio, one call: p50", "ms", 4, False, "echo tool 1.0 ms"),
     Target("mcp_times", "… beside an echo tool's", "times", 3),
     Target("start", "server start to first answer", "s", 0.8, False, "echo tool 0.45 s · others past 10 s"),
@@ -113,6 +114,14 @@ _ROWS = (
     Target("soak_growth", "… resident memory, last third by the second", "times", 1.05),
     Target("soak_orphans", "… processes left over", "count", 0),
     Target("build", "build with manual and guides", "s", 18, False, "Sphinx alone 34 s"),
+    Target(
+        "build_times",
+        "… beside Sphinx alone, which only reads the manual",
+        "times",
+        0.53,
+        False,
+        "Sphinx 1 ×",
+    ),
     Target("build_api", "build without pages", "s", 8),
     Target("build_again", "build when nothing has changed", "s", 1),
     Target("html", "manual from HTML (789 MB): reading", "s", 30),
