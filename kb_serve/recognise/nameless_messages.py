@@ -181,6 +181,11 @@ NAMELESS_MESSAGES = (
         "path begins where Blender was started.",
     ),
     NamelessMessage(
+        ("No such file or directory: '//",),
+        ("bpy.path.abspath",),
+        "Only Blender knows where a path that begins with `//` leads: `open(bpy.path.abspath(path))`.",
+    ),
+    NamelessMessage(
         ("failed to open blend file",),
         (f"{_T}BlendDataLibraries.load", "bpy.path.abspath"),
         "There is no such .blend where Blender looks: `//` begins a path beside the saved one.",

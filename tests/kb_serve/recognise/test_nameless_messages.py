@@ -45,6 +45,7 @@ scene.render.engine = "CYCLES"; bpy.ops.object.select_all(action="DESELECT"); bp
 bpy.ops.fluid.bake_all()
 ob.modifiers.new("f", "FLUID").fluid_type = "FLOW"; bpy.ops.fluid.bake_all()
 bpy.data.images.load("/none.png")
+open("//none.csv")
 bpy.data.libraries.load("/none.blend").__enter__()
 bpy.ops.wm.save_as_mainfile(filepath="none/x.blend")
 bpy.ops.wm.obj_import(filepath="/none.obj")
