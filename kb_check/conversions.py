@@ -41,7 +41,8 @@ if TYPE_CHECKING:
     from kb_check.given import Taker
     from kb_check.script import Script
 
-_LENGTHS = {"mathutils.Color": 3, "mathutils.Euler": 3, "mathutils.Quaternion": 4}
+# How many numbers a class always has.
+LENGTHS = {"mathutils.Color": 3, "mathutils.Euler": 3, "mathutils.Quaternion": 4}
 _OBJECTS_DATA = f"{T}Object.data"
 _ID = f"{T}ID"
 _DATA = tuple(f"{T}{name}" for name in (*OBJECT_DATA.values(), "Image"))  # an empty shows images
@@ -188,7 +189,7 @@ def _whole_misfit(script: Script, node: ast.expr, kind: Type, length: int, takes
     if isinstance(kind, Mapping) or (isinstance(kind, Plain) and kind.kind != "bytes"):
         return Misfit(takes, _shown(script, node, given))
     if isinstance(kind, Instance):
-        has = _LENGTHS.get(kind.cls, 0)
+        has = LENGTHS.get(kind.cls, 0)
         if has and length and length != has:
             return Misfit(takes, f"{given}, which has {has}", has)
         if kind.sure and kind.cls.startswith("bpy.types.") and not kind.cls.startswith("bpy.types.bpy_"):

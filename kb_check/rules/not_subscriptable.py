@@ -36,7 +36,7 @@ from kb_build.flow.types import (
     Type,
     members,
 )
-from kb_check.conversions import CHANGING_ARRAYS
+from kb_check.conversions import CHANGING_ARRAYS, LENGTHS
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
 from kb_check.made_here import bindings, callee_path
@@ -48,8 +48,7 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_LENGTHS = {"mathutils.Color": 3, "mathutils.Euler": 3, "mathutils.Quaternion": 4}
-_VECTORS = frozenset({*_LENGTHS, "mathutils.Vector", "mathutils.Matrix"})
+_VECTORS = frozenset({*LENGTHS, "mathutils.Vector", "mathutils.Matrix"})
 _NO_STEPS = frozenset({"bmesh.types.BMVertSeq", "bmesh.types.BMEdgeSeq", "bmesh.types.BMFaceSeq",
                        "bmesh.types.BMLoopSeq", "bmesh.types.BMElemSeq"})  # fmt: skip
 # Classes whose instances are found by another property than ``name``.
@@ -242,8 +241,8 @@ def _is_open(script: Script, cls: str) -> bool:
 
 def _length(script: Script, node: ast.Subscript, cls: str) -> int:
     """How many items a vector or an array has; 0 if that is not known."""
-    if cls in _LENGTHS:
-        return _LENGTHS[cls]
+    if cls in LENGTHS:
+        return LENGTHS[cls]
     row = script.analysis.resolutions.get(node.value)
     symbol = script.api.symbols.symbol(row.symbols[0]) if row is not None and len(row.symbols) == 1 else None
     if symbol is None or symbol.path in CHANGING_ARRAYS or cls == "mathutils.Matrix":
