@@ -6,18 +6,21 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import children
+from kb_build.flow.trees import called_name, children
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
 _FILLING = frozenset({"append", "appendleft", "add", "insert", "extend", "update", "setdefault"})
+_GLOBALS = "globals"
+_ANY = "*"
 
 
 @dataclass(slots=True)
 class _Part:
     """A module or a function. ``own`` are the names that it binds, ``outer`` those that it binds or fills in parts
-    around it, ``in_module`` those that it says are the module's.
+    around it, ``in_module`` those that it says are the module's, ``filled`` those whose items it sets or adds to,
+    ``written`` those that it puts into ``globals()``, ``_ANY`` for computed ones.
     """
 
     node: ast.AST
@@ -25,6 +28,8 @@ class _Part:
     own: set[str] = field(default_factory=set[str])
     outer: set[str] = field(default_factory=set[str])
     in_module: set[str] = field(default_factory=set[str])
+    filled: set[str] = field(default_factory=set[str])
+    written: set[str] = field(default_factory=set[str])
     shared: set[str] = field(default_factory=set[str])
 
 
@@ -44,6 +49,7 @@ def shared_names(tree: ast.Module) -> Mapping[ast.AST, frozenset[str]]:
             # It is shared on the way to whose name it is, too.
             part.around.outer |= part.outer - part.around.own
             module.shared |= part.in_module
+        module.shared |= module.own if _ANY in part.written else part.written
     for part in parts:
         if part.around is not None:
             part.shared |= part.in_module | (part.around.shared - part.own)
@@ -54,7 +60,6 @@ def _read(part: _Part) -> list[_Part]:
     """Notes what a part does with names. Returns the functions right within it."""
     inner: list[_Part] = []
     elsewhere: set[str] = set()
-    filled: set[str] = set()
     waiting = children(part.node)
     while waiting:
         node = waiting.pop()
@@ -65,12 +70,8 @@ def _read(part: _Part) -> list[_Part]:
         if isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.Lambda)):
             inner.append(_Part(node, part))
             continue
-        if isinstance(node, ast.Subscript):
-            if isinstance(node.value, ast.Name) and not isinstance(node.ctx, ast.Load):
-                filled.add(node.value.id)
-        elif isinstance(node, ast.Attribute):
-            if node.attr in _FILLING and isinstance(node.value, ast.Name):
-                filled.add(node.value.id)
+        if isinstance(node, (ast.Subscript, ast.Attribute)):
+            _note_filled(node, part)
         elif isinstance(node, ast.arg):
             part.own.add(node.arg)
         elif isinstance(node, ast.Global):
@@ -80,5 +81,21 @@ def _read(part: _Part) -> list[_Part]:
         waiting += children(node)
     part.own -= elsewhere | part.in_module
     if part.around is not None:
-        part.outer = elsewhere | (filled - part.own - part.in_module)
+        part.outer |= elsewhere | (part.filled - part.own - part.in_module)
     return inner
+
+
+def _note_filled(node: ast.Subscript | ast.Attribute, part: _Part) -> None:
+    """Notes what an item is set of, or the method of which adds to it."""
+    key = _ANY
+    if isinstance(node, ast.Attribute):
+        if node.attr not in _FILLING:
+            return
+    elif isinstance(node.ctx, ast.Load):
+        return
+    elif isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, str):
+        key = node.slice.value
+    if isinstance(node.value, ast.Name):
+        part.filled.add(node.value.id)
+    elif called_name(node.value) == _GLOBALS:
+        part.written.add(key)

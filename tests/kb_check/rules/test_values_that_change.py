@@ -65,6 +65,20 @@ CHANGED = {
             return x.foo
         main()
     """,
+    "globals": """
+        ob = cube
+        def f():
+            globals()["ob"] = other
+        f()
+        ob.foo
+    """,
+    "globals by computed names": """
+        ob = cube
+        def f(**values):
+            globals().update(values)
+        f(ob=other)
+        ob.foo
+    """,
     "nonlocal": """
         def main():
             x = cube
@@ -253,6 +267,13 @@ KEPT = {
             ob.foo
         f()
         g()
+    """,
+    "a name beside one of globals": """
+        x = other
+        def f():
+            globals()["x"] = 1
+        f()
+        cube.foo
     """,
     "a name that another function fills": """
         held = []
