@@ -32,12 +32,14 @@ OR_NONE = " or None"
 # How flags begin that say what fills a pointer that is None on a new thing, and on which new things it is not None.
 FILLED_BY = "filled-by:"
 FILLED_ON = "filled-on:"
-# How a flag begins that says what an operator's poll wants, of all that was tried.
+# How a flag begins that says what an operator's poll wants, of all that was tried; nothing follows if it wants nothing.
 NEEDS = "needs:"
 # How flags begin that name the types of areas in which alone an operator runs (``any``), and the member of the context
 # that it takes instead.
 AREAS = "areas:"
 GIVEN = "given:"
+# How a flag begins that names what must be set besides, where an operator runs only in areas.
+ALSO = "also:"
 # How a flag begins that says what must not be None: Blender ends when the function is called.
 ENDS_WITHOUT = "ends-without:"
 # The flag of a socket that a node of a zone has once it is paired with the other one.

@@ -11,6 +11,7 @@ from operator import attrgetter
 from typing import TYPE_CHECKING, cast
 
 from kb_build.records import (
+    ALSO,
     ANY,
     AREAS,
     EMPTY,
@@ -46,7 +47,8 @@ _SHOWN_OTHERS = 4
 _SHOWN_LABELS = 3
 # What operators want of the active object, as ``kb_build/blender/inside/operator_needs.py`` words it.
 _NEEDED = re.compile(
-    r"an active(?: and selected)? object(?P<types>(?:, not)? of type [^ ,]+)?(?P<modes>(?:, not)? in mode [^ ,]+)?"
+    r"(?:an active(?: and selected)?|none or any active) object(?P<types>(?:, not)? of type [^ ,]+)?"
+    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and not in all other modes)?"
 )
 _QUOTED = re.compile(r"'(\w+)'")
 
@@ -155,8 +157,14 @@ def locked_text(symbol: Symbol) -> str:
 def operator_needs(symbol: Symbol) -> str:
     """What an operator's poll wants, of all that was tried; empty where that is not known."""
     given = [f"`{member}` in the context (`temp_override({member}=…)`)" for member in symbol.flagged(GIVEN)]
-    areas = [area_text(operator_areas(symbol))] if operator_areas(symbol) else []
+    also = "".join(f", with `{call}`" for call in operator_also(symbol))
+    areas = [area_text(operator_areas(symbol)) + also] if operator_areas(symbol) else []
     return "".join(symbol.flagged(NEEDS)) or ", or ".join(given + areas)
+
+
+def refused_nothing(symbol: Symbol) -> bool:
+    """Whether an operator's poll said yes wherever it was asked: with and without objects, in all modes, in no area."""
+    return NEEDS in symbol.flags
 
 
 @dataclass(frozen=True, slots=True)
@@ -196,6 +204,11 @@ def operator_areas(symbol: Symbol) -> tuple[str, ...]:
 def operator_given(symbol: Symbol) -> str:
     """The member of the context that an operator takes instead of an area, or of what an area puts there."""
     return "".join(symbol.flagged(GIVEN))
+
+
+def operator_also(symbol: Symbol) -> tuple[str, ...]:
+    """What must be set besides for an operator that runs only in areas, as a statement."""
+    return symbol.flagged(ALSO)
 
 
 def area_text(types: Sequence[str]) -> str:

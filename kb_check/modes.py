@@ -16,22 +16,6 @@ if TYPE_CHECKING:
     from kb_check.calls import CallSite
     from kb_check.script import Script
 
-# Those that Blender refuses in every mode but Object Mode, whichever object is active, and that also run without any
-# (https://docs.blender.org/manual/en/5.1/editors/3dview/modes.html); a test asks each.
-OBJECT_MODE_ONLY = frozenset(
-    f"bpy.ops.object.{name}"
-    for name in (
-        "add", "align", "armature_add", "camera_add", "collection_instance_add", "delete", "duplicate",
-        "duplicate_move", "duplicate_move_linked", "duplicates_make_real", "effector_add", "empty_add", "light_add",
-        "lightprobe_add", "link_to_collection", "make_local", "make_single_user", "move_to_collection",
-        "quick_explode", "quick_smoke", "randomize_transform", "select_all", "select_by_type", "select_linked",
-        "select_mirror", "select_random", "speaker_add", "text_add", "track_clear", "track_set", "transform_apply",
-        "volume_add",
-    )
-)  # fmt: skip
-NOT_IN_EDIT_MODE = frozenset(
-    f"bpy.ops.object.shade_{how}" for how in ("smooth", "flat", "auto_smooth", "smooth_by_angle")
-)
 MODE_SET = frozenset({"bpy.ops.object.mode_set", "bpy.ops.object.mode_set_with_submode"})
 _EDIT_TOGGLE = "bpy.ops.object.editmode_toggle"
 _FACTORY = "bpy.ops.wm.read_factory_settings"
@@ -97,10 +81,6 @@ UNKNOWN = State()
 
 def modes_wanted(operator: Symbol) -> Wanted | None:
     """The modes in which an operator runs; None where any will do, or not all are known."""
-    if operator.path in OBJECT_MODE_ONLY:
-        return Wanted(("OBJECT",))
-    if operator.path in NOT_IN_EDIT_MODE:
-        return Wanted(("EDIT",), is_others=True)
     return operator_active(operator)[1]
 
 
@@ -203,7 +183,8 @@ def _after_adding(call: CallSite, kind: str, state: State) -> State:
         return State("", kind)
     if enters:
         return State("EDIT", kind)
-    if call.callee.symbol.path in OBJECT_MODE_ONLY or state.mode == "OBJECT":
+    modes = modes_wanted(call.callee.symbol)
+    if state.mode == "OBJECT" or (modes is not None and modes == Wanted(("OBJECT",))):
         return State("OBJECT", kind)
     if state.mode == "EDIT" and state.kind:
         return State("EDIT" if state.kind == kind else "OBJECT", kind)

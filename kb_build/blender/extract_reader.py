@@ -16,6 +16,7 @@ from kb_build.blender.refused_calls import refusals
 from kb_build.errors import ExtractError
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
+    ALSO,
     ANY,
     AREAS,
     EMPTY,
@@ -155,14 +156,18 @@ def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
 def _add_needs(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     """Adds what an operator's poll wants."""
     if row is not None:
-        row["flags"] = [*row.get("flags", ()), NEEDS + seen["needs"]]
+        row["flags"] = [*row.get("flags", ()), NEEDS + seen.get("needs", "")]
 
 
 def _add_areas(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     """Adds in which areas an operator runs, and what it takes of the context instead."""
     if row is not None:
-        given = [GIVEN + seen["given"]] if "given" in seen else []
-        row["flags"] = [*row.get("flags", ()), *(AREAS + area for area in seen.get("areas", ())), *given]
+        row["flags"] = [
+            *row.get("flags", ()),
+            *(AREAS + area for area in seen.get("areas", ())),
+            *([GIVEN + seen["given"]] if seen.get("given") else ()),
+            *([ALSO + seen["also"]] if seen.get("also") else ()),
+        ]
 
 
 def _add_argument_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:

@@ -6,7 +6,13 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import operator_areas, operator_given, operator_needs
+from kb_build.symbol_lines import (
+    operator_also,
+    operator_areas,
+    operator_given,
+    operator_needs,
+    refused_nothing,
+)
 
 if TYPE_CHECKING:
     from kb_build.records import Symbol
@@ -18,19 +24,9 @@ NO_OVERRIDE = (
     f"set it with `{OVERRIDE}`."
 )
 _WITH = "with bpy.context.temp_override"
-_OBJECT = f"{_WITH}(object=ob, active_object=ob, selected_objects=[ob], selected_editable_objects=[ob])"
 _ACTIVE = "bpy.context.view_layer.objects.active = ob"
+_SELECTED = "ob.select_set(True)"
 _MODE = re.compile(r"(?P<refused>not )?in mode '(?P<mode>\w+)'")
-_MODES = {
-    "mesh": "EDIT", "uv": "EDIT", "curve": "EDIT", "curves": "EDIT", "armature": "EDIT", "lattice": "EDIT",
-    "mball": "EDIT", "surface": "EDIT", "font": "EDIT", "pose": "POSE", "poselib": "POSE", "sculpt": "SCULPT",
-}  # fmt: skip
-_EDITORS = {
-    "view3d": "VIEW_3D", "node": "NODE_EDITOR", "image": "IMAGE_EDITOR", "graph": "GRAPH_EDITOR",
-    "action": "DOPESHEET_EDITOR", "nla": "NLA_EDITOR", "sequencer": "SEQUENCE_EDITOR", "clip": "CLIP_EDITOR",
-    "outliner": "OUTLINER", "file": "FILE_BROWSER", "text": "TEXT_EDITOR", "console": "CONSOLE", "info": "INFO",
-    "spreadsheet": "SPREADSHEET",
-}  # fmt: skip
 # A name for what a member of the context is taken from.
 _THINGS = {"id": "ob", "point_cache": "modifier.point_cache", "edit_image": "image", "edit_text": "text"}
 # Without it, it bakes nothing and says that it did.
@@ -38,40 +34,18 @@ _ARGUMENTS = {"bpy.ops.ptcache.bake": "bake=True"}
 _INSTEAD = {
     "bpy.ops.ptcache.bake": "`bpy.ops.ptcache.bake_all(bake=True)` needs none, and bakes all of the scene."
 }
-_OF_OBJECTS = frozenset(
-    {
-        "object",
-        "rigidbody",
-        "constraint",
-        "cloth",
-        "fluid",
-        "dpaint",
-        "particle",
-        "boid",
-        "geometry",
-        "material",
-    }
-)
 
 
 def context_for(operator: Symbol) -> str:
     """What lets an operator run whose ``poll()`` failed."""
     path = operator.path
-    _, _, module, name = path.split(".", 3)
     failed = f"`{path}.poll()` failed: "
     if needs := operator_needs(operator):
         return f"{failed}of all that was tried, it takes {needs}. {_giving(operator, needs)}".rstrip()
-    if module in _EDITORS:
-        return f"{failed}it runs in an area of type {_EDITORS[module]}. {_in_area(path, _EDITORS[module])}"
-    if mode := "" if name.endswith("_add") else _MODES.get(module):
+    if refused_nothing(operator):
         return (
-            f"{failed}it needs an active object of a fitting type in another mode: "
-            f"`{_ACTIVE}`, then `bpy.ops.object.mode_set(mode='{mode}')`."
-        )
-    if module in _OF_OBJECTS or module in _MODES:
-        return (
-            f"{failed}it needs an active object (of a fitting type; an Empty mostly is none), some in Object Mode "
-            f"alone: `bpy.ops.object.mode_set(mode='OBJECT')`. `{_OBJECT}: {path}()` gives it the object `ob`."
+            f"{failed}it refused nothing that was tried: no object, objects of all types in all modes, no area. "
+            "What it lacks is in this scene or file."
         )
     return (
         f"{failed}it needs another mode, active object, selection or editor than the context has. "
@@ -96,14 +70,20 @@ def _giving(operator: Symbol, needs: str) -> str:
         given = f"`{_WITH}({member}={_THINGS.get(member, member)}): {path}({_ARGUMENTS.get(path, '')})`."
         return f"{given} {_INSTEAD.get(path, '')}".rstrip()
     if areas := operator_areas(operator):
-        return _in_area(path, areas[0])
+        return "".join(f"`{call}`; " for call in operator_also(operator)) + _in_area(path, areas[0])
+    mode = _MODE.search(needs)
+    entered = f"`bpy.ops.object.mode_set(mode='{_entered(mode)}')`" if mode else ""
+    if needs.startswith("none or any"):
+        return f"{entered} comes before." if entered else ""
     if not needs.startswith("an active"):
         return ""
-    mode = _MODE.search(needs)
-    if mode and not mode["refused"]:
-        return f"`{_ACTIVE}`, then `bpy.ops.object.mode_set(mode='{mode['mode']}')`."
-    left = " after `bpy.ops.object.mode_set(mode='OBJECT')`" if mode else ""
-    return f"`{_OBJECT}: {path}()` gives it the object `ob`{left}."
+    given = f"`{_ACTIVE}`" + (f", `{_SELECTED}`" if "selected" in needs else "")
+    return f"{given}, then {entered}." if entered else f"{given} comes before."
+
+
+def _entered(mode: re.Match[str]) -> str:
+    """The mode to enter for one that is wanted, or refused."""
+    return "OBJECT" if mode["refused"] else mode["mode"]
 
 
 def with_context(chain: Chain) -> str:

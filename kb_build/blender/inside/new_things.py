@@ -10,6 +10,8 @@ import traceback
 
 import bpy
 
+# What the sequencer works on since 5.0; None in a new file.
+SEQUENCER_SCENE = "bpy.context.workspace.sequencer_scene"
 BY = " by "  # between what was made and the operator that made it
 # It is not new any more: only the items that its enumerations take are asked.
 CONSTRAINT_TO_BONE = "constraint with a bone as target"
@@ -19,6 +21,12 @@ MODIFIED = ("MESH", "CURVE", "LATTICE", "GREASEPENCIL", "VOLUME")
 def called(thing):
     """What a thing is, by its class: ``cloth modifier``."""
     return thing.bl_rna.name.lower()
+
+
+def no_sequencer_scene():
+    """Takes the sequencer's scene away, in a Blender that has one."""
+    if hasattr(bpy.context.workspace, "sequencer_scene"):
+        bpy.context.workspace.sequencer_scene = None
 
 
 def by_operator(label):

@@ -330,7 +330,7 @@ def write_all(write, structs, observer, former):
         for other in others:
             observer.ask(other, f"{identifier} in a {other.id_data.bl_idname}", "")
         write("node", path=owner, trees=list(nodes))
-        write_node(write, owner, list(nodes.values()), former.get(identifier, {}), alone if end else None)
+        write_node(write, owner, [node, *others], former.get(identifier, {}), alone if end else None)
         remove((*nodes.values(), end))
     write_former_classes(write, trees, [name for name in former if name not in structs])
     for tree in trees.values():

@@ -13,7 +13,7 @@ from contextlib import suppress
 import bpy
 
 from .apart import apart, can_work_apart
-from .new_things import activate, choices
+from .new_things import SEQUENCER_SCENE, activate, choices, no_sequencer_scene
 
 # Of area types; those that run in more run in any.
 MOST_AREAS = 8
@@ -101,6 +101,8 @@ class Stage:
         with suppress(*TRIED):
             strips = editor.strips if hasattr(editor, "strips") else editor.sequences
             strips.new_effect("color", "COLOR", 1, 1, length=20)
+        if hasattr(self.window.workspace, "sequencer_scene"):
+            self.window.workspace.sequencer_scene = self.scene
         with suppress(*TRIED):
             bpy.ops.rigidbody.world_add()
         self.scene.keying_sets.new()
@@ -184,6 +186,19 @@ def works(operator, member, thing):
     return apart(work)
 
 
+def wanting_sequencer_scene(stage, known):
+    """The operators of these that the sequencer alone can run, and not without a scene for it."""
+    activate(stage.objects["mesh"])
+    if not hasattr(stage.window.workspace, "sequencer_scene") or not stage.show("SEQUENCE_EDITOR"):
+        return set()
+    with stage.within():
+        found = polled(known)
+        no_sequencer_scene()
+        found -= polled(known)
+    stage.window.workspace.sequencer_scene = stage.scene
+    return found
+
+
 def find_all(write, known, scene):
     """One ``operator_areas`` record for each of these operators that runs in areas alone, or with a thing of theirs.
 
@@ -206,10 +221,12 @@ def find_all(write, known, scene):
                 with stage.within():
                     for path in polled(known):
                         areas[path].add(stage.area.type)
+    with_scene = wanting_sequencer_scene(stage, {path: known[path] for path in areas if path in known})
     for path, operator in sorted(known.items()):
         member, thing = given.get(path, ("", None))
         if member and not works(operator, member, thing):
             member = ""
         if areas[path] or member:
             types = ["any"] if len(areas[path]) > MOST_AREAS else sorted(areas[path])
-            write("operator_areas", path=path, areas=types, given=member)
+            also = f"{SEQUENCER_SCENE} = scene" if path in with_scene else ""
+            write("operator_areas", path=path, areas=types, given=member, also=also)

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finds what operators want to be active before they run, by asking each whether it can (``poll``), without an area.
 
-Those that refuse in an empty scene are asked with an active object of every type in every mode. Those that refuse all
-of these are asked after everything was added to a mesh object and its scene that calls are known to add; and those
-that can run then, after each of these calls alone. The others may want an area (see operator_areas).
+All are asked in an empty scene, then with an active object of every type in every mode. Those that refuse all of these
+are asked after everything was added to a mesh object and its scene that calls are known to add; and those that can run
+then, after each of these calls alone. The others may want an area (see operator_areas).
 """
 
 import traceback
@@ -11,7 +11,17 @@ import traceback
 import bpy
 
 from . import operator_areas
-from .new_things import activate, add_object, attempts, choices, mesh_object, object_of, remove
+from .new_things import (
+    SEQUENCER_SCENE,
+    activate,
+    add_object,
+    attempts,
+    choices,
+    mesh_object,
+    no_sequencer_scene,
+    object_of,
+    remove,
+)
 
 MOST_TYPES = 6
 MOST_CASES = 3
@@ -19,12 +29,16 @@ MOST_CASES = 3
 MOST_MODIFIERS = 6
 MODIFIER = 'obj.modifiers.new("name", '
 THEN = " then "
+ANY_OR_NONE = "none or any active object"
+SOME_MORE = ", and not in all other modes"
 NOT_ASKED = frozenset(
     {
         # It crashes Blender 5.0 where no object is active.
         "anim.slot_channels_move_to_new_action",
-        # It answers as far as Blender has read its asset libraries, which it does in the background.
+        # They answer as far as Blender has read its asset libraries, which it does in the background.
+        "asset.library_refresh",
         "brush.asset_revert",
+        "brush.asset_save_as",
     }
 )
 # Of bpy.data.
@@ -40,7 +54,11 @@ CLEARED = (
     "curves",
 )
 # What is added to an object in other ways than by a collection's ``new`` and by what fills pointers.
-ADDED = ("obj.data.materials.append(material)", 'obj.keyframe_insert("location")')
+ADDED = (
+    "obj.data.materials.append(material)",
+    'obj.keyframe_insert("location")',
+    f"scene.sequence_editor_create(){THEN}{SEQUENCER_SCENE} = scene",
+)
 
 
 def operators():
@@ -164,8 +182,28 @@ class Objects:
             remove(obj)
         return passed
 
+    def free_needs(self, path):
+        """What an operator wants that can run in an empty scene, in words; empty where it refused nothing."""
+        found = self.passed[path]
+        refusing = {
+            mode: [
+                kind for kind in self.tried if mode in self.tried[kind] and mode not in found.get(kind, ())
+            ]
+            for modes_tried in self.tried.values()
+            for mode in modes_tried
+        }
+        refused = [mode for mode, kinds in refusing.items() if kinds]
+        if not refused:
+            return ""
+        passed = [mode for mode in refusing if mode not in refused]
+        always = [mode for mode in refused if not any(mode in modes for modes in found.values())]
+        if always == refused:
+            return f"{ANY_OR_NONE}{in_modes(passed, refused)}"
+        told = f", not in mode {listed(always)}" if always else ""
+        return f"{ANY_OR_NONE}{told}{SOME_MORE}"
+
     def needs(self, path):
-        """What an operator wants, in words."""
+        """What an operator wants that refuses in an empty scene, in words."""
         found = self.passed[path]
         is_selected = "OBJECT" in found.get("MESH", ()) and path not in self.unselected
         active = "an active and selected object" if is_selected else "an active object"
@@ -245,6 +283,7 @@ def modifier_calls():
 def add(calls):
     """Makes calls, each if it can be made, with a new mesh object in a scene of its own. Returns those it made."""
     scene = empty_scene()
+    no_sequencer_scene()
     obj = mesh_object()
     obj.select_set(True)
     names = {"bpy": bpy, "obj": obj, "scene": scene, "material": bpy.data.materials.new("new")}
@@ -288,7 +327,7 @@ def added(path, calls):
 
 
 def find_all(write, observer, skipped):
-    """One ``operator_needs`` record for each operator that wants something that is known."""
+    """One ``operator_needs`` record for each operator of which it is known what it wants, if only nothing."""
     window = bpy.context.window
     if window is None:
         return
@@ -298,8 +337,11 @@ def find_all(write, observer, skipped):
 
     def with_objects():
         empty_scene()
-        for path in can_run(known):
-            del known[path]
+        no_sequencer_scene()
+        free = Objects()
+        free.ask({path: known.pop(path) for path in can_run(known)})
+        for path in free.passed:
+            write("operator_needs", path=path, needs=free.free_needs(path))
         objects = Objects()
         objects.ask(known)
         for path in objects.passed:

@@ -16,7 +16,19 @@ from contextlib import suppress
 import bpy
 
 from .apart import apart
-from .new_things import MAKERS, activate, added_by_operators, choices, object_of, scratch_scene
+from .new_things import (
+    MAKERS,
+    SEQUENCER_SCENE,
+    activate,
+    added_by_operators,
+    called,
+    choices,
+    no_sequencer_scene,
+    object_of,
+    scratch_scene,
+)
+from .nodes import TREES
+from .nodes import make as make_in
 from .pointer_fillers import ADDING
 
 NAMED = ADDING | {"insert"}
@@ -28,17 +40,26 @@ MOST_ATTEMPTS = 4
 # What a refusal names: things and what was given.
 GIVEN = re.compile(r"'[^']*'|\"[^\"]*\"|\b" + NAME + r"\b|\b7(?:\.0+)?\b")
 NONE = "returned None"
-# What is None in a new file, and is set for what is tried here.
-SEQUENCER_SCENE = "bpy.context.workspace.sequencer_scene"
-# They leave elements that stand for nothing, which crashes whoever reads the mesh.
-NOT_TRIED = frozenset({"MeshEdges", "MeshLoops", "MeshLoopTriangles", "MeshPolygons"})
+NOT_TRIED = frozenset(
+    {
+        # They leave elements that stand for nothing, which crashes whoever reads the mesh.
+        "MeshEdges", "MeshLoops", "MeshLoopTriangles", "MeshPolygons",
+        # Built-in nodes have their sockets.
+        "NodeInputs", "NodeOutputs",
+    }
+)  # fmt: skip
+
+
+def is_adding(function):
+    """Whether a function may add something, by its name."""
+    return function.use_self and not NAMED.isdisjoint(function.identifier.split("_"))
 
 
 def tried(rna):
     """The functions of a class that may add something and need nothing but texts, numbers and choices."""
     for function in rna.functions if rna.identifier not in NOT_TRIED else ():
         required = [item for item in function.parameters if item.is_required and not item.is_output]
-        if NAMED.isdisjoint(function.identifier.split("_")) or not function.use_self:
+        if not is_adding(function):
             continue
         if all(plain_argument(item) is not None or is_choice(item) for item in required):
             yield function
@@ -160,12 +181,11 @@ def is_taken_in_edit_mode(struct, owner, function, arguments):
 
 def ends_unset(owner, function, arguments):
     """Whether a call ends Blender while there is no scene for the sequencer."""
-    workspace = bpy.context.workspace
-    if getattr(workspace, "sequencer_scene", None) is None:
+    if getattr(bpy.context.workspace, "sequencer_scene", None) is None:
         return False
 
     def work():
-        workspace.sequencer_scene = None
+        no_sequencer_scene()
         refusal(owner, function, arguments)
         return True
 
@@ -230,10 +250,12 @@ class Trial:
                 if ends_unset(owner, function, arguments):
                     row["ends_without"] = SEQUENCER_SCENE
             yield row
+            # The next one that is added may move it elsewhere in memory.
+            place = next((place for place, one in enumerate(owner) if one == made[0]), None)
             if message := refusal(owner, function, arguments):
                 other = refusal(owner, function, other_arguments(arguments, chosen))
                 yield {"message": message, "again": "any" if other == message else "same"}
-            take_away(owner, made[0])
+            take_away(owner, made[0] if place is None else owner[place])
 
 
 def objects():
@@ -242,6 +264,28 @@ def objects():
         obj = object_of(kind)
         if obj is not None:
             yield f"{kind} object", obj
+
+
+def nodes_with_items():
+    """A node of each class that has lists of items of its own: what a zone keeps, what a file output writes."""
+    trees = {name: bpy.data.node_groups.new("new", name) for name in TREES}
+    for name in sorted(dir(bpy.types)):
+        cls = getattr(bpy.types, name)
+        if not (isinstance(cls, type) and issubclass(cls, bpy.types.Node)) or not has_items(cls.bl_rna):
+            continue
+        nodes = make_in(trees, name)
+        for node in nodes.values():
+            # Which items it takes may depend on the tree.
+            yield called(node) + (f" in a {called(node.id_data)}" if len(nodes) > 1 else ""), node
+
+
+def has_items(rna):
+    """Whether a class of nodes has a collection that may be added to, besides its sockets."""
+    return any(
+        prop.type == "COLLECTION" and prop.srna and any(map(is_adding, prop.srna.functions))
+        for prop in rna.properties
+        if prop.srna is None or prop.srna.identifier not in NOT_TRIED
+    )
 
 
 def try_all(make, observer, trial):
@@ -289,7 +333,7 @@ def find_all(write, observer):
     ``ends_without`` says what must not be None, if that ends Blender. Wants a system that can work apart.
     """
     found = defaultdict(list)
-    for make in (objects, *(make for make in MAKERS if make is not added_by_operators)):
+    for make in (objects, nodes_with_items, *(make for make in MAKERS if make is not added_by_operators)):
         for row in tried_apart(make, observer):
             found[row.pop("path")].append(row)
     for path, outcomes in sorted(found.items()):

@@ -15,7 +15,7 @@ from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
 from kb_build.records import ENDS_WITHOUT, NewValue
-from kb_build.symbol_lines import fillers, operator_needs, type_text, usual_default
+from kb_build.symbol_lines import fillers, operator_needs, refused_nothing, type_text, usual_default
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:
@@ -622,6 +622,7 @@ def asked(paths):
 
 for code, paths in claims:
     scene = bpy.context.window.scene = bpy.data.scenes.new("asked")
+    bpy.context.workspace.sequencer_scene = None
     empty = asked(paths)
     obj = make()
     before = asked(paths)
@@ -634,6 +635,7 @@ json.dump(answers, open(sys.argv[2], "w"))
 os._exit(0)
 """
 OBJECT, EDIT = "an active object", "an active object of type 'MESH' in mode 'EDIT'"
+OBJECT_MODE = "none or any active object in mode 'OBJECT'"
 ADDS = re.compile(r"an active object with what (.*) adds")
 
 
@@ -664,10 +666,31 @@ def test_operators_can_run_with_what_they_are_said_to_want(
         assert all(after), needs
 
 
+def test_operators_that_want_no_object_refuse_only_the_modes_that_they_are_said_to(
+    symbols: dict[str, Symbol], by_needs: dict[str, list[str]], tmp_path: Path
+) -> None:
+    edit = "bpy.ops.object.mode_set(mode='EDIT')"
+    free = [path for path, symbol in symbols.items() if refused_nothing(symbol)]
+    of_object_mode, of_any = ask_blender(ASK_POLLS, tmp_path, [(edit, by_needs[OBJECT_MODE]), (edit, free)])
+    assert (len(by_needs[OBJECT_MODE]) > 50, len(free) > 300) == (True, True)
+    assert (all(of_object_mode[0]), all(of_object_mode[1]), any(of_object_mode[2])) == (True, True, False)
+    assert all(map(all, of_any))
+
+
 @pytest.mark.parametrize(
     ("operator", "needs"),
     [
         ("fluid.bake_all", OBJECT),
+        ("object.duplicate", OBJECT_MODE),
+        ("wm.append", "none or any active object, not in mode 'EDIT'"),
+        (
+            "sequencer.delete",
+            "what `scene.sequence_editor_create()`, then `bpy.context.workspace.sequencer_scene = scene` adds",
+        ),
+        (
+            "sequencer.effect_strip_add",
+            "an area of type SEQUENCE_EDITOR, with `bpy.context.workspace.sequencer_scene = scene`",
+        ),
         ("rigidbody.object_add", "an active object of type 'MESH'"),
         ("pose.transforms_clear", "an active object of type 'ARMATURE' in mode 'POSE'"),
         ("object.shape_key_add", "an active object, not of type 'EMPTY', not in mode 'EDIT'"),

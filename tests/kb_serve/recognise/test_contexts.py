@@ -16,13 +16,16 @@ if TYPE_CHECKING:
 @pytest.mark.parametrize(
     ("path", "said"),
     [
+        ("rigidbody.object_add", "'MESH'. `bpy.context.view_layer.objects.active = ob` comes before."),
+        ("object.mode_set", "an active object. `bpy.context.view_layer.objects.active = ob` comes before."),
+        ("object.duplicate", "in mode 'OBJECT'. `bpy.ops.object.mode_set(mode='OBJECT')` comes before."),
+        ("nla.bake", "it refused nothing that was tried"),
+        ("sequencer.delete", "bpy.context.workspace.sequencer_scene = scene"),
         (
-            "rigidbody.object_add",
-            "with bpy.context.temp_override(object=ob, active_object=ob, selected_objects=[ob]",
+            "sequencer.effect_strip_add",
+            "`bpy.context.workspace.sequencer_scene = scene`; `area = next(a for a in",
         ),
-        ("object.join", "selected_editable_objects=[ob]): bpy.ops.object.join()"),
         ("mesh.subdivide", "mode_set(mode='EDIT')"),
-        ("mesh.primitive_cube_add", "mode_set(mode='OBJECT')"),
         ("view3d.snap_cursor_to_center", "a.type == 'VIEW_3D'"),
         ("mesh.loop_select", "a.type == 'VIEW_3D'"),
         ("anim.keyframe_insert", "`area = bpy.context.window.screen.areas[0]`"),
@@ -31,14 +34,14 @@ if TYPE_CHECKING:
             "ptcache.bake",
             "with bpy.context.temp_override(point_cache=modifier.point_cache): bpy.ops.ptcache.bake(bake=True)",
         ),
-        ("rigidbody.connect", "an active object with what `bpy.ops.rigidbody.object_add()` adds. `with bpy"),
-        ("object.shape_key_add", "gives it the object `ob` after `bpy.ops.object.mode_set(mode='OBJECT')`."),
+        ("rigidbody.connect", "what `bpy.ops.rigidbody.object_add()` adds. `bpy.context.view_layer"),
+        ("object.shape_key_add", "= ob`, then `bpy.ops.object.mode_set(mode='OBJECT')`."),
         ("anim.keying_set_path_add", "it takes what `scene.keying_sets.new()` adds."),
         (
             "pose.transforms_clear",
             "of type 'ARMATURE' in mode 'POSE'. `bpy.context.view_layer.objects.active = ob`",
         ),
-        ("wm.save_mainfile", "another mode, active object, selection or editor"),
+        ("anim.clear_useless_actions", "another mode, active object, selection or editor"),
     ],
 )
 def test_a_failed_poll_says_what_helps(kb: KnowledgeBase, path: str, said: str) -> None:
