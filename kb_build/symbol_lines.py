@@ -232,6 +232,16 @@ def refusal_lines(symbol: Symbol) -> list[str]:
     ]
 
 
+def never_taken(symbol: Symbol, argument: str) -> frozenset[str]:
+    """The values of an argument that RNA lists, and that were refused whatever else was given."""
+    return frozenset(
+        value
+        for refusal in symbol.refusals
+        if refusal.argument == argument and not (refusal.by or refusal.given or refusal.mode or refusal.again)
+        for value in refusal.values
+    )
+
+
 def taken_where(symbol: Symbol, argument: str) -> dict[str, str]:
     """Value of an argument → what alone takes it, as what follows the word "taken", where some things refuse it."""
     return {

@@ -19,6 +19,7 @@ from kb_build.symbol_lines import (
     literal,
     locked_text,
     mode_needed,
+    never_taken,
     new_subscript,
     of_evaluated,
     operator_needs,
@@ -154,8 +155,14 @@ def _default_text(parameter: Parameter, written: str) -> str:
     return "" if parameter.default is None else literal(parameter.default, parameter.type)
 
 
-def _parameter_line(parameter: Parameter, written: str = "", *, of_function: bool = True) -> str:
-    """One argument or result. ``written`` is its default as the signature has it."""
+def _parameter_line(
+    parameter: Parameter,
+    written: str = "",
+    *,
+    of_function: bool = True,
+    refused: frozenset[str] = frozenset(),
+) -> str:
+    """One argument or result. ``written`` is its default as the signature has it; ``refused`` values are left out."""
     head = f"- `{parameter.name}`" if parameter.name else "-"
     kind = SET if parameter.type == "enum" and isinstance(parameter.default, list) else parameter.type
     # RNA gives this size to what may have any, which operators' properties may not.
@@ -177,7 +184,8 @@ def _parameter_line(parameter: Parameter, written: str = "", *, of_function: boo
     if parameter.values_asked:
         text += f"\n  in a new file one of {_values(parameter.values_asked)}"
     elif parameter.enum_items:
-        text += f"\n  one of {_values([item.identifier for item in parameter.enum_items])}"
+        taken = [item.identifier for item in parameter.enum_items if item.identifier not in refused]
+        text += f"\n  one of {_values(taken)}"
     return text
 
 
@@ -229,7 +237,13 @@ def _parameter_lines(symbol: Symbol, parameters: Iterable[Parameter]) -> list[st
     of_function = symbol.kind == "function"
     defaults = _written_defaults(symbol.signature) if of_function else {}
     return [
-        _parameter_line(item, defaults.get(item.name, ""), of_function=of_function) for item in parameters
+        _parameter_line(
+            item,
+            defaults.get(item.name, ""),
+            of_function=of_function,
+            refused=never_taken(symbol, item.name),
+        )
+        for item in parameters
     ]
 
 

@@ -15,7 +15,14 @@ from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
 from kb_build.records import ENDS_WITHOUT, NewValue
-from kb_build.symbol_lines import fillers, operator_needs, refused_nothing, type_text, usual_default
+from kb_build.symbol_lines import (
+    fillers,
+    never_taken,
+    operator_needs,
+    refused_nothing,
+    type_text,
+    usual_default,
+)
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:
@@ -782,3 +789,22 @@ def test_what_python_code_returns_has_the_type_of_its_elements(symbols: dict[str
         "list[Object]",
         "list[bpy.types.Object]",
     }
+
+
+@pytest.mark.parametrize(
+    ("items", "taken"),
+    [
+        ("NodeCompositorFileOutputItems", {"FLOAT", "VECTOR", "RGBA"}),
+        (
+            "NodeGeometryCaptureAttributeItems",
+            {"BOOLEAN", "FLOAT", "INT", "VECTOR", "RGBA", "ROTATION", "MATRIX"},
+        ),
+    ],
+)
+def test_items_of_nodes_take_only_some_of_the_types_that_rna_lists(
+    symbols: dict[str, Symbol], items: str, taken: set[str]
+) -> None:
+    new = symbols[f"bpy.types.{items}.new"]
+    (kind,) = [parameter for parameter in new.parameters if parameter.name == "socket_type"]
+    listed = {item.identifier for item in kind.enum_items}
+    assert listed - never_taken(new, "socket_type") == taken < listed
