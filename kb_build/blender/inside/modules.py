@@ -306,6 +306,15 @@ def write_bpy_types(write):
             write_class(write, f"bpy.types.{name}", value)
 
 
+def write_returned(write):
+    """Classes that no module has, which only a method returns: documented as if ``bpy.types`` had them."""
+    block = bpy.data.actions.new("scratch")
+    block["number"] = 1.0
+    cls = type(block.id_properties_ui("number"))
+    write_class(write, f"bpy.types.{cls.__name__}", cls)
+    bpy.data.actions.remove(block)
+
+
 def write_all(write):
     """Every module of the public API outside ``bpy.types`` and ``bpy.ops``."""
     for name, text in (
@@ -319,6 +328,7 @@ def write_all(write):
     write("symbol", path="bpy.context", kind="data", owner="bpy", type="Context", target="Context",
           description="The current context: window, area, scene, active and selected objects.")  # fmt: skip
     write_bpy_types(write)
+    write_returned(write)
     walk = Walk(write)
     for name in ROOTS:
         module = load(name)

@@ -808,3 +808,9 @@ def test_items_of_nodes_take_only_some_of_the_types_that_rna_lists(
     (kind,) = [parameter for parameter in new.parameters if parameter.name == "socket_type"]
     listed = {item.identifier for item in kind.enum_items}
     assert listed - never_taken(new, "socket_type") == taken < listed
+
+
+def test_a_class_that_only_a_method_returns_has_its_methods(symbols: dict[str, Symbol]) -> None:
+    (returned,) = symbols["bpy.types.bpy_struct.id_properties_ui"].returns
+    update = symbols[f"{returned.type}.update"]
+    assert {"min", "max", "soft_min", "soft_max", "description"} <= {one.name for one in update.parameters}
