@@ -157,37 +157,44 @@ class _Script:
         self._analysis = analysis
         self._cost = cost
         self._scope_of: dict[ast.stmt, int] = {}
-        self._bound: dict[tuple[int, str], list[tuple[int, str]]] = defaultdict(list)
+        # statement → the block that it stands in, and block → the one around it
+        self._block_of: dict[ast.stmt, int] = {}
+        self._around: dict[int, int] = {}
+        # (function, name) → line, block and text of each of its bindings
+        self._bound: dict[tuple[int, str], list[tuple[int, int, str]]] = defaultdict(list)
         self._texts: dict[ast.stmt, tuple[float, int, str] | None] = {}
         if analysis.tree is not None:
             self._index(analysis.tree.body, 0)
 
     def _index(self, body: list[ast.stmt], scope: int) -> None:
-        queue = [(body, scope)]
+        queue = [(body, scope, -1)]
         while queue:
-            statements, number = queue.pop()
+            statements, number, around = queue.pop()
+            block = len(self._around)
+            self._around[block] = around
             for statement in statements:
                 self._scope_of[statement] = number
+                self._block_of[statement] = block
                 inner = number
                 match statement:
                     case ast.Assign(targets=[ast.Name(id=name)], value=value) if (
                         statement.lineno == statement.end_lineno and not _is_none(value)
                     ):
-                        self._bind(number, name, statement.lineno)
+                        self._bind(number, block, name, statement.lineno)
                     case ast.For(target=ast.Name(id=name)) if statement.iter.end_lineno == statement.lineno:
-                        self._bind(number, name, statement.lineno)
+                        self._bind(number, block, name, statement.lineno)
                     case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef():
                         inner = statement.lineno
                     case _:
                         pass
                 for name in ("body", "orelse", "finalbody"):
                     if nested := getattr(statement, name, None):
-                        queue.append((nested, inner))
+                        queue.append((nested, inner, block))
                 if isinstance(statement, ast.Try):
-                    queue += [(handler.body, inner) for handler in statement.handlers]
+                    queue += [(handler.body, inner, block) for handler in statement.handlers]
 
-    def _bind(self, scope: int, name: str, line: int) -> None:
-        self._bound[scope, name].append((line, self._lines[line - 1]))
+    def _bind(self, scope: int, block: int, name: str, line: int) -> None:
+        self._bound[scope, name].append((line, block, self._lines[line - 1]))
 
     def examples(self, rows: list[tuple[float, ast.stmt]]) -> list[Example]:
         """The clearest of a symbol's uses: (cost of the way it is used, statement)."""
@@ -260,13 +267,23 @@ class _Script:
         return text if len(text) <= _LONGEST_REWRITTEN and "\n" not in text else None
 
     def _binding(self, statement: ast.stmt, name: str) -> tuple[int, str] | None:
-        """(line, text) of the nearest binding of a name above a statement, in the same function."""
+        """(line, text) of the nearest binding of a name above a statement, in the same function.
+
+        None where that stands in another branch, which a run may not come through.
+        """
         rows = self._bound.get((self._scope_of.get(statement, -1), name), ())
         near = [row for row in rows if statement.lineno - _NEAR <= row[0] < statement.lineno]
-        if not near or len(near[-1][1].strip()) > _LONGEST_LINE:
+        line, block, text = max(near, default=(0, -1, ""))
+        if block not in self._blocks(statement) or len(text.strip()) > _LONGEST_LINE:
             return None
-        line, text = near[-1]
         return line, text.split("  #")[0].strip()
+
+    def _blocks(self, statement: ast.stmt) -> Iterator[int]:
+        """The blocks that a statement stands in, innermost first."""
+        block = self._block_of.get(statement, -1)
+        while block >= 0:
+            yield block
+            block = self._around[block]
 
 
 def _names(statement: ast.stmt) -> Iterator[ast.Name]:

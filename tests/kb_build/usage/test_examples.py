@@ -126,3 +126,26 @@ def test_presets_that_run_from_a_panel_show_nothing(base: Path) -> None:
     assert (found["presets/a.py"][mass].count, found["presets/a.py"][mass].examples) == (1, [])
     assert found["presets/a.py"][fps].examples
     assert found["startup/a.py"][mass].examples
+
+
+def test_a_binding_is_shown_only_where_the_run_comes_through_it(base: Path) -> None:
+    script = dedent("""
+        import bpy
+
+        def save(path, values, writer):
+            if writer:
+                image = writer.create(path)
+                image.write(values)
+                return
+            image = bpy.data.images.new("a", 8, 8)
+            if path:
+                image.pixels = values
+            else:
+                pixels = values
+            image.filepath = pixels
+    """)
+    with closing(BaseSymbols(base)) as symbols:
+        found = uses_in(script, "a.py", Api(symbols), (5, 1, 0))
+    made = 'image = bpy.data.images.new("a", 8, 8)\n'
+    assert shown(found, "bpy.types.Image.pixels") == f"{made}image.pixels = values"
+    assert shown(found, "bpy.types.Image.filepath") == f"{made}image.filepath = pixels"
