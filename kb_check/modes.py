@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 MODE_SET = frozenset({"bpy.ops.object.mode_set", "bpy.ops.object.mode_set_with_submode"})
-_EDIT_TOGGLE = "bpy.ops.object.editmode_toggle"
+EDIT_TOGGLE = "bpy.ops.object.editmode_toggle"
 _FACTORY = "bpy.ops.wm.read_factory_settings"
 _ADDED = (
     (re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add"), "MESH"),
@@ -46,7 +46,7 @@ _KEEPING = re.compile(
 )
 # What enters a mode, or runs in it alone, and so tells which types of objects have it.
 _HAVING = {
-    "EDIT": _EDIT_TOGGLE, "POSE": "bpy.ops.pose.transforms_clear",
+    "EDIT": EDIT_TOGGLE, "POSE": "bpy.ops.pose.transforms_clear",
     "SCULPT": "bpy.ops.sculpt.sculptmode_toggle", "VERTEX_PAINT": "bpy.ops.paint.vertex_paint_toggle",
     "WEIGHT_PAINT": "bpy.ops.paint.weight_paint_toggle", "TEXTURE_PAINT": "bpy.ops.paint.texture_paint_toggle",
 }  # fmt: skip
@@ -102,7 +102,7 @@ def refusal(script: Script, call: CallSite, state: State) -> str:
     symbol = call.callee.symbol
     if symbol.path in MODE_SET:
         return _no_such_mode(script, literal_argument(call, "mode"), state.kind)
-    if symbol.path == _EDIT_TOGGLE:
+    if symbol.path == EDIT_TOGGLE:
         return _no_such_mode(script, "EDIT", state.kind)
     modes = modes_wanted(symbol)
     if state.mode not in _FOLLOWED or modes is None or not _is_of_active(symbol, state):
@@ -150,7 +150,7 @@ def after_operator(call: CallSite, state: State) -> State:
     if path in MODE_SET:
         mode = literal_argument(call, "mode")
         return State(mode if isinstance(mode, str) and "toggle" not in call.given else "", state.kind)
-    if path == _EDIT_TOGGLE:
+    if path == EDIT_TOGGLE:
         return State({"OBJECT": "EDIT", "EDIT": "OBJECT"}.get(state.mode, ""), state.kind)
     if kind := next((kind for pattern, kind in _ADDED if pattern.fullmatch(path)), ""):
         return _after_adding(call, kind, state)

@@ -8,12 +8,20 @@ bpy.ops.object.mode_set(mode="EDIT")
 bpy.ops.object.shade_smooth()  # reported: still in Edit Mode
 ```
 
+`mode_set` and `editmode_toggle` move the view layer's active object, whichever one `temp_override` gives: that is a
+warning.
+
+```python
+with bpy.context.temp_override(active_object=ob):
+    bpy.ops.object.mode_set(mode="EDIT")  # reported: bpy.context.view_layer.objects.active = ob comes before
+```
+
 So is a mode that the active object's type does not have: `mode_set(mode="POSE")` of a cube. It is an error where the
 mode is certain: something before, on every way, enters it or runs in it alone. Where only nothing in the script enters
 a mode that an operator needs, it is a note: Blender may be in that mode when the script starts.
 
-Not reported: what stands inside `temp_override`, or in a `try` that catches the error; and what follows calls that may
-change the mode out of sight. Blender is taken to have its own settings: new objects do not enter Edit Mode.
+Not reported otherwise: what stands inside `temp_override`, or in a `try` that catches the error; and what follows calls
+that may change the mode out of sight. Blender is taken to have its own settings: new objects do not enter Edit Mode.
 
 In which modes operators run was found by asking each, with objects of all types in all modes
 (``kb_build/blender/inside/operator_needs.py``).
@@ -21,13 +29,14 @@ In which modes operators run was found by asking each, with objects of all types
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
 from kb_check.background import is_called_by_others, lines_of_others
 from kb_check.calls import calls
 from kb_check.findings import Finding
 from kb_check.mode_run import enters_modes, states
-from kb_check.modes import entering, modes_text, modes_wanted, refusal
+from kb_check.modes import EDIT_TOGGLE, MODE_SET, entering, modes_text, modes_wanted, refusal
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -35,8 +44,21 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
+_OF_OBJECTS = frozenset(
+    {
+        "object",
+        "active_object",
+        "selected_objects",
+        "selected_editable_objects",
+        "edit_object",
+        "area",
+        "region",
+    }
+)
+
 
 def _check(script: Script) -> Iterator[Finding]:
+    yield from _of_another(script)
     known = states(script)
     quiet = lines_of_others(script) if known else []
     never = bool(known) and not is_called_by_others(script) and not enters_modes(script)
@@ -56,6 +78,45 @@ def _check(script: Script) -> Iterator[Finding]:
                     f"{entering(modes)}.",
                     path,
                 )  # fmt: skip
+
+
+def _of_another(script: Script) -> Iterator[Finding]:
+    """Calls that change the mode of the active object, and not of the one that the context is given for them."""
+    moving = [call for call in calls(script) if call.callee.symbol.path in (MODE_SET | {EDIT_TOGGLE})]
+    if not moving:
+        return
+    made_active = {
+        ast.dump(node.value)
+        for node in script.all(ast.Assign)
+        if any(isinstance(target, ast.Attribute) and target.attr == "active" for target in node.targets)
+    }
+    for node in script.all(ast.With):
+        given = _object_given(node)
+        if given is None or ast.dump(given) in made_active:
+            continue
+        for call in moving:
+            if node.lineno <= call.node.lineno <= (node.end_lineno or node.lineno):
+                thing = ast.unparse(given)
+                yield Finding(
+                    RULE.id, "warning", script.span(call.node),
+                    f"`{call.callee.symbol.path}` changes the mode of the view layer's active object, and not of "
+                    f"`{thing}`, which `temp_override` gives. Write `bpy.context.view_layer.objects.active = {thing}` "
+                    "before it.",
+                    call.callee.symbol.path,
+                )  # fmt: skip
+
+
+def _object_given(node: ast.With) -> ast.expr | None:
+    """The active object that ``temp_override`` gives, and no other view layer with it."""
+    for item in node.items:
+        match item.context_expr:
+            case ast.Call(func=ast.Attribute(attr="temp_override"), args=[], keywords=keywords):
+                given = {keyword.arg: keyword.value for keyword in keywords}
+                if given.keys() <= _OF_OBJECTS:
+                    return given.get("active_object", given.get("object"))
+            case _:
+                pass
+    return None
 
 
 RULE = Rule("wrong-mode", "error", "An operator in a mode in which Blender refuses it", _check)

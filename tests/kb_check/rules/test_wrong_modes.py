@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
     from conftest import Check
 
+    from kb_check.checker import Checker
+
 _CODE = """\
 import bpy
 bpy.ops.wm.read_factory_settings(use_empty=True)
@@ -330,3 +332,42 @@ def test_the_message_says_what_to_call_before(check: Check) -> None:
         "`bpy.ops.mesh.subdivide` runs only in Edit Mode, and the active object is in Object Mode here: "
         "`bpy.ops.object.mode_set(mode='EDIT')` comes before."
     )
+
+
+_OVERRIDDEN = """
+import bpy
+def cube(name):
+    mesh = bpy.data.meshes.new(name)
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+    ob = bpy.data.objects.new(name, mesh)
+    bpy.context.scene.collection.objects.link(ob)
+    return ob
+other = cube("other")
+ob = cube("ob")
+bpy.context.view_layer.objects.active = {active}
+with bpy.context.temp_override({given}):
+    bpy.ops.object.{call}
+assert ob.mode == "EDIT", ob.mode
+"""
+
+
+@pytest.mark.parametrize("call", ["mode_set(mode='EDIT')", "editmode_toggle()"])
+@pytest.mark.parametrize(
+    ("active", "given", "is_found"),
+    [
+        ("other", "active_object=ob", True),
+        ("other", "object=ob, active_object=ob, selected_objects=[ob]", True),
+        ("ob", "object=ob", False),
+        ("ob", "active_object=other", True),
+        ("ob", "selected_objects=[]", False),
+    ],
+)
+def test_what_changes_the_mode_changes_that_of_the_active_object(
+    rule_checker: Checker, tmp_path: Path, active: str, given: str, call: str, *, is_found: bool
+) -> None:
+    code = _OVERRIDDEN.format(active=active, given=given, call=call)
+    ((error, *_),) = run_statements(tmp_path, [code])
+    # Whatever is given for the call, the object that was active is the one that changes.
+    assert bool(error) is (active == "other")
+    found = [one for one in rule_checker.check(code) if one.rule == "wrong-mode"]
+    assert [one.severity for one in found] == ["warning"] * is_found
