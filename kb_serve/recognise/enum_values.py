@@ -95,6 +95,19 @@ class EnumValues:
         )
         return [owner for owner, _ in shares]
 
+    def as_likely_as_the_first(self, owners: Sequence[str], items: Sequence[str], called: str) -> list[str]:
+        """Of the owners of the items that a message lists, likeliest first, those that nothing sets apart from the
+        first: all of the function that was called, if it is one; all that take as many of the items, and as few others.
+        """
+        if called and (of_called := [owner for owner in owners if owner.startswith(called)]):
+            return of_called
+        values = set(items)
+        return [
+            owner
+            for owner in owners
+            if self._difference(owner, values) == self._difference(owners[0], values)
+        ]
+
     def where(self, owner: str, value: str) -> str:
         """Where an enumeration takes a value, ``only with media_type='VIDEO'``; "" for everywhere, or nowhere."""
         return next((item.where for item in self._items(owner) if item.identifier == value), "")
