@@ -64,6 +64,7 @@ _NO_OPERATOR_NAMED = (
     "The message does not name the operator that was called: ask for that to see its arguments."
 )
 _SHARED_NAME = "Several functions are called `{name}`: ask for the call as it was written."
+_NOT_IMPORTED = "`{module}` is a module of its own, to be imported first: `import {module}`."
 _OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
 # Classes whose functions return something to Blender.
 _REGISTERED = (
@@ -164,6 +165,11 @@ class Messages:
     def _no_attribute(self, written: str, name: str, recognition: Recognition) -> None:
         """A class or module without an attribute that other versions may have, or that never was."""
         owner = _INSTANCES.get(written) or self._class_path(written)
+        module = self._reader.entry(f"{owner}.{name}") if owner else None
+        if module and module.kind == "module":
+            recognition.add(module.path, 0.98, "error message")
+            recognition.notes.append(_NOT_IMPORTED.format(module=module.path))
+            return
         removed = self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
         if removed is None and not self._reader.entry(TYPES + written):
             members = self._removed.spelled(f"{written}.{name}")

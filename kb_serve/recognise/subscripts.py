@@ -79,6 +79,10 @@ class CustomProperties:
             f'`modifier[modifier.node_group.{items}["Size"].identifier] = 5.0`, then `obj.update_tag()`. '
             "Another key makes a custom property that changes nothing."
         ]
+        told.append(
+            'An attribute is used instead of a value by `modifier[identifier + "_use_attribute"] = True` and '
+            '`modifier[identifier + "_attribute_name"] = "name"`.'
+        )
         if items.startswith("interface"):
             told.append("Where an output has the same name, take the item whose `in_out` is 'INPUT'.")
         if self._reader.entry(_MENU):
