@@ -325,12 +325,12 @@ class Messages:
             owners = self._enum_values.taking(items, called)
             if _OF_CLASSES in query:
                 owners = self._of_classes(owners) or owners
-            owners = self._enum_values.as_likely_as_the_first(owners[:_MANY], items, called)
+            owners = owners[:_MANY]
+            for rank, owner in enumerate(owners[:2]):
+                recognition.add(owner.partition("(")[0], 0.95 - 0.02 * rank, "error message")
             removed = None
-            for rank, owner in enumerate(owners):
+            for owner in self._enum_values.as_likely_as_the_first(owners, items):
                 path, _, parameter = owner.partition("(")
-                if rank < 2:
-                    recognition.add(path, 0.95 - 0.02 * rank, "error message")
                 part = f"({parameter}:" if parameter else ":"
                 removed = removed or self._removed.of_part(path, f"{part}{match['name']}")
             if removed:

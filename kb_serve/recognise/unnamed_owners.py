@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _FEW = 3
 _MANY = 8  # where more properties may be None, none is likely enough to be named
+_WEIGHTY = 9.0  # the weight from which on a pointer is one that scripts come upon without having asked for it
 _ANY = frozenset({STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup"})  # pointers to these may lead to anything
 _IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
 
@@ -73,19 +74,22 @@ class UnnamedOwners:
     def _empty_before(self, name: str) -> list[SymbolEntry]:
         """The likeliest pointers that are None on new things, and lead to what has a member of that name, once filled.
 
-        None where that leads to too many classes: then it says nothing.
+        None where that leads to too many classes, and none to a class whose member scripts use far less than another's:
+        then they say nothing.
         """
-        having = {
-            target
-            for target in {entry.target for entry in self._empty_pointers}
-            if (member := self._member(target, name)) and member.group != "ui"
+        members = {
+            target: self._member(target, name) for target in {one.target for one in self._empty_pointers}
         }
-        found = self._weightiest(entry for entry in self._empty_pointers if entry.target in having)
-        weights = self._reader.weights([entry.path for entry in found])
+        having = {target: one.path for target, one in members.items() if one and one.group != "ui"}
+        if not 0 < len(having) <= _MANY:
+            return []
+        weights = self._reader.weights([entry.path for entry in self._reader.by_name(name)])
         least = max(weights.values(), default=0) / 2
-        return (
-            [entry for entry in found if weights.get(entry.path, 0) > least] if len(having) <= _MANY else []
-        )
+        usual = {target for target, path in having.items() if weights.get(path, 0) >= least}
+        found = self._weightiest(entry for entry in self._empty_pointers if entry.target in usual)
+        weights = self._reader.weights([entry.path for entry in found])
+        least = max(_WEIGHTY, max(weights.values(), default=0) / 2)
+        return [entry for entry in found if weights.get(entry.path, 0) >= least]
 
     def _member(self, cls: str, name: str) -> SymbolEntry | None:
         return self._reader.member([entry.path for entry in self._reader.lineage(TYPES + cls)], name)
@@ -120,7 +124,8 @@ class UnnamedOwners:
         if symbol is None or "readonly" in symbol.flags or not empty_when_new(symbol):
             return ""
         made = self._reader.creations([TYPES + entry.target]).get(TYPES + entry.target)
-        value = made.call if made else entry.target.lower()
+        is_value = made is not None and not made.maker.startswith("bpy.ops.")  # operators return no thing
+        value = made.call if made and is_value else entry.target.lower()
         return f"{entry.owner.removeprefix(TYPES).lower()}.{entry.name} = {value}"
 
     def _tell(

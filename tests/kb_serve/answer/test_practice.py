@@ -7,7 +7,6 @@ import subprocess
 import sys
 from typing import TYPE_CHECKING, Any
 
-import bpy
 import pytest
 
 from kb_serve.answer.practice import Practice
@@ -18,6 +17,8 @@ if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
+bpy: Any = pytest.importorskip("bpy")
+pytestmark = pytest.mark.blender
 TYPES = "bpy.types."
 POINT = "_bpy_internal.grease_pencil.stroke.GreasePencilStrokePoint"
 

@@ -5,7 +5,6 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-import bpy
 import pytest
 
 from kb_serve.recognise.message_patterns import prose_of
@@ -196,7 +195,9 @@ def test_what_many_things_have_says_not_which_of_them_is_none(kb: KnowledgeBase,
     assert [note for note in notes if "None on what is new" in note] == []
 
 
+@pytest.mark.blender
 def test_statements_that_fill_pointers_fill_them() -> None:
+    bpy = pytest.importorskip("bpy")
     scene = bpy.data.scenes.new("new")
     assert scene.compositing_node_group is None
     assert scene.world is None
@@ -265,9 +266,11 @@ def test_the_items_in_a_message_tell_whose_they_are(
     assert list(answer.notes) == notes
 
 
+@pytest.mark.blender
 def test_what_python_says_was_meant_tells_which_function_was_called(kb: KnowledgeBase) -> None:
+    bpy = pytest.importorskip("bpy")
     with pytest.raises(TypeError) as caught:
-        bpy.data.libraries.load("x.blend", links=True)  # pyright: ignore
+        bpy.data.libraries.load("x.blend", links=True)
     message = (
         f"TypeError: {caught.value}. Did you mean 'link'?"  # what Python adds where it prints a traceback
     )
