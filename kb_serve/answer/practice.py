@@ -34,6 +34,7 @@ _TAGGED = (
     '`owner["name"] = 3.0` call `owner.update_tag()`, also after each later change. One that is invalid already needs '
     "`driver.expression = driver.expression`, too."
 )
+_TOGGLES_ATTRIBUTE = "bpy.ops.object.geometry_nodes_input_attribute_toggle"
 _POINT = "_bpy_internal.grease_pencil.stroke.GreasePencilStrokePoint"
 _STROKE_POINTS = frozenset((_POINT, f"{_POINT}.opacity", f"{_POINT}.radius"))
 _EVERY_POINT = (
@@ -75,6 +76,8 @@ class Practice:
             yield _NO_SIZES.format(thing)
         if done := _INDICES.get(identifier):
             yield _ALL.format(done)
+        if identifier == _TOGGLES_ATTRIBUTE and (text := self._custom.on_attributes()):
+            yield text
         if identifier == NODES_MODIFIER or identifier in self._explaining(NODES_MODIFIER):
             yield self._custom.on_inputs()
 

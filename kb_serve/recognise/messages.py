@@ -374,7 +374,8 @@ class Messages:
         """A collection without such an element; it may be a socket's name in another version."""
         if collection == "bpy_prop_collection":
             recognition.notes.append(
-                f'The collection has no element `{name}`; `.get("{name}")` returns None instead of an error.'
+                f'The collection has no element `{name}`; `.get("{name}")` returns None instead of an error, '
+                "and `.keys()` tells which there are."
             )
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return

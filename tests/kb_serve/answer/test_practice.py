@@ -181,7 +181,10 @@ def test_no_indices_mean_all(reader: BaseReader, path: str) -> None:
 
 
 def test_a_modifiers_input_takes_an_attribute(kb: KnowledgeBase) -> None:
-    note = "\n".join(kb.query("bpy.types.NodesModifier").notes)
+    answers = map(
+        kb.query, ("bpy.types.NodesModifier", "bpy.ops.object.geometry_nodes_input_attribute_toggle")
+    )
+    notes = ["\n".join(answer.notes) for answer in answers]
     tree = bpy.data.node_groups.new("G", "GeometryNodeTree")
     interface: Any = tree.interface
     for in_out in ("INPUT", "OUTPUT"):
@@ -207,7 +210,7 @@ def test_a_modifiers_input_takes_an_attribute(kb: KnowledgeBase) -> None:
         'modifier[identifier + "_use_attribute"] = True',
         'modifier[identifier + "_attribute_name"] = "name"',
     ):
-        assert f"`{statement}`" in note
+        assert all(f"`{statement}`" in note for note in notes)
         exec(statement, {"modifier": modifier, "identifier": identifier})
     obj.update_tag()
     made: Any = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
