@@ -14,6 +14,7 @@ from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.enum_contexts import items_in_contexts
 from kb_build.blender.refused_calls import refusals
 from kb_build.errors import ExtractError
+from kb_build.index.creation import with_whole_calls
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
     ALSO,
@@ -497,7 +498,7 @@ def read_extract(path: Path) -> Extract:
         version=raw.header["version"],
         build=raw.header["build"],
         addons=tuple(raw.header.get("addons", ())),
-        symbols=tuple(symbols.values()),
+        symbols=tuple(with_whole_calls([*symbols.values()], raw.by_class["own_name"])),
         links=(*manual_links(symbols.values(), raw.manual), *_structure(symbols.values())),
         templates=tuple(_template(name, text, minor) for name, text in raw.templates),
         faults=tuple(raw.faults),

@@ -9,14 +9,15 @@ from __future__ import annotations
 
 import re
 from collections import defaultdict
+from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kb_build.records import EnumItem, Parameter, Symbol
+    from kb_build.records import EnumItem, NewValue, Parameter, Symbol
 
 TYPES = "bpy.types."
 _MAKERS = ("new", "create", "add")
@@ -37,6 +38,8 @@ _SOCKETS = (f"{TYPES}NodeInputs.new", f"{TYPES}NodeOutputs.new")
 _USUAL_TREE = "geometry"  # which most scripts make groups of
 _NOT = "not "
 _KIND_OF_TREE = re.compile(r"(\w+) node tree")  # in where a value is taken
+_ARGUMENT = re.compile(r"(?<=, )\w+(?=[,)])")  # one that is no text
+_SIZE = "8"  # pixels
 _NEW_SOCKET = f"{TYPES}NodeTreeInterface.new_socket"
 
 # Class → the method that makes it, and a call.
@@ -60,6 +63,45 @@ def creation_calls(
     that Blender itself gives, by which such expressions find what was made.
     """
     return dict(_Calls(symbols, reached, names or {}).found())
+
+
+def with_whole_calls(symbols: Sequence[Symbol], names: Mapping[str, str]) -> list[Symbol]:
+    """The symbols; the calls that made what has their values, ``bpy.data.scenes.new()``, with all that these need.
+
+    ``names``: as for ``creation_calls``.
+    """
+    calls = creation_calls(symbols, {}, names)
+    makers = {symbol.path: symbol for symbol in symbols if symbol.kind == "function"}
+    usual: dict[str, Creation] = {}
+    for creation in sorted(calls.values(), key=lambda creation: bool(creation.choice)):
+        usual.setdefault(creation.call.partition("(")[0], creation)
+    return [
+        replace(
+            symbol, new_values=tuple(_whole(new, symbol, calls, usual, makers) for new in symbol.new_values)
+        )
+        if any(new.by for new in symbol.new_values)
+        else symbol
+        for symbol in symbols
+    ]
+
+
+def _whole(
+    new: NewValue,
+    symbol: Symbol,
+    calls: Mapping[str, Creation],
+    usual: Mapping[str, Creation],
+    makers: Mapping[str, Symbol],
+) -> NewValue:
+    """A value with the whole call that makes what has it: of the symbol's own class, else of the usual one."""
+    head = new.by.removesuffix("()")
+    creation = calls.get(symbol.owner)
+    if creation is None or not creation.call.startswith(f"{head}("):
+        creation = usual.get(head)
+    maker = makers.get(creation.maker) if creation else None
+    if creation is None or maker is None:
+        return new
+    sizes = {given.name: _SIZE for given in maker.parameters if given.type.startswith("int")}
+    return replace(new, by=_ARGUMENT.sub(lambda found: sizes.get(found[0], found[0]), creation.call))
 
 
 def held(reached: str) -> str:

@@ -51,6 +51,7 @@ _SHORT_PAGE = 80  # letters
 _LONGEST_DEFAULT = 60  # letters
 _IN_A_CALL = 20  # arguments
 _OUTLINE = 16  # sections that a heading lists
+_BMESH_OPERATORS = "bmesh.ops"
 _UNITS = {
     "LENGTH": "metres", "ROTATION": "radians", "TIME": "frames", "TIME_ABSOLUTE": "seconds", "MASS": "kg",
     "VELOCITY": "m/s", "ACCELERATION": "m/s²", "AREA": "m²", "VOLUME": "m³", "CAMERA": "mm", "POWER": "W",
@@ -247,6 +248,11 @@ def _parameter_lines(symbol: Symbol, parameters: Iterable[Parameter]) -> list[st
     ]
 
 
+def _kept_in(symbol: Symbol) -> str:
+    """In what a function of ``bmesh.ops`` returns its results; empty for others."""
+    return " a dict with these keys" if symbol.owner == _BMESH_OPERATORS else ""
+
+
 def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
     aside = _of_file_browser(symbol)
     if symbol.parameters:
@@ -256,7 +262,7 @@ def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
         yield AnswerBlock("**Parameters**\n" + "\n".join(lines), "parameters")
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))
-        yield AnswerBlock(f"**Returns**\n{lines}", "returns")
+        yield AnswerBlock(f"**Returns**{_kept_in(symbol)}\n{lines}", "returns")
     if lines := "\n".join(f"- {line}" for line in refusal_lines(symbol)):
         yield AnswerBlock(f"**Refused, of all that was tried**\n{lines}", "refused calls")
     for parameter in symbol.parameters:

@@ -84,16 +84,23 @@ class EnumValues:
             yield owner, len(held[owner]) / max(1, len(wanted))
 
     def taking(self, items: Sequence[str], called: str) -> list[str]:
-        """The owners of the items that a message lists, likeliest first: of the function that was called; those that
-        have most of them; those that take just these, in one of their modes.
+        """The owners of the items that a message lists, likeliest first: those of the function that was called, or else
+        those that have most of them; of these, those that take just these, in one of their modes.
         """
         shares = list(self.owners(items))
         most = [(owner, share) for owner, share in shares if share == shares[0][1]][:_MOST_COMPARED]
         beyond = {owner: self._difference(owner, set(items)) for owner, _ in most}
-        shares.sort(
-            key=lambda row: (not (called and row[0].startswith(called)), -row[1], beyond.get(row[0], 0))
-        )
-        return [owner for owner, _ in shares]
+        of_called = [row for row in shares if called and row[0].startswith(called)]
+        likeliest = of_called or [row for row in shares if row[1] == shares[0][1]]
+        likeliest.sort(key=lambda row: (-row[1], beyond.get(row[0], 0)))
+        return [owner for owner, _ in likeliest]
+
+    def as_likely_as_the_first(self, owners: Sequence[str], items: Sequence[str]) -> list[str]:
+        """Of the owners of the items in a message, likeliest first, those that nothing sets apart from the first:
+        they take as few others.
+        """
+        beyond = {owner: self._difference(owner, set(items)) for owner in owners}
+        return [owner for owner in owners if beyond[owner] == beyond[owners[0]]]
 
     def where(self, owner: str, value: str) -> str:
         """Where an enumeration takes a value, ``only with media_type='VIDEO'``; "" for everywhere, or nowhere."""

@@ -16,13 +16,15 @@ NO_KEY = re.compile(r"\b(?P<on>bpy_\w+)\[key\]: key \"(?P<name>[^\"]+)\" not fou
 NO_INDEX = re.compile(r"\w+\[index\](?: = value)?: index (?P<index>-?\d+) out of range, size (?P<size>\d+)")
 SUBSCRIPTED = re.compile(r"\b([a-z]\w*)\[-?\d+\]")
 BAD_ENUM = re.compile(r"(?P<quote>['\"])(?P<name>[^'\"]*)(?P=quote) not found in \((?P<items>[^)]*)\)?")
+ENUM_VALUE = re.compile(r"\benum (?P<quote>['\"])[^'\"\n]*(?P=quote)(?= not found in )")
 BAD_KEYWORD = re.compile(
     r"keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)"
     r"|(?:(?<![\w.])(?P<function>[\w.]++)\(\) got an )?unexpected keyword argument ['\"](?P<unexpected>\w+)['\"]"
+    r"(?:\. Did you mean '(?P<meant>\w+)'\?)?"
     r"|['\"](?P<invalid>\w+)['\"] is an invalid keyword argument for (?:this function|(?P<of>[\w.]++)\(\))"
     r"|(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): was called with invalid keyword argument\(s\) \((?P<several>[^)]*)\)"
 )
-IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): error with argument")
+IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): error with (?:keyword )?argument")
 TOO_MANY = re.compile(
     r"(?<![\w.])(?P<function>\w++(?:\.\w++)*+)(?:\(\):? takes at most| expected at most) (?P<most>\d+) arguments?"
     r"[,\s(]+(?:got )?(?P<given>\d+)"
@@ -90,6 +92,11 @@ def without_wording(query: str) -> str:
 def without_callers_names(query: str) -> str:
     """A query without the quoted names of the caller's data in a report (``Object 'Cube' already in …``)."""
     return _QUOTED.sub(" ", query) if _REPORT.search(query) else query
+
+
+def without_values(query: str) -> str:
+    """A query without the values that a message says are no items of an enumeration: they are no names."""
+    return ENUM_VALUE.sub("enum", query)
 
 
 def prose_of(query: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -22,7 +23,7 @@ from kb_serve.recognise.removed_symbols import plain_path, socket_node
 from kb_serve.recognise.unnamed_owners import UnnamedOwners
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.enum_values import EnumValues
@@ -62,6 +63,8 @@ _NO_FLUIDS = (
 _NO_OPERATOR_NAMED = (
     "The message does not name the operator that was called: ask for that to see its arguments."
 )
+_SHARED_NAME = "Several functions are called `{name}`: ask for the call as it was written."
+_NOT_IMPORTED = "`{module}` is a module of its own, to be imported first: `import {module}`."
 _OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
 # Classes whose functions return something to Blender.
 _REGISTERED = (
@@ -116,7 +119,7 @@ class Messages:
             function = match["function"] or match["of"] or match["method"] or ""
             several = re.findall(r"\w+", match["several"] or "")
             for name in several or [match["name"] or match["unexpected"] or match["invalid"]]:
-                self._keyword(name, function, recognition)
+                self._keyword(name, function, match["meant"] or "", recognition)
         for match in _matches(forms.TOO_MANY, query):
             self._too_many(match["function"], int(match["most"]), recognition)
         for match in _matches(forms.NO_INDEX, query):
@@ -162,6 +165,11 @@ class Messages:
     def _no_attribute(self, written: str, name: str, recognition: Recognition) -> None:
         """A class or module without an attribute that other versions may have, or that never was."""
         owner = _INSTANCES.get(written) or self._class_path(written)
+        module = self._reader.entry(f"{owner}.{name}") if owner else None
+        if module and module.kind == "module":
+            recognition.add(module.path, 0.98, "error message")
+            recognition.notes.append(_NOT_IMPORTED.format(module=module.path))
+            return
         removed = self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
         if removed is None and not self._reader.entry(TYPES + written):
             members = self._removed.spelled(f"{written}.{name}")
@@ -225,12 +233,18 @@ class Messages:
                     recognition.add(entry.path, max(0.82, 0.95 * alike), "similar name")
             recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")
 
-    def _keyword(self, name: str, function: str, recognition: Recognition) -> None:
-        """An argument that the function in the message, or else the surest match, does not take (any more)."""
+    def _keyword(self, name: str, function: str, meant: str, recognition: Recognition) -> None:
+        """An argument that the function in the message, or else the surest match, does not take (any more).
+
+        ``meant`` is what Python says was meant, or empty.
+        """
         if any(removed.path.endswith(f"({name})") for removed in recognition.removed):
             return
-        ids = [self._function(function)] if function else []
-        ids += [match.id for match in sorted(recognition.matches, key=lambda match: -match.sure)]
+        ids = [self._function(function) or self._taking(function, meant)] if function else []
+        # Of the functions that share a name, a message with no more than it does not say which one was called.
+        shared = set(self._called_so(function)) if len(self._called_so(function)) > 1 else set[str]()
+        by_name = {match.id for match in recognition.matches if match.why == "name"} & shared
+        ids += [m.id for m in sorted(recognition.matches, key=lambda m: -m.sure) if m.id not in by_name]
         for symbol in filter(None, map(self._reader.symbol, filter(None, ids))):
             if symbol.parameters:
                 if removed := self._removed.of_part(symbol.path, f"({name})"):
@@ -239,6 +253,9 @@ class Messages:
                     recognition.notes += unknown_keywords(symbol, [name])
                 recognition.add(symbol.path, 0.9, "error message")
                 return
+        if shared:
+            recognition.notes.append(_SHARED_NAME.format(name=function))
+            return
         self._keyword_alone(name, recognition)
 
     def _keyword_alone(self, name: str, recognition: Recognition) -> None:
@@ -285,6 +302,19 @@ class Messages:
         entries = [entry for entry in self._reader.by_name(written) if entry.kind in {"function", "operator"}]
         return entries[0].path if len(entries) == 1 else ""
 
+    def _taking(self, function: str, argument: str) -> str:
+        """The path of the one function of that name that takes an argument; empty where several do, or none."""
+        symbols = filter(None, map(self._reader.symbol, self._called_so(function) if argument else ()))
+        taking = [
+            symbol.path for symbol in symbols if argument in {given.name for given in symbol.parameters}
+        ]
+        return taking[0] if len(taking) == 1 else ""
+
+    def _called_so(self, name: str) -> list[str]:
+        """The paths of the functions of a name."""
+        entries = self._reader.by_name(name) if name.isidentifier() else ()
+        return [entry.path for entry in entries if entry.kind == "function"]
+
     # Values
 
     def _values(self, query: str, recognition: Recognition) -> None:
@@ -296,11 +326,11 @@ class Messages:
             if _OF_CLASSES in query:
                 owners = self._of_classes(owners) or owners
             owners = owners[:_MANY]
+            for rank, owner in enumerate(owners[:2]):
+                recognition.add(owner.partition("(")[0], 0.95 - 0.02 * rank, "error message")
             removed = None
-            for rank, owner in enumerate(owners):
+            for owner in self._enum_values.as_likely_as_the_first(owners, items):
                 path, _, parameter = owner.partition("(")
-                if rank < 2:
-                    recognition.add(path, 0.95 - 0.02 * rank, "error message")
                 part = f"({parameter}:" if parameter else ":"
                 removed = removed or self._removed.of_part(path, f"{part}{match['name']}")
             if removed:
@@ -344,21 +374,42 @@ class Messages:
         """A collection without such an element; it may be a socket's name in another version."""
         if collection == "bpy_prop_collection":
             recognition.notes.append(
-                f'The collection has no element `{name}`; `.get("{name}")` returns None instead of an error.'
+                f'The collection has no element `{name}`; `.get("{name}")` returns None instead of an error, '
+                "and `.keys()` tells which there are."
             )
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return
-        around = set(terms(query)) - set(terms(name))
+        around = set(terms(forms.prose_of(query))) - set(terms(f"{name} node"))
         paths = [
             path
             for side in ("inputs", "outputs")
             for path in self._reader.removed_by_key(key(f'{side}["{name}"]'))
         ]
-        paths.sort(
-            key=lambda path: (-len(around & set(terms(socket_node(path)))), not path.startswith(_USUAL_NODE))
-        )
+        fit = {path: len(around & set(terms(socket_node(path).removeprefix(TYPES)))) for path in paths}
+        if not any(fit.values()):
+            paths = self._lost_by_nobody_else(name, paths, recognition)
+        paths.sort(key=lambda path: (-fit[path], not path.startswith(_USUAL_NODE)))
         for removed in islice(filter(None, map(self._removed.of_path, paths)), 1):
             recognition.add_removed(removed)
+
+    def _lost_by_nobody_else(self, name: str, paths: Sequence[str], recognition: Recognition) -> list[str]:
+        """Of the sockets of a name that nodes lost, where no node is named: that of the node which scripts use most,
+        or else all, if hardly any other node has such a socket; of many that were renamed alike, their name is noted.
+        """
+        if usual := [path for path in paths if path.startswith(_USUAL_NODE)]:
+            return usual
+        having = sum(entry.kind == "socket" for entry in self._reader.by_name(name))
+        if having * _FEW > len(paths):
+            return []
+        targets = [targets[0].target for path in paths if (targets := list(self._reader.successors(path)))]
+        names = Counter(target.rpartition('["')[2].rstrip('"]') for target in targets)
+        new, count = names.most_common(1)[0] if names else ("", 0)
+        if len(paths) < _FEW or not new or count * 2 < len(paths):
+            return list(paths)
+        recognition.notes.append(
+            f"The sockets `{name}` of {len(paths)} nodes are gone; most are called `{new}` now."
+        )
+        return []
 
     # Removed data
 

@@ -89,6 +89,11 @@ NAMELESS_MESSAGES = (
         (f"{_T}VertexGroup.weight", f"{_T}MeshVertex.groups"),
         "Ask only for vertices that are in the group: `any(one.group == group.index for one in vertex.groups)`.",
     ),
+    NamelessMessage(
+        ("Curve sizes must be greater than zero",),
+        (f"{_T}Curves.add_curves",),
+        "Each size is the number of points in a curve, 1 or more: `curves.add_curves([3, 5])`.",
+    ),
     # Modifiers, transforms
     NamelessMessage(
         ("Modifier cannot be applied to a mesh with shape keys",),

@@ -15,7 +15,12 @@ from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.corrections import Corrector, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
-from kb_serve.recognise.message_patterns import is_message, without_callers_names, without_wording
+from kb_serve.recognise.message_patterns import (
+    is_message,
+    without_callers_names,
+    without_values,
+    without_wording,
+)
 from kb_serve.recognise.messages import Messages
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.old_code import OldCode
@@ -71,7 +76,7 @@ class Recogniser:
         if recognition.best is None or recognition.best.sure < 1:
             self._messages.recognise(query, recognition)
             text = without_callers_names(without_wording(query))
-            code = _FILE_PATH.sub(" ", text)
+            code = _FILE_PATH.sub(" ", without_callers_names(without_wording(without_values(query))))
             self._expressions.recognise(chains if code == query else find_chains(code), recognition)
             self._enum_values.recognise(text, recognition)
             self._removed_values(text, recognition)

@@ -30,6 +30,10 @@ _TAKING = frozenset(
     }
 )
 _PROPERTIES = f"{NODES_MODIFIER}.properties"  # since Blender 5.2
+_ATTRIBUTES = (
+    'An attribute is used instead of a value by `modifier[identifier + "_use_attribute"] = True` and '
+    '`modifier[identifier + "_attribute_name"] = "name"`.'
+)
 _ITEMS = f"{TYPES}NodeTreeInterface.items_tree"
 _MENU = f"{TYPES}NodeTreeInterfaceSocketMenu"
 # How people say in plain words that they want to set an input: of a modifier it may be called anything, of geometry
@@ -69,6 +73,10 @@ class CustomProperties:
             f'raises KeyError until then; `.get("{name}")` returns None instead.'
         )
 
+    def on_attributes(self) -> str:
+        """How an attribute is used as an input of such a modifier; empty where inputs are no custom properties."""
+        return "" if self._reader.entry(_PROPERTIES) else _ATTRIBUTES
+
     def on_inputs(self) -> str:
         """How the inputs of a geometry-nodes modifier are set."""
         if self._reader.entry(_PROPERTIES):
@@ -79,6 +87,7 @@ class CustomProperties:
             f'`modifier[modifier.node_group.{items}["Size"].identifier] = 5.0`, then `obj.update_tag()`. '
             "Another key makes a custom property that changes nothing."
         ]
+        told.append(_ATTRIBUTES)
         if items.startswith("interface"):
             told.append("Where an output has the same name, take the item whose `in_out` is 'INPUT'.")
         if self._reader.entry(_MENU):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
 
 _FEW = 3
 _MANY = 8  # where more properties may be None, none is likely enough to be named
+_WEIGHTY = 9.0  # the weight from which on a pointer is one that scripts come upon without having asked for it
 _ANY = frozenset({STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup"})  # pointers to these may lead to anything
 _IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
 
@@ -56,6 +58,9 @@ class UnnamedOwners:
         elif not few and len(owners) <= _MANY and not likely:
             likely = [entry for entry in holders if self._flag(entry, FILLED_BY) is not None]
             told = set(self._weightiest(likely)[:1])
+        if not likely:
+            likely = self._empty_before(name)
+            told = set(likely)
         self._tell(name, owners, holders, recognition)
         for rank, entry in enumerate(self._weightiest(likely)[:_FEW]):
             recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
@@ -66,13 +71,61 @@ class UnnamedOwners:
             elif entry in told and (setting := self._setting(entry)):
                 recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
 
+    def _empty_before(self, name: str) -> list[SymbolEntry]:
+        """The likeliest pointers that are None on new things, and lead to what has a member of that name, once filled.
+
+        None where that leads to too many classes, and none to a class whose member scripts use far less than another's:
+        then they say nothing.
+        """
+        members = {
+            target: self._member(target, name) for target in {one.target for one in self._empty_pointers}
+        }
+        having = {target: one.path for target, one in members.items() if one and one.group != "ui"}
+        if not 0 < len(having) <= _MANY:
+            return []
+        weights = self._reader.weights([entry.path for entry in self._reader.by_name(name)])
+        least = max(weights.values(), default=0) / 2
+        usual = {target for target, path in having.items() if weights.get(path, 0) >= least}
+        found = self._weightiest(entry for entry in self._empty_pointers if entry.target in usual)
+        weights = self._reader.weights([entry.path for entry in found])
+        least = max(_WEIGHTY, max(weights.values(), default=0) / 2)
+        return [entry for entry in found if weights.get(entry.path, 0) >= least]
+
+    def _member(self, cls: str, name: str) -> SymbolEntry | None:
+        return self._reader.member([entry.path for entry in self._reader.lineage(TYPES + cls)], name)
+
+    @cached_property
+    def _empty_pointers(self) -> list[SymbolEntry]:
+        """The pointers that are None on new things, of which it is known how they are filled.
+
+        Not those of classes that many point to (objects, materials): scripts fill these as a matter of course.
+        """
+        rows = self._reader.rows(
+            "SELECT path FROM symbols WHERE type = 'pointer' AND target != '' ORDER BY path"
+        )
+        entries = filter(None, (self._reader.entry(row[0]) for row in rows))
+        empty = [entry for entry in entries if entry.group != "ui" and self._is_empty_when_new(entry)]
+        count = Counter(entry.target for entry in empty)
+        return [
+            entry
+            for entry in empty
+            if count[entry.target] <= _MANY
+            and entry.owner != TYPES + entry.target
+            and (self._flag(entry, FILLED_BY) or self._setting(entry))
+        ]
+
+    def _is_empty_when_new(self, entry: SymbolEntry) -> bool:
+        symbol = self._reader.symbol(entry.path)
+        return symbol is not None and empty_when_new(symbol) is not None
+
     def _setting(self, entry: SymbolEntry) -> str:
         """The statement that sets a pointer which is None on new things; empty for other pointers."""
         symbol = self._reader.symbol(entry.path)
         if symbol is None or "readonly" in symbol.flags or not empty_when_new(symbol):
             return ""
         made = self._reader.creations([TYPES + entry.target]).get(TYPES + entry.target)
-        value = made.call if made else entry.target.lower()
+        is_value = made is not None and not made.maker.startswith("bpy.ops.")  # operators return no thing
+        value = made.call if made and is_value else entry.target.lower()
         return f"{entry.owner.removeprefix(TYPES).lower()}.{entry.name} = {value}"
 
     def _tell(
@@ -82,7 +135,11 @@ class UnnamedOwners:
         of = may_be = ""
         if len(owners) == 1:
             of = f", a `{TYPES}{next(iter(owners))}`,"
-            listed = ", ".join(f"`{entry.path}`" for entry in self._weightiest(holders)[:_FEW])
+            # What is None on new things is likelier None than what hardly ever is.
+            likeliest = sorted(
+                self._weightiest(holders), key=lambda entry: not self._is_empty_when_new(entry)
+            )
+            listed = ", ".join(f"`{entry.path}`" for entry in likeliest[:_FEW])
             may_be = f" One is reached by {listed}." if listed else ""
         recognition.notes.append(_IS_NONE.format(name=name, of=of) + may_be)
 
@@ -154,9 +211,7 @@ class UnnamedOwners:
             if cls.path != STRUCT
             for pointer in self._reader.members(cls.path).values()
             if pointer.type == "pointer" and pointer.target
-            for member in [
-                self._reader.member([e.path for e in self._reader.lineage(TYPES + pointer.target)], name)
-            ]
+            for member in [self._member(pointer.target, name)]
             if member and member.owner != STRUCT
         }
         return [(found[member], member) for member in self._weightiest(found)]

@@ -464,10 +464,10 @@ def test_new_things_tell_what_rna_does_not(
 
 def test_what_blender_starts_with_is_not_called_new(symbols: dict[str, Symbol]) -> None:
     new, started = symbols["bpy.types.Material.roughness"].new_values
-    assert (new.value, new.by, new.is_startup) == (0.4, "bpy.data.materials.new()", False)
+    assert (new.value, new.by, new.is_startup) == (0.4, 'bpy.data.materials.new("Material")', False)
     assert (started.value, started.is_startup) == (0.5, True)
     settings = symbols["bpy.types.RenderSettings.use_stamp_memory"].new_values
-    assert [(one.value, one.by) for one in settings] == [(True, "bpy.data.scenes.new()"), (False, "")]
+    assert [(one.value, one.by) for one in settings] == [(True, 'bpy.data.scenes.new("Scene")'), (False, "")]
 
 
 @pytest.mark.parametrize(

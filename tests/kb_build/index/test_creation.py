@@ -118,6 +118,18 @@ def test_blender_makes_a_modifier_of_the_class_for_every_call(calls: dict[str, C
             bpy.data.objects.remove(obj)
 
 
+@pytest.mark.blender
+def test_calls_that_made_new_things_run(extract: Extract) -> None:
+    bpy = pytest.importorskip("bpy")
+    calls: dict[str, str] = {}
+    for symbol in extract.symbols:
+        calls.update({new.by: symbol.owner for new in symbol.new_values if new.by.startswith("bpy.data.")})
+    assert {'bpy.data.scenes.new("Scene")', 'bpy.data.images.new("Image", 8, 8)'} <= calls.keys()
+    assert calls["bpy.data.lights.new(\"Sun\", 'SUN')"] == "bpy.types.SunLight"
+    for call in calls:
+        assert eval(call, {"bpy": bpy}), call
+
+
 def test_what_is_used_asked_for_and_explained_weighs_more() -> None:
     symbols = [Symbol(f"m.{name}", "property", "m") for name in ("used", "asked", "explained", "none")]
     weights = symbol_weights(symbols, {"m.explained"}, {"m.asked": "one; two; three"}, {"m.used": Uses(7, 2)})

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 import pytest
@@ -127,7 +128,20 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         (
             "AttributeError: 'NoneType' object has no attribute 'nodes'",
             "`.nodes`, a `bpy.types.NodeTree`, is None: it does not exist (yet), or was not found. One is reached by "
-            "`bpy.types.Material.node_tree`, ",
+            "`bpy.types.NodesModifier.node_group`, `bpy.types.Scene.compositing_node_group`, ",
+        ),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'nodes'",
+            "`bpy.types.Scene.compositing_node_group` is None on what is new: set it, "
+            "`scene.compositing_node_group = bpy.data.node_groups.new(",
+        ),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'strength'",
+            "`bpy.types.Object.field` is None before `bpy.ops.object.forcefield_toggle()`.",
+        ),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'color'",
+            '`bpy.types.Scene.world` is None on what is new: set it, `scene.world = bpy.data.worlds.new("World")`.',
         ),
         (
             "AttributeError: 'NoneType' object has no attribute 'show_only_render'",
@@ -173,6 +187,102 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
 )
 def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str) -> None:
     assert said in "\n".join(kb.query(message).notes)
+
+
+@pytest.mark.parametrize("name", ["name", "location", "type"])
+def test_what_many_things_have_says_not_which_of_them_is_none(kb: KnowledgeBase, name: str) -> None:
+    notes = kb.query(f"AttributeError: 'NoneType' object has no attribute '{name}'").notes
+    assert [note for note in notes if "None on what is new" in note] == []
+
+
+@pytest.mark.blender
+def test_statements_that_fill_pointers_fill_them() -> None:
+    bpy = pytest.importorskip("bpy")
+    scene = bpy.data.scenes.new("new")
+    assert scene.compositing_node_group is None
+    assert scene.world is None
+    scene.compositing_node_group = bpy.data.node_groups.new("Compositor Node Tree", "CompositorNodeTree")
+    scene.world = bpy.data.worlds.new("World")
+    assert len(scene.compositing_node_group.nodes) == 0
+    assert scene.world.color is not None
+    assert bpy.data.materials.new("new").node_tree is not None
+
+
+@pytest.mark.parametrize("name", ["B", "Value", "Color"])
+def test_a_key_that_many_nodes_have_is_not_one_that_a_node_lost(kb: KnowledgeBase, name: str) -> None:
+    notes = kb.query(f"KeyError: 'bpy_prop_collection[key]: key \"{name}\" not found'").notes
+    assert [note.partition("`;")[0] for note in notes] == [f"The collection has no element `{name}"]
+
+
+def test_sockets_that_were_renamed_alike_are_told_together(kb: KnowledgeBase) -> None:
+    notes = kb.query("KeyError: 'bpy_prop_collection[key]: key \"Fac\" not found'").notes
+    assert re.search(
+        r"The sockets `Fac` of \d+ nodes are gone; most are called `Factor` now", "\n".join(notes)
+    )
+    assert not any("does not exist" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("query", "lost"),
+    [
+        ('key "Subsurface" not found', 'ShaderNodeBsdfPrincipled.inputs["Subsurface"]'),
+        ('combine rgba node: key "B" not found', 'CompositorNodeCombRGBA.inputs["B"]'),
+    ],
+)
+def test_a_key_of_the_node_at_hand_is_one_that_it_lost(kb: KnowledgeBase, query: str, lost: str) -> None:
+    (before, _, key) = query.rpartition("key ")
+    notes = kb.query(f"{before}KeyError: 'bpy_prop_collection[key]: key {key}'").notes
+    assert notes[0].startswith(f"`bpy.types.{lost}` does not exist")
+
+
+@pytest.mark.parametrize(
+    ("message", "first", "notes"),
+    [
+        (
+            'TypeError: ActionStrips.new(): error with keyword argument "type" - enum "CLIP" not found in '
+            "('KEYFRAME')",
+            "bpy.types.ActionStrips.new",
+            [],
+        ),
+        (
+            'TypeError: BlendDataNodeTrees.new(): error with argument 2, "type" - enum "GeometryNodes" not found in '
+            "('DUMMY', 'ShaderNodeTree', 'GeometryNodeTree', 'CompositorNodeTree')",
+            "bpy.types.BlendDataNodeTrees.new",
+            ["`GeometryNodes` is not an item of this enum; closest: `GeometryNodeTree`."],
+        ),
+        (
+            'TypeError: bpy_struct: item.attr = val: enum "HAIR" not found in '
+            "('NONE', 'HALO', 'LINE', 'PATH', 'OBJECT', 'COLLECTION')",
+            "bpy.types.ParticleSettings.render_type",
+            [],
+        ),
+    ],
+)
+def test_the_items_in_a_message_tell_whose_they_are(
+    kb: KnowledgeBase, message: str, first: str, notes: list[str]
+) -> None:
+    answer = kb.query(message)
+    assert answer.hits[0].id == first
+    assert list(answer.notes) == notes
+
+
+@pytest.mark.blender
+def test_what_python_says_was_meant_tells_which_function_was_called(kb: KnowledgeBase) -> None:
+    bpy = pytest.importorskip("bpy")
+    with pytest.raises(TypeError) as caught:
+        bpy.data.libraries.load("x.blend", links=True)
+    message = (
+        f"TypeError: {caught.value}. Did you mean 'link'?"  # what Python adds where it prints a traceback
+    )
+    answer = kb.query(message)
+    assert answer.hits[0].id == "bpy.types.BlendDataLibraries.load"
+    assert "`bpy.types.BlendDataLibraries.load` takes no `links`; closest: `link`." in answer.notes
+    (alone,) = kb.query("TypeError: load() got an unexpected keyword argument 'nothing'").notes
+    assert "Several functions are called `load`" in alone
+    called = kb.query(
+        "bpy.data.libraries.load('x', nothing=1) load() got an unexpected keyword argument 'nothing'"
+    )
+    assert "`bpy.types.BlendDataLibraries.load` takes no `nothing`." in "\n".join(called.notes)
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,270 @@
+"""What is said of symbols that neither Blender's API nor its manual says: each sentence is tried in Blender."""
+
+from __future__ import annotations
+
+import importlib
+import subprocess
+import sys
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from kb_serve.answer.practice import Practice
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import BaseReader
+
+bpy: Any = pytest.importorskip("bpy")
+pytestmark = pytest.mark.blender
+TYPES = "bpy.types."
+POINT = "_bpy_internal.grease_pencil.stroke.GreasePencilStrokePoint"
+
+
+@pytest.fixture(autouse=True)
+def empty_file() -> Iterator[None]:
+    """Each test has a file of its own."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    yield
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+
+
+def said(reader: BaseReader, path: str) -> str:
+    assert reader.entry(path), path
+    return "\n".join(Practice(reader).of(path))
+
+
+# Drivers
+
+
+def new_object(name: str) -> Any:
+    obj = bpy.data.objects.new(name, None)
+    bpy.context.scene.collection.objects.link(obj)
+    return obj
+
+
+def driven() -> tuple[Any, Any, Any]:
+    """An object with a new custom property, one that a driver reads it for, and that driver."""
+    owner, obj = new_object("owner"), new_object("obj")
+    bpy.context.view_layer.update()
+    owner["name"] = 3.0
+    driver: Any = obj.driver_add("location", 0).driver
+    variable = driver.variables.new()
+    variable.name = "v"
+    variable.targets[0].id = owner
+    variable.targets[0].data_path = '["name"]'
+    driver.expression = "v * 2"
+    return owner, obj, driver
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["DriverTarget.data_path", "bpy_struct.driver_add", "ChannelDriverVariables.new", "Driver.is_valid"],
+)
+def test_a_driver_wants_the_owner_of_a_custom_property_tagged(reader: BaseReader, name: str) -> None:
+    assert "`owner.update_tag()`" in said(reader, TYPES + name)
+
+
+def test_a_driver_sees_a_custom_property_after_its_owner_was_tagged() -> None:
+    owner, obj, driver = driven()
+    owner.update_tag()
+    bpy.context.view_layer.update()
+    assert driver.is_valid
+    assert obj.location.x == 6.0
+    owner["name"] = 5.0
+    bpy.context.scene.frame_set(9)
+    assert obj.location.x == 6.0
+    owner.update_tag()
+    bpy.context.view_layer.update()
+    assert obj.location.x == 10.0
+
+
+def test_a_driver_that_is_invalid_already_wants_its_expression_again() -> None:
+    owner, obj, driver = driven()
+    bpy.context.scene.frame_set(9)
+    assert not driver.is_valid
+    owner.update_tag()
+    bpy.context.view_layer.update()
+    assert not driver.is_valid
+    owner.update_tag()
+    driver.expression = driver.expression
+    bpy.context.view_layer.update()
+    assert driver.is_valid
+    assert obj.location.x == 6.0
+
+
+# Drawings and curves
+
+
+def new_drawing() -> Any:
+    return bpy.data.grease_pencils.new("g").layers.new("L").frames.new(1).drawing
+
+
+def values(drawing: Any, name: str) -> list[float]:
+    return [round(getattr(point, name), 3) for stroke in drawing.strokes for point in stroke.points]
+
+
+@pytest.mark.parametrize("path", [POINT, f"{POINT}.opacity", f"{POINT}.radius"])
+def test_what_a_point_has_is_set_for_every_point(reader: BaseReader, path: str) -> None:
+    assert "Set `radius` and `opacity` of every point" in said(reader, path)
+
+
+def test_the_first_opacity_makes_it_0_elsewhere_and_new_strokes_begin_with_0() -> None:
+    drawing = new_drawing()
+    drawing.add_strokes([2])
+    assert "opacity" not in drawing.attributes
+    drawing.strokes[0].points[0].opacity = 1.0
+    drawing.strokes[0].points[0].radius = 0.5
+    assert [item.value for item in drawing.attributes["opacity"].data] == [1.0, 0.0]
+    assert values(drawing, "radius") == [0.5, 0.01]
+    drawing.add_strokes([1])
+    assert values(drawing, "opacity") == [1.0, 0.0, 0.0]
+    assert values(drawing, "radius") == [0.5, 0.01, 0.0]
+
+
+@pytest.mark.parametrize(
+    ("path", "data"),
+    [
+        (
+            "GreasePencilDrawing.add_strokes",
+            "bpy.data.grease_pencils.new('g').layers.new('L').frames.new(1).drawing",
+        ),
+        ("Curves.add_curves", "bpy.data.hair_curves.new('h')"),
+    ],
+)
+def test_no_sizes_crash_blender(reader: BaseReader, path: str, data: str) -> None:
+    assert "An empty list crashes Blender" in said(reader, TYPES + path)
+    call = f"{data}.{path.partition('.')[2]}"
+    ends = [
+        subprocess.run(
+            [sys.executable, "-P", "-c", f"import bpy; {call}({sizes})"],
+            check=False,
+            capture_output=True,
+            timeout=60,
+        ).returncode
+        for sizes in ("[2]", "[]")
+    ]
+    assert ends[0] == 0
+    assert ends[1] < 0 or ends[1] > 1  # 1 would be an error that Python raised
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        "GreasePencilDrawing.remove_strokes",
+        "GreasePencilDrawing.set_types",
+        "Curves.remove_curves",
+        "Curves.set_types",
+    ],
+)
+def test_no_indices_mean_all(reader: BaseReader, path: str) -> None:
+    assert "`indices=[]` " in said(reader, TYPES + path)
+    drawing = new_drawing()
+    curves: Any = bpy.data.hair_curves.new("h")
+    drawing.add_strokes([2, 2])
+    curves.add_curves([2, 2])
+    if path.endswith("set_types"):
+        drawing.set_types(type="BEZIER", indices=[])
+        curves.set_types(type="BEZIER", indices=[])
+        assert len({item.value for item in drawing.attributes["curve_type"].data}) == 1
+        assert len({item.value for item in curves.attributes["curve_type"].data}) == 1
+        assert {stroke.curve_type for stroke in drawing.strokes} == {2}
+    else:
+        drawing.remove_strokes(indices=[])
+        curves.remove_curves(indices=[])
+        assert (len(drawing.strokes), len(curves.curves)) == (0, 0)
+
+
+# Geometry nodes
+
+
+def test_a_modifiers_input_takes_an_attribute(kb: KnowledgeBase) -> None:
+    answers = map(
+        kb.query, ("bpy.types.NodesModifier", "bpy.ops.object.geometry_nodes_input_attribute_toggle")
+    )
+    notes = ["\n".join(answer.notes) for answer in answers]
+    tree = bpy.data.node_groups.new("G", "GeometryNodeTree")
+    interface: Any = tree.interface
+    for in_out in ("INPUT", "OUTPUT"):
+        interface.new_socket("Geometry", in_out=in_out, socket_type="NodeSocketGeometry")
+    identifier = interface.new_socket("Size", in_out="INPUT", socket_type="NodeSocketFloat").identifier
+    nodes: Any = tree.nodes
+    store, given, out = map(
+        nodes.new, ("GeometryNodeStoreNamedAttribute", "NodeGroupInput", "NodeGroupOutput")
+    )
+    store.inputs["Name"].default_value = "out"
+    tree.links.new(given.outputs["Geometry"], store.inputs["Geometry"])
+    tree.links.new(given.outputs["Size"], store.inputs["Value"])
+    tree.links.new(store.outputs["Geometry"], out.inputs["Geometry"])
+    mesh = bpy.data.meshes.new("m")
+    mesh.from_pydata([(0, 0, 0), (1, 0, 0)], [], [])
+    attribute: Any = mesh.attributes.new("name", "FLOAT", "POINT")
+    attribute.data[1].value = 7.0
+    obj = bpy.data.objects.new("obj", mesh)
+    bpy.context.scene.collection.objects.link(obj)
+    modifier: Any = obj.modifiers.new("m", "NODES")
+    modifier.node_group = tree
+    for statement in (
+        'modifier[identifier + "_use_attribute"] = True',
+        'modifier[identifier + "_attribute_name"] = "name"',
+    ):
+        assert all(f"`{statement}`" in note for note in notes)
+        exec(statement, {"modifier": modifier, "identifier": identifier})
+    obj.update_tag()
+    made: Any = obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).to_mesh()
+    assert [item.value for item in made.attributes["out"].data] == [0.0, 7.0]
+
+
+# Results in a dictionary
+
+
+@pytest.mark.parametrize(
+    ("name", "given"),
+    [
+        ("extrude_face_region", "faces"),
+        ("bevel", "edges"),
+        ("duplicate", "faces"),
+        ("convex_hull", "verts"),
+        ("triangulate", "faces"),
+        ("create_circle", ""),
+    ],
+)
+def test_functions_of_bmesh_ops_return_a_dictionary_of_results(
+    kb: KnowledgeBase, name: str, given: str
+) -> None:
+    bmesh: Any = importlib.import_module("bmesh")  # which is there only after bpy was imported
+    mesh = bmesh.new()
+    bmesh.ops.create_cube(mesh, size=1.0)
+    symbol = kb.symbol(f"bmesh.ops.{name}")
+    assert symbol
+    taken = {"convex_hull": "input", "triangulate": "faces"}.get(name, "geom")
+    arguments = {taken: list(getattr(mesh, given))} if given else {"segments": 3, "radius": 1.0}
+    result = getattr(bmesh.ops, name)(mesh, **arguments)
+    mesh.free()
+    assert isinstance(result, dict)
+    assert set(result) == {returned.name for returned in symbol.returns}
+    assert "**Returns** a dict with these keys\n" in kb.query(symbol.path).text
+
+
+def test_what_other_functions_return_is_no_dictionary(kb: KnowledgeBase) -> None:
+    assert "**Returns**\n" in kb.query("bpy.types.Object.ray_cast").text
+
+
+# Modules
+
+
+def test_a_module_that_was_not_imported_is_to_be_imported(kb: KnowledgeBase) -> None:
+    run = (
+        "import bpy\ntry: bpy.utils.previews.new()\nexcept AttributeError as error: print(error)\n"
+        "import bpy.utils.previews\nbpy.utils.previews.new()"
+    )
+    ended = subprocess.run(
+        [sys.executable, "-P", "-c", run], check=True, capture_output=True, text=True, timeout=60
+    )
+    message = ended.stdout.strip().splitlines()[-1]
+    assert message == "module 'bpy.utils' has no attribute 'previews'"
+    answer = kb.query(f"AttributeError: {message}")
+    assert answer.hits[0].id == "bpy.utils.previews"
+    assert answer.notes[0].endswith("to be imported first: `import bpy.utils.previews`.")
