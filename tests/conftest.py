@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import compileall
 import os
 from contextlib import closing, suppress
 from pathlib import Path
@@ -73,10 +74,20 @@ def _begin_with_long_files(items: list[pytest.Item]) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_runtest_setup(item: pytest.Item) -> None:
-    """Before the first test with a Blender: shaders for all of them, as `simworlds doctor` keeps them for its user."""
+    """Before the first test with a Blender: what each would do again, since it may write nothing that stays.
+
+    Shaders for all of them, as `simworlds doctor` keeps them for its user, and the byte code of what runs inside.
+    """
     if item.get_closest_marker("blender") and SHADERS_VARIABLE not in os.environ:
         factory = cast("pytest.TempPathFactory", item.config._tmp_path_factory)  # type: ignore[attr-defined]
+        made_once(factory, "byte-code", _with_byte_code)
         os.environ[SHADERS_VARIABLE] = str(made_once(factory, "shaders", _compiled))
+
+
+def _with_byte_code(_: Path) -> None:
+    for package in ("agents", "bench", "kb_build", "kb_check", "simworlds", "tests"):
+        for inside in (REPO / package).rglob("inside"):
+            compileall.compile_dir(inside, quiet=2)
 
 
 def _compiled(folder: Path) -> Path:

@@ -60,7 +60,7 @@ def test_the_audit_refuses_it_and_says_why(name: str, refused: dict[str, str]) -
     assert "the limit is " in refused[name]
 
 
-@pytest.mark.parametrize("name", by_turns(HEAVY, 6))
+@pytest.mark.parametrize("name", by_turns(HEAVY, 9))
 def test_loading_it_is_refused_and_leaves_the_scene(
     name: str, files: Path, live: LiveSession, refused: dict[str, str]
 ) -> None:
@@ -70,7 +70,7 @@ def test_loading_it_is_refused_and_leaves_the_scene(
     assert "The scene is unchanged" in str(error.value)
 
 
-@pytest.mark.parametrize("name", by_turns(["array", "subdivision", "objects", "grid", "particles"]))
+@pytest.mark.parametrize("name", by_turns(["array", "subdivision", "objects", "grid", "particles"], 3))
 def test_verify_refuses_it(name: str, files: Path, refused: dict[str, str]) -> None:
     path = files / f"{name}.blend"
     done = CliRunner().invoke(main, ["verify", str(path)])

@@ -164,6 +164,7 @@ def test_nonsense_without_end_fails_clearly_and_may_be_asked_for_again(
     assert (better.ended.how, better.taken) == ("aborted", [("modeling", "abort")])
 
 
+@pytest.mark.whole  # one who declines is asked again, and retries that are used up end a run, in other tests
 def test_a_coder_who_always_declines_uses_up_the_retries(api: FakeMessagesAPI, tmp_path: Path) -> None:
     api.answer = Team(coder={"modeling": (teams.REFUSED,)})
     played = sit(tmp_path / "run")
@@ -175,7 +176,11 @@ def test_a_coder_who_always_declines_uses_up_the_retries(api: FakeMessagesAPI, t
     ("fault", "says"),
     [
         (Status(401), "Check the key"),
-        (Status(400, body='{"error": {"message": "prompt is too long"}}'), "too long"),
+        pytest.param(
+            Status(400, body='{"error": {"message": "prompt is too long"}}'),
+            "too long",
+            marks=pytest.mark.whole,
+        ),
     ],
 )
 def test_a_server_that_takes_no_request_ends_the_sitting_at_once(

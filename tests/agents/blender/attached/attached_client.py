@@ -109,7 +109,8 @@ async def build_and_undo(client: Client) -> dict[str, Any]:
 async def never_arrives(client: Client, code: str, said: str) -> None:
     """Checks that code is refused with what was ``said``, and that the open Blender's file stays as it is."""
     before = await digests(client)
-    result = await use(client, "blender_execute", code=code, timeout=5)
+    seconds = 1 if code.startswith("while True") else 5  # all of them pass
+    result = await use(client, "blender_execute", code=code, timeout=seconds)
     assert result.is_error
     assert said in text(result)
     assert "Nothing was done in the open Blender" in text(result)

@@ -22,11 +22,13 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _SIZE = (1280, 800)
+# Tests look at what a window shows, not at how smooth it is: without a graphics card, that is most of the work.
+_QUICKLY = 'bpy.context.preferences.system.viewport_aa = "OFF"\n'
 _START_SECONDS = 120.0  # drawn without a graphics card, on a machine that does other things too
 _STARTER = """\
 import bpy
 bpy.context.preferences.view.show_splash = False
-def _start():
+{quickly}def _start():
     bpy.ops.simworlds.start()
 bpy.app.timers.register(_start, first_interval=0.2)
 
@@ -59,9 +61,12 @@ def blender_with_a_window() -> Path:
 
 
 class OpenWindow:
-    """Blender's window on a virtual display; everything of the user's is below ``root``."""
+    """Blender's window on a virtual display; everything of the user's is below ``root``.
 
-    def __init__(self, root: Path) -> None:
+    ``quickly``: it draws with jagged edges.
+    """
+
+    def __init__(self, root: Path, *, quickly: bool = False) -> None:
         blender = blender_with_a_window()
         self.root, self.home = root, root / "home"
         for folder in (self.home, root / "config", root / "scripts"):
@@ -87,7 +92,8 @@ class OpenWindow:
         finally:
             for name, value in kept.items():
                 os.environ.pop(name) if value is None else os.environ.update({name: value})
-        (root / "start.py").write_text(_STARTER.format(acts=str(root / "acts.py")))
+        starter = _STARTER.format(acts=str(root / "acts.py"), quickly=_QUICKLY if quickly else "")
+        (root / "start.py").write_text(starter)
         self._blender = blender
         self.process = self.open()
 
@@ -179,7 +185,7 @@ def _virtual_display() -> tuple[subprocess.Popen[bytes], str]:
 
 def opened(root: Path, *, numpy: bool = False) -> Iterator[OpenWindow]:
     """A window for a fixture; of a Blender that has ``numpy``, if asked for."""
-    window = OpenWindow(root)
+    window = OpenWindow(root, quickly=True)
     try:
         if numpy:
             window.require_numpy()

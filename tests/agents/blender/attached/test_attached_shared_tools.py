@@ -83,7 +83,17 @@ async def both(
         yield first, second
 
 
-@pytest.mark.parametrize(("tool", "arguments"), CALLS, ids=[f"{tool[8:]}" for tool, _ in CALLS])
+# They draw as the previews of a mesh and of a scene do.
+FURTHER = {"blender_object_preview", "blender_system_layout_preview"}
+
+
+@pytest.mark.parametrize(
+    ("tool", "arguments"),
+    [
+        pytest.param(*call, id=call[0][8:], marks=pytest.mark.whole if call[0] in FURTHER else ())
+        for call in CALLS
+    ],
+)
 async def test_is_answered_as_by_a_blender_of_its_own(
     both: tuple[Client, Client], tool: str, arguments: dict[str, Any]
 ) -> None:

@@ -15,6 +15,12 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.blender
 
 
+@pytest.fixture(autouse=True)
+def _small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What pictures show is tried with views of a size of their own."""
+    monkeypatch.setattr(previews, "PANEL", 96)
+
+
 def room(walls: str) -> str:
     return walls + (
         "\nfor at, (x, y) in enumerate(((-1, -1), (1, -1), (-1, 1), (1, 1))):\n"

@@ -63,13 +63,18 @@ bpy.app.handlers.depsgraph_update_post.remove(spoil)
 """
 
 
+@pytest.fixture(autouse=True)
+def _small(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(material_preview, "_PANEL", 64)
+    monkeypatch.setattr(previews, "PANEL", 64)
+
+
 def census(session: LiveSession) -> dict[str, Any]:
     session.run(CENSUS)
     return json.loads((session.blender.folder.workspace.mount / "census.json").read_text())
 
 
-def test_no_preview_leaves_a_trace(session: LiveSession, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(material_preview, "_PANEL", 64)
+def test_no_preview_leaves_a_trace(session: LiveSession) -> None:
     build(session, LIVED_IN)
     before = census(session)
     session.use(previews.SCENE_LAYOUT)

@@ -20,6 +20,12 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.blender
 
 
+@pytest.fixture(autouse=True)
+def _small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What pictures show is tried with views of a size of their own."""
+    monkeypatch.setattr(previews, "PANEL", 96)
+
+
 def test_a_preview_is_a_picture_and_the_same_as_a_file(session: LiveSession) -> None:
     build(session, "box('Crate', size=(1, 2, 3))")
     found = session.use(previews.SINGLE_MESH, object="Crate")
