@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
+from kb_check.made_here import bindings
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
@@ -30,7 +31,11 @@ _NOT_RNA = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Callee:
-    """What a call can give. ``positional`` are the names that take a place, ``keyword_only`` those that do not."""
+    """What a call can give. ``positional`` are the names that take a place, ``keyword_only`` those that do not.
+
+    ``is_open`` is True where other keywords are taken or the signature does not tell, ``is_variadic`` where more may be
+    given by place.
+    """
 
     symbol: Symbol
     parameters: tuple[Parameter, ...]
@@ -38,6 +43,7 @@ class Callee:
     keyword_only: tuple[str, ...]
     is_open: bool
     is_rna: bool
+    is_variadic: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +93,27 @@ def calls(script: Script) -> list[CallSite]:
     return found
 
 
+def nothing_from(script: Script, node: ast.expr) -> str:
+    """The function whose call a value surely is, where that returns nothing: ``mesh.vertices.add(3)``; or empty.
+
+    RNA tells of its own functions; those without parameters may be Python's.
+    """
+    if isinstance(node, ast.Name):
+        values = bindings(script).get(node.id, [])
+        value = values[0] if len(values) == 1 else None
+    else:
+        value = node
+    call = _call_sites(script).get(value) if isinstance(value, ast.Call) else None
+    if call is None or not call.callee.is_rna or call.callee.symbol.kind != "function":
+        return ""
+    return "" if call.callee.symbol.returns or not call.callee.parameters else call.callee.symbol.path
+
+
+@once_per_script
+def _call_sites(script: Script) -> dict[ast.Call, CallSite]:
+    return {call.node: call for call in calls(script)}
+
+
 def _called(script: Script, kind: Type) -> Symbol | None:
     """The symbol that is called; None where a method is called by its class, which takes the instance first."""
     match kind:
@@ -123,7 +150,10 @@ def callee_of(symbol: Symbol) -> Callee:
     only = tuple(argument.arg for argument in arguments.kwonlyargs) if arguments else ()
     placed = (argument.arg for argument in (*arguments.posonlyargs, *arguments.args)) if arguments else names
     positional = tuple(name for name in placed if name in names)
-    return Callee(symbol, parameters, positional, only, is_open=is_open, is_rna=False)
+    is_variadic = is_open and (arguments is None or arguments.kwarg is None or arguments.vararg is not None)
+    return Callee(
+        symbol, parameters, positional, only, is_open=is_open, is_rna=False, is_variadic=is_variadic
+    )
 
 
 def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
