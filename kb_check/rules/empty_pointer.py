@@ -144,7 +144,7 @@ def _is_never_assigned(script: Script, symbol: Symbol) -> bool:
 
 def _stays_empty(script: Script, symbol: Symbol, place: ast.expr) -> bool:
     """Whether the script names nothing that may have filled a pointer, and does not ask whether it is None."""
-    if not knows_all(script) or symbol.name in asked_names(script) or symbol.owner == f"{T}ID":
+    if not knows_all(script) or symbol.name in asked_names(script) or _is_filled_beside(script, symbol):
         return False
     named, operators = named_before(script, place), called_operators(script)
     is_animated = symbol.name == "animation_data" and any(map(_ANIMATING.search, named | operators))
@@ -165,6 +165,15 @@ def _stays_empty(script: Script, symbol: Symbol, place: ast.expr) -> bool:
         elif parts[1] in named:
             return False
     return True
+
+
+def _is_filled_beside(script: Script, symbol: Symbol) -> bool:
+    """Whether what every data-block has may be filled by what is called like it: ``asset_generate_preview``."""
+    first = words(symbol.name)[0]
+    return symbol.owner == f"{T}ID" and (
+        not has_plain_operators_only(script)
+        or any(first in words(word) for word in named_words(script) if word != symbol.name)
+    )
 
 
 @once_per_script
