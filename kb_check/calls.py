@@ -9,6 +9,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
+from kb_check.literals import times_bound
 from kb_check.made_here import bindings
 from kb_check.script import once_per_script
 
@@ -98,15 +99,23 @@ def nothing_from(script: Script, node: ast.expr) -> str:
 
     RNA tells of its own functions; those without parameters may be Python's.
     """
-    if isinstance(node, ast.Name):
-        values = bindings(script).get(node.id, [])
-        value = values[0] if len(values) == 1 else None
-    else:
-        value = node
+    value = _once_held(script).get(node.id) if isinstance(node, ast.Name) else node
     call = _call_sites(script).get(value) if isinstance(value, ast.Call) else None
     if call is None or not call.callee.is_rna or call.callee.symbol.kind != "function":
         return ""
     return "" if call.callee.symbol.returns or not call.callee.parameters else call.callee.symbol.path
+
+
+@once_per_script
+def _once_held(script: Script) -> dict[str, ast.expr]:
+    """Name → what it is bound to, of those that are bound once and used for nothing but to read from them."""
+    owners = {node.value for node in script.all(ast.Attribute, ast.Subscript)}
+    asked = {
+        node.id for node in script.all(ast.Name) if isinstance(node.ctx, ast.Load) and node not in owners
+    }
+    times = times_bound(script)
+    held = {name: values[0] for name, values in bindings(script).items() if times[name] == 1}
+    return {name: value for name, value in held.items() if value is not None and name not in asked}
 
 
 @once_per_script

@@ -350,6 +350,8 @@ ob.name.upper().lower()
 ob.display_type.lower()
 mesh.vertices.add(1)
 nothing = mesh.vertices.add(1)
+nothing = mesh.vertices.add(1) or mesh.vertices; nothing[0].co
+result = mesh.vertices.add(1); result.co if result else None
 made = scene.collection.children.link(bpy.data.collections.new("made")) or bpy.data.collections["made"]; made.name
 scene["property"] = 5
 scene["property"]
