@@ -9,6 +9,8 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
+from kb_check.literals import times_bound
+from kb_check.made_here import bindings
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
@@ -30,7 +32,11 @@ _NOT_RNA = frozenset(
 
 @dataclass(frozen=True, slots=True)
 class Callee:
-    """What a call can give. ``positional`` are the names that take a place, ``keyword_only`` those that do not."""
+    """What a call can give. ``positional`` are the names that take a place, ``keyword_only`` those that do not.
+
+    ``is_open`` is True where other keywords are taken or the signature does not tell, ``is_variadic`` where more may be
+    given by place.
+    """
 
     symbol: Symbol
     parameters: tuple[Parameter, ...]
@@ -38,6 +44,7 @@ class Callee:
     keyword_only: tuple[str, ...]
     is_open: bool
     is_rna: bool
+    is_variadic: bool = False
 
 
 @dataclass(frozen=True, slots=True)
@@ -87,6 +94,35 @@ def calls(script: Script) -> list[CallSite]:
     return found
 
 
+def nothing_from(script: Script, node: ast.expr) -> str:
+    """The function whose call a value surely is, where that returns nothing: ``mesh.vertices.add(3)``; or empty.
+
+    RNA tells of its own functions; those without parameters may be Python's.
+    """
+    value = _once_held(script).get(node.id) if isinstance(node, ast.Name) else node
+    call = _call_sites(script).get(value) if isinstance(value, ast.Call) else None
+    if call is None or not call.callee.is_rna or call.callee.symbol.kind != "function":
+        return ""
+    return "" if call.callee.symbol.returns or not call.callee.parameters else call.callee.symbol.path
+
+
+@once_per_script
+def _once_held(script: Script) -> dict[str, ast.expr]:
+    """Name → what it is bound to, of those that are bound once and used for nothing but to read from them."""
+    owners = {node.value for node in script.all(ast.Attribute, ast.Subscript)}
+    asked = {
+        node.id for node in script.all(ast.Name) if isinstance(node.ctx, ast.Load) and node not in owners
+    }
+    times = times_bound(script)
+    held = {name: values[0] for name, values in bindings(script).items() if times[name] == 1}
+    return {name: value for name, value in held.items() if value is not None and name not in asked}
+
+
+@once_per_script
+def _call_sites(script: Script) -> dict[ast.Call, CallSite]:
+    return {call.node: call for call in calls(script)}
+
+
 def _called(script: Script, kind: Type) -> Symbol | None:
     """The symbol that is called; None where a method is called by its class, which takes the instance first."""
     match kind:
@@ -123,7 +159,10 @@ def callee_of(symbol: Symbol) -> Callee:
     only = tuple(argument.arg for argument in arguments.kwonlyargs) if arguments else ()
     placed = (argument.arg for argument in (*arguments.posonlyargs, *arguments.args)) if arguments else names
     positional = tuple(name for name in placed if name in names)
-    return Callee(symbol, parameters, positional, only, is_open=is_open, is_rna=False)
+    is_variadic = is_open and (arguments is None or arguments.kwarg is None or arguments.vararg is not None)
+    return Callee(
+        symbol, parameters, positional, only, is_open=is_open, is_rna=False, is_variadic=is_variadic
+    )
 
 
 def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:

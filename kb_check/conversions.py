@@ -18,6 +18,7 @@ array                   a sequence of its length (not an iterator), each item as
 from __future__ import annotations
 
 import ast
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -43,9 +44,13 @@ if TYPE_CHECKING:
 
 # How many numbers a class always has.
 LENGTHS = {"mathutils.Color": 3, "mathutils.Euler": 3, "mathutils.Quaternion": 4}
+_AXIS = 3  # numbers that a quaternion is made of besides its own four
+_BMESH_VECTOR = re.compile(r"tuple\[(float(?:, float)+)\] \| Sequence\[float\]")
 _OBJECTS_DATA = f"{T}Object.data"
 _ID = f"{T}ID"
-_DATA = tuple(f"{T}{name}" for name in (*OBJECT_DATA.values(), "Image"))  # an empty shows images
+_MADE_OF = f"{T}BlendDataObjects.new(object_data)"
+_DATA_OF_NEW = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
+_DATA = (*_DATA_OF_NEW, f"{T}Image")  # an empty shows images
 _NUMBERS = frozenset({"bool", "int", "float"})
 _TAKES = {
     "boolean": frozenset({"bool", "int"}), "int": frozenset({"int", "bool"}), "float": _NUMBERS,
@@ -83,6 +88,8 @@ def misfit(script: Script, taker: Taker, node: ast.expr) -> Misfit | None:
     """Why a property or parameter surely refuses a value; None where it takes it, or may."""
     if taker.sizes:
         return _array_misfit(script, taker, node, taker.sizes)
+    if (lengths := _lengths(taker)) and (found := _length_misfit(script, node, lengths)):
+        return found
     kind = script.type_of(node)
     if kind is None:
         return None
@@ -93,6 +100,32 @@ def misfit(script: Script, taker: Taker, node: ast.expr) -> Misfit | None:
         return None if may_be_none else Misfit(_takes(taker), "None")
     found = [_scalar_misfit(script, taker, node, member) for member in members(kind)]
     return found[0] if all(found) else None
+
+
+def _lengths(taker: Taker) -> tuple[int, ...]:
+    """How many numbers a parameter takes whose sequence no array of RNA's tells; none where any number may be right.
+
+    It is the first of what makes one of mathutils' values, or one of bmesh's.
+    """
+    symbol = taker.symbol
+    if symbol.kind == "class" and symbol.path in LENGTHS:
+        is_first = taker.path == f"{symbol.path}({symbol.parameters[0].name})"
+        return tuple(sorted({_AXIS, LENGTHS[symbol.path]})) if is_first else ()
+    found = _BMESH_VECTOR.fullmatch(taker.documented) if taker.path.startswith("bmesh.") else None
+    return (found[1].count("float"),) if found else ()
+
+
+def _length_misfit(script: Script, node: ast.expr, lengths: tuple[int, ...]) -> Misfit | None:
+    takes = f"{' or '.join(map(str, lengths))} numbers"
+    if (parts := items(script, node)) is not None:
+        return None if len(parts) in lengths else Misfit(takes, f"{len(parts)} items", len(parts))
+    kind = script.type_of(node)
+    has = LENGTHS.get(kind.cls, 0) if isinstance(kind, Instance) and kind.sure else 0
+    return (
+        Misfit(takes, f"{describe(kind)}, which has {has}", has)
+        if kind and has and has not in lengths
+        else None
+    )
 
 
 def _scalar_misfit(  # noqa: PLR0911 - one return a type
@@ -128,7 +161,7 @@ def _is_other_data(script: Script, taker: Taker, node: ast.expr, kind: Type) -> 
     if row is None or row.symbols != (_OBJECTS_DATA,) or not row.sure or row.missing or kind != Instance(_ID):
         return False
     api, target = script.api, taker.target
-    related = any(api.descends(cls, target) or api.descends(target, cls) for cls in _DATA)
+    related = any(_is_related(script, cls, target) for cls in _DATA)
     return not related and api.is_class(target) and api.descends(target, _ID)
 
 
@@ -137,12 +170,21 @@ def _pointer_misfit(script: Script, taker: Taker, kind: Type, given: str) -> Mis
     if not api.is_class(taker.target) or api.descends(taker.target, "bpy.types.PropertyGroup"):
         return None
     if isinstance(kind, Instance):
-        related = api.descends(kind.cls, taker.target) or api.descends(taker.target, kind.cls)
-        if related or not kind.sure or not api.is_class(kind.cls):
+        if not kind.sure or not api.is_class(kind.cls):
+            return None
+        if classes := {_OBJECTS_DATA: _DATA, _MADE_OF: _DATA_OF_NEW}.get(taker.path):
+            is_data = any(_is_related(script, kind.cls, cls) for cls in classes)
+            return None if is_data else Misfit("the data of an object", given)
+        if _is_related(script, kind.cls, taker.target):
             return None
     if isinstance(kind, Collection):
         return None
     return Misfit(_takes(taker), given)
+
+
+def _is_related(script: Script, cls: str, other: str) -> bool:
+    """Whether something of a class may be of another one."""
+    return script.api.descends(cls, other) or script.api.descends(other, cls)
 
 
 def _array_misfit(script: Script, taker: Taker, node: ast.expr, sizes: tuple[int, ...]) -> Misfit | None:

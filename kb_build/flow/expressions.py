@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, ClassVar
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, MORE_VALUES, PRODUCTS, SUMS, VERSION, T
 from kb_build.flow.members import Members
-from kb_build.flow.scopes import chain_text
+from kb_build.flow.scopes import chain_text, name_doubt
 from kb_build.flow.trees import children
 from kb_build.flow.types import (
     BOOL,
@@ -165,6 +165,9 @@ class Expressions(Members):
         kind = _CLASSES.get(type(value))
         if kind is None:
             return UNKNOWN
+        # A text that the script has asked for may be one of another Blender: a class that ``nodes.new`` makes.
+        if self.scope.state.doubted and isinstance(value, str) and self.scope.state.doubts(name_doubt(value)):
+            self.file.doubted.add(node)
         if isinstance(value, (bytes, complex)) or (isinstance(value, str) and len(value) > _LONGEST_LITERAL):
             return Plain(kind)
         return Plain(kind, value) if isinstance(value, (str, int, float)) else UNKNOWN

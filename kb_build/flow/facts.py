@@ -64,6 +64,8 @@ NODES_WITH_SOCKETS_OF_THEIR_OWN = (
 
 # Modules whose base classes and imported names the symbols do not tell (Iterator has what Interface0DIterator has).
 HALF_KNOWN = ("freestyle",)
+# Modules that are attributes of their packages once something imports them, which Blender itself does not.
+UNLOADED = ("bpy.utils.previews", "gpu_extras.batch", "gpu_extras.presets")
 # Names that are there at times, which no base can tell: owner → patterns. An official build has the 3D mouse, the bpy
 # package has not; only Windows has a console to toggle; a layout gives its buttons pointers by context_pointer_set, in
 # Blender's own scripts and in C.

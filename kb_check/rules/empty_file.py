@@ -70,6 +70,10 @@ _EMPTY = {
     f"{T}Scene.camera": _Empty(
         re.compile(rf"(?!bpy\.ops\.object\.\w*(add|camera))({_PLAIN}|{_EDITING})"), "scene.camera = obj"
     ),
+    f"{T}Scene.compositing_node_group": _Empty(
+        re.compile(rf"(?!bpy\.ops\.node\.new_compositing)({_PLAIN}|{_EDITING})"),
+        'scene.compositing_node_group = bpy.data.node_groups.new("Compositing", "CompositorNodeTree")',
+    ),
     f"{T}LayerObjects.active": _ACTIVE,
     f"{T}Context.object": _ACTIVE,
     f"{T}Context.active_object": _ACTIVE,

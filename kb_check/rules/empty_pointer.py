@@ -3,6 +3,10 @@
 ```python
 fluid = obj.modifiers.new("Fluid", "FLUID")
 fluid.domain_settings.domain_type = "LIQUID"  # reported: fluid.fluid_type = 'DOMAIN' makes domain_settings
+nodes = obj.modifiers.new("Scatter", "NODES")
+nodes.node_group.interface  # reported: nodes.node_group = tree fills it
+cube = bpy.data.objects.new("Cube", bpy.data.meshes.new("Cube"))
+cube.pose.bones  # reported: only an object with an Armature has it
 ```
 
 Not reported: things that the script did not make itself; scripts that name what fills it, anywhere, that compute
@@ -16,6 +20,8 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
+from kb_build.flow.types import Instance
+from kb_build.index.analysis import stem, words
 from kb_build.symbol_lines import empty_when_new, fillers
 from kb_check.findings import Finding
 from kb_check.made_here import (
@@ -23,6 +29,7 @@ from kb_check.made_here import (
     bindings,
     called_operators,
     callee_path,
+    has_new_data,
     has_plain_operators_only,
     is_new,
     knows_all,
@@ -30,9 +37,12 @@ from kb_check.made_here import (
     named_before,
     named_words,
     read_pointer,
+    stored_names,
+    words_of,
 )
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -48,6 +58,10 @@ _ACTIVE = frozenset({f"{T}Context.object", f"{T}Context.active_object"})
 _PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
 _WORD = re.compile(r"\w+")
 _GENERAL = frozenset({"object", "mesh", "scene", "anim"})  # modules whose operators fill many things
+_OBJECT = f"{T}Object"
+# Pointers of objects that are there with data of one class only.
+_ONLY_WITH = {f"{T}Object.pose": f"{T}Armature"}
+_ACTIVE_ONE = "active"
 _MAKING_MODIFIERS = ("Modifiers.new", "modifier_add")
 _MAKING = frozenset({"new", "modifier_add"})
 
@@ -62,47 +76,104 @@ def _check(script: Script) -> Iterator[Finding]:
         if pointer is None or ast.unparse(pointer) in told:
             continue
         symbol = _empty(script, pointer)
-        if symbol is None or not _stays_empty(script, symbol, node) or not _is_made(script, pointer.value):
+        if symbol is None:
             continue
-        told.add(ast.unparse(pointer))
-        calls = " or ".join(f"`{call}`" for call in fillers(symbol)[-1:])
-        yield Finding(
-            RULE.id, "warning", script.name_span(node),
-            f"`{symbol.path}` is None on what is new, and nothing in this script fills it: {calls} does.",
-            symbol.path,
-        )  # fmt: skip
+        if cls := _only_with(script, symbol, pointer.value):
+            said = f"`{symbol.path}` is None: only an object whose data are of `{cls}` has it."
+        elif filler := _filler(script, symbol, pointer, node):
+            said = f"`{symbol.path}` is None on what is new, and nothing in this script fills it: `{filler}` does."
+        else:
+            continue
+        if not is_tried(script, node):
+            told.add(ast.unparse(pointer))
+            yield Finding(RULE.id, "warning", script.name_span(node), said, symbol.path)
 
 
 def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:
-    """The symbol of a pointer that is None on all that is new, and that something fills."""
+    """The symbol of a pointer that is None on all that is new."""
     symbol = script.api.symbols.symbol(member_path(script, pointer))
     empty = empty_when_new(symbol) if symbol else None
-    return symbol if symbol and empty and not empty.made and fillers(symbol) else None
+    return symbol if symbol and empty and not empty.made else None
+
+
+def _only_with(script: Script, symbol: Symbol, node: ast.expr) -> str:
+    """The class of data that an object must have for a pointer, where it surely has other data; or empty."""
+    cls = _ONLY_WITH.get(symbol.path, "")
+    if not cls or not knows_all(script) or symbol.name in asked_names(script):
+        return ""
+    kind = script.type_of(node)
+    data = kind.trait("data") if isinstance(kind, Instance) and kind.sure else None
+    if isinstance(data, Instance) and data.sure and data.cls != f"{T}ID":
+        return "" if script.api.descends(data.cls, cls) else cls
+    return cls if _is_primitive(script, node) else ""
+
+
+def _filler(script: Script, symbol: Symbol, pointer: ast.Attribute, place: ast.expr) -> str:
+    """What fills a pointer of a thing that the script has made, where nothing in it does; empty where it may."""
+    if fillers(symbol):
+        is_empty = _stays_empty(script, symbol, place) and _is_made(script, pointer.value)
+        return fillers(symbol)[-1] if is_empty else ""
+    if not _is_never_assigned(script, symbol) or not _is_made(script, pointer.value):
+        return ""
+    if symbol.owner == _OBJECT:
+        is_new_mesh = _is_primitive(script, pointer.value) or has_new_data(script, pointer.value)
+        if not is_new_mesh or "data" in stored_names(script):
+            return ""
+    thing = ast.unparse(pointer.value) if isinstance(pointer.value, ast.Name) else ""
+    return f"{thing}.{symbol.name} = …"
+
+
+def _is_never_assigned(script: Script, symbol: Symbol) -> bool:
+    """Whether a pointer to a data-block, which only an assignment or an operator fills, is given none.
+
+    The active one is that of a collection, which adding to it fills.
+    """
+    is_assigned = "readonly" not in symbol.flags and script.api.descends(f"{T}{symbol.target}", f"{T}ID")
+    if not is_assigned or not knows_all(script) or not has_plain_operators_only(script):
+        return False
+    if symbol.name in asked_names(script) or symbol.name in stored_names(script):
+        return False
+    if symbol.name in words_of(script.all(ast.keyword, ast.Constant)):
+        return False
+    own = {stem(word) for word in words(symbol.name)} - {_ACTIVE_ONE}
+    is_active = symbol.name.startswith(_ACTIVE_ONE)
+    return not is_active or not any(
+        own & {stem(word) for word in words(name)} for name in named_words(script) if name != symbol.name
+    )
 
 
 def _stays_empty(script: Script, symbol: Symbol, place: ast.expr) -> bool:
     """Whether the script names nothing that may have filled a pointer, and does not ask whether it is None."""
-    if not knows_all(script) or symbol.name in asked_names(script) or symbol.owner == f"{T}ID":
+    if not knows_all(script) or symbol.name in asked_names(script) or _is_filled_beside(script, symbol):
         return False
-    words, operators = named_before(script, place), called_operators(script)
-    is_animated = symbol.name == "animation_data" and any(map(_ANIMATING.search, words | operators))
+    named, operators = named_before(script, place), called_operators(script)
+    is_animated = symbol.name == "animation_data" and any(map(_ANIMATING.search, named | operators))
     if is_animated or any(map(_COPYING.search, operators)):
         return False
     for call in fillers(symbol):
-        named = _WORD.findall(call)
+        parts = _WORD.findall(call)
         if call.startswith("bpy.ops."):
-            module = named[2]
-            if named[3] in words or (
+            module = parts[2]
+            if parts[3] in named or (
                 module not in _GENERAL
-                and any(word.startswith(module) and word != symbol.name for word in words)
+                and any(word.startswith(module) and word != symbol.name for word in named)
             ):
                 return False
         elif ".modifiers.new(" in call:
-            if named[-1] in words or _computes_kinds(script):
+            if parts[-1] in named or _computes_kinds(script):
                 return False
-        elif named[1] in words:
+        elif parts[1] in named:
             return False
     return True
+
+
+def _is_filled_beside(script: Script, symbol: Symbol) -> bool:
+    """Whether what every data-block has may be filled by what is called like it: ``asset_generate_preview``."""
+    first = words(symbol.name)[0]
+    return symbol.owner == f"{T}ID" and (
+        not has_plain_operators_only(script)
+        or any(first in words(word) for word in named_words(script) if word != symbol.name)
+    )
 
 
 @once_per_script
@@ -126,6 +197,14 @@ def _is_made(script: Script, node: ast.expr) -> bool:
         if len(values) == 1 and isinstance(values[0], ast.Attribute):
             return _is_active(script, values[0])
     return is_new(script, node) or (isinstance(node, ast.Attribute) and _is_active(script, node))
+
+
+def _is_primitive(script: Script, node: ast.expr) -> bool:
+    """Whether a thing surely is an object that an operator of meshes has just made."""
+    if isinstance(node, ast.Name):
+        values = bindings(script).get(node.id, [])
+        node = values[0] if len(values) == 1 and values[0] else node
+    return isinstance(node, ast.Attribute) and _is_active(script, node)
 
 
 def _is_active(script: Script, node: ast.Attribute) -> bool:

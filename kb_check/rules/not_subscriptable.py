@@ -9,6 +9,7 @@ mesh.vertices["Corner"]  # reported: vertices have no names
 bpy.data.objects[::2]  # reported: bpy.data.objects[:][::2]
 bpy.types["Object"]  # reported: getattr(bpy.types, "Object")
 bmesh.ops.extrude_face_region(bm, geom=faces)["verts"]  # reported: it gives `geom`
+mesh.vertices.add(1)[0]  # reported: it returns nothing
 ```
 
 Reported too: what is assigned to an item of a collection by name, and items that are deleted; an index beyond a vector,
@@ -36,6 +37,7 @@ from kb_build.flow.types import (
     Type,
     members,
 )
+from kb_check.calls import nothing_from
 from kb_check.conversions import CHANGING_ARRAYS, LENGTHS
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
@@ -72,6 +74,9 @@ _OF_COLLECTIONS = frozenset(
 
 def _check(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Subscript):
+        if (function := nothing_from(script, node.value)) and not _is_tried(script, node):
+            told = f"`{function}` returns nothing: there are no items."
+            yield Finding(RULE.id, "error", script.span(node), told, function)
         if (kind := script.type_of(node.value)) is None:
             continue
         told = {_refusal(script, node, member) for member in members(kind) if member != NONE}

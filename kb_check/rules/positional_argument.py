@@ -109,7 +109,12 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     path = callee.symbol.path
     arguments = call.node.args
     starred = any(isinstance(argument, ast.Starred) for argument in arguments)
-    if starred or callee.is_open or path.startswith(_UNRELIABLE) or len(arguments) <= len(callee.positional):
+    if (
+        starred
+        or callee.is_variadic
+        or path.startswith(_UNRELIABLE)
+        or len(arguments) <= len(callee.positional)
+    ):
         return
     if not callee.parameters and not callee.symbol.has_empty_signature:
         return

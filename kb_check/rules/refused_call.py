@@ -216,8 +216,8 @@ def _has_no_data(script: Script, node: ast.expr) -> bool:
 
 
 def _made_as(script: Script, node: ast.expr) -> str:
-    """The kind that a name's one value is made with, where nothing changes it; empty where that is not known."""
-    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
+    """The kind that something, or a name's one value, is made with, where nothing changes it; empty if not known."""
+    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else [node]
     made = values[0] if len(values) == 1 else None
     if (
         not isinstance(made, ast.Call)

@@ -25,17 +25,27 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.types import Instance
+from kb_build.records import last_name
 from kb_build.symbol_lines import usual_default
 from kb_check.calls import calls
 from kb_check.findings import Finding
-from kb_check.made_here import alias, called_operators, callee_path, knows_all, named_words, places
+from kb_check.made_here import (
+    alias,
+    called_operators,
+    callee_path,
+    is_new,
+    knows_all,
+    member_path,
+    named_words,
+    places,
+)
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_build.records import EnumItem, Symbol
+    from kb_build.records import EnumItem, NewValue, Symbol
     from kb_check.script import Script
 
 _VALUES = r"(\w+)=('[^'|]*'(?:\|'[^'|]*')*)"
@@ -48,9 +58,8 @@ _BY = re.compile(r"(only|not) by ([^…]+)")
 _T = "bpy.types."
 _SCENE = f"{_T}Scene"
 _ACTIVE = frozenset({"bpy.types.Context.object", "bpy.types.Context.active_object"})
-_OPENING = frozenset(
-    {"bpy.ops.wm.open_mainfile", "bpy.ops.wm.read_homefile", "bpy.ops.wm.read_factory_settings"}
-)
+_OPENING = frozenset({"bpy.ops.wm.open_mainfile", "bpy.ops.wm.read_homefile"})
+_RESETTING = "bpy.ops.wm.read_factory_settings"
 
 
 class _Setting(NamedTuple):
@@ -156,10 +165,15 @@ def _refused_by_setting(
             yield _finding(
                 script, statement.value, item, setting.symbol.path, f"`{name}` is {before.value!r} here"
             )
-    elif (
-        name not in named_words(script)
-        and all(map(setting.refuses, _values_of_new(setting.symbol)))
-        and _works_on_a_scene(script, target.value)
+    elif name in named_words(script):
+        return
+    elif owner := _new_owner(script, target.value, setting.symbol):
+        value = owner.value
+        if setting.refuses(value):
+            why = f"`{name}` of a new {' or '.join(owner.made)} is {value!r}: this script does not set it"
+            yield _finding(script, statement.value, item, setting.symbol.path, why)
+    elif all(map(setting.refuses, _values_of_scene(script, setting.symbol))) and _works_on_a_scene(
+        script, target.value
     ):
         usual = usual_default(setting.symbol)
         why = f"in a new scene `{name}` is {usual!r}: this script does not set it"
@@ -182,15 +196,39 @@ def _refused_beside(
         and isinstance(before, ast.Constant)
         and before.value in _TEXT.findall(found[2])
         and beside.name not in named_words(script)
-        and not set(_values_of_new(beside)) & set(_TEXT.findall(found[5]))
+        and not set(_values_of_scene(script, beside)) & set(_TEXT.findall(found[5]))
         and _works_on_a_scene(script, target.value)
     ):
         why = f"`{found[1]}` is {before.value!r} here, and in a new scene `{beside.name}` is {usual_default(beside)!r}"
         yield replace(_finding(script, statement.value, item, f"{owner}.{found[1]}", why), severity="warning")
 
 
-def _values_of_new(symbol: Symbol) -> list[object]:
-    return [usual_default(symbol), *(new.value for new in symbol.new_values)]
+def _new_owner(script: Script, node: ast.expr, setting: Symbol) -> NewValue | None:
+    """What a setting is on what the script made, where that is of a class whose new ones have a value of their own."""
+    if not knows_all(script):
+        return None
+    node = alias(script, node)
+    while isinstance(node, ast.Attribute) and (path := member_path(script, node)):
+        symbol = script.api.symbols.symbol(path)
+        if symbol is None or symbol.type != "pointer":
+            break
+        node = node.value
+        cls = _class_of(script, node)
+        for new in setting.new_values:
+            is_of = any(script.api.is_class(f"{_T}{made}") and cls == f"{_T}{made}" for made in new.made)
+            if is_of and not new.when and is_new(script, node):
+                return new
+    return None
+
+
+def _values_of_scene(script: Script, symbol: Symbol) -> list[object]:
+    """What a setting may be in a new scene: not what it is where it belongs to something of another class."""
+    new_values = (
+        new.value
+        for new in symbol.new_values
+        if not any(script.api.is_class(f"{_T}{made}") for made in new.made)
+    )
+    return [usual_default(symbol), *new_values]
 
 
 def _set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Symbol) -> ast.expr | None:
@@ -245,7 +283,7 @@ def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
     is_add_on = any(
         isinstance(part, ast.FunctionDef) and part.name == "register" for part in script.tree.body
     )
-    if is_add_on or not knows_all(script) or called_operators(script) & _OPENING:
+    if is_add_on or not knows_all(script) or called_operators(script) & _OPENING or _takes_template(script):
         return False
     node = alias(script, node)
     while isinstance(node, ast.Attribute):
@@ -261,6 +299,12 @@ def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
     return _class_of(script, node) == _SCENE
 
 
+def _takes_template(script: Script) -> bool:
+    """Whether the script may read the settings of an application template, which has its own."""
+    calls_of_it = [node for node in script.all(ast.Call) if callee_path(script, node) == _RESETTING]
+    return any(keyword.arg != "use_empty" for call in calls_of_it for keyword in call.keywords)
+
+
 # Kinds of things.
 
 
@@ -272,6 +316,8 @@ def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
         node = alias(script, node)
         cls = _class_of(script, node)
         symbol = script.api.symbols.symbol(cls) if cls else None
+        if found and found[1] == "not" and any(script.api.descends(cls, f"{_T}{kind}") for kind in kinds):
+            return last_name(cls)
         if symbol and symbol.base and kinds <= _labels_below(script, symbol.base):
             label = symbol.label.lower()
             is_refused = (label in kinds) != (found is not None and found[1] == "only")

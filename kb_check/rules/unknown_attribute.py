@@ -7,6 +7,8 @@ Blender's own, nor what the files of the same folder register (``bpy.types.Scene
 ```python
 bpy.context.object.draw_type = "WIRE"  # reported: display_type since 2.80
 bpy.context.object.display_type = "WIRE"
+light.energy.value = 100  # reported: a number is assigned as it is, `light.energy = 100`
+mesh.vertices.add(1).co = (0, 0, 0)  # reported: the call returns nothing
 ```
 
 Not reported: what stands behind ``hasattr``, in a ``try`` that catches AttributeError, or in a branch for another
@@ -19,20 +21,27 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import OBJECT_DATA
+from kb_build.flow.types import UNKNOWN, Plain, members
+from kb_check.calls import nothing_from
+from kb_check.findings import Finding
+from kb_check.made_here import member_path, words_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.script import once_per_script
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_check.findings import Finding
     from kb_check.script import Script
 
 _CONTEXT = "bpy.types.Context"
 _LET_PASS = frozenset({"driver_remove"})
 # Before, what is assigned to an unknown name of a property group is lost, and no error.
 _OF_SCRIPTS, _REFUSED = "bpy.types.PropertyGroup", (5, 0)
+_PYTHONS: dict[str, type] = {"bool": bool, "int": int, "float": float, "str": str}
+_SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -44,6 +53,39 @@ def _check(script: Script) -> Iterator[Finding]:
             had = _owner_that_had(script, row, owner)
             lacking = script.names.member(had, row.value, reading=row.kind != "store")
             yield lacking_finding(script, RULE.id, row, lacking, "warning" if _is_let_pass(row) else "error")
+    yield from _of_python(script)
+
+
+def _of_python(script: Script) -> Iterator[Finding]:
+    """Attributes of one number, truth value or text, or of None."""
+    for node in script.all(ast.Attribute):
+        if function := nothing_from(script, node.value):
+            path, told = function, f"`{function}` returns nothing: there is no `{node.attr}`."
+        else:
+            path = member_path(script, node.value) if isinstance(node.value, ast.Attribute) else ""
+            kind = _scalar(script, path, node)
+            told = f"`{path}` is one {kind}: it has no `{node.attr}`." if kind else ""
+        if told and not is_tried(script, node) and node.attr not in _asked(script):
+            yield Finding(RULE.id, "error", script.name_span(node), told, path)
+
+
+def _scalar(script: Script, path: str, node: ast.Attribute) -> str:
+    """The one type of Python's that a property surely is of which lacks an attribute; empty for none."""
+    symbol = script.api.symbols.symbol(path) if path else None
+    if symbol is None or symbol.kind != "property" or symbol.type not in _SCALARS or symbol.array:
+        return ""
+    kinds = {
+        kind.kind if isinstance(kind, Plain) else ""
+        for kind in members(script.type_of(node.value) or UNKNOWN)
+    }
+    kind = kinds.pop()
+    return "" if kinds or kind not in _PYTHONS or hasattr(_PYTHONS[kind], node.attr) else kind
+
+
+@once_per_script
+def _asked(script: Script) -> frozenset[str]:
+    """The words of the script's texts: it may ask for an attribute by one."""
+    return words_of(script.all(ast.Constant))
 
 
 def _is_let_pass(row: Resolution) -> bool:

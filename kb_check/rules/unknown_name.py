@@ -6,20 +6,27 @@ and so on; an import counts as well as a use. Operators have a rule of their own
 ```python
 bpy.data.groups["Trees"]  # reported: collections since 2.80
 from bpy_extras.io_utils import orientation_helper_factory
+import bpy
+
+bpy.utils.previews.new()  # reported, as a warning: `import bpy.utils.previews` makes it an attribute
 ```
 """
 
 from __future__ import annotations
 
+import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import UNLOADED
+from kb_check.findings import Finding
+from kb_check.made_here import knows_all, member_path
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.findings import Finding
     from kb_check.script import Script
 
 
@@ -31,6 +38,31 @@ def _check(script: Script) -> Iterator[Finding]:
         symbol = script.api.symbols.symbol(owner)
         if symbol is None or symbol.kind == "module" or row.kind == "name":
             yield lacking_finding(script, RULE.id, row, script.names.member(owner, row.value))
+    yield from _unloaded(script)
+
+
+def _unloaded(script: Script) -> Iterator[Finding]:
+    """Modules that are used without an import, which another script may have made."""
+    told: set[str] = set()
+    for node in script.all(ast.Attribute):
+        path = member_path(script, node) if isinstance(node.ctx, ast.Load) else ""
+        if path not in UNLOADED or path in told or not knows_all(script) or is_tried(script, node):
+            continue
+        told.add(path)
+        if path not in _imported(script):
+            yield Finding(
+                RULE.id, "warning", script.name_span(node),
+                f"`{path}` is no attribute before something imports it, as nothing does here: `import {path}`.", path,
+            )  # fmt: skip
+
+
+def _imported(script: Script) -> set[str]:
+    """The paths of the modules, and of what else is taken from them, that a script imports."""
+    found = {alias.name for node in script.all(ast.Import) for alias in node.names}
+    for node in script.all(ast.ImportFrom):
+        if node.module:
+            found |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
+    return found
 
 
 RULE = Rule("unknown-name", "error", "A class or function that the module does not have", _check)

@@ -1,7 +1,8 @@
 """A node or a socket type that does not exist, given by its name, or a node that its tree does not take.
 
 Looked at where a literal is given to ``nodes.new`` or to ``interface.new_socket``. A name that only an add-on's node
-could have is left alone: reported is what another Blender had, and what begins as Blender's own nodes do.
+could have is left alone, as is a former one that this Blender still takes: reported is what another Blender had, and
+what begins as Blender's own nodes do.
 
 ```python
 nodes.new("ShaderNodeTexMusgrave")  # reported since 4.1: ShaderNodeTexNoise
@@ -52,7 +53,7 @@ def _check(script: Script) -> Iterator[Finding]:
             if script.api.is_class(f"{T}{name}"):
                 yield from _refused(script, call, node, name)
                 continue
-            if script.package.has(("bpy.types",), name):
+            if script.package.has(("bpy.types",), name) or script.names.still_works(f"{T}{name}"):
                 continue
             if script.names.was("bpy.types", name) or _BLENDERS_OWN.fullmatch(name):
                 lacking = script.names.member("bpy.types", name)

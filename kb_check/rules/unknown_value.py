@@ -2,20 +2,27 @@
 
 Looked at where a literal is assigned or given to a call, or is an attribute of a class that Blender registers; a
 comparison is the rule ``never-true``'s. Enumerations whose values Blender puts together while it runs (images,
-installed engines) are left out.
+installed engines) are left out. Of node trees, add-ons may have classes of their own: reported is a name that begins as
+those of Blender's nodes do, or the type of a tree.
 
 ```python
 scene.render.engine = "BLENDER_EEVEE_NEXT"  # reported in 5.0: BLENDER_EEVEE
+bpy.data.node_groups.new("Scatter", "GEOMETRY")  # reported: GeometryNodeTree
 ```
 """
 
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import T
 from kb_build.flow.types import Resolution
+from kb_build.records import last_name
+from kb_build.symbol_lines import NODE_FAMILIES
+from kb_check.calls import calls
 from kb_check.given import class_values
 from kb_check.literals import written
 from kb_check.rule import Rule
@@ -37,6 +44,27 @@ def _check(script: Script) -> Iterator[Finding]:
         values = script.api.values_of(owner)
         yield lacking_finding(script, RULE.id, row, script.names.value(owner, row.value, values))
     yield from _of_classes(script)
+    yield from _of_trees(script)
+
+
+def _of_trees(script: Script) -> Iterator[Finding]:
+    """The classes of node trees, given by their names."""
+    for call in calls(script):
+        path = call.callee.symbol.path
+        node = call.argument("type") if path == f"{T}BlendDataNodeTrees.new" else None
+        if not isinstance(node, ast.Constant) or not isinstance(value := node.value, str):
+            continue
+        if script.api.is_class(f"{T}{value}") or value in script.own_identifiers:
+            continue
+        meant = script.api.class_of_value(f"{T}NodeTree", value)
+        if not (meant or value.startswith(NODE_FAMILIES)) or script.package.has(("bpy.types",), value):
+            continue
+        owner = f"{path}(type)"
+        lacking = script.names.value(owner, value, script.api.values_of(owner))
+        if meant:
+            lacking = replace(lacking, replacement=last_name(meant))
+        row = Resolution(node, "value", missing=(owner,), value=value)
+        yield lacking_finding(script, RULE.id, row, lacking)
 
 
 def _of_classes(script: Script) -> Iterator[Finding]:

@@ -2,9 +2,15 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 from statements_in_blender import run_statements
+
+from kb_build.records import last_name
+from kb_check.calls import callee_of
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -96,3 +102,28 @@ def test_keys_that_results_of_bmesh_lack_are_found(rule_checker: Checker, tmp_pa
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
     found = rule_checker.check(_RESULTS, rules=["not-subscriptable"])
     assert [one.span.line for one in found] == refused == [5, 8, 11]
+
+
+_OUTPUTS = """
+import json, sys
+import bpy
+rows = []
+for cls, name in json.loads(sys.argv[-1]):
+    function = getattr(bpy.types, cls).bl_rna.functions.get(name)
+    rows.append(function is None or any(parameter.is_output for parameter in function.parameters))
+print(json.dumps(rows))
+"""
+
+
+def test_functions_that_tell_of_no_result_have_none(rule_checker: Checker) -> None:
+    names: list[tuple[str, str]] = []
+    for (path,) in rule_checker.names.reader.rows("SELECT path FROM symbols WHERE kind = 'function'"):
+        symbol = rule_checker.api.symbols.symbol(path)
+        if symbol and symbol.parameters and not symbol.returns and callee_of(symbol).is_rna:
+            names.append((last_name(symbol.owner), symbol.name))
+    done = subprocess.run(
+        [sys.executable, "-c", _OUTPUTS, json.dumps(names)], capture_output=True, check=True
+    )
+    gives = json.loads(done.stdout.splitlines()[-1])
+    assert len(names) > 500
+    assert [name for name, answer in zip(names, gives, strict=True) if answer] == []

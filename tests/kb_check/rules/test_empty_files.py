@@ -30,6 +30,8 @@ bpy.data.lights['Light'].energy
 bpy.data.materials['Material'].roughness
 bpy.data.worlds['World'].color
 bpy.data.collections['Collection'].name
+bpy.context.scene.compositing_node_group.nodes
+bpy.data.scenes[0].compositing_node_group.interface
 bpy.context.scene.render.fps = 25
 bpy.context.scene.collection.name
 bpy.context.view_layer.name
@@ -49,7 +51,7 @@ def test_what_blender_refuses_in_an_empty_file_is_found(rule_checker: Checker, t
     refused = [line for line, (error, *_) in zip(_READING, answers, strict=True) if error]
     found = [line for line in _READING if is_found(rule_checker, f"{_EMPTYING}{line}\n")]
     assert found == refused
-    assert len(refused) == 16
+    assert len(refused) == 18
 
 
 @pytest.mark.parametrize(
@@ -57,6 +59,9 @@ def test_what_blender_refuses_in_an_empty_file_is_found(rule_checker: Checker, t
     [
         f"{_EMPTYING}bpy.context.scene.world = bpy.data.worlds.new('World')\nbpy.context.scene.world.color = (0, 0, 0)",
         f"{_EMPTYING}bpy.data.worlds.new('World')\nbpy.data.worlds['World'].color = (0, 0, 0)",
+        f"{_EMPTYING}tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\nscene = bpy.context.scene\n"
+        "scene.compositing_node_group = tree\nscene.compositing_node_group.nodes",
+        f"{_EMPTYING}bpy.ops.node.new_compositing_node_group()\nbpy.context.scene.compositing_node_group.nodes",
         f"{_EMPTYING}if bpy.context.scene.world:\n    bpy.context.scene.world.color = (0, 0, 0)",
         f"{_EMPTYING}world = bpy.context.scene.world\nif world is not None:\n    world.color = (0, 0, 0)",
         f"{_EMPTYING}try:\n    bpy.context.scene.world.name\nexcept AttributeError:\n    pass",

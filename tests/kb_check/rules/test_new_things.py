@@ -26,6 +26,11 @@ _MIX = "mix = bpy.data.node_groups.new('x', 'ShaderNodeTree').nodes.new('ShaderN
 _IMAGES = "images = bpy.context.scene.render.image_settings\n"
 _PARTICLES = "hair = bpy.data.particles.new('x')\nhair.type = 'HAIR'\n"
 _ACTION = "action = bpy.data.actions.new('x')\n" + _OBJECT + "ob.animation_data_create().action = action\n"
+_COMPOSITOR = "tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\n"
+_OUTPUT = _COMPOSITOR + "out = tree.nodes.new('CompositorNodeOutputFile')\n"
+_NODES = _CUBE + "nodes = bpy.context.object.modifiers.new('x', 'NODES')\n"
+_MESH = "ob = bpy.data.objects.new('x', bpy.data.meshes.new('x'))\n"
+_RESET = "bpy.ops.wm.read_factory_settings(use_empty=True)\n"
 WRONG = {
     "empty-pointer": [
         _FLUID + "fluid.domain_settings.domain_type = 'LIQUID'",
@@ -34,6 +39,18 @@ WRONG = {
         _OBJECT + "ob.animation_data.use_nla = True",
         _CUBE + "bpy.context.object.rigid_body.mass = 2",
         _CUBE + "cube = bpy.context.active_object\ncube.rigid_body.mass = 2",
+        _NODES + "nodes.node_group.interface.new_socket('x')",
+        _NODES + "group = nodes.node_group\ngroup.nodes.new('NodeReroute')",
+        "bpy.data.scenes.new('x').compositing_node_group.nodes",
+        _CUBE + "material = bpy.context.object.active_material\nmaterial.use_nodes = True",
+        _MESH + "ob.active_material.diffuse_color = (1, 0, 0, 1)",
+        _MESH + "ob.parent.location.x = 1",
+        _MESH + "ob.constraints.new('COPY_LOCATION').target.location.x = 1",
+        _MESH + "ob.pose.bones['x']",
+        _MESH + "ob.asset_data.tags.new('x')",
+        _CUBE + "bpy.context.object.asset_data.description = 'x'",
+        _CUBE + "cube = bpy.context.object\ncube.pose.bones['x'].location.x = 1",
+        _TREE + "tree.nodes.new('GeometryNodeGroup').node_tree.nodes",
     ],
     "hidden-socket": [
         _POINTS + "points.inputs['Density Max'].default_value = 3",
@@ -45,6 +62,11 @@ WRONG = {
         _GLARE + "glare.inputs['Type'].default_value = 'FOG_GLOW'",
         _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketFloatFactor')",
         "bpy.data.node_groups.new('x', 'NodeTree')",
+        "bpy.data.node_groups.new('x', 'GeometryNodes')",
+        "bpy.data.node_groups.new('x', 'GeometryNode')",
+        "bpy.data.node_groups.new('x', 'ShaderNodes')",
+        "bpy.data.node_groups.new(name='x', type='GEOMETRY')",
+        "bpy.data.node_groups.new('x', 'COMPOSITING')",
     ],
     "list-attribute": [
         _OBJECT + "ob.driver_add('location').driver",
@@ -58,6 +80,12 @@ WRONG = {
         _TREE + "tree.nodes.new('FunctionNodeRandomValue').inputs['Max_001']",
     ],
     "refused-value": [
+        _RESET + "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
+        "bpy.context.scene.render.image_settings.file_format = 'OPEN_EXR_MULTILAYER'",
+        _OUTPUT + "out.format.file_format = 'PNG'",
+        _OUTPUT + "settings = out.format\nsettings.file_format = 'OPEN_EXR'",
+        _OUTPUT + "out.format.media_type = 'VIDEO'",
+        _OUTPUT + "settings = out.format\nsettings.media_type = 'VIDEO'",
         "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
         _IMAGES + "images.media_type = 'VIDEO'\nimages.color_mode = 'RGB'\nimages.file_format = 'PNG'",
         _IMAGES + "images.file_format = 'JPEG'\nimages.color_mode = 'RGBA'",
@@ -77,7 +105,17 @@ WRONG = {
         "curve = bpy.data.curves.new('x', 'CURVE')\ncurve.dimensions = '3D'\ncurve.fill_mode = 'BOTH'",
     ],
     "wrong-type": [_TREE + "tree.interface.new_socket('x', description=None)"],
-    "unknown-name": ["import bgl", "from bgl import glEnable"],
+    "unknown-name": [
+        "import bgl",
+        "from bgl import glEnable",
+        "bpy.utils.previews.new()",
+        "import gpu_extras\ngpu_extras.batch.batch_for_shader",
+        "import gpu_extras.batch\ngpu_extras.presets.draw_circle_2d",
+    ],
+    "refused-call": [
+        "curve = bpy.data.curves.new('x', 'CURVE')\ncurve.splines.new('POLY').bezier_points.add(2)",
+        "curve = bpy.data.curves.new('x', 'CURVE')\ncurve.splines.new(type='BEZIER').points.add(2)",
+    ],
     "unknown-attribute": [
         "bpy.context.scene.cycles.use_denoise = True",
         "bpy.context.view_layer.cycles.use_pass_debug_sample_count = True",
@@ -89,6 +127,41 @@ WRONG = {
     "not-in-edit-mode": [_ARMATURE + "armature.edit_bones.new('x')"],
 }
 RIGHT = [
+    "bpy.ops.wm.read_factory_settings(app_template='Video_Editing')\n"
+    "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
+    _RESET + "bpy.context.scene.render.image_settings.file_format = 'JPEG'",
+    _OUTPUT + "out.format.file_format = 'OPEN_EXR_MULTILAYER'",
+    _OUTPUT + "out.format.media_type = 'IMAGE'\nout.format.file_format = 'PNG'",
+    _NODES
+    + "nodes.node_group = bpy.data.node_groups.new('x', 'GeometryNodeTree')\nnodes.node_group.interface.active",
+    _NODES + "if nodes.node_group:\n    nodes.node_group.nodes",
+    _NODES + "group = nodes.node_group\nif group is not None:\n    group.nodes",
+    _NODES + "try:\n    nodes.node_group.nodes\nexcept AttributeError:\n    pass",
+    "bpy.ops.mesh.primitive_cube_add()\nbpy.ops.node.new_geometry_nodes_modifier()\n"
+    "bpy.context.object.modifiers[0].node_group.nodes",
+    _CUBE + "bpy.context.object.data.materials.append(bpy.data.materials.new('x'))\n"
+    "bpy.context.object.active_material.use_nodes = True",
+    _CUBE + "bpy.ops.object.material_slot_add()\nslot = bpy.context.object.material_slots[0]\n"
+    "slot.material = bpy.data.materials.new('x')\nbpy.context.object.active_material.use_nodes = True",
+    "mesh = bpy.data.meshes.new('x')\nmesh.materials.append(bpy.data.materials.new('x'))\n"
+    + _CUBE
+    + "bpy.context.object.data = mesh\nbpy.context.object.active_material.use_nodes = True",
+    _MESH + "ob.parent = bpy.data.objects.new('y', None)\nob.parent.location.x = 1",
+    _ARMATURE
+    + "bpy.context.collection.objects.link(ob)\nbpy.context.view_layer.update()\nlen(ob.pose.bones)",
+    "bpy.ops.object.armature_add()\nbpy.context.object.pose.bones[0].location.x = 1",
+    _CUBE + "bpy.ops.object.armature_add()\nbpy.context.object.pose.bones[0].location.x = 1",
+    _MESH + "ob.asset_mark()\nob.asset_data.tags.new('x')",
+    _MESH + "ob.asset_data",
+    "curve = bpy.data.curves.new('x', 'CURVE')\ncurve.splines.new('BEZIER').bezier_points.add(2)",
+    "curve = bpy.data.curves.new('x', 'CURVE')\ncurve.splines.new('NURBS').points.add(2)",
+    "import bpy.utils.previews\nbpy.utils.previews.new()",
+    "from bpy.utils import previews\nprevious = previews.new()\nbpy.utils.previews.remove(previous)",
+    "import gpu_extras.batch as batch\nimport gpu_extras\ngpu_extras.batch",
+    _MESH + "if ob.pose:\n    ob.pose.bones",
+    "bpy.data.node_groups.new('x', 'GeometryNodeTree')",
+    "class Tree(bpy.types.NodeTree):\n    bl_idname = 'ShaderNodeTreeX'\n    bl_label = 'x'\n    bl_icon = 'NONE'\n"
+    "bpy.utils.register_class(Tree)\nbpy.data.node_groups.new('x', 'ShaderNodeTreeX')",
     _MIX + "mix.inputs['A'].default_value = (1, 0, 0, 1)\nmix.inputs[6]\nmix.outputs['Result']",
     _TREE + "tree.nodes.new('FunctionNodeRandomValue').inputs['Max']",
     _IMAGES + "images.media_type = 'VIDEO'\nimages.file_format = 'FFMPEG'",

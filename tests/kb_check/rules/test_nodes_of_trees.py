@@ -9,10 +9,14 @@ from typing import TYPE_CHECKING
 
 from statements_in_blender import run_statements
 
+from kb_build.records import last_name
+
 if TYPE_CHECKING:
     from pathlib import Path
 
     from conftest import Check
+
+    from kb_check.checker import Checker
 
 _TREES = ("ShaderNodeTree", "GeometryNodeTree", "CompositorNodeTree", "TextureNodeTree")
 _CLASSES = """
@@ -42,6 +46,18 @@ def test_the_node_that_the_tree_has_instead_is_named(check: Check) -> None:
     code = "import bpy\ntree = bpy.data.node_groups.new('tree', 'CompositorNodeTree')\n"
     (found,) = check("unknown-node", code + "tree.nodes.new('CompositorNodeGamma')\n")
     assert found.instead == ("bpy.types.ShaderNodeGamma",)
+
+
+def test_a_former_name_that_works_still_is_left_alone(
+    rule_checker: Checker, check: Check, tmp_path: Path
+) -> None:
+    former = rule_checker.names.reader.rows("SELECT path FROM still_works WHERE path LIKE 'bpy.types.%Node%'")
+    names = [last_name(path) for (path,) in former if path.count(".") == 2]
+    assert "ShaderNodeBsdfGlossy" in names
+    lines = ["import bpy", "tree = bpy.data.node_groups.new('tree', 'ShaderNodeTree')"]
+    lines += [f"tree.nodes.new('{name}')" for name in names if name.startswith("ShaderNode")]
+    assert [error for error, *_ in run_statements(tmp_path, lines) if error] == []
+    assert check("unknown-node", "\n".join(lines)) == []
 
 
 def test_a_tree_of_another_kind_is_left_alone(check: Check) -> None:

@@ -37,6 +37,20 @@ group = ob.vertex_groups.new(name="group")
 """.splitlines()
 
 REFUSED = {
+    "unknown-attribute": """\
+light.energy.value
+light.energy.value = 100
+light.energy.default_value = 5
+scene.frame_end.value
+ob.hide_render.value
+ob.name.name
+ob.display_type.identifier
+ob.location.x.real_part
+principled.inputs["Roughness"].default_value.x
+mesh.vertices.add(1).co
+added = mesh.edges.add(1); added.vertices
+scene.frame_set(1).name
+""",
     "wrong-type": """\
 scene.frame_end = 250.0
 scene.render.fps = 60 / 2
@@ -69,6 +83,15 @@ ob.display_type = 3
 ob.rotation_mode = None
 ob.active_material = "material"
 ob.parent = scene
+ob.data = material
+ob.data = ob
+ob.data = scene.collection
+bpy.data.objects.new("name", material)
+bpy.data.objects.new("name", image)
+bpy.data.objects.new("name", tree)
+bpy.data.objects.new(name="name", object_data=ob)
+bpy.data.objects.new("name", bpy.data.worlds.new("world"))
+bpy.data.objects.new("name", cloth)
 ob.data.name = 5
 ob.location.x = "1"
 ob.lock_location = (1, 0, 1)
@@ -106,6 +129,18 @@ Vector(5)
 Euler("XYZ")
 Quaternion(1.0)
 Color("red")
+Color((1, 1, 1, 1))
+Color([1, 1])
+Color(Quaternion())
+Euler((1, 2))
+Euler((1, 2, 3, 4), 'XYZ')
+Quaternion((1, 2))
+Quaternion((1, 2, 3, 4, 5))
+bm.verts.new((1, 2))
+bm.verts.new([1, 2, 3, 4])
+bm.verts.new(co=(1, 2))
+bm.verts.new(Quaternion())
+bmesh.geometry.intersect_face_point(next(iter(bm.faces)), (0, 0))
 Matrix.Translation("abc")
 Matrix.Translation(3)
 Matrix.Diagonal(2)
@@ -167,6 +202,8 @@ ob.modifiers.new("Cloth", 'CLOTH', 3)
 ob.keyframe_insert("location", 0, 5)
 mesh.from_pydata([], [], [], True, 3)
 bpy.data.images.new("image", 2, 2, True)
+bpy.context.temp_override(ob)
+bpy.context.temp_override({"object": ob})
 bpy.ops.object.select_all('SELECT')
 bpy.ops.mesh.primitive_cube_add((1, 2, 3))
 bpy.ops.mesh.primitive_cube_add(2.0)
@@ -214,6 +251,8 @@ ob.color["r"]
 ob.matrix_world[0, 1]
 bm.verts["a"]
 bm.verts[::2]
+mesh.vertices.add(1)[0]
+points = mesh.vertices.add(1); points[0].co = (0, 0, 0)
 """,
 }
 TAKEN = """\
@@ -285,6 +324,12 @@ ob.modifiers["Lattice"].thickness = 2
 tree.nodes["Mix"].data_type = 'RGBA'
 tree.nodes["Mix"].inputs[7]
 bpy.data.objects.new("name", None)
+bpy.data.objects.new("name", light)
+bpy.data.objects.new("name", bpy.data.curves.new("curve", 'FONT'))
+bpy.data.objects.new("name", bpy.data.hair_curves.new("hair"))
+bpy.data.objects.new("name", bpy.data.lightprobes.new("probe", 'PLANE'))
+bpy.data.objects.new("name", bpy.data.grease_pencils.new("pencil"))
+bpy.data.objects.new("name", None).data = image
 bpy.data.objects[-1]
 bpy.data.objects[:][::2]
 bpy.data.objects[True]
@@ -297,6 +342,17 @@ light.color * 2
 2 * ob.matrix_world
 ob.matrix_world *= 2
 ob.matrix_world @= Matrix()
+light.energy.is_integer()
+light.energy.real
+scene.frame_end.bit_length()
+ob.hide_render.real
+ob.name.upper().lower()
+ob.display_type.lower()
+mesh.vertices.add(1)
+nothing = mesh.vertices.add(1)
+nothing = mesh.vertices.add(1) or mesh.vertices; nothing[0].co
+result = mesh.vertices.add(1); result.co if result else None
+made = scene.collection.children.link(bpy.data.collections.new("made")) or bpy.data.collections["made"]; made.name
 scene["property"] = 5
 scene["property"]
 mesh.vertices
@@ -312,6 +368,7 @@ ob.select_set(True, view_layer=None)
 ob.shape_key_add(name="Smile", from_mix=1)
 ob.keyframe_insert("location", index=0, frame=5)
 scene.frame_set(5, subframe=0.5)
+bpy.context.temp_override(object=ob, active_object=ob)
 bpy.ops.mesh.primitive_cube_add(size=2, location=(0, 0, 1))
 bpy.ops.mesh.primitive_cube_add('EXEC_DEFAULT', True)
 bpy.ops.mesh.primitive_circle_add('EXEC_DEFAULT', vertices=8)
@@ -324,6 +381,13 @@ Vector(range(3))
 Vector(b"ab")
 Euler(ob.location, 'ZYX')
 Quaternion((1, 0, 0), math.pi)
+Quaternion((1, 0, 0))
+Quaternion(Color())
+Euler(Color())
+Color(Vector((1, 1, 1)))
+bm.verts.new((1, 2, 3))
+bm.verts.new(ob.location)
+bm.verts.new(Color())
 Color()
 mathutils.noise.noise(ob.location)
 mathutils.geometry.intersect_point_line([0, 0, 0], (1, 0, 0), ob.location)

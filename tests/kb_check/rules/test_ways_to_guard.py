@@ -199,6 +199,45 @@ def test_no_rule_finds_an_error_behind_an_open_question(rule_checker: Checker, c
     assert _errors(rule_checker, code.format("ob.name")) != []
 
 
+# ``ShaderNodeTexMusgrave`` went in 4.1: a class by its name, which nodes.new takes.
+ASKING = (
+    "X in dir(bpy.types)", "hasattr(bpy.types, X)", "getattr(bpy.types, X, None)", "X in NAMES", "HAS",
+    "bpy.types.Node.bl_rna_get_subclass_py(X)",
+)  # fmt: skip
+NODES = """\
+import bpy
+nodes = bpy.data.node_groups.new('x', 'ShaderNodeTree').nodes
+NAMES = dir(bpy.types)
+HAS = X in dir(bpy.types)
+"""
+
+
+def _with_node(code: str, asked: str) -> str:
+    return (NODES + code.replace("ASKED", asked)).replace("X", "'ShaderNodeTexMusgrave'")
+
+
+CHOICES = (
+    "nodes.new(X) if ASKED else nodes.new('ShaderNodeTexNoise')",
+    "nodes.new('ShaderNodeTexNoise') if not ASKED else nodes.new(X)",
+    "ASKED and nodes.new(X)",
+    "if ASKED:\n    nodes.new(X)",
+    "def f():\n    if not ASKED:\n        return\n    nodes.new(X)\nf()",
+)
+
+
+def test_a_guarded_text_is_no_error(rule_checker: Checker, tmp_path: Path) -> None:
+    texts = [_with_node(code, asked) for code in CHOICES for asked in ASKING]
+    assert [error for error, *_ in run_statements(tmp_path, texts) if error] == []
+    assert [text for text in texts if rule_checker.check(text)] == []
+
+
+@pytest.mark.parametrize("code", ["if ASKED:\n    pass\nnodes.new(X)", "if not nodes:\n    nodes.new(X)"])
+def test_a_text_that_is_not_guarded_is_found(rule_checker: Checker, tmp_path: Path, code: str) -> None:
+    text = _with_node(code, ASKING[0])
+    assert run_statements(tmp_path, [text])[0][0]
+    assert [finding.rule for finding in rule_checker.check(text)] == ["unknown-node"]
+
+
 @pytest.mark.parametrize(
     ("compat", "code"),
     [
