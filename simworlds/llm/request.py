@@ -11,8 +11,6 @@ import base64
 import re
 from typing import TYPE_CHECKING, Any, cast
 
-from anthropic import transform_schema
-
 from simworlds.llm.messages import Ask, Block, Kept, Message, Picture, Text, ToolResult, ToolUse
 
 if TYPE_CHECKING:
@@ -54,6 +52,9 @@ def params_of(ask: Ask) -> MessageCreateParamsBase:
         tools[-1]["cache_control"] = _MARK
         params["tools"] = cast("list[ToolParam]", tools)
     if ask.form:
+        # More than a second to import, which most who import this module can spare.
+        from anthropic import transform_schema  # noqa: PLC0415
+
         schema = transform_schema(ask.form.schema)
         params["output_config"] = {"format": {"type": "json_schema", "schema": schema}}
     if _THINKS.search(ask.model):
