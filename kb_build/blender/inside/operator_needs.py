@@ -39,6 +39,8 @@ NOT_ASKED = frozenset(
         "asset.library_refresh",
         "brush.asset_revert",
         "brush.asset_save_as",
+        # It answers by what its user has.
+        "preferences.asset_library_remove",
     }
 )
 # Of bpy.data.
