@@ -284,6 +284,11 @@ class BaseReader:
             WHERE target = ? AND target != '' AND kind = 'property' AND type = 'pointer' ORDER BY path"""
         return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
+    def pointers(self) -> list[SymbolEntry]:
+        """All that point to a class."""
+        sql = f"SELECT {_ENTRY} FROM symbols WHERE type = 'pointer' AND target != '' ORDER BY path"
+        return [SymbolEntry._make(row) for row in self.rows(sql)]
+
     def pointers_called(self, name: str, cls: str) -> list[str]:
         """Paths of the pointer properties of this name whose value is a class, given by its name."""
         sql = """SELECT path FROM symbols

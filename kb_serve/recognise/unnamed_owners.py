@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections import Counter
+from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -31,6 +31,8 @@ class UnnamedOwners:
     def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup) -> None:
         self._reader = reader
         self._removed = removed
+        # class → the pointers to it that are None on new things
+        self._empty: dict[str, list[SymbolEntry]] = {}
 
     def of_none(self, name: str, query: str, recognition: Recognition) -> None:
         """What may have been None before ``.name``: the pointers to classes that have the name, or once had it."""
@@ -77,16 +79,19 @@ class UnnamedOwners:
         None where that leads to too many classes, and none to a class whose member scripts use far less than another's:
         then they say nothing.
         """
-        members = {
-            target: self._member(target, name) for target in {one.target for one in self._empty_pointers}
+        members = {target: self._member(target, name) for target in self._that_may_have(name)}
+        having = {
+            target: one.path
+            for target, one in members.items()
+            if one and one.group != "ui" and self._empty_pointers(target)
         }
-        having = {target: one.path for target, one in members.items() if one and one.group != "ui"}
         if not 0 < len(having) <= _MANY:
             return []
         weights = self._reader.weights([entry.path for entry in self._reader.by_name(name)])
         least = max(weights.values(), default=0) / 2
         usual = {target for target, path in having.items() if weights.get(path, 0) >= least}
-        found = self._weightiest(entry for entry in self._empty_pointers if entry.target in usual)
+        empty = (entry for target in usual for entry in self._empty_pointers(target))
+        found = self._weightiest(sorted(empty, key=lambda entry: entry.path))
         weights = self._reader.weights([entry.path for entry in found])
         least = max(_WEIGHTY, max(weights.values(), default=0) / 2)
         return [entry for entry in found if weights.get(entry.path, 0) >= least]
@@ -94,25 +99,39 @@ class UnnamedOwners:
     def _member(self, cls: str, name: str) -> SymbolEntry | None:
         return self._reader.member([entry.path for entry in self._reader.lineage(TYPES + cls)], name)
 
-    @cached_property
-    def _empty_pointers(self) -> list[SymbolEntry]:
-        """The pointers that are None on new things, of which it is known how they are filled.
+    def _that_may_have(self, name: str) -> set[str]:
+        """The classes that pointers lead to, of those with a member of that name and of the classes below them."""
+        owners = {entry.owner for entry in self._reader.by_name(name)}
+        below = {cls.path for owner in owners for cls in self._reader.descendants(owner)}
+        return {path.removeprefix(TYPES) for path in owners | below} & self._pointers.keys()
 
-        Not those of classes that many point to (objects, materials): scripts fill these as a matter of course.
+    @cached_property
+    def _pointers(self) -> dict[str, list[SymbolEntry]]:
+        """Class → the pointers that lead to it."""
+        found: dict[str, list[SymbolEntry]] = defaultdict(list)
+        for entry in self._reader.pointers():
+            found[entry.target].append(entry)
+        return dict(found)
+
+    def _empty_pointers(self, target: str) -> list[SymbolEntry]:
+        """The pointers to a class that are None on new things, of which it is known how they are filled.
+
+        None of a class that many point to (objects, materials): scripts fill these as a matter of course.
         """
-        rows = self._reader.rows(
-            "SELECT path FROM symbols WHERE type = 'pointer' AND target != '' ORDER BY path"
-        )
-        entries = filter(None, (self._reader.entry(row[0]) for row in rows))
-        empty = [entry for entry in entries if entry.group != "ui" and self._is_empty_when_new(entry)]
-        count = Counter(entry.target for entry in empty)
-        return [
-            entry
-            for entry in empty
-            if count[entry.target] <= _MANY
-            and entry.owner != TYPES + entry.target
-            and (self._flag(entry, FILLED_BY) or self._setting(entry))
-        ]
+        if target not in self._empty:
+            empty = [
+                entry
+                for entry in self._pointers[target]
+                if entry.group != "ui" and self._is_empty_when_new(entry)
+            ]
+            self._empty[target] = [
+                entry
+                for entry in empty
+                if len(empty) <= _MANY
+                and entry.owner != TYPES + target
+                and (self._flag(entry, FILLED_BY) or self._setting(entry))
+            ]
+        return self._empty[target]
 
     def _is_empty_when_new(self, entry: SymbolEntry) -> bool:
         symbol = self._reader.symbol(entry.path)
