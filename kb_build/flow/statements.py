@@ -29,12 +29,12 @@ from kb_build.flow.types import (
     LocalModule,
     Mapping,
     Module,
-    NoneValue,
     Plain,
     Sequence,
     Tuple,
     Type,
     bounded,
+    can_be_unsure,
     general,
     join,
     literal,
@@ -703,7 +703,7 @@ class Statements(Calls):
         received = function.received.get(argument.arg, UNKNOWN)
         if argument.arg in function.unknown and received is not UNKNOWN:
             # Some calls pass what is not known: the others tell no more than what may be passed.
-            self.guessing = self.guessing or not _can_be_unsure(received)
+            self.guessing = self.guessing or not can_be_unsure(received)
             received = unsure(received)
         fallback = self.types.get(default, UNKNOWN) if default is not None else UNKNOWN
         if argument.arg in function.unknown:
@@ -797,11 +797,6 @@ class Statements(Calls):
         ast.ClassDef: _define_class,
         **({ast.TypeAlias: _type_alias} if sys.version_info >= (3, 12) else {}),
     }
-
-
-def _can_be_unsure(kind: Type) -> bool:
-    """Whether a type itself can say that it is not sure."""
-    return all(isinstance(member, (Plain, Instance, NoneValue)) for member in members(kind))
 
 
 def _used_names(function: ast.AST) -> dict[str, set[str]]:

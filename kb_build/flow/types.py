@@ -241,6 +241,23 @@ def unsure(kind: Type) -> Type:  # noqa: PLR0911 - one return a type
             return kind
 
 
+def can_be_unsure(kind: Type) -> bool:
+    """Whether :func:`unsure` marks everything in a type that an error could be told of."""
+    match kind:
+        case Unknown() | Plain() | Instance() | NoneValue():
+            return True
+        case Union():
+            return all(map(can_be_unsure, kind.members))
+        case Sequence():
+            return can_be_unsure(kind.element)
+        case Tuple():
+            return all(map(can_be_unsure, kind.items))
+        case Mapping():
+            return can_be_unsure(kind.value) and all(can_be_unsure(value) for _, value in kind.items)
+        case _:
+            return False
+
+
 def tells(kind: Type) -> str:
     """The source (see :class:`Plain`) by which a value, or a part of it, tells of this Blender; empty for none."""
     for member in members(kind):

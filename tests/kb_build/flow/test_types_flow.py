@@ -325,6 +325,19 @@ def test_what_only_some_calls_tell_is_not_sure(api: Api) -> None:
     assert sorted(row.sure for row in rows) == [False, True]
 
 
+def test_a_container_that_only_some_calls_tell_leaves_the_rest_sure(api: Api) -> None:
+    """What a list or dictionary holds is as unsure as it is itself; what does not come out of it is not."""
+    code = """
+        import bpy
+        def draw(settings):
+            settings["scene"].no_such_setting
+            bpy.context.scene.no_such_scene
+        draw({"scene": bpy.context.scene, "extra": {}})
+        draw(read_settings())
+    """
+    assert unknown(api, code) == {("Scene", "no_such_scene")}
+
+
 def test_conventions_are_not_sure(api: Api) -> None:
     code = "def f(context, ob):\n    context.scene.nothing\n    ob.location.x\n    ob.hide_render"
     rows = resolved(api, code)
