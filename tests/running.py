@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
     from pathlib import Path
 
-COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
+COMMAND = [sys.executable, "-m", "simworlds"]
 
 
 def environment(home: Path, **more: str) -> dict[str, str]:

@@ -40,7 +40,6 @@ bpy.context.object.data.materials.append(bpy.data.materials.new(""))
 bpy.context.scene.warm_up
 """
 _SOURCE = Path(__file__).resolve().parent.parent.parent
-_COMMAND = "from simworlds.cli import main; main(prog_name='simworlds')"
 
 _LOG = logging.getLogger(__name__)
 _T = TypeVar("_T")
@@ -67,7 +66,7 @@ class DocsClient:
         path = os.pathsep.join(filter(None, [str(_SOURCE), os.environ.get("PYTHONPATH")]))
         self._server = StdioServerParameters(
             command=sys.executable,
-            args=["-P", "-c", _COMMAND, "serve", *options],
+            args=["-P", "-m", "simworlds", "serve", *options],
             env={**os.environ, "PYTHONPATH": path},
         )
         self._tasks: TaskGroup | None = None

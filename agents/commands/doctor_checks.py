@@ -46,7 +46,6 @@ _LIST_SECONDS = 30.0
 _LEAST_FREE = 2 * GIB
 _VARIABLE = "SIMWORLDS_DOCTOR_SECRET"
 _SOURCE = Path(__file__).resolve().parents[2]
-_COMMAND = "from simworlds.cli import main; main(prog_name='simworlds')"
 _MISSING = re.compile(r"(lib[\w.+-]+\.so[.\d]*)(?: => not found|: cannot open shared object file)")
 # System library → Debian's package.
 PACKAGES = {
@@ -343,7 +342,7 @@ def _knowledge(version: str | None) -> DoctorResult:
     path = os.pathsep.join(filter(None, [str(_SOURCE), os.environ.get("PYTHONPATH")]))
     try:
         done = subprocess.run(
-            [sys.executable, "-P", "-c", _COMMAND, "kb", "info", "--json"],
+            [sys.executable, "-P", "-m", "simworlds", "kb", "info", "--json"],
             env={**os.environ, "PYTHONPATH": path},
             stdin=subprocess.DEVNULL,
             capture_output=True,

@@ -25,7 +25,7 @@ def simworlds_command() -> list[str]:
     installed = Path(sys.executable).with_name("simworlds")
     if installed.is_file():
         return [str(installed)]
-    return [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
+    return [sys.executable, "-m", "simworlds"]
 
 
 def run_simworlds(words: Sequence[str], log: Path) -> int:

@@ -21,7 +21,7 @@ from simworlds.settings import SHADERS_VARIABLE
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')", "mcp"]
+COMMAND = [sys.executable, "-m", "simworlds", "mcp"]
 
 
 def environment(home: Path, **more: str) -> dict[str, str]:

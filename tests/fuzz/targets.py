@@ -101,7 +101,7 @@ class Messages:
 
         self._number = 0
         self._pending = b""
-        words = [sys.executable, "-c", "from simworlds.cli import main; main(['serve', '--no-rebuild'])"]
+        words = [sys.executable, "-m", "simworlds", "serve", "--no-rebuild"]
         environment = {**os.environ, "SIMWORLDS_HOME": str(home), "PYTHONPATH": str(REPO)}
         self._process = subprocess.Popen(
             words, stdin=subprocess.PIPE, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, env=environment

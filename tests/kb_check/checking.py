@@ -15,7 +15,7 @@ from running import run_here
 if TYPE_CHECKING:
     from pathlib import Path
 
-SIMWORLDS = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
+SIMWORLDS = [sys.executable, "-m", "simworlds"]
 WRONG = 'import bpy\nbpy.context.object.draw_type = "WIRE"\n'
 RIGHT = 'import bpy\nbpy.context.object.display_type = "WIRE"\n'
 

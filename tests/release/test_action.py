@@ -24,7 +24,7 @@ pytestmark = pytest.mark.skipif(shutil.which("bash") is None, reason="the steps 
 UVX = """#!/bin/sh
 [ "$1" = --from ] && [ "$3" = simworlds ] || exit 99
 shift 3
-exec {python} -c "from simworlds.cli import main; main(prog_name='simworlds')" "$@"
+exec {python} -m simworlds "$@"
 """
 
 

@@ -29,7 +29,6 @@ from simworlds.sandbox.walls import WALLS, WITHOUT, Wall
 pytestmark = pytest.mark.blender
 
 DEBIANS = Path("/usr/bin/blender")
-COMMAND = "from simworlds.cli import main; main(prog_name='simworlds')"
 
 
 def surroundings(home: Path) -> dict[str, str]:
@@ -48,7 +47,7 @@ def run(*words: str, home: Path, **environment: str) -> subprocess.CompletedProc
 
 def run_in_a_process(*words: str, home: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
-        [sys.executable, "-c", COMMAND, "doctor", *words],
+        [sys.executable, "-m", "simworlds", "doctor", *words],
         env=surroundings(home),
         capture_output=True,
         text=True,

@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 pytestmark = pytest.mark.blender
 
 NAME = HOSTILE.replace("/", "").replace("\\", "")  # of a file
-COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')"]
+COMMAND = [sys.executable, "-m", "simworlds"]
 SPEC = f"""
 id: cloth_D1_99
 category: cloth

@@ -373,9 +373,8 @@ def test_a_killed_run_goes_on_where_it_was(mini: TaskSet, tmp_path: Path) -> Non
     out = tmp_path / "out"
     words = ["bench", "blenderbench", "run", str(mini.root), "--system", "start", "--samples", "4"]
     words += ["--task", "level1", "--out", str(out)]
-    code = "import sys; from simworlds.cli import main; main(sys.argv[1:], prog_name='simworlds')"
     killed = subprocess.Popen(
-        [sys.executable, "-c", code, *words],
+        [sys.executable, "-m", "simworlds", *words],
         cwd=REPO,
         stderr=subprocess.PIPE,
         text=True,

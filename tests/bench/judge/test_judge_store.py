@@ -94,8 +94,8 @@ def test_killed_between_the_items_and_the_verdicts_the_items_are_not_asked_again
     claude.script.before = gate
     command = [
         sys.executable,
-        "-c",
-        "from simworlds.cli import main; main()",
+        "-m",
+        "simworlds",
         "bench",
         "judge",
         *map(str, frames),

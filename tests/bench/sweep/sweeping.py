@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 # Small frames, nobody who judges.
 CHEAP = ("--frame-size", "32x18", "--frame-samples", "1", "--judge", "none")
 SCENES = "cloth_D1,rigid_D1_01,static_D1_01"
-_MAIN = "from simworlds.cli import main; main(prog_name='simworlds')"
 _SECONDS = 200.0
 
 
@@ -30,7 +29,7 @@ class Command:
     def __init__(self, home: Path, *words: object, **environment: str) -> None:
         kept = {name: value for name, value in os.environ.items() if not name.startswith("ANTHROPIC_")}
         self.process = subprocess.Popen(
-            [sys.executable, "-c", _MAIN, "bench", *map(str, words)],
+            [sys.executable, "-m", "simworlds", "bench", *map(str, words)],
             stdin=subprocess.DEVNULL,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,

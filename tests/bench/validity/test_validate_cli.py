@@ -162,8 +162,8 @@ def test_an_interrupt_ends_all_and_keeps_proofs(home: Path, tmp_path: Path) -> N
     arguments = ["--scenes", f"{STATIC},cloth_D2_03", "--properties", "satisfiable", "--jobs", "2"]
     command = [
         sys.executable,
-        "-c",
-        "from simworlds.cli import main; main()",
+        "-m",
+        "simworlds",
         "bench",
         "validate",
         *arguments,

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main(prog_name='simworlds')", "verify"]
+COMMAND = [sys.executable, "-m", "simworlds", "verify"]
 SOUND = """
 thing("Room", box("Slab", (-2, -2, -0.1), (2, 2, 0)), system_name="ground")
 thing("Table", box("Top", (-0.6, -0.4, 0), (0.6, 0.4, 0.75)))
