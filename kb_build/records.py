@@ -44,6 +44,8 @@ ALSO = "also:"
 ENDS_WITHOUT = "ends-without:"
 # The flag of a socket that a node of a zone has once it is paired with the other one.
 WHEN_PAIRED = "when-paired"
+# The flag of a property, not called ``name``, by whose value collections find such an item.
+NAMES_ITEMS = "names-items"
 # The flag of a collection that has no elements on what is newly made.
 EMPTY = "empty-when-new"
 # How flags begin of a property that RNA calls writable, and Blender does not always let be assigned: on which things it

@@ -151,22 +151,16 @@ def callee_of(symbol: Symbol) -> Callee:
         or arguments.kwarg is not None
         or any(name.startswith("*") for name in names)
     )
-    if _is_rna(symbol, parameters):
-        # Since 2.80, what has a default is given by keyword.
-        positional = tuple(parameter.name for parameter in parameters if parameter.required)
-        rest = tuple(name for name in names if name not in positional)
-        return Callee(symbol, parameters, positional, rest, is_open=False, is_rna=True)
     only = tuple(argument.arg for argument in arguments.kwonlyargs) if arguments else ()
     placed = (argument.arg for argument in (*arguments.posonlyargs, *arguments.args)) if arguments else names
     positional = tuple(name for name in placed if name in names)
     is_variadic = is_open and (arguments is None or arguments.kwarg is None or arguments.vararg is not None)
-    return Callee(
-        symbol, parameters, positional, only, is_open=is_open, is_rna=False, is_variadic=is_variadic
-    )
+    is_rna = _is_rna(symbol, parameters)
+    return Callee(symbol, parameters, positional, only, is_open, is_rna, is_variadic)
 
 
 def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
-    """Whether a function is RNA's own: only those spell the types of their parameters so, and none has a marker."""
+    """Whether a function is RNA's own: only those spell the types of their parameters so."""
     owner = symbol.owner.removeprefix("bpy.types.")
     if (
         symbol.owner == owner
@@ -175,8 +169,7 @@ def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
         or symbol.path in _NOT_RNA
     ):
         return False
-    marked = "*" in symbol.signature or "/" in symbol.signature
-    return not marked and all(_RNA_TYPE.fullmatch(parameter.plain_type) for parameter in parameters)
+    return "/" not in symbol.signature and all(_RNA_TYPE.fullmatch(parameter.plain_type) for parameter in parameters)
 
 
 @lru_cache(maxsize=4096)

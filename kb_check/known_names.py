@@ -131,7 +131,7 @@ class KnownNames:
         found = [found for found, _ in nearest(name, self.reader.member_names(owner), _MOST_NAMED)]
         misspelt = [found for found in found if is_misspelling(name, found, self._vocabulary)]
         similar = [found for found in found if found not in machinery or found in misspelt]
-        span = "" if self._lookup.paths_below(owner, name) else self._span()
+        span = "" if self._lookup.paths_below(owner, name) else self._notes.never(owner, name)
         message = f"`{owner}` has no `{name}` in Blender {self.version}{span}."
         return Lacking(
             f"{owner}.{name}",
@@ -166,10 +166,6 @@ class KnownNames:
             f"{owner}:{name}", f"{message} in Blender {self.version}.{told}", tuple(similar),
             misspelt[0] if len(misspelt) == 1 else "",
         )  # fmt: skip
-
-    def _span(self) -> str:
-        versions = self.reader.history_versions
-        return f", and never had it from {versions[0]} to {versions[-1]}" if versions else ""
 
     @cached_property
     def _vocabulary(self) -> set[str]:

@@ -295,10 +295,15 @@ def python_value(value: Default) -> str:
     return repr(value)
 
 
-def call_text(name: str, parameters: Iterable[Parameter]) -> str:
-    """``modifier_add(type='SUBSURF')``: a call with every argument's default; ``...`` for what is no value to give."""
+def call_text(name: str, parameters: Iterable[Parameter], *, marked: bool = False) -> str:
+    """``modifier_add(type='SUBSURF')``: a call with every argument's default; ``...`` for what is no value to give.
+
+    ``marked`` puts the ``*`` before those that can be given by name only: RNA's functions take by place what they need.
+    """
     shown: list[str] = []
     for parameter in parameters:
+        if marked and not parameter.required and "*" not in shown:
+            shown.append("*")
         if parameter.required:
             shown.append(parameter.name)
         elif parameter.default is None and (untold := _UNTOLD.get(parameter.type.partition(" ")[0])):
@@ -357,7 +362,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
         fields["parameters"] = _completed(parsed.parameters, parameters)
         fields["returns"] = parsed.returns
     elif kind == "function":
-        fields["signature"] = call_text(last_name(path), parameters)
+        fields["signature"] = call_text(last_name(path), parameters, marked=True)
     elif kind == "operator":
         fields["signature"] = call_text(path, parameters)
     return Symbol(**fields)

@@ -59,10 +59,9 @@ def _read(node: ast.expr, class_named: Callable[[str], str]) -> Type:  # noqa: P
             name = ast.unparse(node)
             if name in _PLAIN:
                 return _PLAIN[name]
-            if name in _LISTS:
-                return Sequence(_LISTS[name], UNKNOWN)
-            cls = class_named(name)
-            return Instance(cls) if cls else UNKNOWN
+            if cls := class_named(name):  # also of strips, which were called Sequence until 4.5
+                return Instance(cls)
+            return Sequence(_LISTS[name], UNKNOWN) if name in _LISTS else UNKNOWN
         case ast.Constant(value=None):
             return NONE
         case ast.BinOp(op=ast.BitOr()):

@@ -37,6 +37,7 @@ from kb_build.flow.types import (
     Type,
     members,
 )
+from kb_build.records import NAMES_ITEMS
 from kb_check.calls import nothing_from
 from kb_check.conversions import CHANGING_ARRAYS, LENGTHS
 from kb_check.findings import Edit, Finding, Fix
@@ -53,11 +54,6 @@ if TYPE_CHECKING:
 _VECTORS = frozenset({*LENGTHS, "mathutils.Vector", "mathutils.Matrix"})
 _NO_STEPS = frozenset({"bmesh.types.BMVertSeq", "bmesh.types.BMEdgeSeq", "bmesh.types.BMFaceSeq",
                        "bmesh.types.BMLoopSeq", "bmesh.types.BMElemSeq"})  # fmt: skip
-# Classes whose instances are found by another property than ``name``.
-_NAMED_OTHERWISE = (
-    "Operator", "Macro", "WorkSpaceTool", "KeyMapItem", "EnumPropertyItem", "ActionSlot", "KeyingSet", "Addon",
-    "PathCompare",
-)  # fmt: skip
 # Structures that refuse custom properties of any name, as tried.
 _NO_CUSTOM_PROPERTIES = frozenset(
     {"bpy.types.Context", "bpy.types.BlendData", "bpy.types.RenderSettings", "bpy.types.MeshVertex"}
@@ -205,7 +201,12 @@ def _is_nameless(script: Script, element: Instance) -> bool:
         return False
     if api.below(element.cls, "name"):
         return False
-    return not any(api.descends(element.cls, f"{_T}{cls}") for cls in (*_NAMED_OTHERWISE, "PropertyGroup"))
+    named = (
+        NAMES_ITEMS in symbol.flags
+        for cls in (*api.lineage(element.cls), *api.descendants(element.cls))
+        for symbol in api.symbols.members(cls)
+    )
+    return not any(named) and not api.descends(element.cls, f"{_T}PropertyGroup")
 
 
 def _of_instance(  # noqa: PLR0911 - one return a class

@@ -47,12 +47,12 @@ _SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "store", "text", "button"):
         owner = _class_of(script, row.missing[0])
-        if row.kind == "store" and script.version < _REFUSED and script.api.descends(owner, _OF_SCRIPTS):
-            continue
+        lost = row.kind == "store" and script.version < _REFUSED and script.api.descends(owner, _OF_SCRIPTS)
         if not owner.startswith("bpy.ops") and script.api.is_class(owner) and owner != _CONTEXT:
             had = _owner_that_had(script, row, owner)
             lacking = script.names.member(had, row.value, reading=row.kind != "store")
-            yield lacking_finding(script, RULE.id, row, lacking, "warning" if _is_let_pass(row) else "error")
+            level = "warning" if lost or _is_let_pass(row) else "error"
+            yield lacking_finding(script, RULE.id, row, lacking, level)
     yield from _of_python(script)
 
 
@@ -96,7 +96,9 @@ def _is_let_pass(row: Resolution) -> bool:
 
 
 def _owner_that_had(script: Script, row: Resolution, owner: str) -> str:
-    """Of an object's data, which is of a class for each type of object, the class that had the name; or the owner."""
+    """Of several classes that lack a name, and of those of objects' data, the one that had it; or the owner."""
+    if known := next((cls for cls in row.missing if script.names.had(cls, row.value)), ""):
+        return known
     read = script.analysis.resolutions.get(row.node.value) if isinstance(row.node, ast.Attribute) else None
     if read is None or read.symbols != ("bpy.types.Object.data",):
         return owner

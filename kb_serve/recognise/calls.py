@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import re
 from typing import TYPE_CHECKING
 
@@ -19,6 +20,8 @@ _NESTED = re.compile(r"""\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}|'[^']*'|"[^"]*\"""")
 _KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
 _ARGUMENT = re.compile(r"\s*(?:(\w+)\s*=(?!=))?\s*(.*)", re.DOTALL)
 _STRINGS = re.compile(r"""(["'])((?:(?!\1).)*)\1""")
+_VALUE = re.compile(r"""(["'])[^"']*\1|-?[\d.]+""")  # a text, a number
+_EXECUTION_CONTEXT = re.compile(r"(?:INVOKE|EXEC)_\w+")
 _DEPTH = 5
 
 
@@ -59,7 +62,8 @@ def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
     for name in names:
         if not known or name in known or any(other.startswith("*") for other in known):
             continue
-        similar = [other for other, _ in nearest(name, known)]
+        similar = [other for other in known if sorted(other.split("_")) == sorted(name.split("_"))]
+        similar = similar or [other for other, _ in nearest(name, known)]
         similar = similar or [other for other in known if other.startswith(name[:3])]
         closest = f"; closest: {', '.join(f'`{other}`' for other in similar[:_FEW])}" if similar else ""
         yield f"`{symbol.path}` takes no `{name}`{closest}."
@@ -75,11 +79,66 @@ def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ())
     if symbol.kind == "operator" and _gives_context(text, once.union(one.name for one in symbol.parameters)):
         line = with_context(chain)
         yield f"{NO_OVERRIDE} Write `{line}`." if line else NO_OVERRIDE
+    elif symbol.kind == "operator":
+        yield from _by_place_to_operator(symbol, text)
+    else:
+        yield from _by_place(symbol, text)
     for _ in range(_DEPTH):
         text = _NESTED.sub("0", text)
     if symbol.kind == "operator" or symbol.path.startswith("bmesh.ops."):
         names = [name for name in _KEYWORD.findall(text) if f"{symbol.path}({name})" not in removed]
         yield from unknown_keywords(symbol, names)
+
+
+def _by_place_to_operator(symbol: Symbol, text: str) -> Iterator[str]:
+    """Operators take by place an execution context and a truth value alone."""
+    given = next((written for name, written in arguments(text) if not name), "")
+    if not _VALUE.fullmatch(given) or _EXECUTION_CONTEXT.fullmatch(given[1:-1]):
+        return
+    named = [
+        one.name for one in symbol.parameters if given[1:-1] in {item.identifier for item in one.enum_items}
+    ]
+    how = f": `{named[0]}={given}`" if len(named) == 1 else ""
+    yield f"`{symbol.path}` takes its arguments by name only{how}."
+
+
+def _by_place(symbol: Symbol, text: str) -> Iterator[str]:
+    """More arguments by place than a function has places for."""
+    written = [*arguments(text)]
+    given = [argument for name, argument in written if not name]
+    if (
+        any(argument.startswith(("*", "...", "…")) for argument in given)
+        or (places := places_of(symbol)) is None
+    ):
+        return
+    by_place, by_name = places
+    if len(given) <= len(by_place):
+        return
+    rest = [name for name in by_name if name not in {name for name, _ in written}]
+    if len(given) == len(by_place) + 1 and rest:
+        yield f"`{symbol.path}` takes `{rest[0]}` by name only: `{rest[0]}={given[-1]}`."
+    else:
+        yield f"`{symbol.path}` takes {counted(len(by_place))} by place: `{symbol.signature}`."
+
+
+def places_of(symbol: Symbol) -> tuple[list[str], list[str]] | None:
+    """The arguments that a function takes by place, and those that it takes by name only; None where that is open."""
+    head, bracket, call = symbol.signature.partition("(")
+    try:
+        definition = ast.parse(f"def _({call}: ...").body[0] if head and bracket else None
+    except (SyntaxError, ValueError):
+        return None
+    if not isinstance(definition, ast.FunctionDef) or definition.args.vararg or definition.args.kwarg:
+        return None
+    told = definition.args
+    own = {"self", "cls"} - {parameter.name for parameter in symbol.parameters}
+    names = [one.arg for one in (*told.posonlyargs, *told.args) if one.arg not in own]
+    return names, [one.arg for one in told.kwonlyargs]
+
+
+def counted(places: int) -> str:
+    """So many arguments, in words."""
+    return f"{places or 'no'} argument{'s' * (places != 1)}"
 
 
 def _gives_context(arguments: str, parameters: Collection[str]) -> bool:

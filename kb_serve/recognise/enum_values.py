@@ -106,6 +106,14 @@ class EnumValues:
         """Where an enumeration takes a value, ``only with media_type='VIDEO'``; "" for everywhere, or nowhere."""
         return next((item.where for item in self._items(owner) if item.identifier == value), "")
 
+    def condition(self, owner: str, value: str) -> str:
+        """A sentence on where an enumeration takes a value; "" if everywhere, or nowhere."""
+        where = self.where(owner, value)
+        if not where:
+            return ""
+        taken = f"not taken {where[4:]}" if where.startswith("not ") else f"taken {where}"
+        return f"`{owner}` = '{value}' is {taken}."
+
     def _difference(self, owner: str, values: set[str]) -> int:
         """How many items an enumeration has more or less than some, in that of its modes in which that is fewest."""
         items = self._items(owner)

@@ -93,6 +93,8 @@ class Expressions:
                 and not self._misspelt(chain, readings[0])
             ):
                 self._reading(chain, readings, later, recognition)
+            elif operator := self._reader.entry(f"bpy.ops.{chain.dotted}") if chain.steps else None:
+                recognition.add(operator.path, 0.97 - later, "expression")
             elif _is_file_name(chain) or self._is_argument(chain, recognition):
                 continue
             elif not self._corrected(chain, readings, later, recognition):

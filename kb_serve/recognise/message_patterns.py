@@ -26,8 +26,12 @@ BAD_KEYWORD = re.compile(
 )
 IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): error with (?:keyword )?argument")
 TOO_MANY = re.compile(
-    r"(?<![\w.])(?P<function>\w++(?:\.\w++)*+)(?:\(\):? takes at most| expected at most) (?P<most>\d+) arguments?"
-    r"[,\s(]+(?:got )?(?P<given>\d+)"
+    r"(?<![\w.])(?P<function>\w++(?:\.\w++)*+)(?:\(\):? takes (?:at most|exactly)| expected at most) "
+    r"(?P<most>\d+) arguments?[,\s(]+(?:got )?(?P<given>\d+)"
+)
+BY_NAME_ONLY = re.compile(
+    r"(?<![\w.])(?P<function>\w++(?:\.\w++)++)\(\): required parameter \"(?P<name>\w+)\" "
+    r"(?:to be a keyword argument|not specified)"
 )
 NO_MODULE = re.compile(r"No module named ['\"](?P<module>[\w.]+)['\"]")
 NO_IMPORT = re.compile(r"cannot import name ['\"](?P<name>\w+)['\"] from ['\"](?P<module>[\w.]+)['\"]")
@@ -64,6 +68,7 @@ NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w+) undefined")
 _WORDING = re.compile(
     r"""bpy_struct:\ item\.attr\s*=\s*val:|bpy_\w+\[(?:key|index|slice)\](?:\ =\ value)?:|BMElemSeq\[index\]:
     |bpy_prop_collection:\ attribute\ "\w+"\ not\ found|cannot\ create\ '[\w.]+'\ instances
+    |'_Restrict(?:Context|Data)'\ object
     |(?:object\ )?has\ no\ attribute\ '\w+'|and\ no\ __dict__\ for\ setting\ new\ attributes
     |Converting\ py\ args\ to\ operator\ properties::?|keyword\ "\w+"\ (?:is\ invalid|unrecognized)
     |(?:got\ an\ )?unexpected\ keyword\ argument|is\ an\ invalid\ keyword\ argument\ for(?:\ this\ function)?
@@ -74,7 +79,7 @@ _WORDING = re.compile(
     |bpy_struct:\ (?=attribute|Context)|attribute\ "\w+"\ from\ "\w+"\ is\ read-only|Context\ property\ (?="\w+"\ is)
     |(?:StructRNA|BMesh\ data)\ of\ type\ \w+\ has\ been\ removed|BMeshOpsModule:\ operator
     |\bNode\ type\ (?=\w+\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object
-    |required\ parameter\ "\w+"\ not\ specified|Calling\ operator\ (?=")""",
+    |required\ parameter\ "\w+"\ (?:not\ specified|to\ be\ a\ keyword\ argument!?)|Calling\ operator\ (?=")""",
     re.VERBOSE,
 )
 

@@ -13,7 +13,7 @@ from kb_build.records import EVALUATED
 from kb_build.symbol_lines import GET_EVALUATED, locked_text
 from kb_serve.reader import TYPES
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.calls import unknown_keywords
+from kb_serve.recognise.calls import counted, places_of, unknown_keywords
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.nameless_messages import recognise_nameless
@@ -122,6 +122,8 @@ class Messages:
                 self._keyword(name, function, match["meant"] or "", recognition)
         for match in _matches(forms.TOO_MANY, query):
             self._too_many(match["function"], int(match["most"]), recognition)
+        for match in _matches(forms.BY_NAME_ONLY, query):
+            self._by_name(match["function"], match["name"], recognition)
         for match in _matches(forms.NO_INDEX, query):
             recognition.notes.append(self._index(match["index"], int(match["size"]), query, recognition))
         for match in _matches(forms.NO_KEY, query):
@@ -291,8 +293,24 @@ class Messages:
             return
         recognition.add(symbol.path, 0.95, "error message")
         is_sequence = "=(" in symbol.signature.partition(",")[0]
-        how = f", the first a sequence: `{symbol.name}((…, …))`" if is_sequence else ""
-        recognition.notes.append(f"`{symbol.path}` takes at most {most} by position{how}.")
+        places = places_of(symbol)
+        if places and len(places[0]) < most:
+            told = f"takes {counted(len(places[0]))} by place: `{symbol.signature}`."
+        elif is_sequence:
+            told = f"takes at most {most} by position, the first a sequence: `{symbol.name}((…, …))`."
+        else:
+            told = f"takes {counted(most)}: `{symbol.signature}`."
+        recognition.notes.append(f"`{symbol.path}` {told}")
+
+    def _by_name(self, function: str, argument: str, recognition: Recognition) -> None:
+        """An argument that a function needs, or takes by name only."""
+        symbol = self._reader.symbol(self._function(function))
+        if symbol is None:
+            return
+        recognition.add(symbol.path, 0.98, "error message")
+        needed = any(one.name == argument and one.required for one in symbol.parameters)
+        told = f"needs `{argument}`" if needed else f"takes `{argument}` by name only, as `{argument}=…`"
+        recognition.notes.append(f"`{symbol.path}` {told}: `{symbol.signature}`.")
 
     def _function(self, written: str) -> str:
         """The path of a function that a message names: ``Object.ray_cast``, ``from_pydata``."""
@@ -335,9 +353,8 @@ class Messages:
                 removed = removed or self._removed.of_part(path, f"{part}{match['name']}")
             if removed:
                 recognition.add_removed(removed)
-            elif owners and (where := self._enum_values.where(owners[0], match["name"])):
-                taken = f"not taken {where[4:]}" if where.startswith("not ") else f"taken {where}"
-                recognition.notes.append(f"`{owners[0]}` = '{match['name']}' is {taken}.")
+            elif owners and (condition := self._enum_values.condition(owners[0], match["name"])):
+                recognition.notes.append(condition)
             elif similar := [f"`{name}`" for name, _ in nearest(match["name"], items)]:
                 recognition.notes.append(
                     f"`{match['name']}` is not an item of this enum; closest: {', '.join(similar)}."

@@ -152,6 +152,13 @@ NAMELESS_MESSAGES = (
         'The path is a property of the very thing, as text: `obj.driver_add("location", 0)`; what belongs to its '
         "data is driven there (`obj.data.driver_add(…)`).",
     ),
+    NamelessMessage(
+        ("Dependency cycle detected",),
+        (f"{_T}Object.constraints", f"{_T}Object.parent", f"{_T}AnimData.drivers"),
+        "Each of the things in the lines below it waits for the next, and the last for the first. The lines name what "
+        "links them ('Parent', a constraint, a driver): take one of these links away, or let it read something that "
+        "does not depend on what it moves.",
+    ),
     # Rendering, baking
     NamelessMessage(
         ("Cannot render, no camera",),
@@ -162,6 +169,18 @@ NAMELESS_MESSAGES = (
         ("Current render engine does not support baking",),
         (f"{_O}bake", f"{_T}RenderSettings.engine"),
         "Cycles does: `scene.render.engine = 'CYCLES'`.",
+    ),
+    NamelessMessage(
+        ("No active ", "image ", "found in material "),
+        (f"{_O}bake", f"{_T}Nodes.active"),
+        "A bake writes into the image of each material's active node: add one (`nodes.new('ShaderNodeTexImage')`), "
+        "give it an image, and make it active: `nodes.active = node`.",
+    ),
+    NamelessMessage(
+        ("No active image found, add a material",),
+        (f"{_O}bake", f"{_T}Nodes.active"),
+        "The object has no material with an image to bake into: give it one whose active node is an image texture, or "
+        "bake with `target='VERTEX_COLORS'` or `save_mode='EXTERNAL'`.",
     ),
     NamelessMessage(
         ("No valid selected objects",),
@@ -177,6 +196,57 @@ NAMELESS_MESSAGES = (
         ("Bake failed: invalid domain",),
         ("bpy.ops.fluid.bake_all", f"{_T}FluidModifier.fluid_type"),
         "The active object must be the fluid's domain, of `fluid_type = 'DOMAIN'`.",
+    ),
+    # Registration
+    NamelessMessage(
+        ("register_class(...): already registered as a subclass",),
+        ("bpy.utils.unregister_class", "bpy.utils.register_class"),
+        "This very class is registered: `bpy.utils.unregister_class(cls)` first, as an add-on's `unregister()` does.",
+    ),
+    NamelessMessage(
+        ("Error: register_class(...):, missing bl_rna attribute from '",),
+        ("bpy.utils.register_class",),
+        "Only classes that derive from one of `bpy.types` (Operator, Panel, Menu, PropertyGroup …) can be registered.",
+    ),
+    NamelessMessage(
+        ("unregister_class(...):, missing bl_rna attribute from '",),
+        ("bpy.utils.unregister_class", "bpy.utils.register_class"),
+        "The class is not registered: it never was, its registration failed, or it was unregistered before.",
+    ),
+    NamelessMessage(
+        ("contain '_PT_' with prefix",),
+        (f"{_T}Panel.bl_idname",),
+        "The `bl_idname` of a panel, or its class's name where it has none, is like `MY_PT_panel`: capitals, `_PT_`, "
+        "a name.",
+    ),
+    NamelessMessage(
+        ("contain '_MT_' with prefix",),
+        (f"{_T}Menu.bl_idname",),
+        "The `bl_idname` of a menu, or its class's name where it has none, is like `MY_MT_menu`: capitals, `_MT_`, a "
+        "name.",
+    ),
+    NamelessMessage(
+        ("Registering operator class '", "invalid bl_idname '"),
+        (f"{_T}Operator.bl_idname",),
+        "An operator's `bl_idname` is two names with one dot between, in small letters: "
+        '`bl_idname = "object.my_tool"`.',
+    ),
+    NamelessMessage(
+        ("Function.result expected a set, not a NoneType",),
+        (f"{_T}Operator.execute",),
+        "The function ended without a result: `return {'FINISHED'}`, or `{'CANCELLED'}`, at each of its ends.",
+    ),
+    NamelessMessage(
+        ("'_RestrictContext' object has no attribute",),
+        ("bpy.app.timers.register", "bpy.app.handlers.load_post"),
+        "While add-ons are registered, `bpy.context` holds no scene and no objects: read them in an operator's or "
+        "panel's functions, in a `load_post` handler, or soon after: `bpy.app.timers.register(function)`.",
+    ),
+    NamelessMessage(
+        ("'_RestrictData' object has no attribute",),
+        ("bpy.app.timers.register", "bpy.app.handlers.load_post"),
+        "While add-ons are registered, `bpy.data` holds nothing: read it in an operator's or panel's functions, in a "
+        "`load_post` handler, or soon after: `bpy.app.timers.register(function)`.",
     ),
     # Files
     NamelessMessage(

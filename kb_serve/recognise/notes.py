@@ -5,11 +5,13 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_serve.reader import STRUCT
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.recognition import MissingName, Recognition
+    from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol
 
 SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
@@ -84,11 +86,21 @@ class Notes:
             elif missing.owner and missing.name.startswith("["):
                 yield f"`{missing.owner}` takes no custom properties: `{missing.name}` fails.{closest}"
             elif missing.owner and missing.name not in removed_names:
-                yield f"`{missing.owner}` has no `{missing.name}`{self._never(missing)}.{closest}"
+                never = self.never(missing.owner, missing.name) if missing.sure else ""
+                aside = " (add-ons and custom properties aside)" if never else ""
+                yield f"`{missing.owner}` has no `{missing.name}`{never}{aside}.{closest}"
 
-    def _never(self, missing: MissingName) -> str:
-        if not missing.sure or not self._reader.history_versions:
+    def never(self, owner: str, name: str) -> str:
+        """Since when a class is known not to have had a name, as the end of a sentence; "" where that is not known.
+
+        What a class inherited in other versions is not: one without a base may have lost it.
+        """
+        versions = self._reader.history_versions
+        if not versions or owner.startswith("_"):  # the history has no such modules
             return ""
-        first, last = self._reader.history_versions[0], self._reader.history_versions[-1]
-        first = self._reader.since(missing.owner) or first
-        return f", and never had it from {first} to {last} (add-ons and custom properties aside)"
+        entry = self._reader.entry(owner)
+        if entry is not None and entry.base in {"", STRUCT}:
+            owners = {found.owner for found in self._reader.by_name(name)} - {owner, STRUCT}
+            if any(self._reader.subclasses(other) for other in owners):
+                return ""
+        return f", and never had it from {self._reader.since(owner) or versions[0]} to {versions[-1]}"

@@ -104,9 +104,12 @@ class Recogniser:
                 continue
             end = f".{_name(chain)}"
             path = next((m.id for m in recognition.matches if m.sure >= _SURE and m.id.endswith(end)), "")
-            symbol = self._reader.symbol(path) if path else None
+            symbol = self._reader.symbol(path or self._successor(chain, recognition))
             if symbol is None:
                 continue
+            recognition.notes += filter(
+                None, (self._enum_values.condition(symbol.path, value) for value in chain.values)
+            )
             old = list(self._old.in_values(chain, symbol))
             for removed in old:
                 recognition.add_removed(removed)
@@ -114,6 +117,12 @@ class Recogniser:
             recognition.notes += notes
             if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.85, "error message")
+
+    @staticmethod
+    def _successor(chain: Chain, recognition: Recognition) -> str:
+        """What took the place of a removed operator or function that is called; empty for none."""
+        gone = (removed for removed in recognition.removed if removed.path == chain.dotted)
+        return next((plain_path(removed.targets[0]) for removed in gone if removed.targets), "")
 
     def _removed_values(self, text: str, recognition: Recognition) -> None:
         """Adds enum items that a property in the query has only in other versions."""

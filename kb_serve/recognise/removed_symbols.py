@@ -61,6 +61,12 @@ def for_reading(removed: RemovedSymbol) -> RemovedSymbol:
     return replace(removed, successors=tuple(getters_first))
 
 
+def _nearest_to(owner: str, removed: RemovedSymbol) -> RemovedSymbol:
+    """A symbol of a removed class, with that of its successors first which the class has that was asked."""
+    own_first = sorted(removed.successors, key=lambda one: not one.target.startswith(f"{owner}."))
+    return replace(removed, successors=tuple(own_first))
+
+
 def socket_node(path: str) -> str:
     """The node of a socket's path: ``bpy.types.N`` of ``bpy.types.N.inputs["A"]``; "" for other paths."""
     node, mark, _ = path.partition('puts["')
@@ -123,7 +129,7 @@ class RemovedSymbolLookup:
         for ancestor in lineage:
             for holder in (ancestor, _INSTANCES.get(ancestor), *self._former_names.get(ancestor, ())):
                 if holder and (removed := self.of_path(f"{holder}.{name}")):
-                    return removed
+                    return removed if holder == ancestor else _nearest_to(ancestor, removed)
         return None
 
     def of_part(self, path: str, part: str) -> RemovedSymbol | None:
@@ -215,6 +221,6 @@ class RemovedSymbolLookup:
         """Class → what it was called before: Light → Lamp."""
         found: dict[str, list[str]] = {}
         for path, targets in self._class_successors.items():
-            for target in targets[:1]:
+            for target in targets:
                 found.setdefault(target, []).append(path)
         return found

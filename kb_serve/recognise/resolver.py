@@ -30,6 +30,7 @@ ROOTS = {
     "ops": "bpy.ops",
     "types": "bpy.types",
 }
+_IMPORTED = ("mathutils.", "bmesh.types.")  # whose classes scripts import by name
 _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _NUMBERED = re.compile(r"\.\d{3}$")
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
@@ -159,8 +160,8 @@ class Resolver:
         extra = len(names) - len(chain.dotted.split("."))
         for length in range(min(len(names), _MOST_NAMES), 0, -1):
             path = ".".join(names[:length])
-            for candidate in (path, TYPES + path):
-                entry = self._reader.entry(candidate)
+            for package in ("", TYPES, *_IMPORTED):
+                entry = self._reader.entry(package + path)
                 if entry and not (length == 1 and entry.kind not in {"module", "class"}):
                     return self._value_of(entry), max(0, length - 1 - extra), 1.0
         return None

@@ -227,8 +227,12 @@ def write_struct(write, identifier, rna):
         group=group_of(rna),
         reached=f'bpy.context.preferences.addons["{addon.bl_idname}"].preferences' if addon else "",
     )
+    key = rna.name_property.identifier if rna.name_property else ""
     for prop in own(rna, "properties"):
-        write("symbol", path=f"{path}.{prop.identifier}", kind="property", owner=path, **describe(prop))
+        row = describe(prop)
+        if prop.identifier == key and key != "name":
+            row["flags"].append("names-items")
+        write("symbol", path=f"{path}.{prop.identifier}", kind="property", owner=path, **row)
     for function in own(rna, "functions"):
         write_function(write, path, function, same_as(rna, function.identifier))
 

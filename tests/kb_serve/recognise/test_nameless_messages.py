@@ -54,11 +54,24 @@ bpy.ops.preferences.addon_enable(module="nothing")
 bpy.ops.object.mode_set(mode="POSE")
 menu().default_value = "A"
 scene.tool_settings.snap_elements = "VERTEX"
+registered("Operator"); bpy.utils.register_class(made[-1])
+bpy.utils.register_class(type("Plain", (), {}))
+bpy.utils.unregister_class(type("Never", (bpy.types.Operator,), {}))
+registered("Panel", bl_idname="my_panel", bl_space_type="VIEW_3D", bl_region_type="UI")
+registered("Menu", bl_idname="my_menu")
+registered("Operator", bl_idname="tool")
+registered("Operator", execute=lambda self, context: None); bpy.ops.wm.made()
+restricted(); _bpy_restrict_state._bpy.context.scene
+restricted(); _bpy_restrict_state._bpy.data.objects
+scene.render.engine = "CYCLES"; bpy.ops.object.bake(type="DIFFUSE"); bpy.ops.object.bake(type="DIFFUSE")
+scene.render.engine = "CYCLES"; mesh.materials.clear(); bpy.ops.object.bake(type="DIFFUSE")
+cycle()
 ob.location = (1, 2, 3, 4)
 """.splitlines()
 _RUN = """
-import json, sys
+import json, os, sys, tempfile
 import bpy, bmesh
+import _bpy_restrict_state
 
 def ngon():
     mesh = bpy.data.meshes.new("m")
@@ -85,6 +98,37 @@ def nodes():
     modifier.node_group = group
     return modifier
 
+made = []
+
+def registered(base, **members):
+    members = {"bl_label": "x", "draw": lambda self, context: None, **members}
+    if base == "Operator":
+        members.setdefault("bl_idname", "wm.made")
+    made.append(type("Made", (getattr(bpy.types, base),), members))
+    bpy.utils.register_class(made[-1])
+
+def restricted():
+    restriction.append(_bpy_restrict_state.RestrictBlend())
+    restriction[-1].__enter__()
+
+def cycle():
+    other = bpy.data.objects["Camera"]
+    ob.parent = other
+    other.constraints.new("COPY_LOCATION").target = ob
+    bpy.context.view_layer.update()
+
+restriction = []
+printed = tempfile.TemporaryFile()
+for stream in (1, 2):
+    os.dup2(printed.fileno(), stream)
+
+def said_by_printing():
+    printed.seek(0)
+    text = printed.read().decode()
+    printed.seek(0)
+    printed.truncate()
+    return text
+
 messages = []
 for line in json.load(open(sys.argv[-1])):
     bpy.ops.wm.read_factory_settings()
@@ -94,11 +138,16 @@ for line in json.load(open(sys.argv[-1])):
     mesh = ob.data
     action = bpy.data.actions.new("a")
     track = ob.animation_data_create().nla_tracks.new()
+    said_by_printing()
     try:
         exec(line)
-        messages.append("")
+        said = ""
     except Exception as error:
-        messages.append(f"{type(error).__name__}: {str(error).strip()}")
+        said = f"{type(error).__name__}: {str(error).strip()}"
+    while restriction:
+        restriction.pop().__exit__(None, None, None)
+    sys.stdout.flush()
+    messages.append(said or said_by_printing().strip())
 open(sys.argv[-1], "w").write(json.dumps(messages))
 """
 
