@@ -98,7 +98,12 @@ def _by_place_to_operator(symbol: Symbol, text: str) -> Iterator[str]:
     named = [
         one.name for one in symbol.parameters if given[1:-1] in {item.identifier for item in one.enum_items}
     ]
-    how = f": `{named[0]}={given}`" if len(named) == 1 else ""
+    if (
+        given[:1] not in "'\""
+    ):  # Blender takes a whole number for whether to push an undo step, and says nothing
+        how = f"; `{given}` sets none of them"
+    else:
+        how = f": `{named[0]}={given}`" if len(named) == 1 else ""
     yield f"`{symbol.path}` takes its arguments by name only{how}."
 
 

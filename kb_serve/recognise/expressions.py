@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
+from kb_serve.recognise.members_by_words import members_by_words
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
@@ -292,3 +293,10 @@ class Expressions:
                 member = self._resolver.member(cls.path, root)
                 if member and ("_" in root or root not in STOP_WORDS):
                     recognition.add(member.path, 0.98 if "_" in root else 0.96, "class and member")
+            if len(bare) == len(chains):
+                beside = [root for root in bare if root != cls.name]
+                meant = members_by_words(cls.path, beside, self._reader)
+                for rank, path in enumerate(meant):  # of several, the class shows them all
+                    recognition.add(
+                        path, (0.975 if len(meant) == 1 else 0.955) - 0.005 * rank, "class and words"
+                    )

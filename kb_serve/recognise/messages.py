@@ -176,6 +176,9 @@ class Messages:
         if removed is None and not self._reader.entry(TYPES + written):
             members = self._removed.spelled(f"{written}.{name}")
             removed = next(members, None) or (None if owner else next(self._removed.spelled(written), None))
+        if removed and owner and self._reader.entry(removed.path.rpartition(".")[0]) is None:
+            # Of a class that took another one's place: what it holds has the name rather than what replaced both.
+            removed = None if self._owners.within(owner, name) else removed
         if removed:
             recognition.add_removed(removed)
         elif owner and not self._resolver.member(owner, name):

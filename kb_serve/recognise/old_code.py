@@ -12,10 +12,10 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.calls import arguments, texts_in
 from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.resolver import ROOTS
-from kb_serve.recognise.variables import usual_classes, variable_fit
+from kb_serve.recognise.variables import USUAL, usual_classes, variable_fit
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.records import Symbol
     from kb_serve.reader import BaseReader
@@ -23,8 +23,9 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
-SURE_FIT = 0.85  # from this fit of a variable's name on, its class is believed
-_LIKELY_FIT = 0.6  # … it is believed if the class had the name once
+_LIKELY_FIT = 0.6  # from this fit of a variable's name on, its class is believed if it had the name once
+_NAMED_AFTER = 0.8  # … it is named after a class
+_SHORTEST = 4  # letters of a name that tells a class by its end
 _MOST_NAMES = 6
 _MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
 _CLASS_NAME = re.compile(r"""(["'])(?=[A-Z]+[a-z_]+[A-Z])([A-Z]\w+)\1""")  # not ``"Lamp"``, an object's name
@@ -74,6 +75,7 @@ class OldCode:
             self._path(chain)
             or self._member(chain, readings)
             or self._socket(chain)
+            or self._of_fitting_class(chain, readings)
             or self._of_any_class(chain, readings)
         )
 
@@ -153,10 +155,29 @@ class OldCode:
                         return OldName(removed, chain.steps[number + 2 :])
         return None
 
+    def _of_fitting_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
+        """A member of a removed class that the variable is named after: ``stroke.line_width`` of a GPencilStroke."""
+        attribute = chain.steps[0] if chain.steps and chain.steps[0].kind == "attr" else None
+        short = len(chain.root.strip("_0123456789")) < _SHORTEST
+        if (
+            attribute is None
+            or short
+            or any(reading.complete and reading.fit >= _LIKELY_FIT for reading in readings)
+        ):
+            return None
+        owners = [
+            (variable_fit(chain.root, path.removesuffix(f".{attribute.text}").removeprefix(TYPES)), path)
+            for path in self._removed.paths_named(attribute.text)
+            if path.startswith(TYPES) and not self._reader.entry(path.rpartition(".")[0])
+        ]
+        fit, path = max(owners, default=(0.0, ""))
+        removed = self._removed.of_path(path) if fit >= _NAMED_AFTER else None
+        return OldName(removed, chain.steps[1:]) if removed else None
+
     def _of_any_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
         """A member that no class has any more, of a variable that may be anything, or by itself."""
         own = chain.root in {"self", "cls"} or chain.root[:1].isupper()
-        if own or any(reading.fit >= SURE_FIT for reading in readings):
+        if own or any(reading.fit >= USUAL for reading in readings):
             return None
         names = [(number, step.text) for number, step in enumerate(chain.steps, 1) if step.kind == "attr"]
         for number, name in names if chain.steps else [(0, chain.root)]:
@@ -190,7 +211,15 @@ class OldCode:
             owner for owner in owners if variable_fit(variable, owner.removeprefix(TYPES)) >= _LIKELY_FIT
         ]:
             return fitting
-        return owners if len(owners) <= _MANY_OWNERS or not variable else []
+        return owners if len(owners) <= _MANY_OWNERS or not variable or self._went_alike(paths) else []
+
+    def _went_alike(self, paths: Iterable[str]) -> bool:
+        """Whether the same took the place of members of several classes, as of all kinds of strips."""
+        ways = {
+            (removed.gone, *(target.rpartition(".")[2] for target in removed.targets))
+            for removed in filter(None, map(self._removed.of_path, paths))
+        }
+        return len(ways) == 1 and len(ways.pop()) > 1
 
     # Names in strings, and keyword arguments
 

@@ -1,0 +1,52 @@
+"""Members of a class that words beside its name describe."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("ParticleSettings brownian", "bpy.types.ParticleSettings.brownian_factor"),
+        ("BevelModifier limit angel", "bpy.types.BevelModifier.angle_limit"),
+        ("MovieTrackingTrack marker pattern corners", "bpy.types.MovieTrackingMarker.pattern_corners"),
+    ],
+)
+def test_the_one_member_that_all_words_describe_comes_first(
+    kb: KnowledgeBase, query: str, first: str
+) -> None:
+    assert kb.query(query).hits[0].id == first
+
+
+@pytest.mark.parametrize(
+    "query", ["ClothSettings stiffness", "CyclesRenderSettings denoising", "ParticleSettings"]
+)
+def test_where_several_are_described_the_class_shows_them(kb: KnowledgeBase, query: str) -> None:
+    assert kb.query(query).hits[0].id == f"bpy.types.{query.split()[0]}"
+
+
+def test_a_question_is_not_about_a_member_because_it_names_a_class(kb: KnowledgeBase) -> None:
+    answer = kb.query("ParticleSettings of hair that should follow the surface of a moving mesh")
+    assert answer.hits[0].id != "bpy.types.ParticleSettings.brownian_factor"
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("wm.obj_export(filepath=path)", "bpy.ops.wm.obj_export"),
+        ("object.shade_smooth()", "bpy.ops.object.shade_smooth"),
+        ("image.save()", "bpy.types.Image.save"),  # a method before the operator
+        ("Vector.to_track", "mathutils.Vector.to_track_quat"),
+        ("BMVert.link_edge", "bmesh.types.BMVert.link_edges"),
+    ],
+)
+def test_short_ways_to_write_a_module_are_read(kb: KnowledgeBase, query: str, first: str) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id == first
+    assert not [note for note in answer.notes if "WindowManager" in note or "Node" in note]
