@@ -21,6 +21,7 @@ _KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
 _ARGUMENT = re.compile(r"\s*(?:(\w+)\s*=(?!=))?\s*(.*)", re.DOTALL)
 _STRINGS = re.compile(r"""(["'])((?:(?!\1).)*)\1""")
 _VALUE = re.compile(r"""(["'])[^"']*\1|-?[\d.]+""")  # a text, a number
+_FRACTION = re.compile(r"-?\d*\.\d*")
 _EXECUTION_CONTEXT = re.compile(r"(?:INVOKE|EXEC)_\w+")
 _DEPTH = 5
 
@@ -117,6 +118,10 @@ def _by_place(symbol: Symbol, text: str) -> Iterator[str]:
     ):
         return
     by_place, by_name = places
+    whole = {one.name for one in symbol.parameters if one.type == "int"}
+    for name, argument in (*zip(by_place, given, strict=False), *written):
+        if name in whole and _FRACTION.fullmatch(argument):
+            yield f"`{name}` of `{symbol.path}` is a whole number: `{argument}` is refused."
     if len(given) <= len(by_place):
         return
     rest = [name for name in by_name if name not in {name for name, _ in written}]

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _FEW = 3
+_DEPRECATED = "Deprecated"  # in the description of what is on its way out, not of what it leads to
 _FILE_ENDINGS = frozenset(
     "abc avi blend exr fbx glb gltf hdr jpg json mkv mov mp4 obj ply png py stl tif usd usdc vdb wav zip".split()  # noqa: SIM905
 )
@@ -165,8 +166,11 @@ class Expressions:
         if readings[0].keyed:
             name = next(step.text for step in reversed(chain.steps) if step.kind == "key")
             recognition.notes.append(self._custom.note(readings[0].keyed, name))
-        for step, symbol in enumerate(reversed(readings[0].symbols[:-1])):
-            recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
+        for step, path in enumerate(reversed(readings[0].symbols[:-1])):
+            recognition.add(path, 0.5 - 0.05 * step - later, "on the way")
+            symbol = self._reader.symbol(path)
+            if symbol and _DEPRECATED in symbol.description:
+                recognition.notes.append(f"`{path}`: {symbol.description}")
 
     def _corrected(
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition

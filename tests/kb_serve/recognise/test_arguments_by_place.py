@@ -16,6 +16,7 @@ REFUSED = {
     "scene.frame_set(1, 2, 3)": "takes 1 argument by place: `frame_set(frame, *, subframe=0)`.",
     "mesh.uv_layers.new('UV')": "`bpy.types.UVLoopLayers.new` takes `name` by name only: `name='UV'`.",
     "bpy.ops.object.mode_set('EDIT')": "takes its arguments by name only: `mode='EDIT'`.",
+    "scene.frame_set(10.5)": "`frame` of `bpy.types.Scene.frame_set` is a whole number: `10.5` is refused.",
     "blf.size(0, 20, 72)": "`blf.size` takes 2 arguments by place: `size(fontid, size)`.",
     "bmesh.ops.create_cube(bm, 2)": "`bmesh.ops.create_cube` takes `size` by name only: `size=2`.",
 }
