@@ -7,7 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import EVALUATED, NOT_TAKEN
+from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN
 from kb_build.symbol_lines import (
     SET,
     alike_nodes,
@@ -439,6 +439,8 @@ class MarkdownRenderer:
             yield f"made by `{creation.call}`"
         if target := self._assigned(symbol):
             yield f"assign `{target}`"
+        if symbol.type == "collection" and (key := self._key_of(TYPES + symbol.target)):
+            yield f"items by index, or by their `{key}`: `{symbol.name}[\"…\"]`"
         if symbol.trees:
             yield "node of: " + ", ".join(symbol.trees)
         elif symbol.kind == "class" and self._is_node(symbol.path):
@@ -449,6 +451,17 @@ class MarkdownRenderer:
             yield f"since Blender {version}"
         if page := self.manual_page(symbol.path):
             yield f"manual: {page}"
+
+    def _key_of(self, cls: str) -> str:
+        """The property, not called ``name``, by whose value collections find instances of a class; empty for none."""
+        if self.reader.member((one.path for one in self.reader.lineage(cls)), "name"):
+            return ""
+        for ancestor in self.reader.lineage(cls):
+            for member in self.reader.members(ancestor.path).values():
+                symbol = self.reader.symbol(member.path) if member.type == "string" else None
+                if symbol and NAMES_ITEMS in symbol.flags:
+                    return member.name
+        return ""
 
     def _is_node(self, path: str) -> bool:
         """Whether a class is one of nodes, below the class of all of them."""

@@ -61,6 +61,23 @@ def test_what_is_found_is_what_blender_refuses(rule_checker: Checker, tmp_path: 
     assert len(refused) == 15
 
 
+def test_items_are_found_by_what_blender_names_them_by(rule_checker: Checker, tmp_path: Path) -> None:
+    code = """\
+import bpy
+notes = bpy.data.annotations.new('notes')
+notes.layers.new('Lines')
+notes.layers['Lines'].annotation_hide = True
+keys = bpy.context.scene.keying_sets.new()
+keys.paths.add(bpy.context.scene, 'frame_start')
+keys.paths['frame_start'].array_index
+notes.layers['Lines'].frames.new(1)
+notes.layers['Lines'].frames['1']
+"""
+    errors = [error for error, *_ in run_statements(tmp_path, code.splitlines())]
+    assert [at for at, error in enumerate(errors, 1) if error] == [9]
+    assert [one.span.line for one in rule_checker.check(code, rules=["not-subscriptable"])] == [9]
+
+
 def test_properties_that_a_package_registers_may_have_any_value(rule_checker: Checker) -> None:
     own = "import bpy\nbpy.types.Mesh.sensor_fit = bpy.props.StringProperty()\n"
     use = "bpy.data.objects['a'].data.sensor_fit = 'MINE'\n"

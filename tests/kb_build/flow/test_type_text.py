@@ -1,0 +1,23 @@
+"""Types as docstrings and signatures spell them."""
+
+from __future__ import annotations
+
+import pytest
+
+from kb_build.flow.type_text import read_type
+from kb_build.flow.types import STR, UNKNOWN, Instance, Sequence
+
+STRIPS = "bpy.types.Sequence"
+
+
+@pytest.mark.parametrize(
+    ("text", "has_strips", "kind"),
+    [
+        ("Sequence", True, Instance(STRIPS)),  # what strips were called until Blender 4.5
+        ("Sequence", False, Sequence("list", UNKNOWN)),
+        ("Sequence[str]", True, Sequence("list", STR)),
+        ("list", True, Sequence("list", UNKNOWN)),
+    ],
+)
+def test_a_class_of_blender_comes_before_pythons_word(text: str, has_strips: bool, kind: object) -> None:
+    assert read_type(text, lambda name: STRIPS if has_strips and name == "Sequence" else "") == kind
