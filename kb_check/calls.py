@@ -169,7 +169,9 @@ def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
         or symbol.path in _NOT_RNA
     ):
         return False
-    return "/" not in symbol.signature and all(_RNA_TYPE.fullmatch(parameter.plain_type) for parameter in parameters)
+    return "/" not in symbol.signature and all(
+        _RNA_TYPE.fullmatch(parameter.plain_type) for parameter in parameters
+    )
 
 
 @lru_cache(maxsize=4096)

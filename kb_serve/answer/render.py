@@ -440,7 +440,7 @@ class MarkdownRenderer:
         if target := self._assigned(symbol):
             yield f"assign `{target}`"
         if symbol.type == "collection" and (key := self._key_of(TYPES + symbol.target)):
-            yield f"items by index, or by their `{key}`: `{symbol.name}[\"…\"]`"
+            yield f'items by index, or by their `{key}`: `{symbol.name}["…"]`'
         if symbol.trees:
             yield "node of: " + ", ".join(symbol.trees)
         elif symbol.kind == "class" and self._is_node(symbol.path):

@@ -14,7 +14,7 @@ _MAX_STEPS = 16  # the longest expression of a scene's script has ten
 _MAX_BUILTINS = 12
 _MAX_VALUES = 8
 _HUMP = re.compile(r"[a-z0-9][A-Z]")
-_IDENTIFIER = re.compile(r"[^\W\d]\w*")
+_IDENTIFIER = re.compile(r"(?<!\w)[^\W\d]\w*")  # not what follows the digit of ``3D_POLYLINE``
 _DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
 _VALUE = re.compile(r"\s*(?:[-+*/|&^%=!]?=|not\s+in\b|in\b)\s*(?=['\"{(\[])")

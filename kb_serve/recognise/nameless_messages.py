@@ -220,6 +220,12 @@ NAMELESS_MESSAGES = (
         "a name.",
     ),
     NamelessMessage(
+        ("Registering panel class: '", "' has category '"),
+        (f"{_T}Panel.bl_region_type", f"{_T}Panel.bl_category"),
+        "Only panels of a sidebar have a category, the tab that they stand in: `bl_region_type = 'UI'`. Panels of "
+        "other regions have no `bl_category`.",
+    ),
+    NamelessMessage(
         ("contain '_MT_' with prefix",),
         (f"{_T}Menu.bl_idname",),
         "The `bl_idname` of a menu, or its class's name where it has none, is like `MY_MT_menu`: capitals, `_MT_`, a "

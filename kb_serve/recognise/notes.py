@@ -57,8 +57,10 @@ class Notes:
     def _span(self, symbol: RemovedSymbol) -> str:
         if not symbol.gone:
             return f"new in {symbol.first}"
-        if symbol.is_dated(self._reader.history_versions):
-            return f"removed in {symbol.gone} (last in {symbol.last})"
+        versions = self._reader.history_versions
+        if symbol.is_dated(versions):
+            last = f" (last in {symbol.last})" if symbol.was_last(versions) else ""
+            return f"removed in {symbol.gone}{last}"
         return f"gone by {symbol.gone} (last seen in {symbol.last})"
 
     def _instead(self, symbol: RemovedSymbol) -> Iterator[str]:

@@ -39,8 +39,10 @@ class RemovedSymbol:
 
     def is_dated(self, versions: Sequence[str]) -> bool:
         """Whether ``gone`` is the very version that lost it: next after ``last`` in ``versions``, or by a source."""
-        if any(successor.version == self.gone for successor in self.successors):
-            return True
+        return any(successor.version == self.gone for successor in self.successors) or self.was_last(versions)
+
+    def was_last(self, versions: Sequence[str]) -> bool:
+        """Whether ``last`` is the version right before ``gone`` in ``versions``: none between them may have it."""
         known = self.last in versions and self.gone in versions
         return known and versions.index(self.gone) == versions.index(self.last) + 1
 

@@ -415,3 +415,19 @@ def test_names_stand_beside_the_term_that_they_are_of(line: str, expected: str) 
 def test_an_operator_says_what_its_poll_takes(kb: KnowledgeBase, operator: str, expected: str) -> None:
     assert expected in kb.query(f"bpy.ops.{operator}").text
     assert "its poll" not in kb.query("bpy.ops.mesh.primitive_cube_add").text
+
+
+@pytest.mark.parametrize(
+    ("collection", "line"),
+    [
+        ("Annotation.layers", 'items by index, or by their `info`: `layers["…"]`'),
+        ("Action.slots", 'items by index, or by their `identifier`: `slots["…"]`'),
+        ("Object.modifiers", ""),  # by their name, as everybody expects
+        ("Mesh.vertices", ""),
+    ],
+)
+def test_what_items_are_found_by_is_told_where_it_is_no_name(
+    kb: KnowledgeBase, collection: str, line: str
+) -> None:
+    told = [one for one in kb.query(collection).text.splitlines() if one.startswith("items by")]
+    assert told == ([line] if line else [])

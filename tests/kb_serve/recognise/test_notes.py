@@ -29,7 +29,10 @@ NONE = Successor("", "It is always on.", "2.80", "")
             RemovedSymbol("x", "2.79", "3.6", "4.0", (HOW,)),
             "removed in 4.0 (last in 3.6). Use `bpy.types.A.b`. Call it with True.",
         ),
-        (RemovedSymbol("x", "3.4", "3.4", "4.0", (HOW,)), "removed in 4.0 (last in 3.4). Use"),
+        (
+            RemovedSymbol("x", "3.4", "3.4", "4.0", (HOW,)),
+            "removed in 4.0. Use",
+        ),  # it may have been in 3.6 too
         (RemovedSymbol("x", "3.4", "3.4", "4.2", (USE,)), "gone by 4.2 (last seen in 3.4). Use"),
         (
             RemovedSymbol("x", "2.79", "2.79", "2.80", (NONE,)),
