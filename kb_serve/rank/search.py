@@ -36,6 +36,8 @@ TOPIC_WEIGHT = 0.4
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 UNKNOWN_IDF = 6.0
 _CORRECTED_WEIGHT = 0.95  # what a corrected word counts, next to one that was written so
+_JOINED = 8  # letters of the shortest name of a class that is looked up as one word
+_RARE = 20  # units that have a word which may be such a name
 _AROUND = 0.4  # what a word around the query counts, next to one of it
 _TWO_TYPOS = 9  # letters from which on two may be wrong
 _MAX_WORDS = 40
@@ -102,7 +104,22 @@ class Searcher:
             if word not in STOP_WORDS:
                 asked.setdefault(stem(word), word)
         self.index.postings.load(asked)
+        for word in [word for own, word in asked.items() if self._may_be_joined(own, word)]:
+            if parts := self._parts_of_class(word):
+                del asked[stem(word)]
+                asked |= {stem(part): part for part in parts}
         return [self._concept(word, own) for own, word in asked.items()]
+
+    def _may_be_joined(self, own: str, word: str) -> bool:
+        """Whether a word is so long and rare that it may be a class's name in small letters."""
+        return len(word) >= _JOINED and self.index.postings(own).units < _RARE
+
+    def _parts_of_class(self, word: str) -> list[str]:
+        """The words of the class whose name one is in small letters: ``viewlayer``."""
+        entries = (self._reader.entry(path) for _, path in self._reader.by_key(word))
+        return next(
+            (words(one.name) for one in entries if one and one.kind == "class" and one.name != word), []
+        )
 
     def _concept(self, word: str, own: str) -> Concept:
         """The word by its own stem, or else by that of its correction."""

@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, terms
 from kb_build.records import EVALUATED
 from kb_build.symbol_lines import GET_EVALUATED, locked_text
-from kb_serve.reader import TYPES
+from kb_serve.reader import COLLECTION, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import counted, places_of, unknown_keywords
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
@@ -411,6 +411,8 @@ class Messages:
         paths.sort(key=lambda path: (-fit[path], not path.startswith(_USUAL_NODE)))
         for removed in islice(filter(None, map(self._removed.of_path, paths)), 1):
             recognition.add_removed(removed)
+        if collection == "bpy_prop_collection" and not recognition.removed:
+            recognition.add(f"{COLLECTION}.get", 0.9, "error message")
 
     def _lost_by_nobody_else(self, name: str, paths: Sequence[str], recognition: Recognition) -> list[str]:
         """Of the sockets of a name that nodes lost, where no node is named: that of the node which scripts use most,

@@ -19,7 +19,8 @@ _O = "bpy.ops.object."
 
 @dataclass(frozen=True, slots=True)
 class NamelessMessage:
-    """The parts of a message that are always the same, the symbols that it is about, most likely first, and what helps.
+    """The parts of a message that are always the same, the symbols and pages that it is about, most likely first, and
+    what helps.
 
     It is told only of a Blender that has the first of the symbols.
     """
@@ -154,7 +155,12 @@ NAMELESS_MESSAGES = (
     ),
     NamelessMessage(
         ("Dependency cycle detected",),
-        (f"{_T}Object.constraints", f"{_T}Object.parent", f"{_T}AnimData.drivers"),
+        (
+            f"{_T}Object.constraints",
+            "animation/drivers/troubleshooting",
+            f"{_T}Object.parent",
+            f"{_T}AnimData.drivers",
+        ),
         "Each of the things in the lines below it waits for the next, and the last for the first. The lines name what "
         "links them ('Parent', a constraint, a driver): take one of these links away, or let it read something that "
         "does not depend on what it moves.",
@@ -316,6 +322,7 @@ def recognise_nameless(query: str, reader: BaseReader, recognition: Recognition)
     for message in NAMELESS_MESSAGES:
         if all(part in query for part in message.parts) and reader.entry(message.paths[0]):
             for rank, path in enumerate(message.paths):
-                recognition.add(path, _SURE - 0.03 * rank, "error message")
+                if "/" not in path or reader.is_page(path):
+                    recognition.add(path, _SURE - 0.03 * rank, "error message")
             recognition.notes.append(message.help)
     recognition.notes += [note for part, note in _ANYWHERE if part in query]

@@ -121,6 +121,12 @@ def test_an_unknown_word_is_read_as_one_of_the_corpus(searcher: Searcher, writte
     }
 
 
+def test_a_class_in_small_letters_is_read_as_its_words(searcher: Searcher) -> None:
+    asked = [concept.word for concept in searcher.concepts("viewlayer active object")]
+    assert sorted(asked) == ["active", "layer", "object", "view"]
+    assert [concept.word for concept in searcher.concepts("material thickness")] == ["material", "thickness"]
+
+
 @pytest.mark.parametrize("word", ["", "abc", "x1y2z3", "zzzzzzzz", "a b", "é" * 9])
 def test_a_word_without_a_similar_one_is_not_corrected(searcher: Searcher, word: str) -> None:
     assert searcher.correction(word) == ""

@@ -185,4 +185,6 @@ def test_each_message_leads_to_what_it_is_about(kb: KnowledgeBase, messages: lis
 
 def test_what_they_lead_to_exists(kb: KnowledgeBase) -> None:
     paths = {path for one in NAMELESS_MESSAGES for path in one.paths}
-    assert {path for path in paths if kb.symbol(path) is None} == set()
+    assert {path for path in paths if "/" not in path and kb.symbol(path) is None} == set()
+    pages = {path for path in paths if "/" in path}
+    assert {hit.id for page in pages for hit in kb.query(page).hits} >= pages
