@@ -74,7 +74,7 @@ def reads(act: Callable[[], object]) -> Callable[[str], str]:
     return read
 
 
-@pytest.mark.parametrize("jobs", [1, 2])
+@pytest.mark.parametrize("jobs", [pytest.param(1, marks=pytest.mark.whole), 2])
 @pytest.mark.parametrize(("act", "reason"), ACTS)
 def test_one_page_fails_and_the_others_are_read(act: Callable[[], object], reason: str, jobs: int) -> None:
     found = read_apart(PAGES, PageWork(reads(act)), jobs=jobs, budget=budget_for(act))
