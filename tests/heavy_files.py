@@ -32,7 +32,7 @@ HEAVY = {
     "text": "object 'Text' with bevel resolution 32, resolution 64",
     "metaball": "object 'Ball' with resolution 0.005",
     "together": "all objects together",
-    "objects": "the file would come to 30,001 objects; the limit is 20,000",
+    "objects": "the file would come to 20,001 objects; the limit is 20,000",
     "instances": "what its instances show (most by object 'All')",
     "corners": "what its instances show (most by object 'Sheet')",
     "particles": "object 'Sheet', would come to 10,000,000 particles",
@@ -176,7 +176,7 @@ def together():
 
 def objects():
     mesh = sheet().data
-    for number in range(30000):
+    for number in range(20000):
         made(f"Object {number}", mesh)
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from places import REPO
+from running import run_here
 
 from kb_build.summaries.store import SummaryStore
 from kb_build.summaries.types import PageSummary, summary_key
@@ -30,6 +31,12 @@ def environment(home: Path, corpora: Path | None = None) -> dict[str, str]:
 
 
 def run(home: Path, *words: str, corpora: Path | None = None) -> subprocess.CompletedProcess[str]:
+    """Here: how it is as a process of its own, the builds show whose output is piped or drawn."""
+    done = run_here(words, environment(home, corpora), REPO)
+    return subprocess.CompletedProcess(done.args, done.returncode, done.stdout.decode(), done.stderr.decode())
+
+
+def run_apart(home: Path, *words: str, corpora: Path) -> subprocess.CompletedProcess[str]:
     return subprocess.run(
         [*COMMAND, *words], env=environment(home, corpora), capture_output=True, text=True, check=False
     )
@@ -58,7 +65,7 @@ def read_some(descriptor: int) -> bytes:
 @pytest.mark.blender
 def test_a_piped_build_prints_steps_to_stderr_and_the_outcome_to_stdout(small: Built) -> None:
     (small.home / "kb").rename(small.home / "old")
-    done = run(small.home, "kb", "build", "--offline", corpora=small.corpora)
+    done = run_apart(small.home, "kb", "build", "--offline", corpora=small.corpora)
     assert done.returncode == 0
     assert done.stdout.startswith(f"Built the knowledge base of Blender {small.report.version} in ")
     assert str(small.path) in done.stdout
@@ -111,10 +118,10 @@ def test_a_required_source_that_is_missing_ends_with_code_2(small: Built, tmp_pa
 
 
 @pytest.mark.blender
-def test_info_tells_what_is_in_a_base(built: Built) -> None:
-    text = run(built.home, "kb", "info", built.minor).stdout
+def test_info_tells_what_is_in_a_base(built_once: Built) -> None:
+    text = run(built_once.home, "kb", "info", built_once.minor).stdout
     for expected in (
-        built.report.version,
+        built_once.report.version,
         "operators",
         "classes",
         "source       manual",
@@ -122,13 +129,13 @@ def test_info_tells_what_is_in_a_base(built: Built) -> None:
         "extractive",
     ):
         assert expected in text
-    facts = json.loads(run(built.home, "kb", "info", built.minor, "--json").stdout)
-    assert facts["blender"] == built.report.version
-    assert facts["bytes"] == built.path.stat().st_size
+    facts = json.loads(run(built_once.home, "kb", "info", built_once.minor, "--json").stdout)
+    assert facts["blender"] == built_once.report.version
+    assert facts["bytes"] == built_once.path.stat().st_size
     assert facts["counts"]["symbols"]["class"] > 2000
     assert facts["page_warnings"]
-    listed = json.loads(run(built.home, "kb", "info", "--json").stdout)
-    assert [one["path"] for one in listed] == [str(built.path)]
+    listed = json.loads(run(built_once.home, "kb", "info", "--json").stdout)
+    assert [one["path"] for one in listed] == [str(built_once.path)]
 
 
 @pytest.mark.blender
@@ -141,14 +148,14 @@ def test_info_of_a_damaged_base_says_what_to_do(small: Built) -> None:
 
 
 @pytest.mark.blender
-def test_verify_passes_a_sound_base_and_fails_a_damaged_one(built: Built) -> None:
-    done = run(built.home, "kb", "verify")
+def test_verify_passes_a_sound_base_and_fails_a_damaged_one(small: Built) -> None:
+    done = run(small.home, "kb", "verify")
     assert done.returncode == 0, done.stdout
     assert done.stdout.endswith("Sound.\n")
-    with built.path.open("r+b") as file:
+    with small.path.open("r+b") as file:
         file.seek(500_000)
         file.write(b"\xff" * 100_000)
-    done = run(built.home, "kb", "verify", built.minor)
+    done = run(small.home, "kb", "verify", small.minor)
     assert done.returncode == 1
     assert "FAULT" in done.stdout
     assert "Traceback" not in done.stderr

@@ -190,9 +190,11 @@ def test_a_blender_that_fails_half_way_is_named_with_its_output_kept(
 
 def test_what_crashes_blender_is_left_out_of_the_next_attempt(small: Built, tmp_path: Path) -> None:
     extract = next((small.home / "extracts").glob("*.jsonl"))
+    # It names no folder of scripts: reading them is not what this is about, and most of what a build takes.
+    told = f"""sed 's#"scripts":"[^"]*"#"scripts":""#' {extract} > $last"""
     body = (
         "for word; do given=$last; last=$word; done\n"
-        f"if grep -q '\"skipped\": ..strips' $given; then cp {extract} $last; exit; fi\n"
+        f"if grep -q '\"skipped\": ..strips' $given; then {told}; exit; fi\n"
         """echo '{"record":"making","maker":"strips"}' > $last; exit 11"""
     )
     options = BuildOptions(blender_exe=program(tmp_path, body), pages=False)

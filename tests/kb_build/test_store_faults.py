@@ -20,18 +20,26 @@ if TYPE_CHECKING:
     from built_base import Built
 
 QUERY = "ClothSettings.quality"
-HALF = 6_000_000  # bytes: about half of what is written of a base of all symbols
+HALF = 6_000_000  # bytes: less than is written before a writer waits
 
-# Reads everything that a base of Blender needs, says so, then writes it.
+# Reads everything that a base of Blender needs, says so, then writes it. With a third argument, so many rows more: then
+# it waits in the middle of writing.
 WRITER = """
-import sys, pathlib
+import sys, pathlib, time
 from kb_build.errors import StoreError
 from kb_build.blender.extract_reader import read_extract
 from kb_build.store import Contents, write_base
 extract = read_extract(pathlib.Path(sys.argv[1]))
+def rows(count):
+    for number in range(count):
+        yield f"bpy.types.Thing{number}", "It still works. " * 5
+    if count:
+        time.sleep(600)
+more = rows(int(sys.argv[3]))
 print("ready", flush=True)
 try:
-    write_base(pathlib.Path(sys.argv[2]), Contents(extract.symbols, (), extract.links, {"fingerprint": "new"}))
+    contents = Contents(extract.symbols, (), extract.links, {"fingerprint": "new"}, still_works=more)
+    write_base(pathlib.Path(sys.argv[2]), contents)
 except StoreError as error:
     sys.exit(f"StoreError: {error}")
 print("written", flush=True)
@@ -48,14 +56,14 @@ def old(base: Path, tmp_path: Path) -> Path:
     return Path(shutil.copy(base, folder / base.name))
 
 
-def start(base: Path, target: Path, limit: int | None = None) -> subprocess.Popen[str]:
+def start(base: Path, target: Path, limit: int | None = None, more: int = 0) -> subprocess.Popen[str]:
     def bound() -> None:
         if limit is not None:
             resource.setrlimit(resource.RLIMIT_FSIZE, (limit, limit))
 
     extract = next((base.parent.parent / "extracts").glob("*.jsonl"))
     return subprocess.Popen(
-        [sys.executable, "-c", WRITER, str(extract), str(target)],
+        [sys.executable, "-c", WRITER, str(extract), str(target), str(more)],
         env=os.environ | {"PYTHONPATH": str(REPO)}, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True,
         preexec_fn=bound,
     )  # fmt: skip
@@ -71,9 +79,9 @@ def parts_of(path: Path) -> list[Path]:
     return [other for other in path.parent.iterdir() if other != path]
 
 
-def test_a_writer_that_is_killed_leaves_the_old_base_whole(base: Path, old: Path) -> None:
+def test_a_writer_that_is_killed_leaves_the_old_base_whole(small: Built, old: Path) -> None:
     before = old.read_bytes()
-    with start(base, old) as process:
+    with start(small.path, old, more=200_000) as process:
         assert process.stdout is not None
         assert process.stdout.readline() == "ready\n"
         while not any(part.stat().st_size >= HALF for part in parts_of(old)):

@@ -35,11 +35,11 @@ def inventory(path: Path, *entries: str) -> Path:
     return path
 
 
-def test_a_base_as_it_was_built_is_sound(built: Built) -> None:
-    found = verify_base(built.path)
+def test_a_base_as_it_was_built_is_sound(built_once: Built) -> None:
+    found = verify_base(built_once.path)
     assert faults(found) == {}
     assert found.sound
-    assert found.blender == built.report.version
+    assert found.blender == built_once.report.version
     looked_at = {check.name: check.looked_at for check in found.checks}
     assert looked_at["symbols"] > 20_000
     assert looked_at["links"] > 10_000
@@ -50,8 +50,10 @@ def test_a_base_of_a_few_symbols_is_sound(small: Built) -> None:
     assert faults(verify_base(small.path)) == {}
 
 
-def test_pages_that_blender_names_and_the_manual_lacks_are_listed_without_being_faults(built: Built) -> None:
-    notes = next(check.notes for check in verify_base(built.path).checks if check.name == "links")
+def test_pages_that_blender_names_and_the_manual_lacks_are_listed_without_being_faults(
+    built_once: Built,
+) -> None:
+    notes = next(check.notes for check in verify_base(built_once.path).checks if check.name == "links")
     assert any("which the manual lacks" in note for note in notes)
 
 
@@ -144,14 +146,14 @@ def test_a_truncated_base_is_refused(small: Built) -> None:
         verify_base(small.path)
 
 
-def test_a_list_of_identifiers_is_resolved_and_the_rest_explained(built: Built, tmp_path: Path) -> None:
+def test_a_list_of_identifiers_is_resolved_and_the_rest_explained(built_once: Built, tmp_path: Path) -> None:
     reference = tmp_path / "identifiers.txt"
     reference.write_text(
         "# what somebody documents\n\nbpy.types.Mesh\nbpy.ops.mesh.bevel\nmathutils.Vector.lerp\n"
         "bpy.types.ClothModifier.show_viewport\nbpy.data.data\nbpy.types.mesh.Vertices\n"
         "bpy.types.VIEW3D_PT_nowhere\nbpy.types.Mesh.use_auto_smooth\nbgl.glEnable\n"
     )
-    found = verify_base(built.path, reference)
+    found = verify_base(built_once.path, reference)
     assert not found.sound
     assert found.reference is not None
     assert (found.reference.exact, found.reference.total) == (3, 9)
@@ -183,7 +185,7 @@ def test_a_sphinx_inventory_is_a_reference_too(small: Built, tmp_path: Path) -> 
     assert (found.reference.exact, found.reference.total) == (3, 3)
 
 
-def test_identifiers_of_this_versions_reference_resolve(built: Built, tmp_path: Path) -> None:
+def test_identifiers_of_this_versions_reference_resolve(built_once: Built, tmp_path: Path) -> None:
     """A sample of each kind of identifier, those that Blender's own tables repeat on subclasses included."""
     reference = tmp_path / "identifiers.txt"
     reference.write_text(
@@ -224,7 +226,7 @@ def test_identifiers_of_this_versions_reference_resolve(built: Built, tmp_path: 
             ]
         )
     )
-    found = verify_base(built.path, reference)
+    found = verify_base(built_once.path, reference)
     assert found.reference is not None
     assert found.reference.others == {}
 

@@ -206,9 +206,9 @@ def test_ends_code_that_takes_too_long(one: Path, rendering: EditRenderSettings,
     (tmp_path / "set" / "level1" / "table1" / "start.py").write_text("import time\ntime.sleep(600)\n")
     found = read_set(tmp_path / "set")
     [record] = run(
-        found, found.tasks, UneditedStart(dataclasses.replace(rendering, seconds=8)), tmp_path / "out"
+        found, found.tasks, UneditedStart(dataclasses.replace(rendering, seconds=4)), tmp_path / "out"
     )
-    assert "The task's start.py ran past its deadline of 8 s" in (record.why or "")
+    assert "The task's start.py ran past its deadline of 4 s" in (record.why or "")
 
 
 # Renders made by anybody

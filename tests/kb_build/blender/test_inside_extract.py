@@ -747,8 +747,12 @@ def test_extracting_for_another_user_gives_the_same_bytes(
     monkeypatch.setenv("HOME", str(tmp_path / "home"))
     again = extract_api(find_runtime(None, home=tmp_path), home=tmp_path)
     first = next((base.parent.parent / "extracts").glob("*.jsonl"))
-    assert again.read_bytes() == first.read_bytes()
-    assert not [line for line in first.read_text(encoding="utf-8").splitlines() if " at 0x" in line]
+    theirs, ours = (path.read_text(encoding="utf-8").splitlines() for path in (again, first))
+    # Told by the lines that are of one only: pytest's own comparison of the two takes minutes where they differ.
+    assert sorted({*theirs} ^ {*ours})[:10] == []
+    is_same = again.read_bytes() == first.read_bytes()
+    assert is_same
+    assert not [line for line in ours if " at 0x" in line]
 
 
 def test_a_thing_is_as_it_was_after_edit_mode_was_tried(tmp_path: Path) -> None:

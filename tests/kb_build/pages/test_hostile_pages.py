@@ -20,9 +20,9 @@ MIB = 1 << 20
 # What ends otherwise must do so long before its time is over, on slow machines too.
 PATIENT = PageBudget(cpu_seconds=60, memory=256 * MIB)
 # For what would take far longer than this on any machine.
-SHORT_RST = PageBudget(cpu_seconds=4, memory=256 * MIB)
+SHORT_RST = PageBudget(cpu_seconds=2, memory=256 * MIB)
 SHORT_HTML = PageBudget(cpu_seconds=2, memory=256 * MIB)
-TOO_LONG = "it took more than 4 s of computing"
+TOO_LONG = "it took more than 2 s of computing"
 
 
 def from_rst(folder: Path, text: str, budget: PageBudget = PATIENT) -> dict[str, Page]:

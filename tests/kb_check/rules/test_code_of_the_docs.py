@@ -1,9 +1,11 @@
-"""The code that the docs give is right: none of it is flagged."""
+"""The code that the docs give is right: none of it is flagged. `make test` takes every third line."""
 
 from __future__ import annotations
 
 import re
 from typing import TYPE_CHECKING
+
+from whole import IS_WHOLE
 
 from kb_build.records import THEN
 from kb_build.symbol_lines import fillers, new_subscript
@@ -45,6 +47,8 @@ def code_of_the_docs(checker: Checker, reader: BaseReader) -> Iterator[str]:
 def test_no_code_of_the_docs_is_flagged(rule_checker: Checker, reader: BaseReader) -> None:
     lines = list(dict.fromkeys(code_of_the_docs(rule_checker, reader)))
     assert len(lines) > 15_000
+    if not IS_WHOLE:
+        lines = lines[::3]
     flagged: dict[str, str] = {}
     for start in range(0, len(lines), _AT_ONCE):
         part = [line for line in lines[start : start + _AT_ONCE] if line.isprintable()]

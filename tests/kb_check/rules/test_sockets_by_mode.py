@@ -1,4 +1,7 @@
-"""Sockets that Blender gives in some mode of a node, and the values that they have there, are no finding."""
+"""Sockets that Blender gives in some mode of a node, and the values that they have there, are no finding.
+
+`make test` takes every third mode.
+"""
 
 from __future__ import annotations
 
@@ -6,6 +9,8 @@ import json
 import subprocess
 import sys
 from typing import TYPE_CHECKING
+
+from whole import IS_WHOLE
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -80,6 +85,8 @@ def test_sockets_of_every_mode_are_no_finding(rule_checker: Checker, tmp_path: P
     )
     scripts: list[str] = json.loads(file.read_text())
     assert sum(script.count("\n") for script in scripts) > 15_000
+    if not IS_WHOLE:
+        scripts = scripts[::3]
     flagged: list[tuple[str, ...]] = []
     for script in scripts:
         lines = script.split("\n")

@@ -13,6 +13,7 @@ SAMPLES = 12
 _UNDENOISED_SAMPLES = 64  # of a Blender that has no denoiser
 _SUN = 1.4  # W/m²
 _ABOVE, _BELOW = 0.85, 0.3  # radiance of the surroundings, straight up and straight down
+_MAP = 64  # pixels across
 _NEAR = (
     0.6  # of what is framed: light from the surroundings reaches a place unless something nearer hides them
 )
@@ -59,6 +60,9 @@ class LitStudio(StudioScene):
         )
         scene.world = self.owned(bpy.data.worlds.new(_NAME))
         _make_gradient(tree_of(scene.world))
+        # Cycles looks for bright places in a map of the surroundings that it makes for each still. By itself it makes
+        # one as for a photograph of them, which takes most of the time; a gradient needs no more than this.
+        _set(scene.world.cycles, sampling_method="MANUAL", sample_map_resolution=_MAP)
         lamp = self.owned(bpy.data.lights.new(_NAME, "SUN"))
         lamp.energy, lamp.angle = _SUN, 0.3
         self._lamp = self.owned(bpy.data.objects.new(_NAME, lamp))
