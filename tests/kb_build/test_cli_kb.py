@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
     from built_base import Built
 
-COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main()"]
+COMMAND = [sys.executable, "-m", "simworlds"]
 
 
 def environment(home: Path, corpora: Path | None = None) -> dict[str, str]:

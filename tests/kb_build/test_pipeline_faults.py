@@ -22,7 +22,7 @@ from kb_build.pipeline import BuildOptions, build
 if TYPE_CHECKING:
     from built_base import Built
 
-COMMAND = [sys.executable, "-c", "from simworlds.cli import main; main()", "kb", "build", "--offline"]
+COMMAND = [sys.executable, "-m", "simworlds", "kb", "build", "--offline"]
 
 pytestmark = [
     pytest.mark.blender,
