@@ -125,15 +125,20 @@ class Successors:
             yield row
             return
         seen: set[str] = set()
+        ends: list[Succession] = []
         for target in row.new:
             if self._exists(target):
                 later = [Succession(path, (target,), row.how, row.version, row.source)]
             else:
                 later = self._of(target, step + 1) if step < _STEPS else ()
             for entry in later:
-                if entry.new and entry.new[0] not in seen:
+                if not entry.new:
+                    ends.append(entry)
+                elif entry.new[0] not in seen:
                     seen.add(entry.new[0])
                     yield Succession(path, entry.new, entry.how or row.how, entry.version, entry.source)
+        if ends and not seen:
+            yield Succession(path, (), ends[0].how, ends[0].version, ends[0].source)
 
     def _with_owner(self, path: str) -> Iterator[Succession]:
         above, mark, name = split_path(path)
