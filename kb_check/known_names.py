@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _MOST_NAMED = 3
 _FEW_MEMBERS = 8
+_PART = frozenset("([:")  # in the path of a parameter, a socket, an item
 
 
 @dataclass(frozen=True, slots=True)
@@ -75,6 +76,20 @@ class KnownNames:
             self._members[key] = self._lookup.of_member(owner, name) if owner else self._lookup.of_path(name)
         return self._members[key]
 
+    def _of_former(self, path: str, part: str) -> RemovedSymbol | None:
+        """A part, ``(x)``, ``(x):X`` or ``.inputs["X"]``, of what a function, operator or node took the place of."""
+        formers = self._formers.get(path, ())
+        return next(filter(None, (self._lookup.of_path(former + part) for former in formers)), None)
+
+    @cached_property
+    def _formers(self) -> dict[str, list[str]]:
+        """Path → what it takes the place of, alone or with others, where that is not a part of something."""
+        found: dict[str, list[str]] = {}
+        for path, target in self.reader.rows("SELECT path, target FROM successors ORDER BY position, path"):
+            if not _PART.intersection(path + target):
+                found.setdefault(target, []).append(path)
+        return found
+
     def is_nowhere(self, name: str) -> bool:
         """Whether nothing in this Blender is called so."""
         return not self.reader.rows("SELECT 1 FROM symbols WHERE name = ? LIMIT 1", name)
@@ -94,22 +109,33 @@ class KnownNames:
 
     def parameter(self, function: str, name: str, names: Iterable[str]) -> Lacking:
         """A keyword that a function or operator does not take; ``names`` are those that it takes."""
-        if removed := self._lookup.of_part(function, f"({name})"):
+        part = f"({name})"
+        if removed := self._lookup.of_part(function, part) or self._of_former(function, part):
             return self._removed(removed)
         return self._no_part(function, name, names, f"`{function}` takes no `{name}`", "It takes")
 
+    def changed_parameters(self, function: str) -> tuple[Lacking, ...]:
+        """The parameters that a function had once, but for those that only got another name."""
+        below = self.reader.rows(
+            "SELECT path FROM removed WHERE path > ? AND path < ?", f"{function}(", f"{function})"
+        )
+        known = [self._lookup.of_path(path) for (path,) in below if path.endswith(")")]
+        found = [self._removed(removed) for removed in known if removed and removed.gone]
+        return tuple(lacking for lacking in found if not lacking.sure)
+
     def value(self, owner: str, value: str, values: Iterable[str]) -> Lacking:
         """A value that is none of an enumeration's; ``owner`` is the property, or ``function(parameter)``."""
-        removed = self._lookup.of_part(owner, f":{value}") if "(" not in owner else None
-        removed = removed or self._lookup.of_path(f"{owner}:{value}")
-        if removed:
+        whole, mark, argument = owner.partition("(")
+        part = f"{mark}{argument}:{value}"
+        if removed := self._lookup.of_part(whole, part) or self._of_former(whole, part):
             return self._removed(removed)
         return self._no_part(owner, value, values, f"{value!r} is not a value of `{owner}`", "It takes")
 
     def socket(self, node: str, name: str, names: Iterable[str]) -> Lacking:
         """A socket that a node lacks; ``names`` are those that it has."""
         for side in ("inputs", "outputs"):
-            if removed := self._lookup.of_path(f'{node}.{side}["{name}"]'):
+            part = f'.{side}["{name}"]'
+            if removed := self._lookup.of_path(node + part) or self._of_former(node, part):
                 return self._removed(removed)
         return self._no_part(node, name, names, f"`{node}` has no socket {name!r}", "It has")
 

@@ -79,7 +79,7 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
     """
     known = {path for symbol in symbols for path in paths_of(symbol)}
     bases = {symbol.path: symbol.base for symbol in symbols if symbol.base}
-    successors = Successors(load_successors(), history, version, bases)
+    successors = Successors(load_successors(), history, version, bases, known)
 
     def moved_up(path: str) -> bool:
         """Whether a base of the class has it now: then it is still there."""
@@ -97,21 +97,26 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         if span.path not in known and is_asked_for(span.path, history, version) and not moved_up(span.path)
     ]
     dated = {row[0] for row in removed}
-    removed += [
+    stated = [
         (row.old, "", successors.before(row.version), row.version)
         for row in successors.stated()
         if row.old not in dated and row.old not in known
     ]
+    items = Counter(path.partition(":")[2] for path, *_ in removed)
+    # An item that an enumeration had means that one, and not also what calls that are gone took.
+    others = Counter(item for path, *_ in stated if (item := path.partition(":")[2]) not in items)
+    names = [(spelled, path) for path, *_ in removed for spelled in _keys(path, items)]
+    names += [(spelled, path) for path, *_ in stated for spelled in _keys(path, others)]
+    removed += stated
     rows = [
         (path, position, row.new[0] if row.new else "", row.how, row.version, row.source)
         for path, *_ in removed
         for position, row in enumerate(successors.of(path))
     ]
-    items = Counter(path.partition(":")[2] for path, *_ in removed)
     since = history.since(version)
     return RemovedSymbols(
         removed=tuple((*row, split_path(row[0])[2]) for row in removed),
-        names=tuple((spelled, path) for path, *_ in removed for spelled in _keys(path, items)),
+        names=tuple(names),
         successors=tuple(rows),
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
         since=tuple((symbol.path, since[symbol.path]) for symbol in symbols if symbol.path in since),

@@ -51,6 +51,10 @@ _SAME_KIND = 0.1
 _ITEM_CAME_THEN = 0.5
 _VERSIONS_BEFORE = 2
 _WHERE_IT_STOOD = 1.2
+# Elsewhere, with no more than this share of words in common, hardly any with a lower score takes its place.
+_FAR = 1.1
+_FEW_WORDS = 1 / 3
+_MENTIONED = 0.9  # unless its own text says so much of the missing name
 _RIVAL = 0.7  # of the best, from which on a second one may be an owner's replacement too
 _HOLDER = 0.25
 _MOST_ITEMS = 300  # more than in any enumeration but that of the icons
@@ -170,6 +174,25 @@ class SimilarNames:
         if path not in self._found:
             self._found[path] = self._items(path) if ":" in path else self._closest(path)
         return self._found[path]
+
+    def near(self, path: str) -> Iterator[tuple[str, float]]:
+        """Those of the closest symbols that are worth naming: not what is elsewhere and called quite otherwise.
+
+        Operators are not judged so: whole modules of them got other names.
+        """
+        if ":" in path or path.startswith("bpy.ops."):
+            yield from self.closest(path)
+            return
+        above, _, name = split_path(path)
+        wanted = {word for word in self._today(dict.fromkeys(_stems(name), 1.0)) if word in self._names}
+        mentions = self._mentions.coverage(set(_stems(name)), besides=self._names)
+        for target, score in self.closest(path):
+            owner, _, last = split_path(target)
+            having = set(_stems(last))
+            alike = len(wanted & having) / len(wanted | having or {""})
+            mentioned = mentions.get(self._known[target], 0.0) >= _MENTIONED
+            if owner == above or score >= _FAR or alike > _FEW_WORDS or mentioned:
+                yield target, score
 
     def _inside(self, path: str) -> Bag:
         return dict.fromkeys(self._below.get(path, ()), 1.0)
@@ -374,5 +397,5 @@ def find_similar_names(
             continue
         above, _, _ = split_path(span.path)
         if above in _ROOTS or history.exists(above, version):
-            for target, score in finder.closest(span.path):
+            for target, score in finder.near(span.path):
                 yield span.path, target, score

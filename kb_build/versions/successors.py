@@ -20,7 +20,7 @@ from kb_build.versions.paths import joined_path, split_path
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Collection, Iterable, Iterator, Mapping
 
     from kb_build.versions.history import ApiHistory, RemovedSpan
 
@@ -57,14 +57,24 @@ def load_successors(path: Path | None = None) -> list[Succession]:
 
 
 class Successors:
-    """The successors in one version (minor) that the history knows. ``bases`` are class → its base, as paths."""
+    """The successors in one version (minor) that the history knows.
+
+    ``bases`` are class → its base, as paths; ``known`` are paths that the version has, also those of modules that the
+    history does not list.
+    """
 
     def __init__(
-        self, table: Iterable[Succession], history: ApiHistory, version: str, bases: Mapping[str, str]
+        self,
+        table: Iterable[Succession],
+        history: ApiHistory,
+        version: str,
+        bases: Mapping[str, str],
+        known: Collection[str] = (),
     ) -> None:
         self._history = history
         self._version = version
         self._bases = bases
+        self._known = known
         until = version_key(version)
         rows = [row for row in table if version_key(row.version) <= until]
         self._rows = {row.old: row for row in rows if "*" not in row.old}
@@ -115,15 +125,20 @@ class Successors:
             yield row
             return
         seen: set[str] = set()
+        ends: list[Succession] = []
         for target in row.new:
             if self._exists(target):
                 later = [Succession(path, (target,), row.how, row.version, row.source)]
             else:
                 later = self._of(target, step + 1) if step < _STEPS else ()
             for entry in later:
-                if entry.new and entry.new[0] not in seen:
+                if not entry.new:
+                    ends.append(entry)
+                elif entry.new[0] not in seen:
                     seen.add(entry.new[0])
                     yield Succession(path, entry.new, entry.how or row.how, entry.version, entry.source)
+        if ends and not seen:
+            yield Succession(path, (), ends[0].how, ends[0].version, ends[0].source)
 
     def _with_owner(self, path: str) -> Iterator[Succession]:
         above, mark, name = split_path(path)
@@ -150,7 +165,9 @@ class Successors:
         return None
 
     def _exists(self, path: str) -> bool:
-        return self._history.exists(path, self._version) is True
+        if self._history.exists(path, self._version):
+            return True
+        return path in self._known and not self._history.mask(path)
 
     def _lineage(self, path: str) -> Iterator[str]:
         for _ in range(_STEPS):

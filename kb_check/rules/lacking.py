@@ -41,7 +41,26 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
         return None
     if _is_refused(script, row, lacking.replacement):
         return None
-    return Fix(f"Write {name}", (edit,), sure=lacking.sure)
+    sure = lacking.sure and _takes_its_keywords(script, row, lacking)
+    return Fix(f"Write {name}", (edit,), sure=sure)
+
+
+def _takes_its_keywords(script: Script, row: Resolution, lacking: Lacking) -> bool:
+    """Whether what is called under a new name takes the keywords that are given, as they are or by new names."""
+    nodes = ast.walk(row.statement or row.node)
+    call = next((node for node in nodes if isinstance(node, ast.Call) and node.func is row.node), None)
+    symbol = script.api.symbols.symbol(lacking.replacement)
+    if call is None or symbol is None or not symbol.parameters:
+        return True
+    names = {parameter.name for parameter in symbol.parameters}
+    if any(name.startswith("*") for name in names):
+        return True
+    return all(
+        keyword.arg is None
+        or keyword.arg in names
+        or ((known := script.names.path(f"{lacking.symbol}({keyword.arg})")) is not None and known.sure)
+        for keyword in call.keywords
+    )
 
 
 def _is_refused(script: Script, row: Resolution, replacement: str) -> bool:
@@ -62,7 +81,10 @@ def absent_paths(row: Resolution) -> tuple[str, ...]:
 
 
 def _split(path: str) -> tuple[str, str]:
-    """``a`` and ``b`` of ``a.b``, ``a(b)``, ``a:b`` and ``a.inputs["b"]``."""
+    """``a`` and ``b`` of ``a.b``, ``a(b)``, ``a:b``, ``a.inputs["b"]``; ``a(c)`` and ``b`` of ``a(c):b``."""
+    if "):" in path:
+        owner, _, name = path.rpartition(":")
+        return owner, name
     for opening, closing in (('.inputs["', '"]'), ('.outputs["', '"]'), ("(", ")"), (":", "")):
         owner, found, name = path.partition(opening)
         if found:

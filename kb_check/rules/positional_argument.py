@@ -130,12 +130,16 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
             f"`{path}` takes {takes}: `{callee.symbol.signature}`.{advice}", path,
         )  # fmt: skip
         return
-    # RNA's functions took all by place once: the order is that of the parameters.
+    # RNA's functions took all by place once: the order is that of the parameters, unless some are gone.
     parameter = by_name[rest[0]] if callee.is_rna and len(arguments) == len(callee.positional) + 1 else None
+    gone = script.names.changed_parameters(path) if callee.is_rna else ()
+    if gone:
+        parameter = None
     yield Finding(
         RULE.id, "error", script.span(extra),
         f"`{path}` takes {', '.join(f'`{name}`' for name in rest[:8])} by name only: "
-        + (f"write `{parameter.name}=`." if parameter else f"`{callee.symbol.signature}`."),
+        + (f"write `{parameter.name}=`." if parameter else f"`{callee.symbol.signature}`.")
+        + "".join(f" {lacking.message}" for lacking in gone),
         path, (f"{path}({rest[0]})",),
         _naming(script, extra, parameter, sure=True) if parameter else None,
     )  # fmt: skip

@@ -27,6 +27,8 @@ from kb_check.tried import is_tried
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_build.flow.types import Resolution
+    from kb_check.known_names import Lacking
     from kb_check.script import Script
 
 
@@ -37,8 +39,19 @@ def _check(script: Script) -> Iterator[Finding]:
             continue
         symbol = script.api.symbols.symbol(owner)
         if symbol is None or symbol.kind == "module" or row.kind == "name":
-            yield lacking_finding(script, RULE.id, row, script.names.member(owner, row.value))
+            lacking = script.names.member(owner, row.value)
+            yield lacking_finding(script, RULE.id, row, _of_lost_class(script, row, lacking) or lacking)
     yield from _unloaded(script)
+
+
+def _of_lost_class(script: Script, row: Resolution, lacking: Lacking) -> Lacking | None:
+    """What became of a member that is asked of a class that is gone, where the class in its place lacks it."""
+    if not script.api.is_class(lacking.replacement):
+        return None
+    for node in script.all(ast.Attribute):
+        if node.value is row.node and node.attr not in script.names.reader.members(lacking.replacement):
+            return script.names.path(f"{lacking.symbol}.{node.attr}")
+    return None
 
 
 def _unloaded(script: Script) -> Iterator[Finding]:

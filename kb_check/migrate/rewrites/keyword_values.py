@@ -15,6 +15,8 @@ if TYPE_CHECKING:
 
 _DROPPED = r"bpy\.ops\.[\w.]+_add\(layers\)"
 _ALIGN = r"bpy\.ops\.[\w.]+_add\(view_align\)"
+_AXIS = r"bpy\.ops\.\w+\.\w+\(axis_(forward|up)\)"
+_AXES = {f"{sign}{axis}": f"{word}{axis}" for sign, word in (("", ""), ("-", "NEGATIVE_")) for axis in "XYZ"}
 _PROPORTIONAL = r"bpy\.ops\.transform\.\w+\(proportional\)"
 _DOUBLED = {
     "bpy.ops.mesh.primitive_cube_add(radius)": "size",
@@ -53,6 +55,17 @@ def _propose(place: Place) -> Iterator[Change]:
             edit = place.without_keyword(call, row.node)
             if edit is not None:
                 yield place.change(REWRITE.id, match[0], [edit])
+    yield from _axes(place)
+
+
+def _axes(place: Place) -> Iterator[Change]:
+    for row, match in place.gone_like(_AXIS):
+        value = row.node.value if isinstance(row.node, ast.keyword) else None
+        name = f"{match[1]}_axis"
+        targets = [one.target for one in place.script.names.reader.successors(match[0])]
+        if isinstance(value, ast.Constant) and value.value in _AXES and any(name in one for one in targets):
+            text = f'{name}="{_AXES[value.value]}"'
+            yield place.change(REWRITE.id, match[0], [place.write(row.node, text)])
 
 
 def _twice(place: Place, value: ast.expr) -> str:

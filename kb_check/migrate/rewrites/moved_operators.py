@@ -19,13 +19,13 @@ _OPS = "bpy.ops."
 
 def _propose(place: Place) -> Iterator[Change]:
     reader = place.script.names.reader
-    for row, match in place.gone_like(r"bpy\.ops\.\w+(\.\w+)?"):
+    for row, match in place.gone_like(r"bpy\.ops\.\w+(?:\.\w+)?"):
         symbol, node = match[0], row.node
-        if match[1] is None:  # the module is gone: what is read from it was the operator
+        if row.missing[0] == "bpy.ops" and row.kind != "button":  # the module is gone
             around = place.parent(node)
             if not isinstance(around, ast.Attribute):
                 continue
-            symbol, node = f"{symbol}.{around.attr}", around
+            symbol, node = f"bpy.ops.{row.value}.{around.attr}", around
         successors = reader.successors(symbol)
         if (
             not isinstance(node, ast.Attribute)

@@ -47,6 +47,15 @@ def test_a_removed_symbol_is_found_with_and_without_prefix(removed_symbols: Remo
     assert {path for _, path in names} == removed
 
 
+def test_an_item_alone_means_that_of_an_enumeration_and_not_of_calls(removed_symbols: RemovedSymbols) -> None:
+    names = set(removed_symbols.names)
+    argument = "bpy.types.ObjectGpencilModifiers.new(type):GP_NOISE"
+    assert {path for spelled, path in names if spelled == key("GP_NOISE")} == {
+        "bpy.types.GpencilModifier.type:GP_NOISE"
+    }
+    assert (key(argument), argument) in names
+
+
 def test_replacements_exist_in_this_version(extract: Extract, removed_symbols: RemovedSymbols) -> None:
     known = {symbol.path for symbol in extract.symbols}
     assert {target.partition(":")[0] for _, target, _ in removed_symbols.similar_names} <= known

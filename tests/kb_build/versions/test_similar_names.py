@@ -71,7 +71,22 @@ def finder(symbols: Sequence[Symbol], history: ApiHistory) -> SimilarNames:
 def test_the_closest_symbol_is_offered_for_what_was_removed(
     finder: SimilarNames, missing: str, closest: str
 ) -> None:
-    assert closest in [path for path, _ in finder.closest(missing)]
+    assert closest in [path for path, _ in finder.near(missing)]
+
+
+@pytest.mark.blender
+@pytest.mark.parametrize(
+    ("missing", "far"),
+    [
+        ("bpy.types.GreasePencil.use_adaptive_uv", "bpy.types.BlendData.volumes"),
+        ("bpy.types.GreasePencil.edit_line_color", "bpy.types.ID.is_editable"),
+    ],
+)
+def test_what_is_elsewhere_and_called_otherwise_is_not_offered(
+    finder: SimilarNames, missing: str, far: str
+) -> None:
+    assert far in [path for path, _ in finder.closest(missing)]
+    assert far not in [path for path, _ in finder.near(missing)]
 
 
 @pytest.mark.blender
@@ -80,7 +95,7 @@ def test_five_of_six_judged_cases_are_among_the_closest(finder: SimilarNames) ->
     missed = [
         case["missing"]
         for case in cases
-        if not {path for path, _ in finder.closest(case["missing"])} & set(case["closest"])
+        if not {path for path, _ in finder.near(case["missing"])} & set(case["closest"])
     ]
     assert len(missed) <= len(cases) / 6, missed
 

@@ -17,6 +17,8 @@ from simworlds.releases import version_key
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kb_build.blender.extract_reader import Extract
+
 UNLISTED = ("bgl.gl",)  # names that no version's listing has
 
 
@@ -153,6 +155,28 @@ def test_successors_exist_in_every_version_that_can_be_built(
         ),
         ("bpy.types.CompositorNodeViewer.use_alpha", "5.1", [""]),
         ("bpy.types.GreasePencil.edit_curve_resolution", "5.1", [""]),
+        # What has another meaning than its likes.
+        ("bpy.types.CyclesRenderSettings.aa_samples", "5.1", [""]),
+        ("bpy.app.version_char", "5.1", [""]),
+        (
+            "bpy.types.ShaderNodeTexSky.sky_type:NISHITA",
+            "5.1",
+            ["bpy.types.ShaderNodeTexSky.sky_type:SINGLE_SCATTERING"],
+        ),
+        ("bpy.ops.armature.armature_layers", "5.1", ["bpy.types.BoneCollection.is_visible"]),
+        (
+            "bpy.types.ObjectGpencilModifiers.new(type):GP_THICK",
+            "5.1",
+            ["bpy.types.ObjectModifiers.new(type):GREASE_PENCIL_THICKNESS"],
+        ),
+        ("bpy.types.LightProbe.grid_bake_samples", "5.1", ["bpy.types.LightProbeVolume.bake_samples"]),
+        # Renamed, and then gone.
+        (
+            "bpy.ops.wm.alembic_export(visible_layers_only)",
+            "4.5",
+            ["bpy.ops.wm.alembic_export(visible_objects_only)"],
+        ),
+        ("bpy.ops.wm.alembic_export(visible_layers_only)", "5.1", [""]),
         # Not yet removed, or not yet there.
         ("bpy.types.Action.fcurves", "4.5", []),
         (
@@ -178,6 +202,14 @@ def test_a_name_leads_to_what_takes_its_place_in_that_version(
         "bpy.types.TransformStrip.rotation_start",
         "bpy.types.CompositorNodeVecBlur.factor",
         "bmesh.ops.bevel(vertex_only)",
+        "bpy.ops.export_scene.obj(axis_forward)",
+        "bpy.ops.object.move_to_layer",
+        "bpy.ops.pose.bone_layers",
+        "bpy.ops.wm.usd_export(export_textures)",
+        "bpy.types.AssetHandle.get_full_library_path",
+        "bpy.types.CompositorNodeAlphaOver.premul",
+        "bpy.types.CompositorNodeMixRGB",
+        "bpy.types.SpeedControlSequence.multiply_speed",
     ],
 )
 def test_a_new_name_that_takes_another_value_says_which(
@@ -195,6 +227,16 @@ def test_members_of_a_renamed_class_are_found_in_its_bases(
     assert successors.of("bpy.types.PointLamp.color")[0].new == ("bpy.types.Light.color",)
 
 
+def test_a_module_that_the_history_does_not_list_is_looked_up_among_the_symbols(
+    history: ApiHistory, table: list[Succession]
+) -> None:
+    cyclic = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke.cyclic"
+    strokes = "bpy.types.GreasePencilDrawing.strokes"
+    for known, targets in (({cyclic}, [cyclic, strokes]), (set[str](), [strokes])):
+        found = Successors(table, history, "5.1", {}, known).of("bpy.types.GPencilStroke.use_cyclic")
+        assert [row.new[0] for row in found] == targets
+
+
 def test_a_date_between_two_known_versions_comes_from_the_table(
     history: ApiHistory, table: list[Succession]
 ) -> None:
@@ -207,6 +249,16 @@ def test_a_date_between_two_known_versions_comes_from_the_table(
 def test_rows_that_lead_to_each_other_end(history: ApiHistory) -> None:
     rows = [Succession("a.x", ("a.y",), "", "2.80", "s"), Succession("a.y", ("a.x",), "", "2.80", "s")]
     assert Successors(rows, history, "5.1", {}).of("a.x") == []
+
+
+@pytest.mark.blender
+def test_members_of_python_classes_that_the_table_names_exist(
+    extract: Extract, table: list[Succession]
+) -> None:
+    known = {symbol.path for symbol in extract.symbols}
+    targets = {target for row in table for target in row.new if target.startswith("_bpy_internal.")}
+    assert len(targets) > 15
+    assert targets <= known
 
 
 @pytest.mark.parametrize("text", ["", "old,new\n", "old,new,how,version,source\na,b\n"])

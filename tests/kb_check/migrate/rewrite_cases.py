@@ -202,6 +202,12 @@ CASES = (
     case("moved-operator", "3.4",
          "import os\nbpy.ops.export_scene.obj(filepath=os.devnull, use_selection=True)\n",
          "import os\nbpy.ops.wm.obj_export(filepath=os.devnull, export_selected_objects=True)\n"),
+    case("moved-operator", "3.4",
+         "import os\nbpy.ops.export_mesh.stl(filepath=os.devnull, use_selection=True, axis_up='-Y')\n",
+         'import os\nbpy.ops.wm.stl_export(filepath=os.devnull, export_selected_objects=True, up_axis="NEGATIVE_Y")\n'),
+    case("keyword-value", "3.4",
+         "import os\nbpy.ops.export_scene.obj(filepath=os.devnull, axis_forward='-Z', axis_up='Y')\n",
+         'import os\nbpy.ops.wm.obj_export(filepath=os.devnull, forward_axis="NEGATIVE_Z", up_axis="Y")\n'),
     case("unknown-socket", "3.4",
          "m = bpy.data.materials.new('M')\nm.use_nodes = True\n"
          "m.node_tree.nodes['Principled BSDF'].inputs['Specular'].default_value = 0.2\n",

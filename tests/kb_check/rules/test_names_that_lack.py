@@ -265,3 +265,85 @@ def test_the_socket_that_makes_room_for_others_is_not_told_by_its_place(checker:
         node.inputs[3].default_value = 4.0
     """
     assert not checker.check(dedent(code))
+
+
+_STROKE = """
+import bpy
+drawing = bpy.data.grease_pencils.new("g").layers.new("L").frames.new(1).drawing
+drawing.add_strokes([3])
+stroke = drawing.strokes[0]
+"""
+_NOISE = 'import bpy\nnoise = bpy.data.materials["M"].node_tree.nodes.new("ShaderNodeTexNoise")\n'
+_MEMBERS = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
+
+
+@pytest.mark.parametrize(
+    ("code", "instead", "fix"),
+    [
+        # Of classes, operators, functions and nodes that took the place of others: what those had.
+        (f"{_STROKE}stroke.use_cyclic = True", f"{_MEMBERS}.cyclic", ""),
+        (f"{_STROKE}stroke.points[0].pressure = 1", f"{_MEMBERS}Point.radius", ""),
+        (f"{_STROKE}stroke.points.add(2)", f"{_MEMBERS}.add_points", ""),
+        (f"{_STROKE}drawing.strokes.new()", "bpy.types.GreasePencilDrawing.add_strokes", ""),
+        (
+            "import bpy\nbpy.ops.wm.obj_export(filepath='x', use_selection=True)",
+            "bpy.ops.wm.obj_export(export_selected_objects)",
+            "export_selected_objects",
+        ),
+        (
+            "import bpy\nbpy.ops.object.modifier_add(type='GP_THICK')",
+            "bpy.ops.object.modifier_add(type):GREASE_PENCIL_THICKNESS",
+            "'GREASE_PENCIL_THICKNESS'",
+        ),
+        (
+            "import bpy\nbpy.context.object.modifiers.new('N', 'GP_NOISE')",
+            "bpy.types.ObjectModifiers.new(type):GREASE_PENCIL_NOISE",
+            "'GREASE_PENCIL_NOISE'",
+        ),
+        (f"{_NOISE}noise.inputs['Dimension']", 'bpy.types.ShaderNodeTexNoise.inputs["Roughness"]', ""),
+        # Names that others resemble, and that mean another thing.
+        ("import bpy\nbpy.context.scene.cycles.aa_samples = 4", "", ""),
+        ("import bpy\nbpy.app.version_char", "", ""),
+        (
+            "import bpy\nbpy.ops.armature.armature_layers(layers=[True] * 32)",
+            "bpy.types.BoneCollection.is_visible",
+            "",
+        ),
+    ],
+)
+def test_what_took_the_place_is_told_and_written_only_where_it_means_the_same(
+    checker: Checker, code: str, instead: str, fix: str
+) -> None:
+    (found,) = (one for one in checker.check(code) if one.severity == "error")
+    assert "never had" not in found.message
+    assert (found.instead[0] if found.instead else "") == instead
+    assert (found.fix.edits[0].text if found.fix and found.fix.sure else "") == fix
+
+
+def test_a_member_of_a_lost_class_is_looked_up_where_the_new_class_lacks_it(checker: Checker) -> None:
+    code = "import bpy\nbpy.types.AssetHandle.{}\n"
+    first, *_ = checker.check(code.format("get_full_library_path(None, None)"))
+    assert first.fix is None
+    assert first.instead == ("bpy.types.AssetRepresentation.full_library_path",)
+    first, *_ = checker.check(code.format("local_id"))
+    assert first.instead == ("bpy.types.AssetRepresentation",)
+
+
+def test_an_argument_by_place_is_named_only_where_no_parameter_is_gone(checker: Checker) -> None:
+    code = "import bpy\nstrips = bpy.context.scene.sequence_editor.strips\n"
+    new = 'strips.new_effect("Title", "COLOR", 2, 1, 25)'
+    (found,) = (one for one in checker.check(code + new) if one.rule == "positional-argument")
+    assert found.fix is None
+    assert "The length is frame_end - frame_start." in found.message
+    (found,) = checker.check('import bpy\nbpy.context.object.shape_key_add("Smile")')
+    assert found.fix is not None
+    assert found.fix.sure
+    assert found.fix.edits[0].text == "name="
+
+
+def test_a_new_name_is_not_sure_where_the_call_gives_what_it_does_not_take(checker: Checker) -> None:
+    code = "import bpy\nbpy.ops.sculpt.dirty_mask({})\n"
+    for given, sure in (("", True), ("dirty_only=True", False)):
+        found = next(one for one in checker.check(code.format(given)) if one.rule == "unknown-operator")
+        assert found.fix is not None
+        assert found.fix.sure is sure
