@@ -82,6 +82,7 @@ WRONG = {
     "refused-value": [
         _RESET + "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
         "bpy.context.scene.render.image_settings.file_format = 'OPEN_EXR_MULTILAYER'",
+        "render = bpy.context.scene.render\nrender.image_settings.file_format = 'FFMPEG'",
         _OUTPUT + "out.format.file_format = 'PNG'",
         _OUTPUT + "settings = out.format\nsettings.file_format = 'OPEN_EXR'",
         _OUTPUT + "out.format.media_type = 'VIDEO'",
