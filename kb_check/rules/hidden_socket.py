@@ -9,7 +9,7 @@ zone = tree.nodes.new("GeometryNodeSimulationInput")
 zone.inputs["Geometry"]  # reported: zone.pair_with_output(…) comes first
 ```
 
-Not reported: nodes that the script did not make itself, and scripts that name the mode's property anywhere, compute
+Not reported: nodes that the script did not make itself, and scripts that name a property of the mode anywhere, compute
 names or import modules which may change scenes.
 """
 
@@ -64,8 +64,7 @@ def _asked(script: Script) -> frozenset[str]:
 
 def _hidden(script: Script, sockets: list[Symbol], row: Resolution) -> str:
     """What is wrong with asking for sockets of one name, none of which a new node shows; empty if nothing surely is."""
-    own = script.api.own(sockets[0].owner).values()
-    if not {symbol.name for symbol in own if symbol.type == "enum"}.isdisjoint(named_words(script)):
+    if not _deciding(script, sockets).isdisjoint(named_words(script)):
         return ""
     for socket in sockets:
         side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
@@ -84,6 +83,14 @@ def _hidden(script: Script, sockets: list[Symbol], row: Resolution) -> str:
         f"A new `{first.owner}` shows no socket {row.value!r}, and finds only what it shows: it is there "
         f"with {wanted}."
     )
+
+
+def _deciding(script: Script, sockets: list[Symbol]) -> set[str]:
+    """The properties that may show sockets: all of their node's, where more than one of them has a say."""
+    names = [{mode.partition("=")[0] for mode in socket.modes} for socket in sockets]
+    if all(len(of_one) == 1 for of_one in names):
+        return set[str]().union(*names)
+    return {symbol.name for symbol in script.api.own(sockets[0].owner).values() if symbol.type == "enum"}
 
 
 def _unpaired(script: Script, sockets: list[Symbol], node: ast.Subscript) -> str:

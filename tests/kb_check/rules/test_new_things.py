@@ -54,6 +54,8 @@ WRONG = {
     ],
     "hidden-socket": [
         _POINTS + "points.inputs['Density Max'].default_value = 3",
+        _TREE + "cut = tree.nodes.new('GeometryNodeMeshBoolean')\ncut.operation = 'UNION'\n"
+        "cut.inputs['Self Intersection'].default_value = True",
         _ZONE + "first.inputs['Geometry']",
         _ZONE + "second = tree.nodes.new('GeometryNodeSimulationOutput')\n"
         "tree.links.new(first.outputs['Geometry'], second.inputs['Geometry'])\nfirst.pair_with_output(second)",
