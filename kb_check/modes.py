@@ -51,6 +51,8 @@ _HAVING = {
     "WEIGHT_PAINT": "bpy.ops.paint.weight_paint_toggle", "TEXTURE_PAINT": "bpy.ops.paint.texture_paint_toggle",
 }  # fmt: skip
 
+# The modes of a type of objects that some versions lack, which may list them all the same.
+_FORMER = re.compile(r"_(GPENCIL)$")
 
 # The modes in which operators are known to be refused: in those of paint and sculpture, masks let more run.
 _FOLLOWED = frozenset({"OBJECT", "EDIT", "POSE"})
@@ -132,11 +134,21 @@ def entering(modes: Wanted) -> str:
 
 
 def _no_such_mode(script: Script, mode: object, kind: str) -> str:
+    if isinstance(mode, str) and (former := _FORMER.search(mode)) and not _has_type(script, former[1]):
+        instead = mode.removesuffix(former[0])
+        advice = f": write {instead!r}" if instead in _HAVING else ""
+        return f"is refused: no object has mode {mode!r}, which was one of type {former[1]!r}{advice}"
     having = script.api.symbols.symbol(_HAVING[mode]) if isinstance(mode, str) and mode in _HAVING else None
     types, _ = operator_active(having) if having else (None, None)
     if types and kind and not types.takes(kind):
         return f"is refused: {with_article(kind)} object, which is the active one here, has no mode {mode!r}"
     return ""
+
+
+def _has_type(script: Script, kind: str) -> bool:
+    """Whether objects can be of a type."""
+    symbol = script.api.symbols.symbol("bpy.types.Object.type")
+    return symbol is None or any(item.identifier == kind for item in symbol.enum_items)
 
 
 def modes_text(modes: Sequence[str]) -> str:

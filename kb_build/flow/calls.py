@@ -165,6 +165,8 @@ class Calls(Narrowing):
         if name == "driver_add":
             return self._added_drivers(node, arguments)
         result = self.api.returned(path, callee.receiver)
+        if result is UNKNOWN and _raises_instead(symbol, node):
+            result = self.api.read_type(symbol.returns[0].type.removesuffix(" | Any"), path)
         return self._decided(result, symbol, arguments, keywords)
 
     def _added_drivers(self, node: ast.Call, arguments: list[Type]) -> Type:
@@ -575,6 +577,13 @@ class Calls(Narrowing):
         LocalFunction: _local_function,
         Builtin: _builtin,
     }
+
+
+def _raises_instead(symbol: Symbol, call: ast.Call) -> bool:
+    """Whether a call raises an error where it might return what it is given for that case: it is given nothing."""
+    is_plain = not call.keywords and not any(isinstance(argument, ast.Starred) for argument in call.args)
+    left = symbol.parameters[len(call.args) :] if is_plain and len(symbol.returns) == 1 else ()
+    return any(not one.required and "(instead of raising" in one.description for one in left)
 
 
 def _is_open(parameter: Parameter) -> bool:

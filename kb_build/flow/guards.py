@@ -86,11 +86,14 @@ class Guards(Expressions):
         return frozenset(name_doubt(row.value) for row in rows if row is not None and row.missing)
 
     def _texts(self, nodes: Iterable[ast.expr]) -> Iterator[str]:
-        """The texts among expressions that may be names."""
+        """The texts among expressions that may be names; of an operator's class, its module's and its own as well."""
         for node in nodes:
             text = literal_text(self.types.get(node, UNKNOWN))
             if text is not None and text.isidentifier():
                 yield text
+                module, of_class, operator = text.partition("_OT_")
+                if of_class:
+                    yield from (module.lower(), operator)
 
     def _calls_for_version(self, call: ast.Call) -> bool:
         """Whether a function of the script is called that looks at Blender's version."""

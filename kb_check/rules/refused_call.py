@@ -11,6 +11,10 @@ spline.points.add(3)  # reported: a Bézier spline has `bezier_points`
 mesh.attributes.new("weight", "FLOAT", "CURVE")  # reported: meshes have no such domain
 vector.length()  # reported: a property
 strip.modifiers.new("Curves", "CURVES")  # reported: ends Blender in a new file
+gpu.types.GPUShader(
+    vertex, fragment
+)  # reported since 5.0: functions make it, such as `gpu.shader.create_from_info`
+bpy.data.meshes.remove(ob.to_mesh())  # reported: ob.to_mesh_clear()
 ```
 
 What returns None instead of raising an error is a warning, and so is what ends Blender in a new file. Not reported:
@@ -20,9 +24,10 @@ what depends on the mode (see not-in-edit-mode).
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance
+from kb_build.flow.types import ClassObject, Instance
 from kb_build.records import ENDS_WITHOUT, last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls
@@ -30,6 +35,7 @@ from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.made_here import bindings, callee_path, knows_all, named_before, named_words, places
 from kb_check.mode_keeping import own_names
 from kb_check.rule import Rule
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -41,15 +47,24 @@ _WITH_PROPERTIES = ("bpy.types.", "mathutils.", "bmesh.types.")
 _OBJECT = "bpy.types.Object"
 _OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
 _LIGHT = "bpy.types.Light"
+# Modules whose classes are written in C and have a signature if, and only if, they can be called.
+_SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
+# What makes data that belong to an object alone, and what removes them.
+_OUTSIDE_MAIN = {
+    f"{_OBJECT}.to_mesh": "to_mesh_clear", f"{_OBJECT}.to_curve": "to_curve_clear",
+}  # fmt: skip
+_REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 _REMOVING = frozenset({"remove", "clear", "read_homefile", "open_mainfile", "read_factory_settings"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
     yield from _called_properties(script)
+    yield from _called_classes(script)
     unknown = {row.node for row in script.missing("keyword")}
     earlier: dict[tuple[str, str, str], CallSite] = {}
     for call in calls(script):
         yield from _ending(script, call)
+        yield from _removing_of_object(script, call)
         refusals = call.callee.symbol.refusals
         if not refusals or call.has_unpacking or not isinstance(call.node.func, ast.Attribute):
             continue
@@ -97,6 +112,46 @@ def _is_made(script: Script, thing: ast.expr) -> bool:
     values = bindings(script).get(thing.id, []) if isinstance(thing, ast.Name) else []
     paths = [callee_path(script, value) for value in values if isinstance(value, ast.Call)]
     return bool(paths) and len(paths) == len(values) and all(last_name(path)[:3] == "new" for path in paths)
+
+
+def _called_classes(script: Script) -> Iterator[Finding]:
+    """Calls of classes of which only functions make instances."""
+    for node in script.all(ast.Call):
+        kind = script.type_of(node.func)
+        if not isinstance(kind, ClassObject) or kind.cls.rpartition(".")[0] not in _SIGNED:
+            continue
+        row, symbol = script.analysis.resolutions.get(node.func), script.api.symbols.symbol(kind.cls)
+        is_guarded = (row is not None and (row.guarded or not row.sure)) or is_tried(script, node)
+        if symbol is not None and symbol.kind == "class" and not symbol.signature and not is_guarded:
+            yield Finding(
+                RULE.id, "error", script.span(node),
+                f"`{kind.cls}` cannot be called: Blender says “cannot create '{last_name(kind.cls)}' instances”. "
+                f"Functions of `{kind.cls.partition('.')[0]}` make them.",
+                kind.cls,
+            )  # fmt: skip
+
+
+def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
+    """Data that an object makes for itself, and that the script removes from Blender's."""
+    path = call.callee.symbol.path
+    given = call.node.args[0] if _REMOVES_DATA.fullmatch(path) and call.node.args else None
+    values = bindings(script).get(given.id, []) if isinstance(given, ast.Name) else [given]
+    made = [value for value in values if isinstance(value, ast.Call)]
+    makers = {callee_path(script, value) for value in made}
+    maker = makers.pop() if len(makers) == 1 and len(made) == len(values) else ""
+    clear = _OUTSIDE_MAIN.get(maker, "")
+    if not clear or script.api.member(_OBJECT, clear) is None or is_tried(script, call.node):
+        return
+    function = made[0].func
+    owner = function.value if isinstance(function, ast.Attribute) and len(made) == 1 else None
+    is_fixed = isinstance(owner, ast.Name) and len(bindings(script).get(owner.id, ())) == 1
+    edit = Edit(script.span(call.node), f"{ast.unparse(owner)}.{clear}()") if owner and is_fixed else None
+    yield Finding(
+        RULE.id, "error", script.span(call.node),
+        f"What `{maker}` returns belongs to its object and is not in `bpy.data`: `{path}` refuses it. "
+        f"`{_OBJECT}.{clear}` removes it.",
+        path, (f"{_OBJECT}.{clear}",), Fix(f"Write {clear}", (edit,)) if edit else None,
+    )  # fmt: skip
 
 
 def _called_properties(script: Script) -> Iterator[Finding]:

@@ -1,4 +1,4 @@
-"""A product, a sum or a quotient of mathutils' values that it refuses.
+"""A product, a sum or a quotient of mathutils' values that it refuses, or that is hardly the one meant.
 
 Matrices, quaternions and vectors are multiplied with ``@``; ``*`` goes item by item, and only between two of a kind.
 Until 2.79 both were ``*``. A colour is multiplied by a number only, an Euler not at all: ``euler.to_matrix()`` is.
@@ -12,7 +12,14 @@ ob.location + Vector((0, 0, 1))
 
 A vector is added to a vector only, and divided by a number only.
 
-Not reported: ``matrix * matrix`` and the like, which both work, with different results.
+Two matrices or two quaternions are a warning: ``*`` of them works, and gives something else than it did until 2.79.
+
+```python
+ob.matrix_world * Matrix.Rotation(1, 4, "Z")  # a warning: multiplies item by item
+ob.matrix_world @ Matrix.Rotation(1, 4, "Z")
+```
+
+Not reported: ``vector * vector``, which is often meant item by item.
 """
 
 from __future__ import annotations
@@ -21,6 +28,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import PRODUCTS
+from kb_build.flow.types import Instance
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.rule import Rule
 
@@ -30,6 +38,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _MATH = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Matrix", "Quaternion", "Vector"))
+_TRANSFORMS = frozenset({"mathutils.Matrix", "mathutils.Quaternion"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -54,16 +63,36 @@ def _check(script: Script) -> Iterator[Finding]:
             RULE.id, "error", script.span(row.node), f"`{left} {row.value} {right}` is refused. {advice}",
             left if left in _MATH else right,
         )  # fmt: skip
+    yield from _by_item(script)
 
 
-def _fix(script: Script, node: ast.BinOp) -> Fix | None:
+def _by_item(script: Script) -> Iterator[Finding]:
+    """Products of two transformations that ``*`` makes item by item."""
+    for node in script.all(ast.BinOp, ast.AugAssign):
+        if not isinstance(node.op, ast.Mult):
+            continue
+        sides = (node.left, node.right) if isinstance(node, ast.BinOp) else (node.target, node.value)
+        kinds = [kind for side in sides if isinstance(kind := script.type_of(side), Instance) and kind.sure]
+        classes = [kind.cls for kind in kinds]
+        if len(classes) < len(sides) or classes[0] != classes[1] or classes[0] not in _TRANSFORMS:
+            continue
+        sign = "@" if isinstance(node, ast.BinOp) else "@="
+        yield Finding(
+            RULE.id, "warning", script.span(node),
+            f"`*` multiplies two of `{classes[0]}` item by item, since 2.80: `{sign}` makes one transformation of "
+            "both.",
+            classes[0], (), _fix(script, node, sure=False) if isinstance(node, ast.BinOp) else None,
+        )  # fmt: skip
+
+
+def _fix(script: Script, node: ast.BinOp, *, sure: bool = True) -> Fix | None:
     """The edit that writes the other operator."""
     before, after = script.span(node.left), script.span(node.right)
     where = Span(before.end_line, before.end_column, after.line, after.column)
     text = script.text(where)
     if text.count("*") != 1 or "#" in text:
         return None
-    return Fix("Write @", (Edit(where, text.replace("*", "@")),), sure=True)
+    return Fix("Write @", (Edit(where, text.replace("*", "@")),), sure=sure)
 
 
 RULE = Rule("refused-product", "error", "A product or a sum that mathutils refuses", _check)

@@ -212,7 +212,7 @@ def _new_owner(script: Script, node: ast.expr, setting: Symbol) -> NewValue | No
         symbol = script.api.symbols.symbol(path)
         if symbol is None or symbol.type != "pointer":
             break
-        node = node.value
+        node = alias(script, node.value)
         cls = _class_of(script, node)
         for new in setting.new_values:
             is_of = any(script.api.is_class(f"{_T}{made}") and cls == f"{_T}{made}" for made in new.made)
@@ -295,7 +295,7 @@ def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
             or script.api.descends(f"bpy.types.{symbol.target}", "bpy.types.ID")
         ):
             break
-        node = node.value
+        node = alias(script, node.value)
     return _class_of(script, node) == _SCENE
 
 

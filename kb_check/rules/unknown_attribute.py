@@ -7,6 +7,7 @@ Blender's own, nor what the files of the same folder register (``bpy.types.Scene
 ```python
 bpy.context.object.draw_type = "WIRE"  # reported: display_type since 2.80
 bpy.context.object.display_type = "WIRE"
+data_from.groups  # of bpy.data.libraries.load; reported: collections
 light.energy.value = 100  # reported: a number is assigned as it is, `light.energy = 100`
 mesh.vertices.add(1).co = (0, 0, 0)  # reported: the call returns nothing
 ```
@@ -23,8 +24,8 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import OBJECT_DATA
 from kb_build.flow.types import UNKNOWN, Plain, members
 from kb_check.calls import nothing_from
-from kb_check.findings import Finding
-from kb_check.made_here import member_path, words_of
+from kb_check.findings import Finding, Fix
+from kb_check.made_here import bindings, callee_path, member_path, words_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
@@ -36,6 +37,7 @@ if TYPE_CHECKING:
     from kb_build.flow.types import Resolution
     from kb_check.script import Script
 
+_DATA, _LOAD = "bpy.types.BlendData", "bpy.types.BlendDataLibraries.load"
 _CONTEXT = "bpy.types.Context"
 _LET_PASS = frozenset({"driver_remove"})
 # Before, what is assigned to an unknown name of a property group is lost, and no error.
@@ -54,6 +56,39 @@ def _check(script: Script) -> Iterator[Finding]:
             level = "warning" if lost or _is_let_pass(row) else "error"
             yield lacking_finding(script, RULE.id, row, lacking, level)
     yield from _of_python(script)
+    yield from _of_libraries(script)
+
+
+def _of_libraries(script: Script) -> Iterator[Finding]:
+    """Names that ``bpy.data`` has lost, of the two things that ``bpy.data.libraries.load`` gives."""
+    given = [
+        name for node in script.all(ast.With) for item in node.items for name in _library_names(script, item)
+    ]
+    names = {name for name in given if given.count(name) == len(bindings(script).get(name, ()))}
+    for part in script.all(ast.Attribute) if names else ():
+        if isinstance(part.value, ast.Name) and part.value.id in names and script.names.had(_DATA, part.attr):
+            if script.type_of(part.value) is None or part.attr in _asked(script) or is_tried(script, part):
+                continue
+            lacking = script.names.member(_DATA, part.attr)
+            owner, _, name = lacking.replacement.rpartition(".")
+            edit = script.renamed(part, name) if owner == _DATA else None
+            is_read = isinstance(part.ctx, ast.Load)
+            lost = "" if is_read else " Nothing is loaded of what is assigned to it."
+            yield Finding(
+                RULE.id, "error" if is_read else "warning", script.name_span(part),
+                f"Libraries list what `bpy.data` has: {lacking.message}{lost}", lacking.symbol, lacking.instead,
+                Fix(f"Write {name}", (edit,), sure=lacking.sure) if edit else None,
+            )  # fmt: skip
+
+
+def _library_names(script: Script, item: ast.withitem) -> list[str]:
+    match item:
+        case ast.withitem(context_expr=ast.Call() as call, optional_vars=ast.Tuple(elts=parts)) if (
+            callee_path(script, call) == _LOAD
+        ):
+            return [part.id for part in parts if isinstance(part, ast.Name)]
+        case _:
+            return []
 
 
 def _of_python(script: Script) -> Iterator[Finding]:

@@ -9,15 +9,26 @@ principled.inputs["Specular"]  # reported since 4.0: Specular IOR Level
 mix = nodes.new("ShaderNodeMix")
 mix.inputs["A_Color"]  # reported: an identifier; mix.inputs["A"] while colours are mixed, or mix.inputs[6]
 ```
+
+So are the inputs of a group that the script makes, where its modifier is asked for them by identifiers of before 4.0:
+
+```python
+modifier = ob.modifiers.new("Scatter", "NODES")
+modifier.node_group = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
+modifier["Input_2"] = 10.0  # a warning: Socket_2, or what `item.identifier` says
+```
 """
 
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
+from kb_build.flow.types import Instance
 from kb_build.symbol_lines import subscripts_text
 from kb_check.findings import Finding
+from kb_check.made_here import called_operators, callee_path, is_new, knows_all, named_words
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 
@@ -31,6 +42,13 @@ if TYPE_CHECKING:
 # Of nodes with a set of sockets for each type of data, which Blender finds by name only.
 _BY_NAME_ONLY = "identifier-never"
 _SIDES = ("inputs", "outputs")
+_MODIFIER, _GROUPS_NEW = "bpy.types.NodesModifier", "bpy.types.BlendDataNodeTrees.new"
+# How the inputs and outputs of groups were called that were made before 4.0; these keep it.
+_FORMER = re.compile(r"(?:Input|Output)_(\d+)(?:_use_attribute|_attribute_name)?")
+_RENAMED_IN = (4, 0)
+_BRINGING = frozenset(
+    {"bpy.ops.wm.open_mainfile", "bpy.ops.wm.append", "bpy.ops.wm.link", "bpy.ops.wm.read_homefile"}
+)
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -52,6 +70,39 @@ def _check(script: Script) -> Iterator[Finding]:
                 f"`{first.owner}` finds its sockets by the names that it shows, not by identifiers as {row.value!r}: "
                 f"{subscripts_text(first)}.", first.path,
             )  # fmt: skip
+    if script.version >= _RENAMED_IN and _makes_all_groups(script):
+        yield from _former_inputs(script)
+
+
+def _former_inputs(script: Script) -> Iterator[Finding]:
+    for node in script.all(ast.Subscript):
+        key = node.slice.value if isinstance(node.slice, ast.Constant) else None
+        former = _FORMER.fullmatch(key) if isinstance(key, str) else None
+        kind = script.type_of(node.value)
+        if (
+            former
+            and isinstance(kind, Instance)
+            and kind.sure
+            and kind.cls == _MODIFIER
+            and is_new(script, node.value)
+        ):
+            now = f"Socket_{former[1]}"
+            yield Finding(
+                RULE.id, "warning", script.span(node.slice),
+                f"No input of a group that this Blender makes is called {key!r}: since 4.0 they are called as {now!r}, "
+                "and `item.identifier` of `node_group.interface.items_tree` says how.",
+                _MODIFIER,
+            )  # fmt: skip
+
+
+def _makes_all_groups(script: Script) -> bool:
+    """Whether a script makes groups of nodes, and takes none out of a file."""
+    if not knows_all(script) or "libraries" in named_words(script) or called_operators(script) & _BRINGING:
+        return False
+    used = [node for node in script.all(ast.Attribute) if node.attr == "node_groups"]
+    makers = [call.func.value for call in script.all(ast.Call)
+              if isinstance(call.func, ast.Attribute) and callee_path(script, call) == _GROUPS_NEW]  # fmt: skip
+    return bool(makers) and set(used) <= set(makers)
 
 
 def _sides(row: Resolution) -> tuple[str, ...]:

@@ -67,6 +67,86 @@ class MixinX:
 class X(MixinX, Panel):
     bl_label = "label"
 
+class X(Panel):
+    bl_label = "label"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "TOOLS"
+    bl_category = "Tools"
+    def draw(self, context): pass
+
+class X(Panel):
+    bl_label = "label"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "UI"
+    bl_category = "Tools"
+    def draw(self, context): pass
+
+class X(Panel):
+    bl_label = "label"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "TOOLS"
+    bl_category = ""
+    def draw(self, context): pass
+
+class X(Panel):
+    bl_label = "label"
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "HEADER"
+    bl_category = "Tools"
+    def draw(self, context): pass
+
+class X(Panel):
+    bl_label = "label"
+    bl_space_type = "CLIP_EDITOR"
+    bl_region_type = "TOOLS"
+    bl_category = "Tools"
+    def draw(self, context): pass
+
+class X(Panel):
+    bl_label = "label"
+    bl_space_type = "CLIP_EDITOR"
+    bl_region_type = "UI"
+    bl_category = "Tools"
+    def draw(self, context): pass
+
+class X(Panel):
+    bl_label = "label"
+    bl_space_type = "CLIP_EDITOR"
+    bl_region_type = "TOOLS"
+    bl_category = ""
+    def draw(self, context): pass
+
+class X(Panel):
+    bl_label = "label"
+    bl_space_type = "CLIP_EDITOR"
+    bl_region_type = "HEADER"
+    bl_category = "Tools"
+    def draw(self, context): pass
+
+class X(Panel):
+    bl_label = "label"
+    bl_space_type = "SEQUENCE_EDITOR"
+    bl_region_type = "HEADER"
+    bl_category = "Tools"
+    def draw(self, context): pass
+
+class MixinX:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "TOOLS"
+    bl_label = "label"
+    def draw(self, context): pass
+class X(MixinX, Panel):
+    bl_category = "Tools"
+
+class MixinX:
+    bl_space_type = "VIEW_3D"
+    bl_region_type = "TOOLS"
+    bl_category = "Tools"
+    bl_label = "label"
+    def draw(self, context): pass
+class X(MixinX, Panel):
+    bl_region_type = "UI"
+
 class X(Menu):
     bl_label = "label"
 

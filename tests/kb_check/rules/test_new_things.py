@@ -55,6 +55,8 @@ WRONG = {
     ],
     "hidden-socket": [
         _POINTS + "points.inputs['Density Max'].default_value = 3",
+        _TREE + "cut = tree.nodes.new('GeometryNodeMeshBoolean')\ncut.operation = 'UNION'\n"
+        "cut.inputs['Self Intersection'].default_value = True",
         _ZONE + "first.inputs['Geometry']",
         _ZONE + "second = tree.nodes.new('GeometryNodeSimulationOutput')\n"
         "tree.links.new(first.outputs['Geometry'], second.inputs['Geometry'])\nfirst.pair_with_output(second)",
@@ -83,6 +85,7 @@ WRONG = {
     "refused-value": [
         _RESET + "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
         "bpy.context.scene.render.image_settings.file_format = 'OPEN_EXR_MULTILAYER'",
+        "render = bpy.context.scene.render\nrender.image_settings.file_format = 'FFMPEG'",
         _OUTPUT + "out.format.file_format = 'PNG'",
         _OUTPUT + "settings = out.format\nsettings.file_format = 'OPEN_EXR'",
         _OUTPUT + "out.format.media_type = 'VIDEO'",

@@ -1,4 +1,4 @@
-"""Sums, differences and quotients of mathutils' values: found where Blender refuses them, and nowhere else."""
+"""What mathutils' values are added to, subtracted from, divided or multiplied by: found where Blender refuses it."""
 
 from __future__ import annotations
 
@@ -64,3 +64,31 @@ def test_sums_that_blender_refuses_are_found(rule_checker: Checker, tmp_path: Pa
               and "\n" not in line and not {*line.split()[::2]} <= {"items", "2", "1.5"}]  # fmt: skip
     assert missed == []
     assert len(found) > 1_000
+
+
+def test_products_of_two_transformations_by_item_are_warned_of(rule_checker: Checker, tmp_path: Path) -> None:
+    """Where ``*`` gives a transformation that is not the one that ``@`` gives."""
+    made = [*_MADE.splitlines(), "matrix = matrix.Rotation(1, 4, 'X')"]
+    operands = (
+        "vector", "matrix", "quaternion", "ob.matrix_basis", "matrix.inverted()", "2.5", "ob.location",
+        "ob.rotation_quaternion",
+    )  # fmt: skip
+    lines = [f"x = {left} * {right}" for left, right in product(operands, operands)]
+    lines += [
+        f"x = {left}.copy(); x *= {right}"
+        for left, right in product(("vector", "matrix", "quaternion"), operands)
+    ]
+    watched = {len(made) + at: "type(x).__name__, x" for at in range(len(lines))}
+    answers = run_statements(tmp_path, [*made, *lines], watched)[len(made) :]
+    found = {
+        one.span.line - len(made): one
+        for one in rule_checker.check("\n".join([*made, *lines]), rules=["refused-product"])
+        if one.severity == "warning"
+    }
+    transforming = [
+        at for at, (line, (error, _, value)) in enumerate(zip(lines, answers, strict=True), 1)
+        if not error and value.startswith(("('Matrix'", "('Quaternion'")) and "2.5" not in line
+    ]  # fmt: skip
+    assert sorted(found) == transforming
+    assert len(found) > 15
+    assert all(one.fix and not one.fix.sure for at, one in found.items() if " *= " not in lines[at - 1])

@@ -231,6 +231,20 @@ def test_a_guarded_text_is_no_error(rule_checker: Checker, tmp_path: Path) -> No
     assert [text for text in texts if rule_checker.check(text)] == []
 
 
+@pytest.mark.parametrize(
+    "asked",
+    ["hasattr(bpy.types, X)", "X in dir(bpy.types)", "getattr(bpy.types, X, None)"],
+)
+def test_an_operator_may_be_asked_for_by_its_class(rule_checker: Checker, asked: str) -> None:
+    """``bpy.ops.wm.collada_export`` went in 5.0, ``bpy.ops.gpencil`` in 4.3."""
+    for name, path in (("WM_OT_collada_export", "wm.collada_export"), ("GPENCIL_OT_draw", "gpencil.draw")):
+        call, condition = f"bpy.ops.{path}()", asked.replace("X", repr(name))
+        for code in (f"{call} if {condition} else None", f"if {condition}:\n    {call}"):
+            assert _errors(rule_checker, code) == []
+            assert _errors(rule_checker, f"{code}\n{call}") == [f"bpy.ops.{path}"]
+            assert _errors(rule_checker, code.replace(repr(name), "'OBJECT_OT_add'")) == [f"bpy.ops.{path}"]
+
+
 @pytest.mark.parametrize("code", ["if ASKED:\n    pass\nnodes.new(X)", "if not nodes:\n    nodes.new(X)"])
 def test_a_text_that_is_not_guarded_is_found(rule_checker: Checker, tmp_path: Path, code: str) -> None:
     text = _with_node(code, ASKING[0])

@@ -326,6 +326,24 @@ def test_only_what_is_certain_is_an_error(check: Check, code: str, severity: str
     assert [finding.severity for finding in found] == [severity] * bool(severity)
 
 
+def test_a_mode_that_objects_of_no_type_have_is_an_error(check: Check, tmp_path: Path) -> None:
+    made = [
+        "import bpy",
+        "ob = bpy.data.objects.new('pencil', bpy.data.grease_pencils.new('pencil'))",
+        "bpy.context.scene.collection.objects.link(ob)",
+        "bpy.context.view_layer.objects.active = ob",
+    ]
+    modes = ("EDIT_GPENCIL", "EDIT", "PAINT_GREASE_PENCIL", "SCULPT_GREASE_PENCIL", "OBJECT")
+    lines = [f"bpy.ops.object.mode_set(mode={mode!r})" for mode in modes]
+    answers = run_statements(tmp_path, [*made, *lines])[len(made) :]
+    refused = [line for line, (error, *_) in zip(lines, answers, strict=True) if error]
+    assert refused == lines[:1]
+    for before in (made, made[:1]):
+        found = check("wrong-mode", "\n".join([*before, *lines]))
+        assert [finding.span.line for finding in found] == [len(before) + 1]
+        assert "write 'EDIT'" in found[0].message
+
+
 def test_the_message_says_what_to_call_before(check: Check) -> None:
     found = check("wrong-mode", "import bpy\nbpy.ops.object.select_all()\nbpy.ops.mesh.subdivide()\n")
     assert found[0].message == (
