@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import re
 import sqlite3
 import zlib
 from contextlib import contextmanager
@@ -25,6 +26,7 @@ _Value = TypeVar("_Value")
 TYPES = "bpy.types."
 STRUCT = "bpy.types.bpy_struct"
 COLLECTION = "bpy.types.bpy_prop_collection"
+_ARGUMENT = re.compile(r"[( ](\w+)=")
 _UNLIMITED = float("inf")
 _REBUILD = "Rebuild it: simworlds kb build --force"
 
@@ -402,6 +404,12 @@ class BaseReader:
         """Paths of the operators with an argument of that name."""
         sql = "SELECT path FROM symbols WHERE kind = 'operator' AND line GLOB ? ORDER BY path"
         return [row[0] for row in self.rows(sql, f"*[( ]{argument}=*")]
+
+    @cached_property
+    def operator_arguments(self) -> frozenset[str]:
+        """The names of all operators' arguments."""
+        lines = self.rows("SELECT line FROM symbols WHERE kind = 'operator'")
+        return frozenset(name for (line,) in lines for name in _ARGUMENT.findall(line))
 
     def functions_named(self, prefix: str) -> list[str]:
         """Paths of the functions of data classes whose names begin with a key."""

@@ -282,11 +282,13 @@ class Messages:
             for target in old.targets
             if target.endswith(")")
         }
+        if not taking and not recognition.removed:
+            words = {near for near, _ in nearest(name, self._reader.operator_arguments, _FEW)}
         for word in sorted(words - {name}):
-            others = self._reader.operators_taking(word)
-            if 0 < len(others) <= _MOST_TAKING:
+            if others := self._reader.operators_taking(word):
                 listed = ", ".join(f"`{path}`" for path in others)
-                recognition.notes.append(f"`{word}` is the argument of {listed}.")
+                which = listed if len(others) <= _MOST_TAKING else f"{len(others)} operators"
+                recognition.notes.append(f"`{word}` is the argument of {which}.")
 
     def _too_many(self, function: str, most: int, recognition: Recognition) -> None:
         """More arguments than a function or class takes: what it takes, one sequence perhaps."""

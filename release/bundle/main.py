@@ -2,4 +2,5 @@
 
 from simworlds.cli import main
 
-main(["serve"], prog_name="simworlds")
+if __name__ == "__main__":
+    main(["serve"], prog_name="simworlds")

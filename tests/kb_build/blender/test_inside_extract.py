@@ -724,7 +724,7 @@ def test_a_choice_that_depends_on_the_instance_is_asked_of_instances(symbols: di
     new_socket = symbols["bpy.types.NodeTreeInterface.new_socket"]
     assert (
         new_socket.signature
-        == "new_socket(name, description='', in_out='INPUT', socket_type=..., parent=None)"
+        == "new_socket(name, *, description='', in_out='INPUT', socket_type=..., parent=None)"
     )
     (kind,) = [parameter for parameter in new_socket.parameters if parameter.name == "socket_type"]
     assert (kind.required, kind.default, kind.is_open) == (False, None, True)

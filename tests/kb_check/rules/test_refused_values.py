@@ -335,7 +335,6 @@ bpy.data.objects[:][::2]
 bpy.data.objects[True]
 ob.matrix_world @ mesh.vertices[0].co
 mesh.vertices[0].co @ ob.matrix_world
-ob.matrix_world * Matrix()
 ob.location * Vector((1, 2, 3))
 Quaternion() @ ob.location
 light.color * 2

@@ -163,7 +163,11 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ),
         (
             'Converting py args to operator properties:: keyword "export_textures" unrecognized',
-            "Similar names: `bpy.ops.wm.usd_export(export_textures_mode)`",
+            "`bpy.ops.wm.usd_export(export_textures_mode)`. NEW stands for True",
+        ),
+        (
+            'Converting py args to operator properties:: keyword "export_texture" unrecognized',
+            "`export_textures_mode` is the argument of `bpy.ops.wm.usd_export`.",
         ),
         ("ReferenceError: StructRNA of type Object has been removed", "data was removed, freed"),
         ("ReferenceError: BMesh data of type BMVert has been removed", "`v.is_valid` tells"),
@@ -361,7 +365,7 @@ def test_a_variable_called_like_a_collection_is_that_collection(
 def test_removed_enum_values_are_noted(kb: KnowledgeBase) -> None:
     answer = kb.query("sky.sky_type = 'NISHITA'")
     assert answer.hits[0].id == "bpy.types.ShaderNodeTexSky.sky_type"
-    assert any("NISHITA" in note and "MULTIPLE_SCATTERING" in note for note in answer.notes)
+    assert any("NISHITA" in note and "SINGLE_SCATTERING" in note for note in answer.notes)
 
 
 def test_preferences_of_an_add_on_are_reached_through_it(kb: KnowledgeBase) -> None:
