@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
+from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance
 from kb_check.literals import bound_names
 from kb_check.made_here import callee_path, named_words
@@ -150,7 +151,7 @@ class Bones:
             self._without_bones.clear()
         stores = (
             node
-            for node in ast.walk(statement)
+            for node in walk(statement)
             if isinstance(node, ast.Attribute) and not isinstance(node.ctx, ast.Load)
         )
         if any(node.attr == "data" for node in stores):  # an object may get another armature
@@ -216,7 +217,7 @@ def surely_run(statement: ast.stmt) -> Iterator[ast.AST]:
     if isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)):
         return
     waiting: list[ast.AST] = [
-        node for node in ast.iter_child_nodes(statement) if isinstance(node, (ast.expr, ast.withitem))
+        node for node in children(statement) if isinstance(node, (ast.expr, ast.withitem))
     ]
     if isinstance(statement, ast.Assert):
         waiting = [statement.test]
@@ -224,7 +225,7 @@ def surely_run(statement: ast.stmt) -> Iterator[ast.AST]:
         node = waiting.pop()
         if not isinstance(node, _NOT_SURELY):
             yield node
-            waiting += ast.iter_child_nodes(node)
+            waiting += children(node)
 
 
 def _operator(script: Script, statement: ast.stmt) -> ast.Call | None:
@@ -246,7 +247,7 @@ def _is_edit_bone(script: Script, node: ast.expr) -> bool:
 
 def _bound(statement: ast.stmt) -> Iterator[str]:
     """The names that a statement may bind or unbind, blocks and all."""
-    for node in ast.walk(statement):
+    for node in walk(statement):
         if not isinstance(node, (ast.arg, ast.Global, ast.Nonlocal)):
             yield from bound_names(node)
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import children, walk
 from kb_check.literals import functions
 from kb_check.made_here import callee_path, owners, places
 from kb_check.script import once_per_script
@@ -60,8 +61,7 @@ def _empties(body: list[ast.stmt], emptying: set[ast.stmt]) -> bool:
         if statement in emptying:
             return True
         if any(
-            isinstance(node, (ast.Return, ast.Raise, ast.Yield, ast.YieldFrom))
-            for node in ast.walk(statement)
+            isinstance(node, (ast.Return, ast.Raise, ast.Yield, ast.YieldFrom)) for node in walk(statement)
         ):
             return False
     return False
@@ -101,12 +101,12 @@ def _around(script: Script) -> dict[ast.Call, ast.stmt]:
     """The innermost statement around each call."""
     found: dict[ast.Call, ast.stmt] = {}
     for statement in places(script):
-        waiting: list[ast.AST] = [*ast.iter_child_nodes(statement)]
+        waiting: list[ast.AST] = [*children(statement)]
         while waiting:
             node = waiting.pop()
             if isinstance(node, (ast.stmt, ast.ExceptHandler, ast.match_case)):
                 continue
             if isinstance(node, ast.Call):
                 found[node] = statement
-            waiting += ast.iter_child_nodes(node)
+            waiting += children(node)
     return found

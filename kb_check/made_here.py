@@ -7,6 +7,7 @@ import re
 import sys
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import walk
 from kb_build.symbol_lines import fillers
 from kb_check.script import once_per_script
 
@@ -61,7 +62,7 @@ def statement_of(body: Sequence[ast.stmt], node: ast.expr) -> int:
 
 @once_per_script
 def _words_by_statement(script: Script) -> list[frozenset[str]]:
-    return [words_of(ast.walk(statement)) for statement in script.tree.body]
+    return [words_of(walk(statement)) for statement in script.tree.body]
 
 
 def words_of(nodes: Iterable[ast.AST]) -> frozenset[str]:

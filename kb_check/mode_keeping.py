@@ -6,6 +6,7 @@ import ast
 import builtins
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import children
 from kb_check.calls import calls
 from kb_check.made_here import bindings, knows_all, stored_names
 from kb_check.script import once_per_script
@@ -75,7 +76,7 @@ def _keeps(script: Script, root: ast.AST, changing: frozenset[str]) -> bool:
                 known = not isinstance(node, LEFT)
         if not known:
             return False
-        waiting += ast.iter_child_nodes(node)
+        waiting += children(node)
     return True
 
 

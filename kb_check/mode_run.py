@@ -12,6 +12,7 @@ from contextlib import suppress
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Mapping
 from kb_check.calls import calls
 from kb_check.made_here import bindings, knows_all, named_words
@@ -149,7 +150,7 @@ class _Run:
         return None if isinstance(node, (ast.Return, ast.Raise, ast.Break, ast.Continue)) else state
 
     def _if(self, node: ast.If, state: State) -> State | None:
-        words = {part.attr for part in ast.walk(node.test) if isinstance(part, ast.Attribute)}
+        words = {part.attr for part in walk(node.test) if isinstance(part, ast.Attribute)}
         asks = self._asks(node.test)
         inside = replace(state, mode="" if asks else state.mode, kind="" if words else state.kind)
         ways = self._block(node.body, inside), self._block(node.orelse, inside) if node.orelse else state
@@ -158,7 +159,7 @@ class _Run:
 
     def _asks(self, test: ast.expr) -> bool:
         """Whether a condition may have to do with the mode: names it, or depends on what callers say."""
-        for node in ast.walk(test):
+        for node in walk(test):
             if isinstance(node, ast.Attribute) and _OF_MODES.search(node.attr):
                 return True
             if isinstance(node, ast.Name) and (node.id in self._parameters or node.id in self._names):
@@ -283,7 +284,7 @@ class _Run:
         """What is known after what a statement assigns."""
         if self._storing_lines.isdisjoint(_lines(statement)):
             return state
-        for node in ast.walk(statement):
+        for node in walk(statement):
             if not isinstance(node, ast.Attribute) or isinstance(node.ctx, ast.Load):
                 continue
             if node.attr in SWITCHED:
@@ -308,7 +309,7 @@ def _mentions_modes(value: ast.expr) -> bool:
     return any(
         (isinstance(node, ast.Attribute) and _OF_MODES.search(node.attr) is not None)
         or (isinstance(node, ast.Constant) and isinstance(node.value, bool))
-        for node in ast.walk(value)
+        for node in walk(value)
     )
 
 
@@ -326,7 +327,7 @@ def _made_calls(root: ast.AST) -> Iterator[tuple[ast.expr, bool]]:
         if isinstance(node, (ast.Call, *LEFT)):
             yield node, is_sure
         is_sure = is_sure and not isinstance(node, _CONDITIONAL)
-        waiting += [(child, is_sure) for child in ast.iter_child_nodes(node)]
+        waiting += [(child, is_sure) for child in children(node)]
 
 
 @once_per_script

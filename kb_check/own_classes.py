@@ -6,6 +6,7 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import walk
 from kb_build.flow.types import ClassObject
 from kb_check.literals import bound_names, times_bound
 from kb_check.registered_types import TYPES
@@ -159,7 +160,7 @@ def members_of(node: ast.ClassDef) -> Body:
             case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
                 one = statement
             case _:
-                found.update((name, None) for part in ast.walk(statement) for name in bound_names(part))
+                found.update((name, None) for part in walk(statement) for name in bound_names(part))
                 continue
         found[name] = None if name in found else one
     return found

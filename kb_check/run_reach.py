@@ -215,7 +215,7 @@ def _leaving(tree: ast.Module) -> set[ast.AST]:
 def _plain_functions(tree: ast.Module) -> dict[str, _Function]:
     """The functions of the module itself whose name is given once, by name."""
     found: dict[str, list[_Function | None]] = {}
-    for node in ast.walk(tree):
+    for node in walk(tree):
         match node:
             case ast.FunctionDef(name=name) | ast.AsyncFunctionDef(name=name):
                 is_plain = node in tree.body and not node.decorator_list
@@ -276,7 +276,7 @@ def may_bring_names(tree: ast.Module, is_known: Callable[[str], bool]) -> bool:
 
     ``is_known`` tells whether a module is one of Blender's.
     """
-    return any(_brings(node, is_known) for node in ast.walk(tree))
+    return any(_brings(node, is_known) for node in walk(tree))
 
 
 def _brings(node: ast.AST, is_known: Callable[[str], bool]) -> bool:

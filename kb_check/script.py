@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import ast
 from bisect import bisect_right
+from collections import defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from typing import TYPE_CHECKING, TypeVar, cast
 from weakref import WeakKeyDictionary
 
+from kb_build.flow.trees import walk
 from kb_check.findings import Edit, Span
 from kb_check.source import split_lines
 
@@ -52,17 +54,10 @@ class Script:
 
     @cached_property
     def _by_type(self) -> dict[type[ast.AST], list[ast.AST]]:
-        """Every node, but for what only says how another one is used."""
-        queue: list[ast.AST] = [self.tree]
-        found: dict[type[ast.AST], list[ast.AST]] = {}
-        for node in queue:  # it grows
-            found.setdefault(type(node), []).append(node)
-            for name in node._fields:
-                value = getattr(node, name, None)
-                if isinstance(value, list):
-                    queue += [part for part in cast("list[object]", value) if isinstance(part, ast.AST)]
-                elif isinstance(value, ast.AST) and name != "ctx":
-                    queue.append(value)
+        """Every node, but for operators and what only says how another one is used."""
+        found: defaultdict[type[ast.AST], list[ast.AST]] = defaultdict(list)
+        for node in walk(self.tree):
+            found[type(node)].append(node)
         return found
 
     def resolutions(self, *kinds: str) -> Iterator[Resolution]:

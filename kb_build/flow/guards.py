@@ -49,8 +49,8 @@ class Guards(Expressions):
             if isinstance(part, ast.BoolOp):  # the sides that are decided leave the answer to the others
                 waiting += (side for side in part.values if not is_decided(self.types.get(side, UNKNOWN)))
                 continue
-            if isinstance(part, ast.expr):
-                found |= _doubts(tells(self.types.get(part, UNKNOWN)))
+            if isinstance(part, ast.expr) and (source := tells(self.types.get(part, UNKNOWN))):
+                found |= _doubts(source)
             match part:
                 case ast.Name(id="TYPE_CHECKING") | ast.Attribute(attr="TYPE_CHECKING"):
                     found.add(EVERYTHING)  # what follows never runs: it may name what only stubs have

@@ -65,7 +65,7 @@ class SourceFile:
         """The texts that it may give as names, all that it has for more than to look an item up: with the expressions
         for the things that are given them, None for what is unknown.
         """
-        nodes = list(ast.walk(self.tree)) if self.tree else []
+        nodes = list(walk(self.tree)) if self.tree else []
         sought = {key for node in nodes for key in _sought(node)}
         things = {name: thing for node in nodes for name, thing in _naming(node)}
         found: dict[str, list[ast.expr | None]] = {}
@@ -77,7 +77,7 @@ class SourceFile:
     @cached_property
     def sets_types(self) -> bool:
         """Whether it may set what a thing is of: an attribute that tells classes apart, or a computed one."""
-        return any(map(_sets_type, ast.walk(self.tree))) if self.tree else False
+        return any(map(_sets_type, walk(self.tree))) if self.tree else False
 
     def imported(self, level: int, module: str) -> str:
         """The dotted name of what ``from ..module import`` means here, with ``level`` dots; empty for nothing."""

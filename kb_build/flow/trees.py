@@ -40,6 +40,8 @@ class _Fields(dict[type[ast.AST], tuple[str, ...]]):
 
 
 _FIELDS = _Fields({ast.Constant: ()})
+# Lists in which None stands for what is not there; others hold nodes alone, or no nodes at all.
+_WITH_GAPS = frozenset({"keys", "kw_defaults"})
 
 
 def children(node: ast.AST) -> list[ast.AST]:
@@ -50,7 +52,10 @@ def children(node: ast.AST) -> list[ast.AST]:
     for name in _FIELDS[type(node)]:
         value = getattr(node, name, None)
         if isinstance(value, list):
-            found += [each for each in value if isinstance(each, ast.AST)]
+            if name in _WITH_GAPS:
+                found += [each for each in value if each is not None]
+            elif value and isinstance(value[0], ast.AST):
+                found += value
         elif isinstance(value, ast.AST):
             found.append(value)
     return found

@@ -23,7 +23,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.trees import called_name
+from kb_build.flow.trees import called_name, children
 from kb_check.calls import callee_of
 from kb_check.findings import Finding, Fix
 from kb_check.literals import set_of
@@ -136,7 +136,7 @@ def _ends(function: FunctionDefinition) -> _Ends:
         raises = raises or isinstance(node, (ast.Raise, ast.While)) or called_name(node) in _MAY_END
         if isinstance(node, ast.Return):
             returns.append(node)
-        queue.extend(ast.iter_child_nodes(node))
+        queue.extend(children(node))
     return _Ends(sorted(returns, key=lambda node: node.lineno), yields, raises)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import walk
 from kb_check.conversions import misfit
 from kb_check.findings import Finding, Fix
 from kb_check.given import assigned, property_taker
@@ -47,7 +48,7 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
 
 def _takes_its_keywords(script: Script, row: Resolution, lacking: Lacking) -> bool:
     """Whether what is called under a new name takes the keywords that are given, as they are or by new names."""
-    nodes = ast.walk(row.statement or row.node)
+    nodes = walk(row.statement or row.node)
     call = next((node for node in nodes if isinstance(node, ast.Call) and node.func is row.node), None)
     symbol = script.api.symbols.symbol(lacking.replacement)
     if call is None or symbol is None or not symbol.parameters:

@@ -23,6 +23,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.api import ARRAY, GROUPS
 from kb_build.flow.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN
+from kb_build.flow.trees import walk
 from kb_build.flow.types import (
     NONE,
     Collection,
@@ -84,7 +85,7 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _is_guarded(script: Script, node: ast.Subscript) -> bool:
     """Whether the script is ready for a refusal, or the type of the owner is a guess."""
-    for part in ast.walk(node):
+    for part in walk(node):
         row = script.analysis.resolutions.get(part)
         if row is not None and (row.guarded or not row.sure or (row.possible and not row.symbols)):
             return True

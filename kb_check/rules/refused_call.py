@@ -27,6 +27,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import walk
 from kb_build.flow.types import ClassObject, Instance
 from kb_build.records import ENDS_WITHOUT, last_name
 from kb_build.symbol_lines import with_article
@@ -219,7 +220,7 @@ def _follows(script: Script, before: CallSite, call: CallSite, owner: ast.expr) 
 
 def _may_remove(script: Script, statements: list[ast.stmt]) -> bool:
     """Whether statements remove what was made, themselves or by the script's own functions."""
-    nodes = [node for statement in statements for node in ast.walk(statement)]
+    nodes = [node for statement in statements for node in walk(statement)]
     names = {node.attr for node in nodes if isinstance(node, ast.Attribute)}
     names |= {node.id for node in nodes if isinstance(node, ast.Name)}
     return bool(names & _REMOVING) or bool(names & own_names(script) and named_words(script) & _REMOVING)
@@ -228,7 +229,7 @@ def _may_remove(script: Script, statements: list[ast.stmt]) -> bool:
 def _binds(statement: ast.stmt, name: str) -> bool:
     return any(
         isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
-        for node in ast.walk(statement)
+        for node in walk(statement)
     )
 
 

@@ -24,6 +24,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.flow.trees import walk
 from kb_build.flow.types import Instance
 from kb_build.records import last_name
 from kb_build.symbol_lines import usual_default
@@ -267,7 +268,7 @@ def _given_to_maker(script: Script, call: ast.Call, owner: ast.expr, setting: Sy
 
 def _leaves_alone(script: Script, statement: ast.stmt, owner: str, name: str) -> bool:
     """Whether a statement changes neither what an expression stands for nor its setting."""
-    for node in ast.walk(statement):
+    for node in walk(statement):
         if isinstance(node, ast.Call) and (callee_path(script, node) or "bpy.ops.").startswith("bpy.ops."):
             return False
         if isinstance(node, (ast.Name, ast.Attribute)) and isinstance(node.ctx, ast.Store):

@@ -22,6 +22,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import OBJECT_DATA
+from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Plain, members
 from kb_check.calls import nothing_from
 from kb_check.findings import Finding, Fix
@@ -125,7 +126,7 @@ def _asked(script: Script) -> frozenset[str]:
 
 def _is_let_pass(row: Resolution) -> bool:
     """Whether Blender does nothing, and raises no error: ``driver_remove`` of an unknown path returns False."""
-    calls = (node for node in ast.walk(row.statement or row.node) if isinstance(node, ast.Call))
+    calls = (node for node in walk(row.statement or row.node) if isinstance(node, ast.Call))
     functions = (call.func for call in calls if row.kind == "text" and row.node in call.args)
     return any(isinstance(function, ast.Attribute) and function.attr in _LET_PASS for function in functions)
 
