@@ -8,13 +8,11 @@ import sqlite3
 from array import array
 from collections import Counter
 from dataclasses import dataclass, field
-from functools import cache
 from typing import TYPE_CHECKING
 
 import sqlite_utils
 
 from kb_build.errors import StoreError
-from kb_build.index.analysis import terms_in, tokens
 from kb_build.index.documents import Document, kind_of, make_units, topic_documents
 from kb_build.index.everyday_words import lend, load_everyday_words, unknown_of
 from kb_build.index.label_names import find_label_names
@@ -23,14 +21,14 @@ from kb_build.index.passages import find_passages
 from kb_build.index.postings import (
     TOPIC_B,
     UNIT_B,
-    PostingLists,
-    Tokenize,
+    PostingList,
     document_postings,
     pack_postings,
     phrase_postings,
     vocabulary,
 )
 from kb_build.index.query_expansions import query_expansions
+from kb_build.index.stem_numbers import StemNumbers
 from kb_build.index.value_names import find_value_names
 from kb_build.index.weights import symbol_weights
 from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
@@ -162,8 +160,8 @@ def _write_level(
     level: int,
     documents: Sequence[Document],
     topics: Mapping[str, int],
-    stems_of: Tokenize,
-) -> PostingLists:
+    stems: StemNumbers,
+) -> dict[str, PostingList]:
     """Writes the documents of one level; returns their posting lists. ``topics``: ref → number."""
     chapters: dict[str, int] = {}
     explained: dict[str, int] = {"": -1}
@@ -178,7 +176,7 @@ def _write_level(
     anchors = "\n".join(document.anchor for document in documents)
     row = (level, len(documents), refs, anchors, *(column.tobytes() for column in columns))
     _insert(connection, "levels", (row,), len(row))
-    return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, stems_of)
+    return document_postings(documents, UNIT_B if level == UNITS else TOPIC_B, stems)
 
 
 def _phrases(
@@ -211,28 +209,23 @@ def write_index(
     """Writes what retrieval reads: the units, the topics around them, and the phrases that lead to either."""
     topics = [*topic_documents(units)]
     numbers = {topic.ref: number for number, topic in enumerate(topics)}
-    tokens_of = cache(tokens)
-
-    @cache
-    def stems_of(text: str) -> list[str]:
-        return [term for token in tokens_of(text) for term in terms_in(token)]
-
-    of_units = _write_level(connection, UNITS, units, numbers, stems_of)
-    of_topics = _write_level(connection, TOPICS, topics, numbers, stems_of)
+    stems = StemNumbers()
+    of_units = _write_level(connection, UNITS, units, numbers, stems)
+    of_topics = _write_level(connection, TOPICS, topics, numbers, stems)
     # Phrases lead to a symbol's unit, but to a page as a whole.
     targets = {
         unit.ref: len(units) + numbers[unit.ref] if unit.kind in PAGE_SOURCES else number
         for number, unit in enumerate(units)
     }
-    phrases = _phrases(units, topics, targets, expansions)
-    leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, stems_of)
+    phrases = [*_phrases(units, topics, targets, expansions)]
+    leads_to, of_phrases = phrase_postings(phrases, len(units), of_units, stems)
     connection.execute("INSERT INTO phrases VALUES (?)", (array("i", leads_to).tobytes(),))
     words = unknown_of(load_everyday_words(), of_units)
     for postings in (of_units, of_topics):
         lend(postings, words)
     levels = (0, of_units), (len(units), of_topics), (len(units) + len(topics), of_phrases)
     _insert(connection, "postings", pack_postings(*levels), 3)
-    _insert(connection, "vocabulary", vocabulary(units, tokens_of), 2)
+    _insert(connection, "vocabulary", vocabulary(units, stems), 2)
 
 
 def write_base(path: Path, contents: Contents) -> None:

@@ -29,15 +29,15 @@ def test_a_word_borrows_the_documents_of_its_terms() -> None:
         Document("jelly", "property", "", body=("soft body",)),
     ]
     units = document_postings(docs, 0.35)
-    own = units.weights["plume"][0]
+    own = units["plume"].weights[0]
     words = read_everyday_words(["plume: smoke", "blob: soft body", "gadget: widget", "puff: plume"])
     lend(units, unknown_of(words, units))
-    assert units.numbers["plume"] == [0, 1]
-    assert units.weights["plume"][1] == own
-    assert 0 < units.weights["plume"][0] < units.weights["smoke"][0] / 2
-    assert units.numbers["blob"] == [3]  # all stems of a term
-    assert "gadget" not in units.numbers
-    assert units.numbers["puff"] == [1]  # what is lent is not lent on
+    assert units["plume"].numbers.tolist() == [0, 1]
+    assert units["plume"].weights[1] == own
+    assert 0 < units["plume"].weights[0] < units["smoke"].weights[0] / 2
+    assert units["blob"].numbers.tolist() == [3]  # all stems of a term
+    assert "gadget" not in units
+    assert units["puff"].numbers.tolist() == [1]  # what is lent is not lent on
 
 
 @pytest.mark.parametrize(("count", "borrows"), [(29, True), (30, False)])

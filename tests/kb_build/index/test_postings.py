@@ -14,6 +14,7 @@ from kb_build.index.postings import (
     phrase_postings,
     vocabulary,
 )
+from kb_build.index.stem_numbers import StemNumbers
 
 
 def test_weights_are_bm25f_frequencies() -> None:
@@ -25,10 +26,10 @@ def test_weights_are_bm25f_frequencies() -> None:
     postings = document_postings(docs, b)
     body = FIELD_WEIGHTS["body"]
     long, short = 1 - b + b * 3 / 2, 1 - b + b * 1 / 2  # lengths 3 and 1, on average 2
-    assert postings.numbers["cloth"] == [0]
-    assert postings.weights["cloth"][0] == pytest.approx(FIELD_WEIGHTS["name"] / 1 + 2 * body / long)
-    assert postings.numbers["wind"] == [0, 1]
-    assert postings.weights["wind"] == pytest.approx([body / long, body / short])
+    assert postings["cloth"].numbers.tolist() == [0]
+    assert postings["cloth"].weights[0] == pytest.approx(FIELD_WEIGHTS["name"] / 1 + 2 * body / long)
+    assert postings["wind"].numbers.tolist() == [0, 1]
+    assert postings["wind"].weights == pytest.approx([body / long, body / short])
 
 
 def test_packed_postings_are_numbers_then_weights_of_all_levels() -> None:
@@ -56,14 +57,36 @@ def test_weighed_idf_of_shared_stems_is_the_share_of_a_phrase() -> None:
     of_units = document_postings(docs, 0.5)
     phrases = [("flag in the wind", 0), (" of the", 0), ("zeppelin", 1), ("the wind", 2)]
     leads_to, postings = phrase_postings(phrases, len(docs), of_units)
-    rarity = {term: idf(len(docs), len(of_units.numbers[term])) for term in ("flag", "wind")}
+    rarity = {term: idf(len(docs), len(of_units[term].numbers)) for term in ("flag", "wind")}
     assert leads_to == [0, 2]  # no phrase of stop words alone, none that no unit shares a word with
-    assert postings.numbers == {"flag": [0], "wind": [0, 1]}
-    shares = [rarity["flag"] * postings.weights["flag"][0], rarity["wind"] * postings.weights["wind"][0]]
+    assert {term: found.numbers.tolist() for term, found in postings.items()} == {"flag": [0], "wind": [0, 1]}
+    shares = [rarity[term] * postings[term].weights[0] for term in ("flag", "wind")]
     assert sum(shares) == pytest.approx(1)
-    assert rarity["wind"] * postings.weights["wind"][1] == pytest.approx(1)
+    assert rarity["wind"] * postings["wind"].weights[1] == pytest.approx(1)
+
+
+def test_a_text_is_read_as_often_as_it_comes() -> None:
+    docs = [
+        Document(
+            "a", "property", "", name=("wind",), heading=("wind",), body=("wind", "WindForces of the wind")
+        ),
+        Document("b", "property", ""),
+        Document("c", "property", "", body=("wind", "the")),
+    ]
+    numbers = StemNumbers()
+    first, again = (document_postings(docs, 0.0, numbers) for _ in range(2))
+    once = sum(FIELD_WEIGHTS[field] for field in ("name", "heading"))
+    assert first["wind"].numbers.tolist() == [0, 2]
+    assert first["wind"].weights == pytest.approx([once + 3 * FIELD_WEIGHTS["body"], FIELD_WEIGHTS["body"]])
+    assert set(first) == {"wind", stem("forces")}
+    assert all(again[term].weights.tolist() == found.weights.tolist() for term, found in first.items())
 
 
 def test_the_vocabulary_keeps_the_most_used_spelling_of_a_stem() -> None:
     docs = [Document("a", "class", "", body=("collisions collisions collision the",))]
     assert dict(vocabulary(docs)) == {stem("collision"): "collisions"}
+
+
+def test_of_two_that_are_used_as_often_the_vocabulary_keeps_the_shorter() -> None:
+    docs = [Document("a", "class", "", body=("collisions collision",))]
+    assert dict(vocabulary(docs)) == {stem("collision"): "collision"}

@@ -17,12 +17,14 @@ from rank_bm25 import BM25Okapi
 
 from kb_build.index.analysis import idf, terms
 from kb_build.index.documents import Document
-from kb_build.index.postings import PostingLists, document_postings, pack_postings
+from kb_build.index.postings import PostingList, document_postings, pack_postings
 from kb_build.schema import UNITS
 from kb_serve.rank.inverted_index import K1, InvertedIndex
 from kb_serve.rank.scoring import Concept, score_all
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from kb_serve.reader import BaseReader
 
 B = 0.35
@@ -35,7 +37,7 @@ WORDS = (
 class FlatIndexReader:
     """What an InvertedIndex reads from a base: one level of documents, no topics, no phrases."""
 
-    def __init__(self, count: int, postings: PostingLists) -> None:
+    def __init__(self, count: int, postings: Mapping[str, PostingList]) -> None:
         self._count = count
         self._postings = {row[0]: row for row in pack_postings((0, postings))}
 
@@ -61,7 +63,7 @@ def texts() -> list[str]:
 
 
 @pytest.fixture(scope="module")
-def postings(texts: list[str]) -> PostingLists:
+def postings(texts: list[str]) -> Mapping[str, PostingList]:
     return document_postings([Document(str(n), "guide", "", body=(text,)) for n, text in enumerate(texts)], B)
 
 
@@ -71,11 +73,11 @@ def okapi(texts: list[str]) -> Any:
 
 
 def test_idf_is_softplus_of_okapis_for_every_word(
-    texts: list[str], postings: PostingLists, okapi: Any
+    texts: list[str], postings: Mapping[str, PostingList], okapi: Any
 ) -> None:
     common = 0
     for word in terms(" ".join(WORDS)):
-        having = len(postings.numbers[word])
+        having = len(postings[word].numbers)
         theirs = math.log(len(texts) - having + 0.5) - math.log(having + 0.5)
         common += theirs < 0
         assert theirs < 0 or okapi.idf[word] == pytest.approx(theirs)
@@ -85,15 +87,15 @@ def test_idf_is_softplus_of_okapis_for_every_word(
 
 @pytest.mark.parametrize("query", ["wind", "cloth wind flag", " ".join(WORDS), "friction of a mass"])
 def test_with_the_same_idf_scores_equal_bm25okapi(
-    texts: list[str], postings: PostingLists, okapi: Any, query: str
+    texts: list[str], postings: Mapping[str, PostingList], okapi: Any, query: str
 ) -> None:
-    okapi.idf = {word: idf(len(texts), len(numbers)) for word, numbers in postings.numbers.items()}
+    okapi.idf = {word: idf(len(texts), len(found.numbers)) for word, found in postings.items()}
     expected = np.asarray(okapi.get_scores(terms(query)))
     index = InvertedIndex(cast("BaseReader", FlatIndexReader(len(texts), postings)))
     scored = score_all(index, [Concept(word, word, 1.0, index.idf(word)) for word in terms(query)])
     assert scored.scores == pytest.approx(expected, rel=1e-3)  # a base keeps weights as float16
     unpacked = np.zeros(len(texts))
     for word in terms(query):
-        weights = np.asarray(postings.weights[word])
-        unpacked[postings.numbers[word]] += okapi.idf[word] * weights * (K1 + 1) / (weights + K1)
+        weights = postings[word].weights
+        unpacked[postings[word].numbers] += okapi.idf[word] * weights * (K1 + 1) / (weights + K1)
     assert unpacked == pytest.approx(expected, rel=1e-9)
