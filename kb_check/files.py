@@ -1,26 +1,23 @@
-"""Finds the files to check, and the packages that they belong to: what one file registers, the others may use."""
+"""Finds the files to check, and those that they belong together with: what one file registers, the others may use."""
 
 from __future__ import annotations
 
 import os
-import stat
 from dataclasses import dataclass, field
 from fnmatch import fnmatch
-from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kb_check.gitignore import GitIgnore
+from kb_check.package_roots import package_root, packages_used
 from kb_check.source import NOTEBOOK
 from simworlds.errors import UserError
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 SUFFIXES = (".py", ".pyw", NOTEBOOK)
 _PASSED_OVER = frozenset(("__pycache__", "node_modules", "site-packages"))
-_PACKAGE_MARKS = ("__init__.py", "blender_manifest.toml")
-_TOP_MARKS = (".git", "pyproject.toml")  # a project's folder: what lies above belongs to others
 _MOST_FILES = 50_000
 
 
@@ -34,7 +31,9 @@ class CodeFile:
 
 @dataclass(frozen=True, slots=True)
 class FileGroup:
-    """Files of one package, or one file that belongs to none."""
+    """Files of one package, or one file that belongs to none, with the packages of its project that it uses, and
+    whatever else uses these.
+    """
 
     files: tuple[CodeFile, ...]
 
@@ -80,20 +79,37 @@ def find_files(
 
 
 def _grouped(wanted: dict[Path, Path], excluded: _Excluded) -> Iterator[FileGroup]:
-    packages: dict[Path, list[CodeFile]] = {}
-    for real, shown in wanted.items():
-        root = None if real.suffix == NOTEBOOK else _package_root(real.parent)
-        if root is None:
-            yield FileGroup((CodeFile(shown),))
-        else:
-            packages.setdefault(root, []).append(CodeFile(shown))
-    for root, files in packages.items():
+    parts: dict[Path, list[Path]] = {}  # a package's folder, or a file of none → the files of it that are wanted
+    for real in wanted:
+        root = None if real.suffix == NOTEBOOK else package_root(real.parent)
+        parts.setdefault(root or real, []).append(real)
+    for together in _joined(parts):
+        files = [real for part in together for real in parts.get(part, ())]
         others = [
-            CodeFile(path, wanted=False)
-            for path in _below(root, excluded)
+            path
+            for part in together
+            if part.is_dir()
+            for path in _below(part, excluded)
             if path.suffix != NOTEBOOK and Path(os.path.realpath(path)) not in wanted
         ]
-        yield FileGroup((*files, *others[:_MOST_FILES]))
+        yield FileGroup(
+            (
+                *(CodeFile(wanted[real]) for real in files),
+                *(CodeFile(path, wanted=False) for path in others[:_MOST_FILES]),
+            )
+        )
+
+
+def _joined(parts: Mapping[Path, Iterable[Path]]) -> Iterable[list[Path]]:
+    """The parts that belong together: each with the packages that it uses."""
+    groups = {part: [part] for part in parts}
+    for part, files in parts.items():
+        for package in sorted(packages_used(files, part.parent)):
+            own, other = groups[part], groups.setdefault(package, [package])
+            if own is not other:
+                own += other
+                groups |= dict.fromkeys(other, own)
+    return {id(group): group for group in groups.values()}.values()
 
 
 def _below(folder: Path, excluded: _Excluded, ignored: GitIgnore | None = None) -> Iterator[Path]:
@@ -140,30 +156,3 @@ def matches(path: Path, patterns: Iterable[str], top: Path) -> bool:
         for pattern in patterns
         for step in steps
     )
-
-
-@cache
-def _package_root(folder: Path) -> Path | None:
-    """The topmost folder that is marked as a package, of those that hold the folder within its project.
-
-    A folder that Python cannot import from ends a package, and none begins in a folder that belongs to everyone.
-    """
-    root = None
-    for here in (folder, *folder.parents):
-        if _is_everyones(here):
-            break
-        if any((here / mark).is_file() for mark in _PACKAGE_MARKS):
-            root = here
-        if not here.name.isidentifier() or any((here / mark).exists() for mark in _TOP_MARKS):
-            break
-    return root
-
-
-def _is_everyones(folder: Path) -> bool:
-    """Whether a folder is a user's home, the system's, or one that anybody may put files in: no package of anybody."""
-    if folder in {Path(os.path.realpath(Path.home())), Path(folder.anchor)}:
-        return True
-    try:
-        return bool(folder.stat().st_mode & stat.S_ISVTX)
-    except OSError:
-        return False

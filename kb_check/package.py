@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import os
-from pathlib import PurePath
+from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import ANY
+from kb_check.package_roots import package_root
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -54,7 +55,15 @@ class Package:
 
 
 def paths_in_package(names: Iterable[str]) -> dict[str, str]:
-    """Name of a file → its path from the folder that holds the package on, as its modules import each other."""
+    """Name of a file → its path as other modules import it: from the folder that holds its package on; of a file that
+    belongs to none, only its name, unless another file has the same.
+    """
     places = {name: PurePath(os.path.realpath(name)) for name in names}
-    top = PurePath(os.path.commonpath([place.parent for place in places.values()])).parent
-    return {name: place.relative_to(top).as_posix() for name, place in places.items()}
+    paths: dict[str, str] = {}
+    for name, place in places.items():
+        root = package_root(Path(place.parent))
+        paths[name] = place.relative_to(root.parent if root else place.parent).as_posix()
+    if len(set(paths.values())) < len(paths):
+        top = PurePath(os.path.commonpath([place.parent for place in places.values()])).parent
+        return {name: place.relative_to(top).as_posix() for name, place in places.items()}
+    return paths

@@ -56,6 +56,43 @@ def test_of_one_file_of_a_package_the_others_are_read_too(tree: Path) -> None:
     assert groups(tree, "addon/sub/b.py") == [["(addon/__init__.py)", "(addon/a.py)", "addon/sub/b.py"]]
 
 
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [
+        ("loose.py", "import addon.sub as sub"),
+        ("scripts/e.py", "    from addon import a"),
+        ("scripts/f.py", 'bpy.ops.preferences.addon_enable(module="addon")'),
+        ("extension/d.py", "import addon"),
+        ("note.ipynb", '{"cells": [{"cell_type": "code", "source": "import addon"}]}'),
+    ],
+)
+def test_what_uses_a_package_of_its_project_is_read_with_it(tree: Path, name: str, code: str) -> None:
+    (tree / name).write_text(code)
+    package = ["addon/__init__.py", "addon/a.py", "addon/sub/b.py"]
+    assert sorted([*package, name]) in groups(tree)
+    assert sorted([*(f"({path})" for path in package), name]) in groups(tree, name)
+
+
+def test_packages_are_also_looked_for_in_src(tree: Path) -> None:
+    (tree / "src").mkdir()
+    (tree / "addon").rename(tree / "src/addon")
+    (tree / "loose.py").write_text("import addon")
+    package = ["(src/addon/__init__.py)", "(src/addon/a.py)", "(src/addon/sub/b.py)"]
+    assert groups(tree, "loose.py") == [[*package, "loose.py"]]
+
+
+def test_packages_of_no_project_and_of_environments_are_not_read_along(tree: Path) -> None:
+    (tree / "loose.py").write_text("import addon")
+    (tree / "env/a.py").write_text("import b")
+    (tree / "env/b").mkdir()
+    (tree / "env/b/__init__.py").touch()
+    assert groups(tree, "env/a.py") == [["env/a.py"]]
+    (tree / "pyproject.toml").unlink()
+    (tree / ".git/a.py").unlink()
+    (tree / ".git").rmdir()
+    assert groups(tree, "loose.py") == [["loose.py"]]
+
+
 @pytest.mark.parametrize("between", ["pytest-of-root", "open"])
 def test_a_mark_in_somebody_elses_folder_makes_no_package(tmp_path: Path, between: str) -> None:
     """A stray file in a temporary folder, or above one that no module can have the name of."""
