@@ -297,6 +297,11 @@ class BaseReader:
             WHERE name = ? AND kind = 'property' AND target = ? AND type = 'pointer' ORDER BY path"""
         return [row[0] for row in self.rows(sql, name, cls)]
 
+    def collections_of(self, cls: str) -> list[str]:
+        """Paths of the properties whose collections are of a class of their own, given by its name."""
+        sql = "SELECT path FROM symbols WHERE collection = ? AND kind = 'property' ORDER BY id"
+        return [row[0] for row in self.rows(sql, cls)]
+
     def enum_owners(self, key: str) -> list[tuple[str, str, str]]:
         """(owner, identifier, name) for every enumeration that has the item."""
         return self.rows("SELECT owner, identifier, name FROM enum_items WHERE key = ?", key)

@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 PARTS = (
-    *("retrieval", "names", "defaults", "passages", "signatures", "history", "old_code", "usage"),
+    *("retrieval", "names", "defaults", "passages", "signatures", "history", "old_code", "usage", "steps"),
     *("check_blender", "check_truth", "check_versions", "planted", "pyright", "migrate"),
     *("latency", "server", "schemas", "builds", "blender", "verifier", "audits"),
 )

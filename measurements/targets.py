@@ -133,6 +133,7 @@ _ROWS = (
         0.80,
         True,
     ),
+    Target("steps_done", "steps of topics that Blender does in a new scene", "share", 0.99, True),
     Target("flow_speed", "types flow through 1,000 lines", "ms", 150),
     Target("check_false", "Blender's own scripts: findings that Blender does not prove", "count", 0),
     Target("check_inside", "own scripts that run inside Blender: findings", "count", 0),

@@ -184,8 +184,9 @@ class _Calls:
             if choice := cls.name if by_name else _choice(cls, base, items):
                 given = self._arguments(maker, cls, choice, block=block)
                 yield cls.path, Creation(f"{head}({given})", maker.path, choice)
-        # Where a type must be told, only data-blocks are also made of the base class.
-        if not items or (not by_name and holder.owner == f"{TYPES}BlendData"):
+        # Where a type must be told, only data-blocks are also made of the base class, and what has no kinds of its own.
+        is_whole = holder.owner == f"{TYPES}BlendData" or base.path not in self._below
+        if not items or (not by_name and is_whole):
             first = next(iter(items), "")
             given = self._arguments(maker, base, first, block=block)
             yield base.path, Creation(f"{head}({given})", maker.path)
@@ -219,7 +220,7 @@ class _Calls:
 
     def _arguments(self, maker: Symbol, cls: Symbol, choice: str, *, block: str) -> str:
         given = [
-            self._argument(parameter, cls, choice, block=block)
+            self._argument(maker, parameter, cls, choice, block=block)
             for parameter in maker.parameters
             if parameter.required or (choice and parameter.name == "type")
         ]
@@ -227,9 +228,10 @@ class _Calls:
         wanted = [name for refusal in maker.refusals if choice in refusal.values for name in refusal.given]
         return ", ".join((*given, *(f"{name}={name}" for name in wanted)))
 
-    def _argument(self, parameter: Parameter, cls: Symbol, choice: str, *, block: str) -> str:
+    def _argument(self, maker: Symbol, parameter: Parameter, cls: Symbol, choice: str, *, block: str) -> str:
         if parameter.name == "type" and choice:
-            return f"'{choice}'" if parameter.enum_items else f'"{choice}"'
+            word = f"{parameter.name}=" if _by_name_only(maker, parameter) else ""
+            return word + (f"'{choice}'" if parameter.enum_items else f'"{choice}"')
         if parameter.name == "name":
             label = cls.label or cls.name
             label = label.removesuffix(" Modifier").removesuffix(" Constraint")
@@ -267,6 +269,12 @@ class _Calls:
                 yield symbol.path, Creation(f"{operator.path}()", operator.path)
 
 
+def _by_name_only(maker: Symbol, parameter: Parameter) -> bool:
+    """Whether a function takes an argument as a keyword only: it stands behind ``*``."""
+    _, star, after = maker.signature.partition("*, ")
+    return bool(star) and re.search(rf"\b{parameter.name}\b", after) is not None
+
+
 def _types(maker: Symbol) -> Parameter | None:
     """The argument of a function that decides which class it makes."""
     return next((parameter for parameter in maker.parameters if parameter.name == "type"), None)
@@ -292,7 +300,7 @@ def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:
     name = key(cls.name.removesuffix(base.name).removeprefix(base.name))
     label = key(cls.label.removesuffix(base.label))
     by_identifier = {key(identifier): identifier for identifier in items}
-    for wanted in (key(cls.name), name):
+    for wanted in (key(cls.name), name, key(_between(cls.name, base.name))):
         if wanted in by_identifier:
             return by_identifier[wanted]
     # Several classes may have one label, as the modifiers of meshes and of drawings.
@@ -300,3 +308,10 @@ def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:
         if text and key(text) in {label, key(cls.label)} and key(identifier) in key(cls.name):
             return identifier
     return ""
+
+
+def _between(name: str, base: str) -> str:
+    """What a name has within its base's: ``Keyframe`` of ActionKeyframeStrip, an ActionStrip."""
+    before = next((n for n, (a, b) in enumerate(zip(name, base, strict=False)) if a != b), len(base))
+    after = base[before:]
+    return name[before : len(name) - len(after)] if name.endswith(after) else ""

@@ -81,5 +81,5 @@ def test_what_is_none_until_something_makes_it_is_set_last(reader: BaseReader) -
 
 def test_a_pointer_that_is_none_is_filled_before_what_it_holds_is_set(reader: BaseReader) -> None:
     made, held = steps(reader, "force field", "FieldSettings")
-    assert made.endswith("`bpy.ops.object.forcefield_toggle()` makes `bpy.context.object.field`")
+    assert made.endswith("`bpy.ops.object.forcefield_toggle()` makes `obj.field`")
     assert "set on `bpy.context.object.field`" in held
