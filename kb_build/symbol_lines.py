@@ -51,6 +51,12 @@ _NEEDED = re.compile(
     r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and not in all other modes)?"
 )
 _QUOTED = re.compile(r"'(\w+)'")
+# Names by which scripts hold what is reached from the context.
+_HELD = (
+    ("bpy.context.object", "obj"),
+    ("bpy.context.scene", "scene"),
+    ("bpy.context.view_layer", "view_layer"),
+)
 
 
 def literal(value: object, kind: str = "enum") -> str:
@@ -123,6 +129,14 @@ def is_stand_in(symbol: Symbol) -> bool:
 def is_uncompared(symbol: Symbol) -> bool:
     """Whether the default is RNA's alone, of a property whose new value may be another one."""
     return _is_of_struct(symbol) and not {"compared", "readonly"} & set(symbol.flags)
+
+
+def held(reached: str) -> str:
+    """An expression with the short names that scripts give to the object and the scene."""
+    for prefix, name in _HELD:
+        if reached == prefix or reached.startswith((f"{prefix}.", f"{prefix}[")):
+            return name + reached[len(prefix) :]
+    return reached
 
 
 def fillers(symbol: Symbol) -> list[str]:

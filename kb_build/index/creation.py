@@ -13,6 +13,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
+from kb_build.symbol_lines import held
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -24,12 +25,6 @@ _MAKERS = ("new", "create", "add")
 _NEW_KIND = "new_"
 _ADDS = ("_add", "add")
 _NODE = f"{TYPES}Node"
-# Names by which scripts hold what is reached from the context.
-_HELD = (
-    ("bpy.context.object", "obj"),
-    ("bpy.context.scene", "scene"),
-    ("bpy.context.view_layer", "view_layer"),
-)
 _BLOCKS = ("obj", "scene", "mesh", "mat", "tree", "curve")
 _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTree": "tree", "Curve": "curve"}
 
@@ -102,14 +97,6 @@ def _whole(
         return new
     sizes = {given.name: _SIZE for given in maker.parameters if given.type.startswith("int")}
     return replace(new, by=_ARGUMENT.sub(lambda found: sizes.get(found[0], found[0]), creation.call))
-
-
-def held(reached: str) -> str:
-    """An expression with the short names that scripts give to the object and the scene."""
-    for prefix, name in _HELD:
-        if reached == prefix or reached.startswith((f"{prefix}.", f"{prefix}[")):
-            return name + reached[len(prefix) :]
-    return reached
 
 
 class _Calls:

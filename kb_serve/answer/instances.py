@@ -11,8 +11,7 @@ import re
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from kb_build.index.analysis import key
-from kb_build.index.creation import held
-from kb_build.symbol_lines import empty_when_new, fillers
+from kb_build.symbol_lines import empty_when_new, fillers, held
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:

@@ -14,8 +14,7 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
-from kb_build.index.creation import held
-from kb_build.symbol_lines import empty_when_new, fillers, literal, operator_needs, refused_nothing
+from kb_build.symbol_lines import empty_when_new, fillers, held, literal, operator_needs, refused_nothing
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.instances import Instances
 from kb_serve.answer.panel_lines import panel_lines

@@ -43,8 +43,7 @@ class _UnjudgedError(Exception):
 
 def _names() -> Names:
     """A scene with an active mesh object, ``obj``, and another."""
-    import bpy  # noqa: PLC0415 - only in the copies
-
+    bpy: Any = import_module("bpy")
     other = bpy.data.objects.new("other", bpy.data.meshes.new("other"))
     bpy.context.collection.objects.link(other)
     obj = bpy.context.object
@@ -145,9 +144,9 @@ def _done(topic: str, steps: list[str]) -> dict[str, Any]:
 
 def main(path: str) -> None:
     """Does all topics of a file."""
-    import_module("bpy")  # once, for all the copies
     output = os.dup(1)
     os.dup2(os.open(os.devnull, os.O_WRONLY), 1)  # Blender prints as it likes
+    import_module("bpy")  # once, for all the copies
     for topic, steps in json.loads(Path(path).read_text(encoding="utf-8")).items():
         if process := os.fork():
             if os.waitpid(process, 0)[1]:
