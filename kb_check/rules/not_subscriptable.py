@@ -171,7 +171,12 @@ def _of_collection(script: Script, kind: Collection, key: Type | None, step: ast
     path = kind.path or kind.container
     if step is not None and kind.container != GROUPS:
         return f"A slice of `{path}` takes no step: slice the list that `[:]` makes of it."
-    if isinstance(key, (NoneValue, Instance)) or (isinstance(key, Plain) and key.kind == "float"):
+    # A parameter that is called ``mat`` may hold the name of a material: such a guess is no key that is refused.
+    if (
+        isinstance(key, NoneValue)
+        or (isinstance(key, Instance) and key.sure)
+        or (isinstance(key, Plain) and key.kind == "float")
+    ):
         return f"`{path}` is asked by index or by name, not by {_described(key)}."
     element = kind.element
     if (
