@@ -321,6 +321,7 @@ class Expressions(Members):
         for place, value in enumerate(node.values):
             kinds.append(self._behind(value))
             if kinds[-1] == settles:
+                self.file.left_out.update(node.values[place + 1 :])
                 break
             if place < len(node.values) - 1:
                 if place == 0:
@@ -341,9 +342,9 @@ class Expressions(Members):
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
         if isinstance(test, Plain) and isinstance(test.value, bool):
-            chosen = self.evaluate(
-                node.body if test.value else node.orelse
-            )  # the other is for other versions
+            body, other = (node.body, node.orelse) if test.value else (node.orelse, node.body)
+            self.file.left_out.add(other)  # it is for other versions
+            chosen = self.evaluate(body)
             return telling(chosen, VERSION, value=True) if is_decided(test) else chosen
         before = self.scope.state
         self.scope.state = before.copy()

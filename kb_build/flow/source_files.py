@@ -26,8 +26,8 @@ class SourceFile:
 
     ``keeps_annotations``: Python leaves its annotations unread. ``steps_left`` is what may still be spent on reading
     it, ``complete`` whether that was enough, ``readings`` what its module took from definitions, ``doubted`` the
-    statements and parts of them that may all be for another Blender, ``unread`` what was too deep inside to be read at
-    some time.
+    statements and parts of them that may all be for another Blender, ``left_out`` those that a run of this one does not
+    come to, ``unread`` what was too deep inside to be read at some time.
     """
 
     name: str
@@ -41,6 +41,7 @@ class SourceFile:
     resolutions: dict[ast.AST, Resolution] = field(default_factory=dict["ast.AST", "Resolution"])
     readings: Readings = field(default_factory=Readings)
     doubted: set[ast.stmt | ast.expr] = field(default_factory=set["ast.stmt | ast.expr"])
+    left_out: set[ast.stmt | ast.expr] = field(default_factory=set["ast.stmt | ast.expr"])
     unread: set[ast.AST] = field(default_factory=set["ast.AST"])
     started: bool = False
     complete: bool = True

@@ -61,6 +61,7 @@ _FORGIVING = frozenset(
         "ValueError",
     }
 )
+_LEAVING = (ast.Return, ast.Raise, ast.Break, ast.Continue)
 _API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",
                           "bl_math", "idprop", "imbuf"})  # fmt: skip
 
@@ -70,12 +71,14 @@ class Statements(Calls):
 
     def read_body(self, body: Rows[ast.stmt]) -> bool:
         """Reads statements one after the other; whether what follows them can be reached."""
-        for statement in body:
+        for place, statement in enumerate(body):
             self.statement = statement
             if self.scope.state.doubted and self.scope.state.doubts():
                 self.file.doubted.add(statement)
             reader = self._statement_readers.get(type(statement))
             if reader is not None and not reader(self, statement):
+                if not isinstance(statement, _LEAVING):  # what is left behind a condition
+                    self.file.left_out.update(body[place + 1 :])
                 return False
         return True
 
@@ -264,6 +267,7 @@ class Statements(Calls):
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
             if isinstance(truth, bool) and truth is not holds:
+                self.file.left_out.update(body)
                 continue
             self.scope.state = before.copy()
             self.narrow(node.test, holds=holds)
