@@ -27,7 +27,8 @@ class SourceFile:
     ``keeps_annotations``: Python leaves its annotations unread. ``steps_left`` is what may still be spent on reading
     it, ``complete`` whether that was enough, ``readings`` what its module took from definitions, ``doubted`` the
     statements and parts of them that may all be for another Blender, ``left_out`` those that a run of this one does not
-    come to, ``unread`` what was too deep inside to be read at some time.
+    come to, ``unread`` what was too deep inside to be read at some time. ``quoted`` are its
+    quoted annotations with what they say.
     """
 
     name: str
@@ -43,6 +44,9 @@ class SourceFile:
     doubted: set[ast.stmt | ast.expr] = field(default_factory=set["ast.stmt | ast.expr"])
     left_out: set[ast.stmt | ast.expr] = field(default_factory=set["ast.stmt | ast.expr"])
     unread: set[ast.AST] = field(default_factory=set["ast.AST"])
+    quoted: dict[ast.Constant, ast.expr | None] = field(
+        default_factory=dict["ast.Constant", "ast.expr | None"]
+    )
     started: bool = False
     complete: bool = True
 

@@ -6,9 +6,9 @@ import ast
 import sys
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.flow.annotations import annotated
+from kb_build.flow.annotations import Readers, annotated, unquoted
 from kb_build.flow.calls import Calls
-from kb_build.flow.core import ANY
+from kb_build.flow.core import ANY, DEEPEST
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.expressions import is_decided, is_math
 from kb_build.flow.facts import DISCRIMINANTS, PARAMETERS, T
@@ -701,7 +701,7 @@ class Statements(Calls):
             kind = self._annotated(argument.annotation)
             if kind is not UNKNOWN:
                 received = function.received.get(argument.arg, UNKNOWN)
-                return join(kind, received) if self._contradicts(received, kind) else kind
+                return join(unsure(kind), received) if self._contradicts(received, kind) else kind
         if declared is not UNKNOWN:
             return declared
         received = function.received.get(argument.arg, UNKNOWN)
@@ -722,20 +722,58 @@ class Statements(Calls):
         """What an annotation means; a wrong name in it is no error where Python does not read it."""
         unread = self.file.keeps_annotations
         self.tolerant += unread
-        kind = annotated(node, self.evaluate)
+        kind = annotated(node, Readers(self.evaluate, self._quoted))
         self.tolerant -= unread
         return kind
 
+    def _quoted(self, node: ast.Constant) -> Type:
+        """What a quoted annotation means, which Python does not read."""
+        if node not in self.file.quoted:
+            self.file.quoted[node] = unquoted(node)
+        inner = self.file.quoted[node]
+        if inner is None or self.depth > DEEPEST:
+            return UNKNOWN
+        self.tolerant += 1
+        self.depth += 1
+        kind = annotated(inner, Readers(self.evaluate, self._quoted))
+        self.depth -= 1
+        self.tolerant -= 1
+        return kind
+
     def _contradicts(self, received: Type, declared: Type) -> bool:
-        """Whether calls pass an instance of another class than the annotation says, which nobody checks."""
-        classes = [member.cls for member in members(declared) if isinstance(member, Instance)]
-        return bool(classes) and any(
-            isinstance(member, Instance)
-            and not any(
-                self.api.descends(member.cls, cls) or self.api.descends(cls, member.cls) for cls in classes
-            )
-            for member in members(received)
+        """Whether calls pass something else than the annotation says, which nobody checks."""
+        return any(
+            not any(self._may_be(member, one) for one in members(declared)) for member in members(received)
         )
+
+    def _may_be(self, given: Type, declared: Type) -> bool:  # noqa: PLR0911 - one return a pair
+        """Whether something of a type may be what is declared, as far as is known of both."""
+        if declared is UNKNOWN or given is UNKNOWN or given is NONE:
+            return True
+        match given, declared:
+            case Instance(), Instance():
+                return self.api.descends(given.cls, declared.cls) or self.api.descends(
+                    declared.cls, given.cls
+                )
+            case LocalInstance(), Instance():
+                return any(
+                    isinstance(kind, ClassObject) and self._may_be(Instance(kind.cls), declared)
+                    for kind in self.ancestors(given.number)
+                )
+            case LocalInstance(), LocalInstance():
+                return LocalClass(declared.number) in self.ancestors(given.number) or LocalClass(
+                    given.number
+                ) in self.ancestors(declared.number)
+            case Mapping(), Mapping():
+                return not self._contradicts(given.value, declared.value)
+            case Tuple(), Tuple() if len(given.items) == len(declared.items):
+                return not any(map(self._contradicts, given.items, declared.items))
+            case ((Sequence() | Tuple()), Sequence()):
+                return not self._contradicts(self.iterated(given), declared.element)
+            case _, Instance() | LocalInstance():
+                return not isinstance(given, (Plain, Sequence, Tuple, Mapping, Instance))
+            case _:
+                return declared is not NONE
 
     def _by_convention(self, function: FunctionDefinition, name: str) -> Type:
         """The type that everyone's parameters of this name have, if the function uses it so."""
