@@ -36,7 +36,7 @@ from kb_check.background import is_called_by_others, lines_of_others
 from kb_check.calls import calls
 from kb_check.findings import Finding
 from kb_check.mode_run import enters_modes, states
-from kb_check.modes import EDIT_TOGGLE, MODE_SET, entering, modes_text, modes_wanted, refusal
+from kb_check.modes import EDIT_TOGGLE, MODE_SET, entering, former_mode, modes_text, modes_wanted, refusal
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -59,6 +59,7 @@ _OF_OBJECTS = frozenset(
 
 def _check(script: Script) -> Iterator[Finding]:
     yield from _of_another(script)
+    yield from _held_modes(script)
     known = states(script)
     quiet = lines_of_others(script) if known else []
     never = bool(known) and not is_called_by_others(script) and not enters_modes(script)
@@ -78,6 +79,24 @@ def _check(script: Script) -> Iterator[Finding]:
                     f"{entering(modes)}.",
                     path,
                 )  # fmt: skip
+
+
+def _held_modes(script: Script) -> Iterator[Finding]:
+    """Former modes that a name holds at some time which is given to ``mode_set``."""
+    given = {
+        node.id
+        for call in calls(script)
+        if call.callee.symbol.path in MODE_SET and isinstance(node := call.argument("mode"), ast.Name)
+    }
+    for assigned in script.all(ast.Assign) if given else ():
+        names = {target.id for target in assigned.targets if isinstance(target, ast.Name)}
+        value = assigned.value
+        if names.isdisjoint(given) or not isinstance(value, ast.Constant) or script.type_of(value) is None:
+            continue
+        if said := former_mode(script, value.value):
+            yield Finding(
+                RULE.id, "warning", script.span(value), f"`bpy.ops.object.mode_set` {said}.", "bpy.ops.object.mode_set"
+            )  # fmt: skip
 
 
 def _of_another(script: Script) -> Iterator[Finding]:
