@@ -17,6 +17,14 @@ OBJECT_DATA = {
 # Grease Pencil's data is GreasePencilv3 from 4.3 to 4.5; before, GreasePencil is the older kind, with GPencilLayers.
 RENAMED = {"GreasePencilv3": ("GreasePencil", "GPencilLayer")}
 
+# Members that went → what is read from them all the same: the property with which it has its type in common, where what
+# took their place is no mere new name.
+SAME_TYPE = {
+    f"{T}Scene.node_tree": f"{T}Scene.compositing_node_group",
+    f"{T}CompositorNodeOutputFile.file_slots": f"{T}CompositorNodeOutputFile.file_output_items",
+    f"{T}CompositorNodeOutputFile.layer_slots": f"{T}CompositorNodeOutputFile.file_output_items",
+}
+
 # Classes whose name is not spelled like the value that makes them: base class → value → class.
 CLASS_OF_VALUE = {
     "Modifier": {
@@ -108,6 +116,7 @@ BMESH_RESULTS = {
 # Properties that RNA declares wider than they are: path → class.
 NARROWER = {
     "bpy.types.SpaceNodeEditor.edit_tree": "NodeTree",
+    "bpy.types.Scene.compositing_node_group": "CompositorNodeTree",  # it refuses others
     "bpy.types.Context.space_data": "Space",
     "bpy.types.Context.edit_bone": "EditBone",
     "bpy.types.BoidSettings.active_boid_state": "BoidState",
