@@ -116,7 +116,6 @@ BMESH_RESULTS = {
 # Properties that RNA declares wider than they are: path → class.
 NARROWER = {
     "bpy.types.SpaceNodeEditor.edit_tree": "NodeTree",
-    "bpy.types.Scene.compositing_node_group": "CompositorNodeTree",  # it refuses others
     "bpy.types.Context.space_data": "Space",
     "bpy.types.Context.edit_bone": "EditBone",
     "bpy.types.BoidSettings.active_boid_state": "BoidState",
