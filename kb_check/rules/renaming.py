@@ -54,7 +54,11 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
         return None
     if _is_refused(script, row, lacking.replacement):
         return None
-    sure = lacking.sure and _takes_its_keywords(script, row.node, row, lacking) and _is_reached(script, row)
+    sure = (
+        lacking.sure
+        and _takes_its_keywords(script, row.node, row, lacking)
+        and _is_reached(script, row, lacking)
+    )
     if row.kind == "keyword":
         return Fix(f"Write {name}", (edit,), sure=sure and _is_of_right_callee(script, row))
     values = _values_beside(script, row, lacking)
@@ -134,15 +138,15 @@ def _calls(row: Resolution) -> Iterator[ast.Call]:
 # Properties.
 
 
-def _is_reached(script: Script, row: Resolution) -> bool:
-    """Whether all that a member is read from is called by its right name, or surely will be."""
-    if not isinstance(row.node, ast.Attribute):
+def _is_reached(script: Script, row: Resolution, lacking: Lacking) -> bool:
+    """Whether all that a member of a former class is read from is called by its right name, or surely will be."""
+    if not isinstance(row.node, ast.Attribute) or script.api.is_class(lacking.symbol.rpartition(".")[0]):
         return True
     rows = (script.analysis.resolutions.get(part) for part in _read_from(script, row.node.value))
     return all(
         bool(script.names.successor(one.missing[0], one.value))
         for one in rows
-        if one is not None and one.missing and not one.symbols and not one.possible
+        if one is not None and one.kind == "attribute" and one.missing and not (one.symbols or one.possible)
     )
 
 
