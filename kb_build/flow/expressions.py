@@ -425,7 +425,7 @@ class Expressions(Members):
         if not source:
             return
         # Those that were not reached are of a branch for other versions.
-        for constant in filter(self.types.__contains__, _constants(node)):
+        for constant in filter(self.types.__contains__, constants(node)):
             self.resolve_value(constant, source, use=use)
 
     def check_possible(self, owner: Type, name: str, paths: list[str], node: ast.expr) -> None:
@@ -443,7 +443,7 @@ class Expressions(Members):
             symbol and symbol.type == "enum" and len(symbol.enum_items) >= _FEWEST_VALUES
             for symbol in symbols
         ):
-            for constant in filter(self.types.__contains__, _constants(node)):
+            for constant in filter(self.types.__contains__, constants(node)):
                 self.resolve_value(constant, tuple(paths))
 
     @staticmethod
@@ -520,14 +520,14 @@ class Expressions(Members):
     }
 
 
-def _constants(node: ast.expr) -> list[ast.Constant]:
+def constants(node: ast.expr) -> list[ast.Constant]:
     """The text literals in a literal or a display of literals."""
     if isinstance(node, ast.Constant):
         return [node]
     if isinstance(node, (ast.Set, ast.Tuple, ast.List)):
         return [item for item in node.elts if isinstance(item, ast.Constant)]
     if isinstance(node, ast.IfExp):
-        return [*_constants(node.body), *_constants(node.orelse)]
+        return [*constants(node.body), *constants(node.orelse)]
     return []
 
 

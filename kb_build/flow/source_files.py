@@ -60,6 +60,17 @@ class SourceFile:
         """Whether it may set attributes of its own things whose names it does not write down."""
         return any(map(_computes_attributes, walk(self.tree))) if self.tree else False
 
+    @cached_property
+    def moves_imports(self) -> bool:
+        """Whether it may change where modules are found: it names ``sys.path``, or ``sys.modules``."""
+        return any(
+            isinstance(node, ast.Attribute)
+            and node.attr in {"path", "modules"}
+            and isinstance(node.value, ast.Name)
+            and node.value.id == "sys"
+            for node in (walk(self.tree) if self.tree else ())
+        )
+
     @property
     def is_read(self) -> bool:
         """Whether all of it was read that a run may come to."""

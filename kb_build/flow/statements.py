@@ -11,7 +11,7 @@ from kb_build.flow.calls import Calls
 from kb_build.flow.core import ANY, DEEPEST
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.expressions import is_decided, is_math
-from kb_build.flow.facts import DISCRIMINANTS, PARAMETERS, T
+from kb_build.flow.facts import DISCRIMINANTS, LOST_MODULES, PARAMETERS, T
 from kb_build.flow.guards import assigned_names
 from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
 from kb_build.flow.trees import children, walk
@@ -491,8 +491,14 @@ class Statements(Calls):
     def _tell_lost(self, node: ast.AST, module: str) -> None:
         """Records an imported module that other Blenders bring and this one does not, unless the files have it."""
         top = module.partition(".")[0]
-        if self.api.had("", top) and self.local_module(top) is UNKNOWN:
+        is_lost = top in LOST_MODULES and self.version >= LOST_MODULES[top][0] and not self._may_bring(top)
+        if (is_lost or self.api.had("", top)) and self.local_module(top) is UNKNOWN:
             self.resolve(node, "name", top, missing=("",))
+
+    def _may_bring(self, module: str) -> bool:
+        """Whether a module may be one that stands beside the scripts, or where they say that others are."""
+        beside = any(module in name.split(".") for name in (*self.files, *self.folders))
+        return beside or any(file.moves_imports for file in self.sources)
 
     def _module(self, path: str) -> Type:
         symbol = self.api.symbols.symbol(path)
