@@ -72,6 +72,9 @@ def may_take(parameter: Parameter, value: ast.expr) -> bool:
     """Whether a parameter may take the literal that is given: what was a switch may have become a choice."""
     if not isinstance(value, ast.Constant) or parameter.plain_type not in _TAKES:
         return True
+    listed = {item.identifier for item in parameter.enum_items}
+    if isinstance(value.value, str) and listed and not parameter.is_open:
+        return value.value in listed
     return type(value.value) in _TAKES[parameter.plain_type]
 
 
