@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 _SINCE = 5, 0
 _NODE = "bpy.types.CompositorNodeRLayers"
 _OUTPUTS = "bpy.types.Node.outputs"
-_NAMES = {
+NAMES = {
     "AO": "Ambient Occlusion", "DiffCol": "Diffuse Color", "DiffDir": "Diffuse Direct", "DiffInd": "Diffuse Indirect",
     "Emit": "Emission", "Env": "Environment", "GlossCol": "Glossy Color", "GlossDir": "Glossy Direct",
     "GlossInd": "Glossy Indirect", "IndexMA": "Material Index", "IndexOB": "Object Index",
@@ -52,17 +52,17 @@ def _check(script: Script) -> Iterator[Finding]:
             case _:
                 continue
         if (
-            name not in _NAMES
+            name not in NAMES
             or not _is_of_layers(script, owner)
             or name in _own(script)
             or is_tried(script, node)
         ):
             continue
-        edit = script.renamed(key, _NAMES[name])
+        edit = script.renamed(key, NAMES[name])
         yield Finding(
             RULE.id, "error" if isinstance(node, ast.Subscript) else "warning", script.span(key),
-            f"`{_NODE}` has no output {name!r} since Blender 5.0: the pass is called {_NAMES[name]!r}.", _NODE, (),
-            Fix(f"Write {_NAMES[name]}", (edit,), sure=True) if edit else None,
+            f"`{_NODE}` has no output {name!r} since Blender 5.0: the pass is called {NAMES[name]!r}.", _NODE, (),
+            Fix(f"Write {NAMES[name]}", (edit,), sure=True) if edit else None,
         )  # fmt: skip
 
 

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
     from kb_check.checker import Checker
 
-_NAMES = """\
+_NAMES: str = """\
 import bpy
 def f(a: "bpy.types.NodeSocketInterface", *b: 'bpy.types.Objekt') -> "list[bpy.types.EffectSequence]": pass
 x: "bpy.types.NodeSocketInterface" = None

@@ -66,7 +66,7 @@ def test_a_key_that_is_a_property_is_written_as_one(rule_checker: Checker) -> No
     assert (found.fix.sure, found.fix.edits[0].text) == (False, ".number")
 
 
-_PREFERENCES = """\
+_PREFERENCES: str = """\
 import bpy
 mine = bpy.context.preferences.addons['io_scene_gltf2'].preferences
 mine.keys()
@@ -86,7 +86,7 @@ def test_preferences_have_none(rule_checker: Checker, tmp_path: Path) -> None:
     assert [one.span.line for one in found] == refused == [3, 4, 5, 6]
 
 
-_REGISTERED = """\
+_REGISTERED: str = """\
 import bpy
 scene = bpy.context.scene
 bpy.types.Scene.count = bpy.props.IntProperty()
@@ -113,8 +113,7 @@ def test_a_registered_property_is_no_custom_one(rule_checker: Checker, tmp_path:
     assert [one.fix.edits[0].text for one in found if one.fix] == [".count", ".count"]
 
 
-def test_a_property_of_a_group_is_kept_in_its_dictionary(rule_checker: Checker, tmp_path: Path) -> None:
-    code = """\
+_OF_GROUP: str = """\
 import bpy
 bpy.types.PropertyGroup.count = bpy.props.IntProperty()
 class Own(bpy.types.PropertyGroup): count: bpy.props.IntProperty()
@@ -122,9 +121,12 @@ bpy.utils.register_class(Own)
 bpy.types.Scene.own = bpy.props.PointerProperty(type=Own)
 bpy.context.scene.own["count"] = 3
 """
-    seen = run_statements(tmp_path, code.splitlines(), {5: "bpy.context.scene.own.count"})
+
+
+def test_a_property_of_a_group_is_kept_in_its_dictionary(rule_checker: Checker, tmp_path: Path) -> None:
+    seen = run_statements(tmp_path, _OF_GROUP.splitlines(), {5: "bpy.context.scene.own.count"})
     assert seen[5][2] == "3"
-    assert rule_checker.check(code, rules=["property-by-key"]) == []
+    assert rule_checker.check(_OF_GROUP, rules=["property-by-key"]) == []
 
 
 @pytest.mark.parametrize(

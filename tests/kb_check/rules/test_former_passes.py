@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from statements_in_blender import run_statements
 
-from kb_check.rules.former_pass import _NAMES
+from kb_check.rules.former_pass import NAMES
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,8 +28,8 @@ layers.scene = scene
 
 def test_former_names_are_refused_and_the_new_ones_are_there(rule_checker: Checker, tmp_path: Path) -> None:
     start = _START.splitlines()
-    former = [f"layers.outputs[{name!r}]" for name in _NAMES]
-    new = [f"layers.outputs[{name!r}]" for name in _NAMES.values()]
+    former = [f"layers.outputs[{name!r}]" for name in NAMES]
+    new = [f"layers.outputs[{name!r}]" for name in NAMES.values()]
     seen = run_statements(tmp_path, [*start, *former, *new])
     refused = [at for at, (error, *_) in enumerate(seen, 1) if error]
     found = rule_checker.check("\n".join([*start, *former, *new]), rules=["former-pass"])
@@ -38,7 +38,7 @@ def test_former_names_are_refused_and_the_new_ones_are_there(rule_checker: Check
         == refused
         == list(range(len(start) + 1, len(start) + len(former) + 1))
     )
-    assert [one.fix.edits[0].text for one in found if one.fix] == [repr(name) for name in _NAMES.values()]
+    assert [one.fix.edits[0].text for one in found if one.fix] == [repr(name) for name in NAMES.values()]
 
 
 def test_a_pass_of_the_script_is_its_own(rule_checker: Checker) -> None:
