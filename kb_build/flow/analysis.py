@@ -66,7 +66,7 @@ class Analyzer(Statements):
             if not self._read_functions():
                 break
         self.doubt_denials()
-        doubt_what_others_use(self.sources, self._is_called_by_blender)
+        doubt_what_others_use(self.sources, self.numbers, self._is_called_by_blender)
 
     def _is_called_by_blender(self, node: ast.AST) -> bool:
         """Whether it is a method that Blender calls, or may: its class's, or one that classes derived from it have."""

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.trees import children, walk
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
     from kb_build.flow.source_files import SourceFile
 
@@ -26,7 +26,7 @@ _HARMLESS = frozenset(
 )  # decorators
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
 class _Use:
     """A place that names a definition, or may: what it stands in, and whether that is left out or doubted."""
 
@@ -34,36 +34,52 @@ class _Use:
     guarded: bool
 
 
-def doubt_what_others_use(files: Sequence[SourceFile], is_called: Callable[[_Definition], bool]) -> None:
+def doubt_what_others_use(
+    files: Sequence[SourceFile], definitions: Iterable[ast.AST], is_called: Callable[[_Definition], bool]
+) -> None:
     """Adds to what is doubted in files the definitions that are used by nothing but what is left out or doubted.
 
-    ``is_called`` tells of a definition whether Blender uses it, which no file says.
+    ``definitions`` are those of the files that were read; ``is_called`` tells of one whether Blender uses it, which no
+    file says.
     """
     guarded = [part for file in files for part in (*file.left_out, *file.doubted)]
     if not guarded or not all(file.is_read for file in files if file.tree):
         return
     named = {name for part in guarded for node in walk(part) for name in _named(node)}
-    candidates = [
+    if not any(isinstance(node, _DEFINITIONS) and node.name in named for node in definitions):
+        return
+    uses = _all_uses(files)
+    found = [
         (file, node)
         for file in files
         for node in walk(file.tree or ast.Module([], []))
-        if isinstance(node, _DEFINITIONS) and not _is_special(node)
+        if isinstance(node, _DEFINITIONS) and any(node not in use.inside for use in uses.get(node.name, ()))
     ]
-    if named.isdisjoint(node.name for _, node in candidates):
-        return
-    uses = _all_uses(files)
-    waiting = [(file, node) for file, node in candidates if node.name in uses and not is_called(node)]
-    doubted: set[ast.AST] = set()
-    while found := [(file, node) for file, node in waiting if _is_for_others(node, uses[node.name], doubted)]:
-        for file, node in found:
-            file.doubted.add(node)
-            doubted.add(node)
-        waiting = [(file, node) for file, node in waiting if node not in doubted]
+    _spread([(file, node) for file, node in found if not _is_special(node) and not is_called(node)], uses)
 
 
-def _is_for_others(node: _Definition, uses: Sequence[_Use], doubted: set[ast.AST]) -> bool:
-    others = [use for use in uses if node not in use.inside]
-    return bool(others) and all(use.guarded or not doubted.isdisjoint(use.inside) for use in others)
+def _spread(found: Sequence[tuple[SourceFile, _Definition]], uses: Mapping[str, Sequence[_Use]]) -> None:
+    """Doubts definitions, and with each what only it uses."""
+    # What is used where a run of this Blender may come by, by name, and by what it stands in.
+    left = {name: {use for use in places if not use.guarded} for name, places in uses.items()}
+    within: defaultdict[ast.AST, list[tuple[str, _Use]]] = defaultdict(list)
+    for name, places in left.items():
+        for use in places:
+            for node in use.inside:
+                within[node].append((name, use))
+    of_name: defaultdict[str, list[tuple[SourceFile, _Definition]]] = defaultdict(list)
+    for file, node in found:
+        of_name[node.name].append((file, node))
+    own = {node: [use for name, use in within[node] if name == node.name] for _, node in found}
+    waiting = [*found]
+    for file, node in waiting:  # it grows
+        its_own = sum(use in left[node.name] for use in own[node])
+        if node in file.doubted or len(left[node.name]) > its_own:
+            continue
+        file.doubted.add(node)
+        for name, use in within[node]:
+            left[name].discard(use)
+            waiting += of_name[name]
 
 
 def _is_special(node: _Definition) -> bool:

@@ -39,7 +39,7 @@ NAMES = {
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    if script.version < _SINCE:
+    if script.version < _SINCE or "RLayers" not in script.code:
         return
     for node in script.all(ast.Subscript, ast.Call):
         match node:

@@ -46,7 +46,8 @@ _OF_BRACKETS = frozenset({"__getitem__", "__setitem__", "__delitem__", "__contai
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    if script.version < _SINCE:
+    is_there = any(own.path in _CLASSES for own in own_classes(script))
+    if script.version < _SINCE or not (is_there or "preferences" in script.code or "operator" in script.code):
         return
     for node in script.all(ast.Subscript, ast.Compare, ast.Call):
         for owner, names in _asked(node):

@@ -158,3 +158,13 @@ def test_a_use_in_another_file_counts(rule_checker: Checker) -> None:
         reads = rule_checker.read_files(files)
         package = rule_checker.package(reads.values())
         assert len(rule_checker.check(reads["addon/old.py"], package)) == count
+
+
+def test_a_function_that_only_it_uses_itself_is_not_used_by_others(rule_checker: Checker) -> None:
+    code = """
+        def again(editor):
+            if bpy.app.version < (4, 0):
+                again(editor)
+            old_copy(editor)
+    """
+    assert _found(rule_checker, code) == {"bpy.types.SequenceEditor.sequences"}
