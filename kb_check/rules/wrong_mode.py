@@ -32,6 +32,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.expressions import constants
 from kb_check.background import is_called_by_others, lines_of_others
 from kb_check.calls import calls
 from kb_check.findings import Finding
@@ -82,17 +83,14 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _held_modes(script: Script) -> Iterator[Finding]:
-    """Former modes that a name holds at some time which is given to ``mode_set``."""
-    given = {
-        node.id
-        for call in calls(script)
-        if call.callee.symbol.path in MODE_SET and isinstance(node := call.argument("mode"), ast.Name)
-    }
-    for assigned in script.all(ast.Assign) if given else ():
-        names = {target.id for target in assigned.targets if isinstance(target, ast.Name)}
-        value = assigned.value
-        if names.isdisjoint(given) or not isinstance(value, ast.Constant) or script.type_of(value) is None:
-            continue
+    """Former modes that are given to ``mode_set`` at times: by a name that holds one, or as a side of a choice."""
+    modes = [call.argument("mode") for call in calls(script) if call.callee.symbol.path in MODE_SET]
+    names = {node.id for node in modes if isinstance(node, ast.Name)}
+    held: list[ast.expr] = [node for node in modes if isinstance(node, ast.IfExp)]
+    for assigned in script.all(ast.Assign) if names else ():
+        if any(isinstance(target, ast.Name) and target.id in names for target in assigned.targets):
+            held.append(assigned.value)
+    for value in (value for node in held for value in constants(node) if script.type_of(value) is not None):
         if said := former_mode(script, value.value):
             yield Finding(
                 RULE.id, "warning", script.span(value), f"`bpy.ops.object.mode_set` {said}.", "bpy.ops.object.mode_set"

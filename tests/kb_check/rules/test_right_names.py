@@ -132,6 +132,7 @@ if bpy.context.object.type == 'MESH':
 other = 'EDIT_GPENCIL'
 bpy.ops.object.mode_set(mode=mode)
 """
-    (found,) = rule_checker.check(code, rules=["wrong-mode"])
-    assert (found.severity, found.span.line) == ("warning", 4)
-    assert "write 'EDIT'" in found.message
+    code += "bpy.ops.object.mode_set(mode='EDIT' if other else 'EDIT_GPENCIL')\n"
+    held, chosen = rule_checker.check(code, rules=["wrong-mode"])
+    assert (held.severity, held.span.line, chosen.severity, chosen.span.line) == ("warning", 4, "warning", 7)
+    assert "write 'EDIT'" in held.message
