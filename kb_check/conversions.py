@@ -133,6 +133,8 @@ def _scalar_misfit(  # noqa: PLR0911 - one return a type
 ) -> Misfit | None:
     if kind == NONE:
         return None  # what holds None here may hold a value by then
+    if isinstance(kind, Instance) and not kind.sure:
+        return None  # a parameter that is called ``mat`` may hold the name of a material
     if not taker.kind:
         return _documented_misfit(taker, kind)
     given = describe(kind)
@@ -170,7 +172,7 @@ def _pointer_misfit(script: Script, taker: Taker, kind: Type, given: str) -> Mis
     if not api.is_class(taker.target) or api.descends(taker.target, "bpy.types.PropertyGroup"):
         return None
     if isinstance(kind, Instance):
-        if not kind.sure or not api.is_class(kind.cls):
+        if not api.is_class(kind.cls):
             return None
         if classes := {_OBJECTS_DATA: _DATA, _MADE_OF: _DATA_OF_NEW}.get(taker.path):
             is_data = any(_is_related(script, kind.cls, cls) for cls in classes)
@@ -211,7 +213,8 @@ def _item_misfit(script: Script, taker: Taker, node: ast.expr, takes: str) -> Mi
     kinds = list(members(kind)) if kind is not None else []
     fits = _ITEM_TAKES.get(taker.kind, frozenset())
     wrong = [
-        isinstance(one, (Tuple, Sequence, Mapping, Instance, Collection))
+        isinstance(one, (Tuple, Sequence, Mapping, Collection))
+        or (isinstance(one, Instance) and one.sure)
         or (one == NONE and isinstance(written(script, node), ast.Constant))
         or (isinstance(one, Plain) and one.kind not in fits)
         for one in kinds

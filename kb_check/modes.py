@@ -133,11 +133,19 @@ def entering(modes: Wanted) -> str:
     return f"`bpy.ops.object.mode_set(mode={'OBJECT' if modes.is_others else modes.names[0]!r})` comes before"
 
 
+def former_mode(script: Script, mode: object) -> str:
+    """Why a mode is refused that only objects of a former type had; empty for others."""
+    former = _FORMER.search(mode) if isinstance(mode, str) else None
+    if not isinstance(mode, str) or former is None or _has_type(script, former[1]):
+        return ""
+    instead = mode.removesuffix(former[0])
+    advice = f": write {instead!r}" if instead in _HAVING else ""
+    return f"is refused: no object has mode {mode!r}, which was one of type {former[1]!r}{advice}"
+
+
 def _no_such_mode(script: Script, mode: object, kind: str) -> str:
-    if isinstance(mode, str) and (former := _FORMER.search(mode)) and not _has_type(script, former[1]):
-        instead = mode.removesuffix(former[0])
-        advice = f": write {instead!r}" if instead in _HAVING else ""
-        return f"is refused: no object has mode {mode!r}, which was one of type {former[1]!r}{advice}"
+    if said := former_mode(script, mode):
+        return said
     having = script.api.symbols.symbol(_HAVING[mode]) if isinstance(mode, str) and mode in _HAVING else None
     types, _ = operator_active(having) if having else (None, None)
     if types and kind and not types.takes(kind):

@@ -32,6 +32,7 @@ from kb_build.records import (
     LOCKED_WITH,
     NEEDS,
     Default,
+    EnumItem,
     Link,
     Page,
     Parameter,
@@ -60,6 +61,9 @@ _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
+# Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
+_LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
+_LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
@@ -378,6 +382,21 @@ def _with_shared_values(symbol: Symbol, symbols: Mapping[str, Symbol]) -> Symbol
     return replace(symbol, parameters=tuple(parameters))
 
 
+def _with_values_of_module(symbol: Symbol, symbols: Mapping[str, Symbol]) -> Symbol:
+    """Lists the values of arguments that the description of the function's module lists."""
+    module = symbols.get(symbol.owner)
+    listed = tuple(map(EnumItem, _LISTED_NAME.findall(module.description))) if module else ()
+    return replace(
+        symbol,
+        parameters=tuple(
+            replace(parameter, enum_items=listed)
+            if _LISTED_BY_MODULE.fullmatch(parameter.description) and not parameter.enum_items
+            else parameter
+            for parameter in symbol.parameters
+        ),
+    )
+
+
 def _described_members(rows: Iterable[dict[str, Any]]) -> Iterator[Symbol]:
     """Methods described only in the docstring of their class, as Freestyle's; the reference lists them."""
     for row in rows:
@@ -488,6 +507,8 @@ def read_extract(path: Path) -> Extract:
     for symbol in [*symbols.values()]:
         if any("rna_enum_" in parameter.description + parameter.type for parameter in symbol.parameters):
             symbols[symbol.path] = _with_shared_values(symbol, symbols)
+        elif any(_LISTED_BY_MODULE.fullmatch(parameter.description) for parameter in symbol.parameters):
+            symbols[symbol.path] = _with_values_of_module(symbol, symbols)
     prototypes = [
         symbol
         for name in ("bl_rna_get_subclass", "bl_rna_get_subclass_py")

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import StepsExhausted
+from kb_build.flow.other_versions import doubt_what_others_use
 from kb_build.flow.source_files import SourceFile, keeps_annotations, module_name
 from kb_build.flow.statements import Statements
 
@@ -65,6 +66,16 @@ class Analyzer(Statements):
             if not self._read_functions():
                 break
         self.doubt_denials()
+        doubt_what_others_use(self.sources, self.numbers, self._is_called_by_blender)
+
+    def _is_called_by_blender(self, node: ast.AST) -> bool:
+        """Whether it is a method that Blender calls, or may: its class's, or one that classes derived from it have."""
+        number = self.numbers.get(node)
+        cls = (
+            self.functions[number].cls if number is not None and not isinstance(node, ast.ClassDef) else None
+        )
+        name = getattr(node, "name", "")
+        return cls is not None and any(self.api.member(base, name) for base in self.api_bases(cls)[0])
 
     def read_file(self, file: SourceFile) -> None:
         """See :class:`core.Core`."""

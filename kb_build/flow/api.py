@@ -20,6 +20,7 @@ from kb_build.flow.facts import (
     OBJECT_DATA,
     RENAMED,
     SAME_CLASS,
+    SAME_TYPE,
     T,
 )
 from kb_build.flow.type_text import read_type
@@ -211,6 +212,7 @@ class Api:
     def successor_type(self, owner: str, name: str) -> Type:
         """The type of what took the place of a member that a class or module lacks; UNKNOWN if that is not sure."""
         path = self._former.successor(owner, name) if self._former else ""
+        path = path or next(filter(None, (SAME_TYPE.get(f"{cls}.{name}") for cls in self.lineage(owner))), "")
         symbol = self.symbols.symbol(path) if path else None
         return self._type_of(symbol) if symbol else UNKNOWN
 

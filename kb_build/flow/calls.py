@@ -7,6 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST_RUN
+from kb_build.flow.expressions import constants
 from kb_build.flow.facts import BMESH_RESULTS, NAME_OF_PROPERTY, OPEN_CALLS, VERSION, T
 from kb_build.flow.narrowing import Narrowing
 from kb_build.flow.types import (
@@ -206,8 +207,9 @@ class Calls(Narrowing):
         if parameter.enum_items:
             nodes = node.elts if isinstance(node, ast.Set) else [node]
             for item in nodes:
-                if isinstance(item, ast.Constant):
-                    self.resolve_value(item, (symbol.path,), parameter.name)
+                for constant in constants(item) if isinstance(item, (ast.Constant, ast.IfExp)) else ():
+                    if constant in self.types:  # else it is of a branch for other versions
+                        self.resolve_value(constant, (symbol.path,), parameter.name)
 
     def _decided(
         self,

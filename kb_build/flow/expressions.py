@@ -321,6 +321,7 @@ class Expressions(Members):
         for place, value in enumerate(node.values):
             kinds.append(self._behind(value))
             if kinds[-1] == settles:
+                self.file.left_out.update(node.values[place + 1 :])
                 break
             if place < len(node.values) - 1:
                 if place == 0:
@@ -341,9 +342,9 @@ class Expressions(Members):
     def _choice(self, node: ast.IfExp) -> Type:
         test = self.evaluate(node.test)
         if isinstance(test, Plain) and isinstance(test.value, bool):
-            chosen = self.evaluate(
-                node.body if test.value else node.orelse
-            )  # the other is for other versions
+            body, other = (node.body, node.orelse) if test.value else (node.orelse, node.body)
+            self.file.left_out.add(other)  # it is for other versions
+            chosen = self.evaluate(body)
             return telling(chosen, VERSION, value=True) if is_decided(test) else chosen
         before = self.scope.state
         self.scope.state = before.copy()
@@ -424,7 +425,7 @@ class Expressions(Members):
         if not source:
             return
         # Those that were not reached are of a branch for other versions.
-        for constant in filter(self.types.__contains__, _constants(node)):
+        for constant in filter(self.types.__contains__, constants(node)):
             self.resolve_value(constant, source, use=use)
 
     def check_possible(self, owner: Type, name: str, paths: list[str], node: ast.expr) -> None:
@@ -442,7 +443,7 @@ class Expressions(Members):
             symbol and symbol.type == "enum" and len(symbol.enum_items) >= _FEWEST_VALUES
             for symbol in symbols
         ):
-            for constant in filter(self.types.__contains__, _constants(node)):
+            for constant in filter(self.types.__contains__, constants(node)):
                 self.resolve_value(constant, tuple(paths))
 
     @staticmethod
@@ -519,14 +520,14 @@ class Expressions(Members):
     }
 
 
-def _constants(node: ast.expr) -> list[ast.Constant]:
+def constants(node: ast.expr) -> list[ast.Constant]:
     """The text literals in a literal or a display of literals."""
     if isinstance(node, ast.Constant):
         return [node]
     if isinstance(node, (ast.Set, ast.Tuple, ast.List)):
         return [item for item in node.elts if isinstance(item, ast.Constant)]
     if isinstance(node, ast.IfExp):
-        return [*_constants(node.body), *_constants(node.orelse)]
+        return [*constants(node.body), *constants(node.orelse)]
     return []
 
 

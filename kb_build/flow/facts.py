@@ -13,9 +13,31 @@ OBJECT_DATA = {
     "POINTCLOUD": "PointCloud", "VOLUME": "Volume",
 }  # fmt: skip
 
+# Modules that Python has lost → the Blender that first brings such a Python, that Python, and what to use.
+LOST_MODULES = {
+    "binhex": ((4, 1), "3.11", "binascii"),
+    "asynchat": ((5, 1), "3.12", "asyncio"), "asyncore": ((5, 1), "3.12", "asyncio"),
+    "imp": ((5, 1), "3.12", "importlib"), "smtpd": ((5, 1), "3.12", ""),
+    "aifc": ((5, 1), "3.13", "aud"), "audioop": ((5, 1), "3.13", "aud"), "cgi": ((5, 1), "3.13", "urllib.parse"),
+    "cgitb": ((5, 1), "3.13", "traceback"), "chunk": ((5, 1), "3.13", ""), "crypt": ((5, 1), "3.13", "hashlib"),
+    "imghdr": ((5, 1), "3.13", ""), "lib2to3": ((5, 1), "3.13", "ast"), "mailcap": ((5, 1), "3.13", "mimetypes"),
+    "msilib": ((5, 1), "3.13", ""), "nis": ((5, 1), "3.13", ""), "nntplib": ((5, 1), "3.13", ""),
+    "ossaudiodev": ((5, 1), "3.13", "aud"), "pipes": ((5, 1), "3.13", "subprocess"), "sndhdr": ((5, 1), "3.13", ""),
+    "spwd": ((5, 1), "3.13", ""), "sunau": ((5, 1), "3.13", "aud"), "telnetlib": ((5, 1), "3.13", ""),
+    "uu": ((5, 1), "3.13", "base64"), "xdrlib": ((5, 1), "3.13", "struct"),
+}  # fmt: skip
+
 # A class that some versions call otherwise: name → (other name, a class that tells that it means another thing yet).
 # Grease Pencil's data is GreasePencilv3 from 4.3 to 4.5; before, GreasePencil is the older kind, with GPencilLayers.
 RENAMED = {"GreasePencilv3": ("GreasePencil", "GPencilLayer")}
+
+# Members that went → what is read from them all the same: the property with which it has its type in common, where what
+# took their place is no mere new name.
+SAME_TYPE = {
+    f"{T}Scene.node_tree": f"{T}Scene.compositing_node_group",
+    f"{T}CompositorNodeOutputFile.file_slots": f"{T}CompositorNodeOutputFile.file_output_items",
+    f"{T}CompositorNodeOutputFile.layer_slots": f"{T}CompositorNodeOutputFile.file_output_items",
+}
 
 # Classes whose name is not spelled like the value that makes them: base class → value → class.
 CLASS_OF_VALUE = {

@@ -26,8 +26,9 @@ class SourceFile:
 
     ``keeps_annotations``: Python leaves its annotations unread. ``steps_left`` is what may still be spent on reading
     it, ``complete`` whether that was enough, ``readings`` what its module took from definitions, ``doubted`` the
-    statements and parts of them that may all be for another Blender, ``unread`` what was too deep inside to be read at
-    some time.
+    statements and parts of them that may all be for another Blender, ``left_out`` those that a run of this one does not
+    come to, ``unread`` what was too deep inside to be read at some time. ``quoted`` are its
+    quoted annotations with what they say.
     """
 
     name: str
@@ -41,7 +42,11 @@ class SourceFile:
     resolutions: dict[ast.AST, Resolution] = field(default_factory=dict["ast.AST", "Resolution"])
     readings: Readings = field(default_factory=Readings)
     doubted: set[ast.stmt | ast.expr] = field(default_factory=set["ast.stmt | ast.expr"])
+    left_out: set[ast.stmt | ast.expr] = field(default_factory=set["ast.stmt | ast.expr"])
     unread: set[ast.AST] = field(default_factory=set["ast.AST"])
+    quoted: dict[ast.Constant, ast.expr | None] = field(
+        default_factory=dict["ast.Constant", "ast.expr | None"]
+    )
     started: bool = False
     complete: bool = True
 
@@ -54,6 +59,17 @@ class SourceFile:
     def computes_attributes(self) -> bool:
         """Whether it may set attributes of its own things whose names it does not write down."""
         return any(map(_computes_attributes, walk(self.tree))) if self.tree else False
+
+    @cached_property
+    def moves_imports(self) -> bool:
+        """Whether it may change where modules are found: it names ``sys.path``, or ``sys.modules``."""
+        return any(
+            isinstance(node, ast.Attribute)
+            and node.attr in {"path", "modules"}
+            and isinstance(node.value, ast.Name)
+            and node.value.id == "sys"
+            for node in (walk(self.tree) if self.tree else ())
+        )
 
     @property
     def is_read(self) -> bool:

@@ -6,12 +6,12 @@ import ast
 import sys
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.flow.annotations import annotated
+from kb_build.flow.annotations import Readers, annotated, unquoted
 from kb_build.flow.calls import Calls
-from kb_build.flow.core import ANY
+from kb_build.flow.core import ANY, DEEPEST
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
 from kb_build.flow.expressions import is_decided, is_math
-from kb_build.flow.facts import DISCRIMINANTS, PARAMETERS, T
+from kb_build.flow.facts import DISCRIMINANTS, LOST_MODULES, PARAMETERS, T
 from kb_build.flow.guards import assigned_names
 from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
 from kb_build.flow.trees import children, walk
@@ -61,6 +61,7 @@ _FORGIVING = frozenset(
         "ValueError",
     }
 )
+_LEAVING = (ast.Return, ast.Raise, ast.Break, ast.Continue)
 _API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",
                           "bl_math", "idprop", "imbuf"})  # fmt: skip
 
@@ -70,12 +71,14 @@ class Statements(Calls):
 
     def read_body(self, body: Rows[ast.stmt]) -> bool:
         """Reads statements one after the other; whether what follows them can be reached."""
-        for statement in body:
+        for place, statement in enumerate(body):
             self.statement = statement
             if self.scope.state.doubted and self.scope.state.doubts():
                 self.file.doubted.add(statement)
             reader = self._statement_readers.get(type(statement))
             if reader is not None and not reader(self, statement):
+                if not isinstance(statement, _LEAVING):  # what is left behind a condition
+                    self.file.left_out.update(body[place + 1 :])
                 return False
         return True
 
@@ -264,6 +267,7 @@ class Statements(Calls):
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
             if isinstance(truth, bool) and truth is not holds:
+                self.file.left_out.update(body)
                 continue
             self.scope.state = before.copy()
             self.narrow(node.test, holds=holds)
@@ -487,8 +491,14 @@ class Statements(Calls):
     def _tell_lost(self, node: ast.AST, module: str) -> None:
         """Records an imported module that other Blenders bring and this one does not, unless the files have it."""
         top = module.partition(".")[0]
-        if self.api.had("", top) and self.local_module(top) is UNKNOWN:
+        is_lost = top in LOST_MODULES and self.version >= LOST_MODULES[top][0] and not self._may_bring(top)
+        if (is_lost or self.api.had("", top)) and self.local_module(top) is UNKNOWN:
             self.resolve(node, "name", top, missing=("",))
+
+    def _may_bring(self, module: str) -> bool:
+        """Whether a module may be one that stands beside the scripts, or where they say that others are."""
+        beside = any(module in name.split(".") for name in (*self.files, *self.folders))
+        return beside or any(file.moves_imports for file in self.sources)
 
     def _module(self, path: str) -> Type:
         symbol = self.api.symbols.symbol(path)
@@ -697,7 +707,7 @@ class Statements(Calls):
             kind = self._annotated(argument.annotation)
             if kind is not UNKNOWN:
                 received = function.received.get(argument.arg, UNKNOWN)
-                return join(kind, received) if self._contradicts(received, kind) else kind
+                return join(unsure(kind), received) if self._contradicts(received, kind) else kind
         if declared is not UNKNOWN:
             return declared
         received = function.received.get(argument.arg, UNKNOWN)
@@ -718,20 +728,58 @@ class Statements(Calls):
         """What an annotation means; a wrong name in it is no error where Python does not read it."""
         unread = self.file.keeps_annotations
         self.tolerant += unread
-        kind = annotated(node, self.evaluate)
+        kind = annotated(node, Readers(self.evaluate, self._quoted))
         self.tolerant -= unread
         return kind
 
+    def _quoted(self, node: ast.Constant) -> Type:
+        """What a quoted annotation means, which Python does not read."""
+        if node not in self.file.quoted:
+            self.file.quoted[node] = unquoted(node)
+        inner = self.file.quoted[node]
+        if inner is None or self.depth > DEEPEST:
+            return UNKNOWN
+        self.tolerant += 1
+        self.depth += 1
+        kind = annotated(inner, Readers(self.evaluate, self._quoted))
+        self.depth -= 1
+        self.tolerant -= 1
+        return kind
+
     def _contradicts(self, received: Type, declared: Type) -> bool:
-        """Whether calls pass an instance of another class than the annotation says, which nobody checks."""
-        classes = [member.cls for member in members(declared) if isinstance(member, Instance)]
-        return bool(classes) and any(
-            isinstance(member, Instance)
-            and not any(
-                self.api.descends(member.cls, cls) or self.api.descends(cls, member.cls) for cls in classes
-            )
-            for member in members(received)
+        """Whether calls pass something else than the annotation says, which nobody checks."""
+        return any(
+            not any(self._may_be(member, one) for one in members(declared)) for member in members(received)
         )
+
+    def _may_be(self, given: Type, declared: Type) -> bool:  # noqa: PLR0911 - one return a pair
+        """Whether something of a type may be what is declared, as far as is known of both."""
+        if declared is UNKNOWN or given is UNKNOWN or given is NONE:
+            return True
+        match given, declared:
+            case Instance(), Instance():
+                return self.api.descends(given.cls, declared.cls) or self.api.descends(
+                    declared.cls, given.cls
+                )
+            case LocalInstance(), Instance():
+                return any(
+                    isinstance(kind, ClassObject) and self._may_be(Instance(kind.cls), declared)
+                    for kind in self.ancestors(given.number)
+                )
+            case LocalInstance(), LocalInstance():
+                return LocalClass(declared.number) in self.ancestors(given.number) or LocalClass(
+                    given.number
+                ) in self.ancestors(declared.number)
+            case Mapping(), Mapping():
+                return not self._contradicts(given.value, declared.value)
+            case Tuple(), Tuple() if len(given.items) == len(declared.items):
+                return not any(map(self._contradicts, given.items, declared.items))
+            case ((Sequence() | Tuple()), Sequence()):
+                return not self._contradicts(self.iterated(given), declared.element)
+            case _, Instance() | LocalInstance():
+                return not isinstance(given, (Plain, Sequence, Tuple, Mapping, Instance))
+            case _:
+                return declared is not NONE
 
     def _by_convention(self, function: FunctionDefinition, name: str) -> Type:
         """The type that everyone's parameters of this name have, if the function uses it so."""

@@ -2,7 +2,7 @@
 
 ``corpora/history/successors.csv`` has the columns ``old``; ``new``, one path or several with ``|`` between, best first,
 or nothing where nothing takes its place; ``how``, a sentence; ``version``, the first to be written so; ``source``,
-where that is said. A star in ``old`` stands for a part of a name and is the same in ``new``.
+where that is said. A star in ``old`` stands for a part of a name and is the same in ``new``; several are in their turn.
 """
 
 from __future__ import annotations
@@ -160,7 +160,7 @@ class Successors:
         patterns = (entry for start in self._starts.of(path) for entry in self._patterns[start])
         for _, pattern, row in sorted(patterns, key=itemgetter(0)):
             if match := pattern.fullmatch(path):
-                new = tuple(target.replace("*", match[1]) for target in row.new)
+                new = tuple(_filled(target, match.groups()) for target in row.new)
                 return Succession(path, new, row.how, row.version, row.source)
         return None
 
@@ -175,3 +175,12 @@ class Successors:
             path = self._bases.get(path, "")
             if not path:
                 return
+
+
+def _filled(target: str, parts: tuple[str, ...]) -> str:
+    """A path with its stars filled: each by the part in its turn, or all by the only one."""
+    if len(parts) == 1:
+        return target.replace("*", parts[0])
+    for part in parts:
+        target = target.replace("*", part, 1)
+    return target

@@ -141,11 +141,20 @@ class Migrator:
                 if not any(place.script.is_doubted(edit.span) for edit in change.edits):
                     yield change
         for finding in place.findings:
-            if finding.fix is not None and finding.fix.sure and finding.severity != "note":
+            if finding.fix is None or finding.severity == "note":
+                continue
+            if finding.fix.sure or self._held_before(finding):
                 yield place.change(
                     finding.rule, finding.symbol, finding.fix.edits, reason=finding.message,
                     targets=finding.instead[:1],
                 )  # fmt: skip
+
+    def _held_before(self, finding: Finding) -> bool:
+        """Whether a comparison that never holds now could hold where the script ran: only its value's name changed."""
+        successors = (
+            self._target.names.reader.successors(finding.symbol) if finding.rule == "never-true" else []
+        )
+        return len(successors) == 1 and bool(successors[0].target) and not successors[0].how
 
     def _needs_guard(self, place: Place, change: Change) -> bool:
         reader = self._target.names.reader

@@ -10,6 +10,10 @@ if context.mode == "PAINT_WEIGHT":
     ...
 ```
 
+The fix is never sure: a branch that has not run for some versions runs again with it, and may need more than a name.
+A value that went and that nothing took the place of is a note, once for all its places in a file: the branch is left
+over from another Blender, and does no harm.
+
 Not reported: an empty text, since Blender gives one where a file holds a value that this version does not know; an old
 value beside the one that took its place (``ob.type in {"GPENCIL", "GREASEPENCIL"}``).
 """
@@ -32,6 +36,7 @@ if TYPE_CHECKING:
 
 
 def _check(script: Script) -> Iterator[Finding]:
+    left_over: dict[str, list[Finding]] = {}
     for row in script.missing("compared"):
         if row.value:
             beside = _beside(script).get(row.node, frozenset())
@@ -39,8 +44,17 @@ def _check(script: Script) -> Iterator[Finding]:
             lacking = script.names.value(owner, row.value, script.api.values_of(owner))
             if any(path.rpartition(":")[2] in beside for path in lacking.instead):
                 continue
-            lacking = replace(lacking, message=f"{lacking.message} The comparison never matches it.")
-            yield lacking_finding(script, RULE.id, row, lacking, RULE.severity)
+            lacking = replace(
+                lacking, message=f"{lacking.message} The comparison never matches it.", sure=False
+            )
+            if lacking.removed and not lacking.instead:
+                found = lacking_finding(script, RULE.id, row, lacking, "note")
+                left_over.setdefault(found.symbol, []).append(found)
+            else:
+                yield lacking_finding(script, RULE.id, row, lacking, RULE.severity)
+    for first, *others in left_over.values():
+        more = f" The same holds for {len(others)} more in this file." if others else ""
+        yield replace(first, message=first.message + more)
 
 
 @once_per_script

@@ -10,6 +10,7 @@ bpy.data.objects[::2]  # reported: bpy.data.objects[:][::2]
 bpy.types["Object"]  # reported: getattr(bpy.types, "Object")
 bmesh.ops.extrude_face_region(bm, geom=faces)["verts"]  # reported: it gives `geom`
 mesh.vertices.add(1)[0]  # reported: it returns nothing
+Settings.__annotations__["count"][1]  # reported: .keywords, since 2.93
 ```
 
 Reported too: what is assigned to an item of a collection by name, and items that are deleted; an index beyond a vector,
@@ -60,6 +61,7 @@ _NO_CUSTOM_PROPERTIES = frozenset(
     {"bpy.types.Context", "bpy.types.BlendData", "bpy.types.RenderSettings", "bpy.types.MeshVertex"}
 )
 _T = "bpy.types."
+_DECLARATIONS_SINCE = 2, 93
 _BMESH = "bmesh.ops."
 _FILLING = frozenset({"update", "setdefault"})
 _PARTS = {"verts": "BMVert", "edges": "BMEdge", "faces": "BMFace"}
@@ -74,6 +76,9 @@ def _check(script: Script) -> Iterator[Finding]:
         if (function := nothing_from(script, node.value)) and not _is_tried(script, node):
             told = f"`{function}` returns nothing: there are no items."
             yield Finding(RULE.id, "error", script.span(node), told, function)
+        if _is_of_declaration(script, node):
+            told = "A declaration in `__annotations__` has no items: what it was given is its `.keywords`."
+            yield Finding(RULE.id, "error", script.span(node), told)
         if (kind := script.type_of(node.value)) is None:
             continue
         told = {_refusal(script, node, member) for member in members(kind) if member != NONE}
@@ -81,6 +86,26 @@ def _check(script: Script) -> Iterator[Finding]:
             told = {missing}
         if len(told) == 1 and (message := told.pop()) and not _is_guarded(script, node):
             yield Finding(RULE.id, "error", script.span(node), message, "", (), _fix(script, node))
+
+
+def _is_of_declaration(script: Script, node: ast.Subscript) -> bool:
+    """Whether an item is asked of what a class is annotated with: a pair before 2.93, if it is one of bpy.props."""
+    match node:
+        case ast.Subscript(
+            value=ast.Subscript(value=ast.Attribute(attr="__annotations__")), slice=ast.Constant(value=0 | 1)
+        ):
+            knows_both = any(part.attr == "keywords" for part in script.all(ast.Attribute))
+            declares = any(row.value.endswith("Property") for row in script.resolutions("call", "name"))
+            is_read = script.type_of(node.value) is not None
+            return (
+                script.version >= _DECLARATIONS_SINCE
+                and is_read
+                and declares
+                and not knows_both
+                and not _is_tried(script, node)
+            )
+        case _:
+            return False
 
 
 def _is_guarded(script: Script, node: ast.Subscript) -> bool:
@@ -171,7 +196,12 @@ def _of_collection(script: Script, kind: Collection, key: Type | None, step: ast
     path = kind.path or kind.container
     if step is not None and kind.container != GROUPS:
         return f"A slice of `{path}` takes no step: slice the list that `[:]` makes of it."
-    if isinstance(key, (NoneValue, Instance)) or (isinstance(key, Plain) and key.kind == "float"):
+    # A parameter that is called ``mat`` may hold the name of a material: such a guess is no key that is refused.
+    if (
+        isinstance(key, NoneValue)
+        or (isinstance(key, Instance) and key.sure)
+        or (isinstance(key, Plain) and key.kind == "float")
+    ):
         return f"`{path}` is asked by index or by name, not by {_described(key)}."
     element = kind.element
     if (

@@ -19,7 +19,17 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Mapping, NoneValue, Plain, Sequence, Tuple, literal_text
+from kb_build.flow.types import (
+    NONE,
+    UNKNOWN,
+    Mapping,
+    NoneValue,
+    Plain,
+    Sequence,
+    Tuple,
+    literal_text,
+    members,
+)
 from kb_check.calls import calls
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
@@ -54,7 +64,9 @@ def _of_operator(script: Script, call: CallSite) -> Iterator[Finding]:
     arguments = call.node.args
     if not arguments or any(isinstance(argument, ast.Starred) for argument in arguments):
         return
-    dictionary = isinstance(script.type_of(arguments[0]), Mapping)
+    # One that is filled in a loop is one of several.
+    kinds = [kind for kind in members(script.type_of(arguments[0]) or UNKNOWN) if kind != NONE]
+    dictionary = bool(kinds) and all(isinstance(kind, Mapping) for kind in kinds)
     if dictionary and script.version < _NO_DICTIONARY_SINCE:
         arguments = arguments[1:]
         dictionary = False

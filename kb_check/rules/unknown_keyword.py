@@ -16,21 +16,13 @@ from typing import TYPE_CHECKING
 
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.rules.renaming import may_take
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Parameter
     from kb_check.findings import Finding
     from kb_check.script import Script
-
-_TAKES = {
-    "boolean": {bool, int},
-    "int": {bool, int},
-    "float": {bool, int, float},
-    "string": {str},
-    "enum": {str},
-}
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -40,17 +32,10 @@ def _check(script: Script) -> Iterator[Finding]:
         parameters = {parameter.name: parameter for parameter in symbol.parameters} if symbol else {}
         lacking = script.names.parameter(function, row.value, parameters)
         named = parameters.get(lacking.replacement.rpartition("(")[2].removesuffix(")"))
-        if named is not None and not _may_take(named, row.node):
+        value = row.node.value if isinstance(row.node, ast.keyword) else row.node
+        if named is not None and isinstance(value, ast.expr) and not may_take(named, value):
             lacking = replace(lacking, replacement="", sure=False)
         yield lacking_finding(script, RULE.id, row, lacking)
-
-
-def _may_take(parameter: Parameter, node: ast.AST) -> bool:
-    """Whether a parameter may take the literal that is given: what was a switch may have become a choice."""
-    value = node.value if isinstance(node, ast.keyword) else None
-    if not isinstance(value, ast.Constant) or parameter.plain_type not in _TAKES:
-        return True
-    return type(value.value) in _TAKES[parameter.plain_type]
 
 
 RULE = Rule("unknown-keyword", "error", "A keyword that the call does not take", _check)

@@ -1,7 +1,8 @@
 """A class or function that a module of Blender's does not have.
 
 Modules are those that Blender brings: ``bpy`` and what is below it, ``mathutils``, ``bmesh``, ``gpu``, ``bpy_extras``
-and so on; an import counts as well as a use. Operators have a rule of their own.
+and so on, and those that the Python which it brings has lost (``imp``); an import counts as well as a use. Operators
+have a rule of their own.
 
 ```python
 bpy.data.groups["Trees"]  # reported: collections since 2.80
@@ -17,7 +18,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import UNLOADED
+from kb_build.flow.facts import LOST_MODULES, UNLOADED
 from kb_check.findings import Finding
 from kb_check.made_here import knows_all, member_path
 from kb_check.rule import Rule
@@ -37,11 +38,26 @@ def _check(script: Script) -> Iterator[Finding]:
         owner = row.missing[0]
         if owner.startswith("bpy.ops") or (row.kind != "name" and script.api.is_class(owner)):
             continue
+        if not owner and (lost := LOST_MODULES.get(row.value)):
+            yield _of_python(script, row, lost)
+            continue
         symbol = script.api.symbols.symbol(owner)
         if symbol is None or symbol.kind == "module" or row.kind == "name":
             lacking = script.names.member(owner, row.value)
             yield lacking_finding(script, RULE.id, row, _of_lost_class(script, row, lacking) or lacking)
     yield from _unloaded(script)
+
+
+def _of_python(script: Script, row: Resolution, lost: tuple[tuple[int, ...], str, str]) -> Finding:
+    """A module that Python has lost by the version of it that this Blender brings."""
+    since, python, instead = lost
+    minor = ".".join(map(str, since))
+    return Finding(
+        RULE.id, "error", script.name_span(row.node),
+        f"`{row.value}` went in Python {python}: Blender has brought a Python without it since {minor}."
+        + (f" Use `{instead}`." if instead else ""),
+        row.value,
+    )  # fmt: skip
 
 
 def _of_lost_class(script: Script, row: Resolution, lacking: Lacking) -> Lacking | None:

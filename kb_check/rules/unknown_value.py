@@ -3,7 +3,7 @@
 Looked at where a literal is assigned or given to a call, or is an attribute of a class that Blender registers; a
 comparison is the rule ``never-true``'s. Enumerations whose values Blender puts together while it runs (images,
 installed engines) are left out. Of node trees, add-ons may have classes of their own: reported is a name that begins as
-those of Blender's nodes do, or the type of a tree.
+those of Blender's nodes do, or the type of a tree. Icons of other Blenders are reported whatever they are given to.
 
 ```python
 scene.render.engine = "BLENDER_EEVEE_NEXT"  # reported in 5.0: BLENDER_EEVEE
@@ -18,8 +18,9 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
+from kb_build.flow.expressions import constants
 from kb_build.flow.facts import T
-from kb_build.flow.types import Resolution
+from kb_build.flow.types import UNKNOWN, Resolution
 from kb_build.records import last_name
 from kb_build.symbol_lines import NODE_FAMILIES
 from kb_check.calls import calls
@@ -27,12 +28,15 @@ from kb_check.given import class_values
 from kb_check.literals import written
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_check.findings import Finding
     from kb_check.script import Script
+
+_LAYOUT = f"{T}UILayout"
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -45,6 +49,24 @@ def _check(script: Script) -> Iterator[Finding]:
         yield lacking_finding(script, RULE.id, row, script.names.value(owner, row.value, values))
     yield from _of_classes(script)
     yield from _of_trees(script)
+    yield from _of_icons(script)
+
+
+def _of_icons(script: Script) -> Iterator[Finding]:
+    """Icons of another Blender that are given to what is called as a layout's methods are, whatever it is."""
+    for call in script.all(ast.Call):
+        given = [keyword.value for keyword in call.keywords if keyword.arg == "icon"]
+        if not given or not isinstance(call.func, ast.Attribute) or script.type_of(call.func) != UNKNOWN:
+            continue
+        owner = f"{_LAYOUT}.{call.func.attr}(icon)"
+        for node in constants(given[0]):
+            value = node.value
+            if not isinstance(value, str) or script.type_of(node) is None or is_tried(script, node):
+                continue
+            if script.names.path(f"{owner}:{value}") is not None:
+                values = script.api.values_of(owner)
+                row = Resolution(node, "value", missing=(owner,), value=value)
+                yield lacking_finding(script, RULE.id, row, script.names.value(owner, value, values))
 
 
 def _of_trees(script: Script) -> Iterator[Finding]:

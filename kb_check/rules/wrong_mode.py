@@ -32,11 +32,12 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.expressions import constants
 from kb_check.background import is_called_by_others, lines_of_others
 from kb_check.calls import calls
 from kb_check.findings import Finding
 from kb_check.mode_run import enters_modes, states
-from kb_check.modes import EDIT_TOGGLE, MODE_SET, entering, modes_text, modes_wanted, refusal
+from kb_check.modes import EDIT_TOGGLE, MODE_SET, entering, former_mode, modes_text, modes_wanted, refusal
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -59,6 +60,7 @@ _OF_OBJECTS = frozenset(
 
 def _check(script: Script) -> Iterator[Finding]:
     yield from _of_another(script)
+    yield from _held_modes(script)
     known = states(script)
     quiet = lines_of_others(script) if known else []
     never = bool(known) and not is_called_by_others(script) and not enters_modes(script)
@@ -78,6 +80,21 @@ def _check(script: Script) -> Iterator[Finding]:
                     f"{entering(modes)}.",
                     path,
                 )  # fmt: skip
+
+
+def _held_modes(script: Script) -> Iterator[Finding]:
+    """Former modes that are given to ``mode_set`` at times: by a name that holds one, or as a side of a choice."""
+    modes = [call.argument("mode") for call in calls(script) if call.callee.symbol.path in MODE_SET]
+    names = {node.id for node in modes if isinstance(node, ast.Name)}
+    held: list[ast.expr] = [node for node in modes if isinstance(node, ast.IfExp)]
+    for assigned in script.all(ast.Assign) if names else ():
+        if any(isinstance(target, ast.Name) and target.id in names for target in assigned.targets):
+            held.append(assigned.value)
+    for value in (value for node in held for value in constants(node) if script.type_of(value) is not None):
+        if said := former_mode(script, value.value):
+            yield Finding(
+                RULE.id, "warning", script.span(value), f"`bpy.ops.object.mode_set` {said}.", "bpy.ops.object.mode_set"
+            )  # fmt: skip
 
 
 def _of_another(script: Script) -> Iterator[Finding]:

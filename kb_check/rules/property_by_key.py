@@ -1,0 +1,105 @@
+"""A property that the script registers, read or set by its name in brackets.
+
+Until Blender 4.5 a property of `bpy.props` was kept among the custom properties of its owner. Since 5.0 it has a place
+of its own: brackets, `get` and `in` do not find it, and what they set is another thing.
+
+```python
+bpy.types.Scene.count = bpy.props.IntProperty()
+bpy.context.scene["count"] = 3  # reported: bpy.context.scene.count = 3
+bpy.context.scene.get("count")  # reported
+```
+
+Not reported: properties with `get` or `set`, which keep their value where they like; and those of property groups.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.facts import T
+from kb_build.flow.types import UNKNOWN, ClassObject, Instance, members
+from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.made_here import callee_path
+from kb_check.rule import Rule
+from kb_check.script import once_per_script
+from kb_check.tried import is_tried
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.script import Script
+
+_SINCE = 5, 0
+_COMPUTED = frozenset({"get", "set", "get_transform", "set_transform"})
+_GROUP = f"{T}PropertyGroup"
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    if script.version < _SINCE or not _declared(script):
+        return
+    for node in script.all(ast.Subscript, ast.Compare, ast.Call):
+        for owner, key in _asked(node):
+            name = key.value if isinstance(key, ast.Constant) else None
+            cls = _declared(script).get(name, "") if isinstance(name, str) else ""
+            if not cls or not _is_of(script, owner, cls) or is_tried(script, node):
+                continue
+            asks = isinstance(node, ast.Compare)
+            advice = f"`{ast.unparse(owner)}.{name}`" if not asks else f"`is_property_set({name!r})`"
+            yield Finding(
+                RULE.id, "warning", script.span(node),
+                f"`{name}` is a property of `{cls}` that this script registers, which is no custom property since "
+                f"Blender 5.0: write {advice}.",
+                f"{cls}.{name}", (), _as_attribute(script, owner, node),
+            )  # fmt: skip
+
+
+@once_per_script
+def _declared(script: Script) -> dict[str, str]:
+    """Name → class, of the properties that the script gives to classes and that keep their values themselves."""
+    found: dict[str, str] = {}
+    for node in script.all(ast.Assign):
+        call = node.value
+        if not isinstance(call, ast.Call) or not callee_path(script, call).startswith("bpy.props."):
+            continue
+        for target in node.targets:
+            kind = script.type_of(target.value) if isinstance(target, ast.Attribute) else None
+            if isinstance(target, ast.Attribute) and isinstance(kind, ClassObject):
+                computed = any(keyword.arg in _COMPUTED or keyword.arg is None for keyword in call.keywords)
+                again = found.get(target.attr, kind.cls) != kind.cls
+                is_kept = not computed and not again and not script.api.descends(kind.cls, _GROUP)
+                found[target.attr] = kind.cls if is_kept else ""
+    return found
+
+
+def _asked(node: ast.Subscript | ast.Compare | ast.Call) -> Iterator[tuple[ast.expr, ast.expr]]:
+    """(owner, key) where a node asks for a custom property."""
+    match node:
+        case ast.Subscript():
+            yield node.value, node.slice
+        case ast.Compare(left=key, ops=[ast.In() | ast.NotIn()], comparators=[owner]):
+            yield owner, key
+        case ast.Call(func=ast.Attribute(value=owner, attr="get"), args=[key, *_]):
+            yield owner, key
+        case _:
+            pass
+
+
+def _is_of(script: Script, node: ast.expr, cls: str) -> bool:
+    kinds = members(script.type_of(node) or UNKNOWN)
+    return all(isinstance(kind, Instance) and script.api.descends(kind.cls, cls) for kind in kinds)
+
+
+def _as_attribute(script: Script, owner: ast.expr, node: ast.expr) -> Fix | None:
+    if (
+        not isinstance(node, ast.Subscript)
+        or not isinstance(node.slice, ast.Constant)
+        or isinstance(node.ctx, ast.Del)
+    ):
+        return None
+    start, end = script.span(owner), script.span(node)
+    brackets = Span(start.end_line, start.end_column, end.end_line, end.end_column)
+    return Fix(f"Write .{node.slice.value}", (Edit(brackets, f".{node.slice.value}"),))
+
+
+RULE = Rule("property-by-key", "warning", "A registered property by its name in brackets", _check)

@@ -1,0 +1,104 @@
+"""Annotations say what a value should be: nobody checks them, and quoted ones are not even read."""
+
+from __future__ import annotations
+
+from textwrap import dedent
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+
+_NAMES: str = """\
+import bpy
+def f(a: "bpy.types.NodeSocketInterface", *b: 'bpy.types.Objekt') -> "list[bpy.types.EffectSequence]": pass
+x: "bpy.types.NodeSocketInterface" = None
+y: bpy.types.NodeSocketInterface = None
+def g(a: bpy.types.NodeSocketInterface): pass
+"""
+
+
+def test_a_quoted_annotation_is_not_read(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _NAMES.splitlines()
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    assert [one.span.line for one in rule_checker.check(_NAMES)] == refused == [4, 5]
+
+
+@pytest.mark.parametrize(
+    ("quoted", "text"),
+    [
+        ("'bpy.types.Mesh'", "bpy.types.Mesh"),
+        ('"""bpy.types.Mesh"""', "bpy.types.Mesh"),
+        ("'list[\"bpy.types.Mesh\"]'", "bpy.types.Mesh"),
+        ("('bpy.types'\n   '.Mesh')", "'bpy.types'\n   '.Mesh'"),
+    ],
+)
+def test_what_a_quoted_annotation_says_stands_there(rule_checker: Checker, quoted: str, text: str) -> None:
+    read = rule_checker.read(f"import bpy\n\n\ndef f(é: str, a: {quoted}): pass\n")
+    script = rule_checker.script(read, rule_checker.package([read]))
+    (row,) = [row for row in script.resolutions("attribute") if row.value == "Mesh"]
+    assert script.text(script.span(row.node)) == text
+
+
+_CALLED = """
+import bpy
+from typing import List, Optional
+
+class Wrapper:
+    def own(self):
+        return 1
+
+class Described(Wrapper, bpy.types.Operator):
+    bl_idname = "object.described"
+    bl_label = "Described"
+
+def f(a: {annotation}):
+    return {use}
+
+f({given})
+"""
+
+
+def _found(checker: Checker, annotation: str, use: str, given: str) -> int:
+    code = dedent(_CALLED).format(annotation=annotation, use=use, given=given)
+    return len(checker.check(code, rules=["unknown-attribute"]))
+
+
+@pytest.mark.parametrize(
+    ("annotation", "use", "given"),
+    [
+        ("bpy.types.Object", "a.own()", "Wrapper()"),
+        ("Optional[bpy.types.Object]", "a.own()", "Wrapper()"),
+        ("bpy.types.Object", "a.own", "'text'"),
+        ("List[bpy.types.Mesh]", "[each.matrix_world for each in a]", "[bpy.context.object]"),
+        ("List[bpy.types.Mesh]", "[each.own() for each in a]", "[Wrapper()]"),
+        ("tuple[bpy.types.Mesh, int]", "a[0].own()", "(Wrapper(), 1)"),
+        ("dict[str, bpy.types.Mesh]", "a['x'].own()", "{'x': Wrapper()}"),
+    ],
+)
+def test_an_annotation_that_callers_contradict_is_doubted(
+    rule_checker: Checker, annotation: str, use: str, given: str
+) -> None:
+    assert _found(rule_checker, annotation, use, given) == 0
+
+
+@pytest.mark.parametrize(
+    ("annotation", "use", "given"),
+    [
+        ("bpy.types.Object", "a.zorn", "bpy.context.object"),
+        ("bpy.types.Object", "a.zorn", "None"),
+        ("bpy.types.Object", "a.zorn", "unknown()"),
+        ("Optional[bpy.types.Object]", "a.zorn", "bpy.context.object"),
+        ("List[bpy.types.Object]", "a[0].zorn", "bpy.context.selected_objects"),
+        ("List[bpy.types.Object]", "a[0].zorn", "[bpy.context.object, None]"),
+        ("bpy.types.ID", "a.zorn", "bpy.context.object"),
+    ],
+)
+def test_an_annotation_that_callers_keep_to_is_trusted(
+    rule_checker: Checker, annotation: str, use: str, given: str
+) -> None:
+    assert _found(rule_checker, annotation, use, given) == 1

@@ -1,0 +1,148 @@
+"""Custom properties where there are none: of operators, of preferences, and of what is registered."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+
+_OPERATOR = """\
+class Count{at}(bpy.types.Operator):
+    bl_idname = "object.count{at}"
+    bl_label = "Count"
+    number: bpy.props.IntProperty()
+
+    def execute(self, context):
+        {line}
+        return {{'FINISHED'}}
+
+bpy.utils.register_class(Count{at})
+bpy.ops.object.count{at}()
+"""
+_LINES = [
+    "self['number'] = 3",
+    "print(self['number'])",
+    "print('number' in self)",
+    "print('number' not in self)",
+    "self.keys()",
+    "self.get('number')",
+    "self.number = 3",
+    "self.properties['number'] = 3",
+    "print('number' in self.properties)",
+    "self.properties.keys()",
+]
+
+
+def test_operators_have_none(rule_checker: Checker, tmp_path: Path) -> None:
+    parts = [_OPERATOR.format(at=at, line=line) for at, line in enumerate(_LINES)]
+    refused = [
+        at for at, (error, *_) in enumerate(run_statements(tmp_path, ["import bpy", *parts])[1:]) if error
+    ]
+    found = [
+        at
+        for at, part in enumerate(parts)
+        if rule_checker.check(f"import bpy\n{part}", rules=["no-custom-properties"])
+    ]
+    assert found == refused == [0, 1, 2, 3, 4, 5]
+
+
+def test_what_a_class_answers_itself_is_no_finding(rule_checker: Checker) -> None:
+    part = _OPERATOR.format(at="", line="self['number'] + self.get('x')")
+    own = "    def __getitem__(self, key): return 1\n    def get(self, key): return 2\n"
+    code = f"import bpy\n{part}".replace("    number", f"{own}    number", 1)
+    assert rule_checker.check(code, rules=["no-custom-properties"]) == []
+
+
+def test_a_key_that_is_a_property_is_written_as_one(rule_checker: Checker) -> None:
+    code = "import bpy\n" + _OPERATOR.format(at="", line=_LINES[0])
+    (found,) = rule_checker.check(code, rules=["no-custom-properties"])
+    assert found.fix is not None
+    assert (found.fix.sure, found.fix.edits[0].text) == (False, ".number")
+
+
+_PREFERENCES: str = """\
+import bpy
+mine = bpy.context.preferences.addons['io_scene_gltf2'].preferences
+mine.keys()
+print('x' in mine)
+mine['x'] = 3
+mine.get('x')
+mine.bl_idname
+print(bpy.context.preferences.addons.keys())
+print('x' in bpy.context.preferences.addons)
+"""
+
+
+def test_preferences_have_none(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _PREFERENCES.splitlines()
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    found = rule_checker.check(_PREFERENCES, rules=["no-custom-properties"])
+    assert [one.span.line for one in found] == refused == [3, 4, 5, 6]
+
+
+_REGISTERED: str = """\
+import bpy
+scene = bpy.context.scene
+bpy.types.Scene.count = bpy.props.IntProperty()
+bpy.types.Scene.own = bpy.props.IntProperty(get=lambda self: self["own"])
+scene.count = 5
+scene["count"] = 3
+print(scene["count"])
+print(scene.get("count"))
+print("count" in scene)
+scene["own"] = 3
+scene["other"] = 3
+bpy.context.object["count"] = 3
+"""
+
+
+def test_a_registered_property_is_no_custom_one(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _REGISTERED.splitlines()
+    seen = run_statements(tmp_path, lines, {5: "scene.count", 6: "scene['count']"})
+    # What is set in brackets changes nothing.
+    assert (seen[5][1:], seen[6][1]) == (["5", "5"], "3")
+    found = rule_checker.check(_REGISTERED, rules=["property-by-key"])
+    assert [one.span.line for one in found] == [6, 7, 8, 9]
+    assert all(one.severity == "warning" for one in found)
+    assert [one.fix.edits[0].text for one in found if one.fix] == [".count", ".count"]
+
+
+_OF_GROUP: str = """\
+import bpy
+bpy.types.PropertyGroup.count = bpy.props.IntProperty()
+class Own(bpy.types.PropertyGroup): count: bpy.props.IntProperty()
+bpy.utils.register_class(Own)
+bpy.types.Scene.own = bpy.props.PointerProperty(type=Own)
+bpy.context.scene.own["count"] = 3
+"""
+
+
+def test_a_property_of_a_group_is_kept_in_its_dictionary(rule_checker: Checker, tmp_path: Path) -> None:
+    seen = run_statements(tmp_path, _OF_GROUP.splitlines(), {5: "bpy.context.scene.own.count"})
+    assert seen[5][2] == "3"
+    assert rule_checker.check(_OF_GROUP, rules=["property-by-key"]) == []
+
+
+@pytest.mark.parametrize(
+    ("line", "refused"),
+    [
+        ("print(Own.__annotations__['count'][1])", True),
+        ("print(Own.__annotations__['count'][0])", True),
+        ("print(Own.__annotations__['count'].keywords)", False),
+        ("print(Own.__annotations__['count'])", False),
+        ("print({'x': (1, 2)}['x'][1])", False),
+    ],
+)
+def test_a_declaration_has_no_items(
+    rule_checker: Checker, tmp_path: Path, line: str, *, refused: bool
+) -> None:
+    start = ["import bpy", "class Own(bpy.types.PropertyGroup): count: bpy.props.IntProperty(default=1)"]
+    seen = run_statements(tmp_path, [*start, line])
+    found = rule_checker.check("\n".join([*start, line]), rules=["not-subscriptable"])
+    assert (bool(seen[2][0]), bool(found)) == (refused, refused)
