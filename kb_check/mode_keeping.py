@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import children
 from kb_check.calls import calls
+from kb_check.computing import CALLING, RUNNING, STORING
 from kb_check.made_here import bindings, knows_all, stored_names
 from kb_check.script import once_per_script
 
@@ -31,10 +32,7 @@ REMOVING = frozenset(
         "load",
     }
 )
-_COMPUTING = frozenset(
-    {"exec", "eval", "getattr", "setattr", "compile", "__import__", "next", "map", "filter"}
-)
-_BUILTINS = frozenset(dir(builtins)) - _COMPUTING
+_BUILTINS = frozenset(dir(builtins)) - RUNNING - STORING - CALLING
 _ACTIVE = "bpy.types.LayerObjects.active"
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 

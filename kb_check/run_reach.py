@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.expressions import is_decided
 from kb_build.flow.trees import called_name, children, walk
 from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, literal
+from kb_check.computing import RUNNING, STORING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -25,12 +26,12 @@ if TYPE_CHECKING:
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 # Names that can give Blender's API more than the text shows.
-_BRINGING = frozenset(
+_BRINGING = RUNNING | STORING | frozenset(
     {
-        # code that is not in the text, or is only a text
-        "exec", "eval", "import_module", "__import__", "run_path", "run_module", "exec_module", "python_file_run",
-        # a property or a class whose name is not written down
-        "setattr", "new_class",
+        # code that is not in the text
+        "import_module", "run_path", "run_module", "exec_module", "python_file_run",
+        # a class whose name is not written down
+        "new_class",
         # add-ons and extensions
         "addon_utils", "addon_enable", "addon_install", "addon_refresh", "extensions", "load_scripts",
         "modules_from_path",
