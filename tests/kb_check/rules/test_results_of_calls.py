@@ -182,6 +182,19 @@ def test_links_to_sockets_that_are_hidden_are_warned_of(check: Check, tmp_path: 
         ('mix.data_type = "RGBA"', 'for node in tree.nodes:\n    node.data_type = "RGBA"'),
         ('mix = tree.nodes.new("ShaderNodeMix")', 'mix = tree.nodes["Mix"]'),
         ('mix.data_type = "RGBA"', 'mix.data_type = "RGBA"\nmix.data_type = "FLOAT"'),
+        ('mix.data_type = "RGBA"', 'mix.data_type = "RGBA"\nsame = mix\nsame.data_type = "FLOAT"'),
+        (
+            'mix.data_type = "RGBA"',
+            'mix.data_type = "RGBA"\nlast = tree.nodes.active\nlast.data_type = "FLOAT"',
+        ),
+        (
+            'mix.data_type = "RGBA"',
+            'mix.data_type = "RGBA"\nsame = mix\nput = setattr\nput(same, "data_" + "type", "FLOAT")',
+        ),
+        (
+            'mix.data_type = "RGBA"',
+            'mix.data_type = "RGBA"\nsame = mix\nsame.__setattr__("data_" + "type", "FLOAT")',
+        ),
     ],
 )
 def test_modes_that_are_not_certain_hide_nothing(check: Check, old: str, new: str) -> None:
