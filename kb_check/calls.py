@@ -100,7 +100,7 @@ def nothing_from(script: Script, node: ast.expr) -> str:
     RNA tells of its own functions; those without parameters may be Python's.
     """
     value = _once_held(script).get(node.id) if isinstance(node, ast.Name) else node
-    call = _call_sites(script).get(value) if isinstance(value, ast.Call) else None
+    call = calls_by_node(script).get(value) if isinstance(value, ast.Call) else None
     if call is None or not call.callee.is_rna or call.callee.symbol.kind != "function":
         return ""
     return "" if call.callee.symbol.returns or not call.callee.parameters else call.callee.symbol.path
@@ -119,7 +119,8 @@ def _once_held(script: Script) -> dict[str, ast.expr]:
 
 
 @once_per_script
-def _call_sites(script: Script) -> dict[ast.Call, CallSite]:
+def calls_by_node(script: Script) -> dict[ast.Call, CallSite]:
+    """The calls that surely are of one thing of the API, by where they stand."""
     return {call.node: call for call in calls(script)}
 
 

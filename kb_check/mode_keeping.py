@@ -7,13 +7,13 @@ import builtins
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import children
-from kb_check.calls import calls
+from kb_check import active_object
+from kb_check.calls import calls_by_node
 from kb_check.computing import CALLING, RUNNING, STORING
 from kb_check.made_here import bindings, knows_all, stored_names
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
-    from kb_check.calls import CallSite
     from kb_check.script import Script
 
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
@@ -33,7 +33,6 @@ REMOVING = frozenset(
     }
 )
 _BUILTINS = frozenset(dir(builtins)) - RUNNING - STORING - CALLING
-_ACTIVE = "bpy.types.LayerObjects.active"
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -83,7 +82,7 @@ def sets_active(script: Script, node: ast.Attribute) -> bool:
     if node.attr != "active":
         return False
     row = script.analysis.resolutions.get(node)
-    return row is None or _ACTIVE in row.symbols or not row.symbols
+    return row is None or active_object.SET in row.symbols or not row.symbols
 
 
 def is_harmless(script: Script, node: ast.Call) -> bool:
@@ -118,12 +117,6 @@ def is_operator(call: ast.Call) -> bool:
         names.append(node.attr)
         node = node.value
     return isinstance(node, ast.Name) and (names[-1:] == ["ops"] or node.id == "ops")
-
-
-@once_per_script
-def calls_by_node(script: Script) -> dict[ast.Call, CallSite]:
-    """The calls that surely are of one thing of the API, by where they stand."""
-    return {call.node: call for call in calls(script)}
 
 
 @once_per_script
