@@ -32,7 +32,7 @@ _HARMLESS = (sys.stdlib_module_names - {"runpy", "importlib"}) | {
 _DOTS = 3  # of the path of an operator; that of a module has fewer
 # Operators that change nothing but the active object, which they leave as new as it is.
 _PLAIN = re.compile(r"bpy\.ops\.(mesh\.primitive_\w+_add|object\.(select_all|shade_\w+|delete)|wm\.read_\w+)")
-_OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
+OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
 
 
 @once_per_script
@@ -56,14 +56,28 @@ def attributes(script: Script) -> dict[str, list[ast.Attribute]]:
     return found
 
 
-def named_before(script: Script, place: ast.expr) -> frozenset[str]:
-    """Those of the words that may have had an effect when the script comes to a place: all, within a function."""
-    number = statement_of(script.tree.body, place)
-    if number < 0 or isinstance(
-        script.tree.body[number], (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
-    ):
-        return named_words(script)
-    return frozenset[str]().union(*_words_by_statement(script)[: number + 1])
+def is_named_before(script: Script, word: str, place: ast.expr) -> bool:
+    """Whether a word may have had an effect when the script comes to a place: any of it, within a function."""
+    first = first_named(script).get(word)
+    return first is not None and first <= stage(script, place)
+
+
+def stage(script: Script, place: ast.expr) -> int:
+    """The number of the statement of the module that a place is in; within a function, the last one."""
+    body = script.tree.body
+    number = statement_of(body, place)
+    is_apart = number < 0 or isinstance(body[number], (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef))
+    return len(body) if is_apart else number
+
+
+@once_per_script
+def first_named(script: Script) -> dict[str, int]:
+    """Each word of the script that may name a setting → the number of the statement of the module that has it first."""
+    found: dict[str, int] = {}
+    for number, statement in enumerate(script.tree.body):
+        for word in words_of(walk(statement)):
+            found.setdefault(word, number)
+    return found
 
 
 def statement_of(body: Sequence[ast.stmt], node: ast.expr) -> int:
@@ -78,11 +92,6 @@ def statement_of(body: Sequence[ast.stmt], node: ast.expr) -> int:
 
 def _start(statement: ast.stmt) -> tuple[int, int]:
     return statement.lineno, statement.col_offset
-
-
-@once_per_script
-def _words_by_statement(script: Script) -> list[frozenset[str]]:
-    return [words_of(walk(statement)) for statement in script.tree.body]
 
 
 def words_of(nodes: Iterable[ast.AST]) -> frozenset[str]:
@@ -154,13 +163,24 @@ def _is_new_member(script: Script, node: ast.Attribute, depth: int) -> bool:
 
 def has_new_data(script: Script, node: ast.expr, depth: int = _DEEPEST) -> bool:
     """Whether an object was made with new data, which have nothing that they would give it."""
-    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else [node]
-    return bool(values) and all(
-        isinstance(value, ast.Call)
-        and callee_path(script, value) == _OBJECTS_NEW
-        and len(value.args) > 1
-        and is_new(script, value.args[1], depth)
-        for value in values
+    if isinstance(node, ast.Name):
+        return _has_new_data(script, (node.id, depth))
+    return _is_made_with_new_data(script, node, depth)
+
+
+@once_for_each
+def _has_new_data(script: Script, name_and_depth: tuple[str, int]) -> bool:
+    name, depth = name_and_depth
+    values = bindings(script).get(name, [])
+    return bool(values) and all(_is_made_with_new_data(script, value, depth) for value in values)
+
+
+def _is_made_with_new_data(script: Script, node: ast.expr | None, depth: int) -> bool:
+    return (
+        isinstance(node, ast.Call)
+        and callee_path(script, node) == OBJECTS_NEW
+        and len(node.args) > 1
+        and is_new(script, node.args[1], depth)
     )
 
 

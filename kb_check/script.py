@@ -192,7 +192,26 @@ class Script:
         """A column as a number of characters; Python counts the bytes of UTF-8."""
         if line > len(self.lines) or self.lines[line - 1].isascii():
             return column
-        return len(self.lines[line - 1].encode()[:column].decode(errors="replace"))
+        ends, extra = self._wide_characters(line)
+        before = bisect_right(ends, column)
+        return column - (extra[before - 1] if before else 0)
+
+    def _wide_characters(self, line: int) -> tuple[list[int], list[int]]:
+        """Where characters of a line end that take several bytes of UTF-8, and how many bytes too many that makes."""
+        if line not in self._wide:
+            ends: list[int] = []
+            extra: list[int] = []
+            for place, character in enumerate(self.lines[line - 1], start=1):
+                if not character.isascii():
+                    more = len(character.encode(errors="surrogatepass")) - 1
+                    extra.append(more + (extra[-1] if extra else 0))
+                    ends.append(place + extra[-1])
+            self._wide[line] = ends, extra
+        return self._wide[line]
+
+    @cached_property
+    def _wide(self) -> dict[int, tuple[list[int], list[int]]]:
+        return {}
 
 
 def once_per_script(find: Callable[[Script], _T]) -> Callable[[Script], _T]:

@@ -24,12 +24,12 @@ from kb_check.findings import Finding
 from kb_check.made_here import (
     asked_names,
     calls_only,
+    keywords_and_texts,
     knows_all,
     member_path,
     named_words,
     read_pointer,
     stored_names,
-    words_of,
 )
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
@@ -148,7 +148,7 @@ def _stays_empty(script: Script, path: str) -> bool:
     return (
         names.isdisjoint(asked_names(script))
         and names.isdisjoint(stored_names(script))
-        and names.isdisjoint(words_of(script.all(ast.keyword, ast.Constant)))
+        and names.isdisjoint(keywords_and_texts(script))
         and calls_only(script, empty.beside)
     )
 

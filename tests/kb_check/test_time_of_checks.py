@@ -6,9 +6,12 @@ The work is counted, not timed: the lines of Python that are come to.
 from __future__ import annotations
 
 import sys
+from textwrap import dedent
 from typing import TYPE_CHECKING
 
 import pytest
+
+from kb_check.run_reach import RunReach
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -51,6 +54,83 @@ _KINDS = {
         first#.inputs["Geometry"]
         """,
     ),
+    "values that go with a setting": (
+        """
+        images = bpy.context.scene.render.image_settings
+        images.media_type = "VIDEO"
+        """,
+        """
+        images.file_format = "FFMPEG"
+        bpy.context.scene.frame_end = #
+        """,
+    ),
+    "pointers that operators fill": (
+        "",
+        """
+        bpy.ops.mesh.primitive_cube_add()
+        field# = bpy.context.object.field
+        field#.strength = 1.0
+        """,
+    ),
+    "calls that are made again": (
+        "",
+        """
+        mesh# = bpy.data.meshes.new("A")
+        ob# = bpy.data.objects.new("A", mesh#)
+        bpy.context.collection.objects.link(ob#)
+        bpy.context.collection.objects.link(ob#)
+        curve# = bpy.data.curves.new("A", "CURVE")
+        curve#.splines.new("BEZIER").points.add(3)
+        bpy.data.meshes.remove(mesh#)
+        """,
+    ),
+    "parts that are tried": (
+        "",
+        """
+        try:
+            bpy.context.scene.nothing#
+        except AttributeError:
+            pass
+        bpy.context.object.rigid_body.mass = 1
+        """,
+    ),
+    "operators that are gone": (
+        "",
+        """
+        bpy.ops.nothing.at_all#()
+        bpy.ops.object.nothing#()
+        """,
+    ),
+    "keyframes, drivers and constraints": (
+        "ob = bpy.context.object",
+        """
+        ob.location = (#, 0, 0)
+        ob.keyframe_insert("location", frame=#)
+        driver# = ob.driver_add("location", 0).driver
+        driver#.type = "SCRIPTED"
+        ob.constraints.new("TRACK_TO").target = ob
+        """,
+    ),
+    "modes and bones": (
+        "ob = bpy.context.object",
+        """
+        bpy.ops.object.mode_set(mode="EDIT")
+        bone# = ob.data.edit_bones.new("A#")
+        bone#.head = (0, 0, #)
+        bpy.ops.object.mode_set(mode="OBJECT")
+        ob.pose.bones["A#"].location = (0, 0, 0)
+        """,
+    ),
+    "meshes that are worked on": (
+        "",
+        """
+        bm# = bmesh.new()
+        bm#.verts.new((0, 0, #))
+        bm#.verts.ensure_lookup_table()
+        bm#.verts[0].co.x = 1
+        bm#.free()
+        """,
+    ),
 }
 
 
@@ -58,17 +138,23 @@ _KINDS = {
 def test_a_script_that_is_four_times_as_long_takes_about_four_times_the_work(
     checker: Checker, kind: str
 ) -> None:
-    begin, part = _KINDS[kind]
-    lines = [line.strip() if line.startswith("        ") else line for line in part.splitlines()]
+    begin, part = map(dedent, _KINDS[kind])
 
     def work(times: int) -> int:
-        parts = ("\n".join(lines).replace("#", str(number)) for number in range(times))
-        code = "\n".join(["import bpy, bmesh", begin, *parts])
-        return _counted(lambda: checker.check(code))
+        code = "\n".join(["import bpy, bmesh", begin, *(part.replace("#", str(n)) for n in range(times))])
+        return _counted(lambda: _check(checker, code))
 
     work(_FEW)  # what is kept of the base
     few, many = work(_FEW), work(_FEW * _TIMES)
     assert many < few * _MOST_GROWTH, f"{few:,} steps, and {many:,} for four times the script"
+
+
+def _check(checker: Checker, code: str) -> None:
+    """Has a script checked, and each finding asked whether a run comes to it."""
+    read = checker.read(code)
+    reach = RunReach(read.tree, read.analysis)
+    for finding in checker.check(read):
+        reach.comes_to(finding.span.line, finding.span.column)
 
 
 def _counted(run: Callable[[], object]) -> int:
