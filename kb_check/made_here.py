@@ -125,6 +125,12 @@ def knows_all(script: Script) -> bool:
     return {name.partition(".")[0] for name in imported} <= _HARMLESS
 
 
+@once_per_script
+def members_taken(script: Script) -> dict[ast.expr, str]:
+    """Expression → the name of the attribute that is taken of it."""
+    return {node.value: node.attr for node in script.all(ast.Attribute)}
+
+
 def is_new(script: Script, node: ast.expr, depth: int = _DEEPEST) -> bool:
     """Whether the script has surely made what an expression is, or what it belongs to."""
     if not depth:

@@ -39,6 +39,7 @@ from kb_check.made_here import (
     member_path,
     named_words,
 )
+from kb_check.opening import OPENING
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.settings_before import set_before
@@ -58,7 +59,6 @@ _ONLY_IF = re.compile(rf"with {_VALUES} only if (\w+)\.(\w+)=(.*)")
 _TEXT = re.compile(r"'([^']*)'")
 _BY = re.compile(r"(only|not) by ([^…]+)")
 _SCENE = f"{T}Scene"
-_OPENING = frozenset({"bpy.ops.wm.open_mainfile", "bpy.ops.wm.read_homefile"})
 _RESETTING = "bpy.ops.wm.read_factory_settings"
 
 
@@ -236,7 +236,7 @@ def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
     if (
         _is_add_on(script)
         or not knows_all(script)
-        or called_operators(script) & _OPENING
+        or called_operators(script) & OPENING
         or _takes_template(script)
     ):
         return False

@@ -15,9 +15,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_check.made_here import members_taken
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
-from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -39,14 +39,8 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _of_lost_module(script: Script, row: Resolution) -> Lacking | None:
     """What became of an operator whose module is gone, where the script names one that was in it."""
-    name = _members(script).get(row.node)
+    name = members_taken(script).get(row.node) if isinstance(row.node, ast.expr) else None
     return script.names.path(f"{row.missing[0]}.{row.value}.{name}") if name else None
-
-
-@once_per_script
-def _members(script: Script) -> dict[ast.AST, str]:
-    """Expression → the name of the attribute that is taken of it."""
-    return {node.value: node.attr for node in script.all(ast.Attribute)}
 
 
 RULE = Rule("unknown-operator", "error", "An operator that does not exist", _check)
