@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 TYPES = "bpy.types."
 _MAKERS = ("new", "create", "add")
 _NEW_KIND = "new_"
-_ADDS = ("_add", "add")
 _NODE = f"{TYPES}Node"
 # Names by which scripts hold what is reached from the context.
 _HELD = (
