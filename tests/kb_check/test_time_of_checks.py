@@ -27,7 +27,7 @@ _NODES = """
 tree = bpy.data.materials.new("A").node_tree
 zones = bpy.data.node_groups.new("A", "GeometryNodeTree")
 """
-# Kind of script → what it begins with, and what it repeats, with a number for `#`.
+# Kind of script → what it begins with, and what it repeats, with a number for `#`, and the next for `#_`.
 _KINDS = {
     "settings of nodes": (
         _NODES,
@@ -101,6 +101,31 @@ _KINDS = {
         bpy.ops.object.nothing#()
         """,
     ),
+    "paths of what is made": (
+        "",
+        """
+        ob# = bpy.data.objects.new("A", None)
+        ob#.keyframe_insert('modifiers["A#"].strength')
+        """,
+    ),
+    "functions that call functions": (
+        """
+        def f0():
+            bpy.ops.wm.read_factory_settings(use_empty=True)
+            bpy.ops.object.mode_set(mode="OBJECT")
+        def g0():
+            bpy.data.objects["Cube"].location.x = 1
+        """,
+        """
+        def f#_():
+            f#()
+        f#_()
+        bpy.ops.object.mode_set(mode="EDIT")
+        def g#_():
+            g#()
+        g#_()
+        """,
+    ),
     "keyframes, drivers and constraints": (
         "ob = bpy.context.object",
         """
@@ -141,12 +166,17 @@ def test_a_script_that_is_four_times_as_long_takes_about_four_times_the_work(
     begin, part = map(dedent, _KINDS[kind])
 
     def work(times: int) -> int:
-        code = "\n".join(["import bpy, bmesh", begin, *(part.replace("#", str(n)) for n in range(times))])
+        code = "\n".join(["import bpy, bmesh", begin, *(_numbered(part, n) for n in range(times))])
         return _counted(lambda: _check(checker, code))
 
     work(_FEW)  # what is kept of the base
     few, many = work(_FEW), work(_FEW * _TIMES)
     assert many < few * _MOST_GROWTH, f"{few:,} steps, and {many:,} for four times the script"
+
+
+def _numbered(part: str, number: int) -> str:
+    """A part of a script with a number for ``#``, and the next one for ``#_``."""
+    return part.replace("#_", str(number + 1)).replace("#", str(number))
 
 
 def _check(checker: Checker, code: str) -> None:
