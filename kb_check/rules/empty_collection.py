@@ -63,9 +63,9 @@ def _check(script: Script) -> Iterator[Finding]:
             and not is_tried(script, node)
             and not _may_be_filled(script, symbol.path)
         ):
-            told = f"`{symbol.path}` is empty on what is new, and nothing in this script adds to it"
+            message = f"`{symbol.path}` is empty on what is new, and nothing in this script adds to it"
             yield Finding(
-                RULE.id, "warning", script.span(node), f"{told}{_adding(script, symbol)}.", symbol.path
+                RULE.id, "warning", script.span(node), f"{message}{_adding(script, symbol)}.", symbol.path
             )
 
 

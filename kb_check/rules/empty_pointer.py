@@ -69,26 +69,26 @@ _MAKING = frozenset({"new", "modifier_add"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    told: set[str] = set()
+    reported: set[str] = set()
     for row in script.resolutions("attribute", "store"):
         node = row.node
         if not isinstance(node, ast.Attribute) or not row.sure or row.guarded:
             continue
         pointer = read_pointer(script, node.value)
-        if pointer is None or ast.unparse(pointer) in told:
+        if pointer is None or ast.unparse(pointer) in reported:
             continue
         symbol = _empty(script, pointer)
         if symbol is None:
             continue
         if cls := _only_with(script, symbol, pointer.value):
-            said = f"`{symbol.path}` is None: only an object whose data are of `{cls}` has it."
+            message = f"`{symbol.path}` is None: only an object whose data are of `{cls}` has it."
         elif filler := _filler(script, symbol, pointer, node):
-            said = f"`{symbol.path}` is None on what is new, and nothing in this script fills it: `{filler}` does."
+            message = f"`{symbol.path}` is None on what is new, and nothing in this script fills it: `{filler}` does."
         else:
             continue
         if not is_tried(script, node):
-            told.add(ast.unparse(pointer))
-            yield Finding(RULE.id, "warning", script.name_span(node), said, symbol.path)
+            reported.add(ast.unparse(pointer))
+            yield Finding(RULE.id, "warning", script.name_span(node), message, symbol.path)
 
 
 def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:
@@ -121,8 +121,8 @@ def _filler(script: Script, symbol: Symbol, pointer: ast.Attribute, place: ast.e
         is_new_mesh = _is_primitive(script, pointer.value) or has_new_data(script, pointer.value)
         if not is_new_mesh or "data" in stored_names(script):
             return ""
-    thing = ast.unparse(pointer.value) if isinstance(pointer.value, ast.Name) else ""
-    return f"{thing}.{symbol.name} = …"
+    obj = ast.unparse(pointer.value) if isinstance(pointer.value, ast.Name) else ""
+    return f"{obj}.{symbol.name} = …"
 
 
 @once_for_each

@@ -92,9 +92,9 @@ def _check(script: Script) -> Iterator[Finding]:
                     names = " and ".join(f"`{name}`" for name in refusal.given)
                     yield _finding(script, call, refusal, f"without {names}")
             elif refusal.by:
-                if thing := _refusing(script, owner, refusal):
+                if kind := _refusing(script, owner, refusal):
                     word = "to" if refusal.values else "by"
-                    yield _finding(script, call, refusal, f"{word} {with_article(thing)}")
+                    yield _finding(script, call, refusal, f"{word} {with_article(kind)}")
             elif refusal.values and refusal.message:
                 yield _finding(script, call, refusal, "")
 
