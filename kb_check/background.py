@@ -5,6 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_check.line_ranges import LineRanges
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
@@ -30,9 +32,9 @@ def _runs(body: Sequence[ast.stmt]) -> bool:
     )
 
 
-def lines_of_others(script: Script) -> list[tuple[int, int]]:
-    """The lines whose context others give: first and last of each part."""
-    return [*_given_context(script), *_uncalled(script)]
+def lines_of_others(script: Script) -> LineRanges:
+    """The lines whose context others give."""
+    return LineRanges([*_given_context(script), *_uncalled(script)])
 
 
 def _given_context(script: Script) -> Iterator[tuple[int, int]]:

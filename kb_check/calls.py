@@ -5,13 +5,13 @@ from __future__ import annotations
 import ast
 import re
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
 from kb_check.literals import times_bound
 from kb_check.made_here import bindings
 from kb_check.script import once_per_script
+from kb_serve.signatures import signature_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -100,7 +100,7 @@ def nothing_from(script: Script, node: ast.expr) -> str:
     RNA tells of its own functions; those without parameters may be Python's.
     """
     value = _once_held(script).get(node.id) if isinstance(node, ast.Name) else node
-    call = _call_sites(script).get(value) if isinstance(value, ast.Call) else None
+    call = calls_by_node(script).get(value) if isinstance(value, ast.Call) else None
     if call is None or not call.callee.is_rna or call.callee.symbol.kind != "function":
         return ""
     return "" if call.callee.symbol.returns or not call.callee.parameters else call.callee.symbol.path
@@ -119,7 +119,8 @@ def _once_held(script: Script) -> dict[str, ast.expr]:
 
 
 @once_per_script
-def _call_sites(script: Script) -> dict[ast.Call, CallSite]:
+def calls_by_node(script: Script) -> dict[ast.Call, CallSite]:
+    """The calls that surely are of one thing of the API, by where they stand."""
     return {call.node: call for call in calls(script)}
 
 
@@ -144,7 +145,7 @@ def callee_of(symbol: Symbol) -> Callee:
     names = tuple(parameter.name for parameter in parameters)
     if symbol.kind == "operator":
         return Callee(symbol, parameters, (), names, is_open=False, is_rna=True)
-    arguments = _signature(symbol.signature)
+    arguments = signature_arguments(symbol.signature)
     is_open = (
         arguments is None
         or arguments.vararg is not None
@@ -172,13 +173,3 @@ def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
     return "/" not in symbol.signature and all(
         _RNA_TYPE.fullmatch(parameter.plain_type) for parameter in parameters
     )
-
-
-@lru_cache(maxsize=4096)
-def _signature(text: str) -> ast.arguments | None:
-    try:
-        tree = ast.parse(f"def {text.rpartition('.')[2] if '(' not in text else text}: pass")
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
-    node = tree.body[0]
-    return node.args if isinstance(node, ast.FunctionDef) else None

@@ -15,6 +15,7 @@ from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, Type, membe
 from kb_check.calls import calls
 from kb_check.conversions import CHANGING_ARRAYS
 from kb_check.made_here import is_new
+from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from kb_build.records import Symbol
@@ -82,17 +83,24 @@ def _made(script: Script, owner: ast.expr, collection: str, key: str | None) -> 
     """What the script itself makes in a collection of what is new, under the name that is the key."""
     if not key or not is_new(script, owner):
         return None
-    text = f"{ast.unparse(owner)}.{collection}.new"
-    kinds = {
-        script.type_of(call.node)
-        for call in calls(script)
-        if ast.unparse(call.node.func) == text
-        and any(
-            parameter.name == "name" and isinstance(node, ast.Constant) and node.value == key
-            for parameter, node in call.arguments()
-        )
-    }
-    return kinds.pop() if len(kinds) == 1 else None
+    kinds = _made_by_name(script).get((f"{ast.unparse(owner)}.{collection}", key), set())
+    return next(iter(kinds)) if len(kinds) == 1 else None
+
+
+@once_per_script
+def _made_by_name(script: Script) -> dict[tuple[str, str], set[Type | None]]:
+    """Collection as it is written, and a name → the types of what the script makes there under that name."""
+    found: dict[tuple[str, str], set[Type | None]] = {}
+    for call in calls(script):
+        name = call.argument("name")
+        match call.node.func:
+            case ast.Attribute(attr="new", value=collection) if isinstance(name, ast.Constant):
+                if isinstance(name.value, str):
+                    key = ast.unparse(collection), name.value
+                    found.setdefault(key, set()).add(script.type_of(call.node))
+            case _:
+                pass
+    return found
 
 
 def _is_data_block(script: Script, kind: Type) -> bool:

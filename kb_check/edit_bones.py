@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import T
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance
+from kb_check.calls import calls_by_node
 from kb_check.literals import bound_names
 from kb_check.made_here import callee_path, named_words
-from kb_check.mode_keeping import calls_by_node, keeps_mode, sets_active
+from kb_check.mode_keeping import keeps_mode, sets_active
 from kb_check.modes import MODE_SET, literal_argument
 from kb_check.script import once_per_script
 

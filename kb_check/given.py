@@ -7,6 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import T
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_check.calls import calls
 from kb_check.own_classes import own_classes
@@ -20,12 +21,11 @@ if TYPE_CHECKING:
 
 _SIZES = re.compile(r"\[(\d+)\]")
 _SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
-_T = "bpy.types."
 _MISDOCUMENTED = frozenset({"bpy.utils.resource_path(minor)"})  # an int, which references call a str
 _FIXED = frozenset({2, 3, 4})  # other sizes of a parameter are the most, or the least, that it takes
 _ANY = "bpy.types.AnyType"
 # What the reference calls an enum and takes a set, as RNA says (``is_enum_flag``) of these parameters without default.
-_FLAGS = frozenset(f"{_T}{name}.report(type)" for name in ("Macro", "Operator", "RenderEngine"))
+_FLAGS = frozenset(f"{T}{name}.report(type)" for name in ("Macro", "Operator", "RenderEngine"))
 
 
 @dataclass(frozen=True, slots=True)
@@ -134,12 +134,12 @@ def assigned(statement: ast.stmt | None, target: ast.expr) -> ast.expr | None:
 def property_taker(symbol: Symbol) -> Taker:
     """What a property takes."""
     kind, target = symbol.type, ""
-    if not symbol.owner.startswith(_T):
+    if not symbol.owner.startswith(T):
         return Taker(symbol.path, "", symbol, documented=symbol.type)
     if kind == "enum" and "enum-flag" in symbol.flags:
         kind = "set"
     elif kind == "pointer":
-        target = f"{_T}{symbol.target}"
+        target = f"{T}{symbol.target}"
     elif kind not in _SCALARS:
         return Taker(symbol.path, "", symbol)
     return Taker(
@@ -165,7 +165,7 @@ def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_
     elif kind == "enum" and not isinstance(parameter.default, str):
         kind = "enum or set"  # what is required has no default to tell
     elif kind not in _SCALARS:
-        target = f"{_T}{parameter.type}"
+        target = f"{T}{parameter.type}"
         known = not is_operator and target != _ANY and script.api.is_class(target)
         kind = "pointer" if known else ""
     return Taker(

@@ -5,11 +5,13 @@ from __future__ import annotations
 import ast
 import re
 import sys
+from bisect import bisect_right
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
 from kb_build.symbol_lines import fillers
-from kb_check.script import once_per_script
+from kb_check.computing import RUNNING, STORING, computing
+from kb_check.script import once_for_each, once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -23,7 +25,6 @@ _BODIES: tuple[type[ast.AST], ...] = (
     ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.If, ast.For, ast.AsyncFor, ast.While, ast.With,
     ast.AsyncWith, ast.Try, ast.TryStar, ast.ExceptHandler, ast.match_case,
 )  # fmt: skip
-_COMPUTING = frozenset({"setattr", "exec", "eval"})
 # Modules that change nothing in Blender's data but what is given to them.
 _HARMLESS = (sys.stdlib_module_names - {"runpy", "importlib"}) | {
     "bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "idprop", "bl_math", "blf", "aud", "imbuf", "numpy",
@@ -31,38 +32,66 @@ _HARMLESS = (sys.stdlib_module_names - {"runpy", "importlib"}) | {
 _DOTS = 3  # of the path of an operator; that of a module has fewer
 # Operators that change nothing but the active object, which they leave as new as it is.
 _PLAIN = re.compile(r"bpy\.ops\.(mesh\.primitive_\w+_add|object\.(select_all|shade_\w+|delete)|wm\.read_\w+)")
-_OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
+OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
 
 
 @once_per_script
 def named_words(script: Script) -> frozenset[str]:
     """Every word of the script that may name a setting."""
-    return words_of(script.all(ast.Attribute, ast.keyword, ast.Constant))
+    return frozenset(attributes(script)) | keywords_and_texts(script)
 
 
-def named_before(script: Script, place: ast.expr) -> frozenset[str]:
-    """Those of the words that may have had an effect when the script comes to a place: all, within a function."""
-    number = statement_of(script.tree.body, place)
-    if number < 0 or isinstance(
-        script.tree.body[number], (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef)
-    ):
-        return named_words(script)
-    return frozenset[str]().union(*_words_by_statement(script)[: number + 1])
+@once_per_script
+def keywords_and_texts(script: Script) -> frozenset[str]:
+    """The words of the script that may name a setting without being an attribute."""
+    return words_of(script.all(ast.keyword, ast.Constant))
+
+
+@once_per_script
+def attributes(script: Script) -> dict[str, list[ast.Attribute]]:
+    """Name → the attributes of that name."""
+    found: dict[str, list[ast.Attribute]] = {}
+    for node in script.all(ast.Attribute):
+        found.setdefault(node.attr, []).append(node)
+    return found
+
+
+def is_named_before(script: Script, word: str, place: ast.expr) -> bool:
+    """Whether a word may have had an effect when the script comes to a place: any of it, within a function."""
+    first = first_named(script).get(word)
+    return first is not None and first <= stage(script, place)
+
+
+def stage(script: Script, place: ast.expr) -> int:
+    """The number of the statement of the module that a place is in; within a function, the last one."""
+    body = script.tree.body
+    number = statement_of(body, place)
+    is_apart = number < 0 or isinstance(body[number], (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef))
+    return len(body) if is_apart else number
+
+
+@once_per_script
+def first_named(script: Script) -> dict[str, int]:
+    """Each word of the script that may name a setting → the number of the statement of the module that has it first."""
+    found: dict[str, int] = {}
+    for number, statement in enumerate(script.tree.body):
+        for word in words_of(walk(statement)):
+            found.setdefault(word, number)
+    return found
 
 
 def statement_of(body: Sequence[ast.stmt], node: ast.expr) -> int:
     """The place of the statement of a body that a node is in; -1 for none."""
     at = node.lineno, node.col_offset
-    for place, statement in enumerate(body):
-        end = statement.end_lineno or statement.lineno, statement.end_col_offset or 0
-        if (statement.lineno, statement.col_offset) <= at < end:
-            return place
-    return -1
+    place = bisect_right(body, at, key=_start) - 1
+    if place < 0:
+        return -1
+    end = body[place].end_lineno or 0, body[place].end_col_offset or 0
+    return place if at < end else -1
 
 
-@once_per_script
-def _words_by_statement(script: Script) -> list[frozenset[str]]:
-    return [words_of(walk(statement)) for statement in script.tree.body]
+def _start(statement: ast.stmt) -> tuple[int, int]:
+    return statement.lineno, statement.col_offset
 
 
 def words_of(nodes: Iterable[ast.AST]) -> frozenset[str]:
@@ -82,8 +111,8 @@ def words_of(nodes: Iterable[ast.AST]) -> frozenset[str]:
 @once_per_script
 def computes_names(script: Script) -> bool:
     """Whether something out of sight may set settings: computed names, or the files beside the script."""
-    called = {node.func.id for node in script.all(ast.Call) if isinstance(node.func, ast.Name)}
-    return not _COMPUTING.isdisjoint(called) or any(node.level > 0 for node in script.all(ast.ImportFrom))
+    is_computed = not computing(script).isdisjoint(RUNNING | STORING)
+    return is_computed or any(node.level > 0 for node in script.all(ast.ImportFrom))
 
 
 @once_per_script
@@ -96,21 +125,33 @@ def knows_all(script: Script) -> bool:
     return {name.partition(".")[0] for name in imported} <= _HARMLESS
 
 
+@once_per_script
+def members_taken(script: Script) -> dict[ast.expr, str]:
+    """Expression → the name of the attribute that is taken of it."""
+    return {node.value: node.attr for node in script.all(ast.Attribute)}
+
+
 def is_new(script: Script, node: ast.expr, depth: int = _DEEPEST) -> bool:
     """Whether the script has surely made what an expression is, or what it belongs to."""
     if not depth:
         return False
     match node:
         case ast.Name():
-            values = bindings(script).get(node.id, [None])
-            handed_on = node.id in _handed_on(script)
-            return not handed_on and all(value and is_new(script, value, depth - 1) for value in values)
+            return _is_new_name(script, (node.id, depth))
         case ast.Call():
             return callee_path(script, node).endswith(".new")
         case ast.Attribute():
             return _is_new_member(script, node, depth)
         case _:
             return False
+
+
+@once_for_each
+def _is_new_name(script: Script, name_and_depth: tuple[str, int]) -> bool:
+    name, depth = name_and_depth
+    values = bindings(script).get(name, [None])
+    handed_on = name in _handed_on(script)
+    return not handed_on and all(value and is_new(script, value, depth - 1) for value in values)
 
 
 def _is_new_member(script: Script, node: ast.Attribute, depth: int) -> bool:
@@ -128,13 +169,24 @@ def _is_new_member(script: Script, node: ast.Attribute, depth: int) -> bool:
 
 def has_new_data(script: Script, node: ast.expr, depth: int = _DEEPEST) -> bool:
     """Whether an object was made with new data, which have nothing that they would give it."""
-    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else [node]
-    return bool(values) and all(
-        isinstance(value, ast.Call)
-        and callee_path(script, value) == _OBJECTS_NEW
-        and len(value.args) > 1
-        and is_new(script, value.args[1], depth)
-        for value in values
+    if isinstance(node, ast.Name):
+        return _has_new_data(script, (node.id, depth))
+    return _is_made_with_new_data(script, node, depth)
+
+
+@once_for_each
+def _has_new_data(script: Script, name_and_depth: tuple[str, int]) -> bool:
+    name, depth = name_and_depth
+    values = bindings(script).get(name, [])
+    return bool(values) and all(_is_made_with_new_data(script, value, depth) for value in values)
+
+
+def _is_made_with_new_data(script: Script, node: ast.expr | None, depth: int) -> bool:
+    return (
+        isinstance(node, ast.Call)
+        and callee_path(script, node) == OBJECTS_NEW
+        and len(node.args) > 1
+        and is_new(script, node.args[1], depth)
     )
 
 

@@ -7,12 +7,15 @@ import builtins
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import children
-from kb_check.calls import calls
+from kb_check import active_object
+from kb_check.calls import calls_by_node
+from kb_check.computing import CALLING, RUNNING, STORING
 from kb_check.made_here import bindings, knows_all, stored_names
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
-    from kb_check.calls import CallSite
+    from collections.abc import Iterator
+
     from kb_check.script import Script
 
 FUNCTIONS = (ast.FunctionDef, ast.AsyncFunctionDef)
@@ -31,11 +34,7 @@ REMOVING = frozenset(
         "load",
     }
 )
-_COMPUTING = frozenset(
-    {"exec", "eval", "getattr", "setattr", "compile", "__import__", "next", "map", "filter"}
-)
-_BUILTINS = frozenset(dir(builtins)) - _COMPUTING
-_ACTIVE = "bpy.types.LayerObjects.active"
+_BUILTINS = frozenset(dir(builtins)) - RUNNING - STORING - CALLING
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
@@ -47,25 +46,26 @@ def keeps_mode(script: Script, node: ast.AST) -> bool:
 @once_per_script
 def _changing(script: Script) -> frozenset[str]:
     """The script's own functions that may change the mode or the active object."""
-    found: frozenset[str] = frozenset()
-    while True:
-        more = frozenset(
-            name
-            for name, function in own_functions(script).items()
-            if not all(_keeps(script, statement, found) for statement in function.body)
-        )
-        if more == found:
-            return found
-        found = more
+    found: dict[str, None] = {}
+    callers: dict[str, list[str]] = {}
+    for name, function in own_functions(script).items():
+        for statement in function.body:
+            for called in _own_calls(script, statement):
+                callers.setdefault(called, []).append(name)
+            if not _keeps(script, statement, frozenset()):
+                found[name] = None
+    waiting = [*found]
+    for name in waiting:  # which grows
+        for caller in callers.get(name, ()):
+            if caller not in found:
+                found[caller] = None
+                waiting.append(caller)
+    return frozenset(found)
 
 
 def _keeps(script: Script, root: ast.AST, changing: frozenset[str]) -> bool:
-    waiting = [root]
-    while waiting:
-        node = waiting.pop()
+    for node in _run(root):
         match node:
-            case ast.FunctionDef() | ast.AsyncFunctionDef() | ast.ClassDef() | ast.Lambda():
-                continue  # what it defines does not run here
             case ast.Call(func=ast.Name(id=name)) if name in own_functions(script):
                 known = name not in changing
             case ast.Call():
@@ -76,8 +76,27 @@ def _keeps(script: Script, root: ast.AST, changing: frozenset[str]) -> bool:
                 known = not isinstance(node, LEFT)
         if not known:
             return False
-        waiting += children(node)
     return True
+
+
+def _own_calls(script: Script, root: ast.AST) -> Iterator[str]:
+    """The script's own functions that a statement may call."""
+    for node in _run(root):
+        match node:
+            case ast.Call(func=ast.Name(id=name)) if name in own_functions(script):
+                yield name
+            case _:
+                pass
+
+
+def _run(root: ast.AST) -> Iterator[ast.AST]:
+    """The parts of a statement or expression that may run with it: not those of what it defines."""
+    waiting = [root]
+    while waiting:
+        node = waiting.pop()
+        if not isinstance(node, (*FUNCTIONS, ast.ClassDef, ast.Lambda)):
+            yield node
+            waiting += children(node)
 
 
 def sets_active(script: Script, node: ast.Attribute) -> bool:
@@ -85,7 +104,7 @@ def sets_active(script: Script, node: ast.Attribute) -> bool:
     if node.attr != "active":
         return False
     row = script.analysis.resolutions.get(node)
-    return row is None or _ACTIVE in row.symbols or not row.symbols
+    return row is None or active_object.SET in row.symbols or not row.symbols
 
 
 def is_harmless(script: Script, node: ast.Call) -> bool:
@@ -120,12 +139,6 @@ def is_operator(call: ast.Call) -> bool:
         names.append(node.attr)
         node = node.value
     return isinstance(node, ast.Name) and (names[-1:] == ["ops"] or node.id == "ops")
-
-
-@once_per_script
-def calls_by_node(script: Script) -> dict[ast.Call, CallSite]:
-    """The calls that surely are of one thing of the API, by where they stand."""
-    return {call.node: call for call in calls(script)}
 
 
 @once_per_script

@@ -14,14 +14,13 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Mapping
-from kb_check.calls import calls
+from kb_check.calls import calls, calls_by_node
 from kb_check.made_here import bindings, knows_all, named_words
 from kb_check.mode_keeping import (
     FUNCTIONS,
     LEFT,
     REMOVING,
     SWITCHED,
-    calls_by_node,
     is_harmless,
     is_operator,
     own_functions,

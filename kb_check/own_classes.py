@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
 from kb_build.flow.types import ClassObject
+from kb_check.computing import NAMESPACES, RUNNING, STORING, computing
 from kb_check.literals import bound_names, times_bound
 from kb_check.registered_types import TYPES
 from kb_check.script import once_per_script
@@ -26,8 +27,9 @@ FunctionDefinition = ast.FunctionDef | ast.AsyncFunctionDef
 _DEEPEST = 20
 _REGISTERING = frozenset({"register_class", "register_classes_factory"})
 # The nodes that tell what a script registers.
-_TELLING = (ast.Call, ast.For, ast.Attribute, ast.FunctionDef, ast.Assign, ast.Name, ast.alias)
-_COMPUTING = frozenset({"setattr", "exec", "vars", "locals", "__dict__"})
+_TELLING = (ast.Call, ast.For, ast.Attribute, ast.FunctionDef, ast.Assign)
+# Classes are Python's: what holds names gives attributes to them as well.
+_COMPUTING = RUNNING | STORING | NAMESPACES
 _DEMANDED = frozenset(name for kind in TYPES.values() for name in kind.needs)
 # Bases in Python that give what their reference lists, and nothing more.
 _HELPERS = "bpy_extras."
@@ -178,6 +180,8 @@ def _registered_names(script: Script) -> frozenset[str]:
 
     What attributes a script sets afterwards, or by names that it computes, is out of sight: then it registers none.
     """
+    if not _COMPUTING.isdisjoint(computing(script)):
+        return frozenset()
     lists: dict[str, ast.expr] = {}
     given: list[ast.expr] = []
     loops: list[ast.For] = []
@@ -195,8 +199,6 @@ def _registered_names(script: Script) -> frozenset[str]:
                 return frozenset()
             case ast.Assign(targets=[ast.Name(id=name)], value=ast.Tuple() | ast.List() as value):
                 lists[name] = value
-            case ast.Name(id=name) | ast.Attribute(attr=name) | ast.alias(name=name) if name in _COMPUTING:
-                return frozenset()
             case _:
                 pass
     names = {one.id for one in given if isinstance(one, ast.Name)}

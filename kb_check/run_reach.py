@@ -10,11 +10,13 @@ from __future__ import annotations
 
 import ast
 import sys
-from typing import TYPE_CHECKING
+from bisect import bisect_right
+from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.expressions import is_decided
 from kb_build.flow.trees import called_name, children, walk
 from kb_build.flow.types import UNKNOWN, LocalClass, LocalFunction, literal
+from kb_check.computing import RUNNING, STORING
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator, Sequence
@@ -25,12 +27,12 @@ if TYPE_CHECKING:
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 # Names that can give Blender's API more than the text shows.
-_BRINGING = frozenset(
+_BRINGING = RUNNING | STORING | frozenset(
     {
-        # code that is not in the text, or is only a text
-        "exec", "eval", "import_module", "__import__", "run_path", "run_module", "exec_module", "python_file_run",
-        # a property or a class whose name is not written down
-        "setattr", "new_class",
+        # code that is not in the text
+        "import_module", "run_path", "run_module", "exec_module", "python_file_run",
+        # a class whose name is not written down
+        "new_class",
         # add-ons and extensions
         "addon_utils", "addon_enable", "addon_install", "addon_refresh", "extensions", "load_scripts",
         "modules_from_path",
@@ -63,6 +65,7 @@ class RunReach:
         self._sure: set[ast.AST] = {tree}
         self._bodies: list[Sequence[ast.stmt]] = [tree.body]
         self._called: set[_Function] = set()
+        self._parts: dict[ast.AST, list[_Part]] = {}
         while self._bodies:
             self._block(self._bodies.pop())
 
@@ -72,8 +75,15 @@ class RunReach:
         while node is not None:
             if node not in self._sure:
                 return False
-            node = next((part for part in _placed(node) if _holds(part, line, column)), None)
+            node = self._part_at(node, (line, column))
         return True
+
+    def _part_at(self, node: ast.AST, place: tuple[int, int]) -> ast.AST | None:
+        """The node right below one that holds a place."""
+        if (parts := self._parts.get(node)) is None:
+            parts = self._parts[node] = sorted(map(_Part.of, _placed(node)), key=_Part.begin)
+        at = bisect_right(parts, place, key=_Part.begin) - 1
+        return parts[at].node if at >= 0 and place < parts[at].end else None
 
     def _block(self, statements: Sequence[ast.stmt]) -> None:
         """Marks what is surely come to of statements that follow each other, the first of which is."""
@@ -252,11 +262,22 @@ def _placed(node: ast.AST) -> Iterator[ast.AST]:
             waiting += children(part)
 
 
-def _holds(node: ast.AST, line: int, column: int) -> bool:
-    first = min([node, *getattr(node, "decorator_list", ())], key=lambda part: getattr(part, "lineno", 0))
-    start: tuple[int, int] = getattr(first, "lineno", 0), getattr(first, "col_offset", 0)
-    end: tuple[int, int] = getattr(node, "end_lineno", 0), getattr(node, "end_col_offset", 0)
-    return start <= (line, column) < end
+class _Part(NamedTuple):
+    """A node, and where it begins, with what decorates it, and ends. Those right below another one lie side by side."""
+
+    start: tuple[int, int]
+    end: tuple[int, int]
+    node: ast.AST
+
+    @classmethod
+    def of(cls, node: ast.AST) -> _Part:
+        first = min([node, *getattr(node, "decorator_list", ())], key=lambda part: getattr(part, "lineno", 0))
+        start: tuple[int, int] = getattr(first, "lineno", 0), getattr(first, "col_offset", 0)
+        end: tuple[int, int] = getattr(node, "end_lineno", 0), getattr(node, "end_col_offset", 0)
+        return cls(start, end, node)
+
+    def begin(self) -> tuple[int, int]:
+        return self.start
 
 
 def _yields(function: ast.FunctionDef) -> bool:

@@ -8,14 +8,13 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property, wraps
 from typing import TYPE_CHECKING, TypeVar, cast
-from weakref import WeakKeyDictionary
 
 from kb_build.flow.trees import walk
 from kb_check.findings import Edit, Span
 from kb_check.source import split_lines
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator
+    from collections.abc import Callable, Hashable, Iterator
 
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.api import Api
@@ -24,6 +23,7 @@ if TYPE_CHECKING:
     from kb_check.package import Package
 
 _T = TypeVar("_T")
+_Key = TypeVar("_Key", bound="Hashable")
 _Node = TypeVar("_Node", bound=ast.AST)
 
 
@@ -32,6 +32,7 @@ class Script:
     """One script, analysed for one Blender. ``package`` is what the files beside it register.
 
     ``error`` says why Python cannot parse it; ``tree`` and ``analysis`` are then of the part that could be read.
+    ``kept`` is what :func:`once_per_script` and :func:`once_for_each` have found; it goes with the script.
     """
 
     code: str
@@ -42,6 +43,9 @@ class Script:
     package: Package
     version: tuple[int, ...] = field(default=())
     error: SyntaxError | None = None
+    kept: dict[object, object] = field(
+        default_factory=dict[object, object], init=False, repr=False, compare=False
+    )
 
     @cached_property
     def lines(self) -> list[str]:
@@ -188,18 +192,49 @@ class Script:
         """A column as a number of characters; Python counts the bytes of UTF-8."""
         if line > len(self.lines) or self.lines[line - 1].isascii():
             return column
-        return len(self.lines[line - 1].encode()[:column].decode(errors="replace"))
+        ends, extra = self._wide_characters(line)
+        before = bisect_right(ends, column)
+        return column - (extra[before - 1] if before else 0)
+
+    def _wide_characters(self, line: int) -> tuple[list[int], list[int]]:
+        """Where characters of a line end that take several bytes of UTF-8, and how many bytes too many that makes."""
+        if line not in self._wide:
+            ends: list[int] = []
+            extra: list[int] = []
+            for place, character in enumerate(self.lines[line - 1], start=1):
+                if not character.isascii():
+                    more = len(character.encode(errors="surrogatepass")) - 1
+                    extra.append(more + (extra[-1] if extra else 0))
+                    ends.append(place + extra[-1])
+            self._wide[line] = ends, extra
+        return self._wide[line]
+
+    @cached_property
+    def _wide(self) -> dict[int, tuple[list[int], list[int]]]:
+        return {}
 
 
 def once_per_script(find: Callable[[Script], _T]) -> Callable[[Script], _T]:
     """Has something found once for each script, whichever rules ask for it."""
-    kept: WeakKeyDictionary[ast.Module, _T] = WeakKeyDictionary()
 
     @wraps(find)
     def found(script: Script) -> _T:
-        if (known := kept.get(script.tree)) is None:
-            known = kept[script.tree] = find(script)
-        return known
+        if find not in script.kept:
+            script.kept[find] = find(script)
+        return cast("_T", script.kept[find])
+
+    return found
+
+
+def once_for_each(find: Callable[[Script, _Key], _T]) -> Callable[[Script, _Key], _T]:
+    """Has something found once for each thing in a script that it is asked of, whichever rules ask for it."""
+
+    @wraps(find)
+    def found(script: Script, key: _Key) -> _T:
+        kept = cast("dict[_Key, _T]", script.kept.setdefault(find, {}))
+        if key not in kept:
+            kept[key] = find(script, key)
+        return kept[key]
 
     return found
 

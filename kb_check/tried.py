@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_check.line_ranges import LineRanges
 from kb_check.made_here import callee_path
 from kb_check.script import once_per_script
 
@@ -14,11 +15,11 @@ if TYPE_CHECKING:
 
 def is_tried(script: Script, node: ast.expr) -> bool:
     """Whether an error here may be caught: in a ``try``, or by a context manager that is none of Blender's."""
-    return any(first <= node.lineno <= last for first, last in _tried_lines(script))
+    return node.lineno in _tried_lines(script)
 
 
 @once_per_script
-def _tried_lines(script: Script) -> list[tuple[int, int]]:
+def _tried_lines(script: Script) -> LineRanges:
     found: list[tuple[int, int]] = []
     for node in script.all(ast.Try, ast.TryStar, ast.With, ast.AsyncWith):
         match node:
@@ -28,7 +29,7 @@ def _tried_lines(script: Script) -> list[tuple[int, int]]:
                 found.append((node.lineno, node.end_lineno or 0))
             case _:
                 pass
-    return found
+    return LineRanges(found)
 
 
 def _is_blenders(script: Script, item: ast.withitem) -> bool:

@@ -71,7 +71,9 @@ def called_name(node: ast.AST) -> str:
 
 
 def walk(node: ast.AST) -> Iterator[ast.AST]:
-    """A node and all below it, in the order of ast.walk."""
+    """A node and all below it, in the order of ast.walk; without operators and without how names are used, as
+    :func:`children`. Those are fields of the nodes that have them: ``node.op``, ``node.ctx``.
+    """
     waiting = [node]
     for each in waiting:
         waiting += children(each)

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 TYPES = "bpy.types."
 _MAKERS = ("new", "create", "add")
 _NEW_KIND = "new_"
-_ADDS = ("_add", "add")
 _NODE = f"{TYPES}Node"
 _BLOCKS = ("obj", "scene", "mesh", "mat", "tree", "curve")
 _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTree": "tree", "Curve": "curve"}

@@ -101,9 +101,15 @@ class Successors:
         return self.before(row.version), row.version
 
     def before(self, version: str) -> str:
-        """The version before one; empty for the oldest."""
-        number = self._history.versions.index(version)
-        return self._history.versions[number - 1] if number else ""
+        """The version before one; empty for the oldest. Raises StoreError for one that the history does not have."""
+        versions = self._history.versions
+        if version not in versions:
+            raise StoreError(
+                f"The table of successors names Blender {version}, which the history does not have: that knows "
+                f"{', '.join(versions)}. Correct the version in {SUCCESSORS_FILE.name}, or add it to the history."
+            )
+        number = versions.index(version)
+        return versions[number - 1] if number else ""
 
     def of(self, path: str) -> list[Succession]:
         """What takes the place of a missing path, best first, each row with one target or none.

@@ -7,6 +7,7 @@ from bisect import bisect_right
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import children
 from kb_check.findings import Edit, Span
 
 if TYPE_CHECKING:
@@ -199,7 +200,7 @@ def _expression(place: Place, statement: ast.stmt, span: Span) -> ast.expr | Non
     """The smallest expression around a span that is read, not assigned, and stands outside of formatted text."""
     best: ast.expr | None = None
     stack: list[ast.AST] = [
-        child for child in ast.iter_child_nodes(statement)
+        child for child in children(statement)
         if not isinstance(child, (ast.stmt, ast.excepthandler, ast.match_case))
     ]  # fmt: skip
     while stack:
@@ -212,7 +213,7 @@ def _expression(place: Place, statement: ast.stmt, span: Span) -> ast.expr | Non
         stored = isinstance(getattr(node, "ctx", None), (ast.Store, ast.Del))
         if isinstance(node, ast.expr) and not stored and not isinstance(node, ast.Starred):
             best = node
-        stack.extend(ast.iter_child_nodes(node))
+        stack.extend(children(node))
     return best
 
 

@@ -8,6 +8,7 @@ from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance, members, without_none
 from kb_check.findings import Edit, Span
 from kb_check.migrate.change import Change, Version
@@ -34,8 +35,14 @@ class Place:
 
     @cached_property
     def parents(self) -> dict[ast.AST, ast.AST]:
-        """Node → the node around it."""
-        return {child: node for node in ast.walk(self.script.tree) for child in ast.iter_child_nodes(node)}
+        """Node → the node around it; not of operators, nor of what says how a node is used."""
+        return {child: node for node in walk(self.script.tree) for child in children(node)}
+
+    def stores(self, name: str) -> list[ast.Name]:
+        """Where the script gives a name a value."""
+        return [
+            node for node in self.script.all(ast.Name) if node.id == name and isinstance(node.ctx, ast.Store)
+        ]
 
     @cached_property
     def _gone(self) -> dict[str, list[Resolution]]:

@@ -30,7 +30,7 @@ from kb_check.made_here import (
     member_path,
 )
 from kb_check.rule import Rule
-from kb_check.script import once_per_script
+from kb_check.script import once_for_each, once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
@@ -61,11 +61,11 @@ def _check(script: Script) -> Iterator[Finding]:
             and is_new(script, collection.value)
             and (symbol.owner != _OBJECT or has_new_data(script, collection.value))
             and not is_tried(script, node)
-            and not _may_be_filled(script, symbol)
+            and not _may_be_filled(script, symbol.path)
         ):
-            told = f"`{symbol.path}` is empty on what is new, and nothing in this script adds to it"
+            message = f"`{symbol.path}` is empty on what is new, and nothing in this script adds to it"
             yield Finding(
-                RULE.id, "warning", script.span(node), f"{told}{_adding(script, symbol)}.", symbol.path
+                RULE.id, "warning", script.span(node), f"{message}{_adding(script, symbol)}.", symbol.path
             )
 
 
@@ -91,8 +91,12 @@ def _adding(script: Script, symbol: Symbol) -> str:
     return f": `.{symbol.name}.{names[0]}()` does" if names else ""
 
 
-def _may_be_filled(script: Script, symbol: Symbol) -> bool:
+@once_for_each
+def _may_be_filled(script: Script, path: str) -> bool:
     """Whether anything in the script may add to a collection, or asks for its size."""
+    symbol = script.api.symbols.symbol(path)
+    if symbol is None:
+        return True
     own = _stems(symbol.name) | _FILLED_BESIDE.get(symbol.name, set())
     return (
         not has_plain_operators_only(script)

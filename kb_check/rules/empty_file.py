@@ -24,14 +24,15 @@ from kb_check.findings import Finding
 from kb_check.made_here import (
     asked_names,
     calls_only,
+    keywords_and_texts,
     knows_all,
     member_path,
     named_words,
     read_pointer,
     stored_names,
-    words_of,
 )
 from kb_check.rule import Rule
+from kb_check.script import once_for_each, once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
@@ -93,15 +94,15 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _pointers(script: Script) -> Iterator[Finding]:
-    told: set[str] = set()
+    reported: set[str] = set()
     for row in script.resolutions("attribute", "store"):
         node = row.node
         pointer = read_pointer(script, node.value) if isinstance(node, ast.Attribute) else None
         path = member_path(script, pointer) if pointer else ""
-        if path not in _EMPTY or path in told or not isinstance(node, ast.Attribute):
+        if path not in _EMPTY or path in reported or not isinstance(node, ast.Attribute):
             continue
         if _stays_empty(script, path) and _is_run_later(script, row, node):
-            told.add(path)
+            reported.add(path)
             yield Finding(
                 RULE.id, "warning", script.name_span(node),
                 f"`{path}` is None in an empty file, and nothing in this script fills it: "
@@ -148,17 +149,23 @@ def _stays_empty(script: Script, path: str) -> bool:
     return (
         names.isdisjoint(asked_names(script))
         and names.isdisjoint(stored_names(script))
-        and names.isdisjoint(words_of(script.all(ast.keyword, ast.Constant)))
+        and names.isdisjoint(keywords_and_texts(script))
         and calls_only(script, empty.beside)
     )
 
 
+@once_for_each
 def _is_named(script: Script, name: str) -> bool:
     """Whether a script has a name for more than to look something up."""
+    return any(name in text for text in _other_texts(script))
+
+
+@once_per_script
+def _other_texts(script: Script) -> frozenset[str]:
+    """The script's texts that are no keys."""
     keys = {node.slice for node in script.all(ast.Subscript)}
-    return any(
-        isinstance(node.value, str) and name in node.value and node not in keys
-        for node in script.all(ast.Constant)
+    return frozenset(
+        node.value for node in script.all(ast.Constant) if isinstance(node.value, str) and node not in keys
     )
 
 

@@ -16,6 +16,7 @@ names or import modules which may change scenes; and what the script asks for (`
 from __future__ import annotations
 
 import ast
+import math
 import re
 from typing import TYPE_CHECKING
 
@@ -23,25 +24,27 @@ from kb_build.flow.facts import T
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
 from kb_build.symbol_lines import empty_when_new, fillers
+from kb_check import active_object
 from kb_check.findings import Finding
 from kb_check.made_here import (
     asked_names,
     bindings,
     called_operators,
     callee_path,
+    first_named,
     has_new_data,
     has_plain_operators_only,
     is_new,
+    keywords_and_texts,
     knows_all,
     member_path,
-    named_before,
     named_words,
     read_pointer,
+    stage,
     stored_names,
-    words_of,
 )
 from kb_check.rule import Rule
-from kb_check.script import once_per_script
+from kb_check.script import once_for_each, once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
@@ -54,7 +57,6 @@ if TYPE_CHECKING:
 _ANIMATING = re.compile(r"keyframe_insert|driver_add|bpy\.ops\.(anim|nla|action|graph|pose|poselib)\.")
 # Operators that hand on what other things have.
 _COPYING = re.compile(r"copy|link|join|quick|transfer|preset|paste|append|undo|duplicate")
-_ACTIVE = frozenset({f"{T}Context.object", f"{T}Context.active_object"})
 _PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
 _WORD = re.compile(r"\w+")
 _GENERAL = frozenset({"object", "mesh", "scene", "anim"})  # modules whose operators fill many things
@@ -67,26 +69,26 @@ _MAKING = frozenset({"new", "modifier_add"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    told: set[str] = set()
+    reported: set[str] = set()
     for row in script.resolutions("attribute", "store"):
         node = row.node
         if not isinstance(node, ast.Attribute) or not row.sure or row.guarded:
             continue
         pointer = read_pointer(script, node.value)
-        if pointer is None or ast.unparse(pointer) in told:
+        if pointer is None or ast.unparse(pointer) in reported:
             continue
         symbol = _empty(script, pointer)
         if symbol is None:
             continue
         if cls := _only_with(script, symbol, pointer.value):
-            said = f"`{symbol.path}` is None: only an object whose data are of `{cls}` has it."
+            message = f"`{symbol.path}` is None: only an object whose data are of `{cls}` has it."
         elif filler := _filler(script, symbol, pointer, node):
-            said = f"`{symbol.path}` is None on what is new, and nothing in this script fills it: `{filler}` does."
+            message = f"`{symbol.path}` is None on what is new, and nothing in this script fills it: `{filler}` does."
         else:
             continue
         if not is_tried(script, node):
-            told.add(ast.unparse(pointer))
-            yield Finding(RULE.id, "warning", script.name_span(node), said, symbol.path)
+            reported.add(ast.unparse(pointer))
+            yield Finding(RULE.id, "warning", script.name_span(node), message, symbol.path)
 
 
 def _empty(script: Script, pointer: ast.Attribute) -> Symbol | None:
@@ -113,27 +115,31 @@ def _filler(script: Script, symbol: Symbol, pointer: ast.Attribute, place: ast.e
     if fillers(symbol):
         is_empty = _stays_empty(script, symbol, place) and _is_made(script, pointer.value)
         return fillers(symbol)[-1] if is_empty else ""
-    if not _is_never_assigned(script, symbol) or not _is_made(script, pointer.value):
+    if not _is_never_assigned(script, symbol.path) or not _is_made(script, pointer.value):
         return ""
     if symbol.owner == _OBJECT:
         is_new_mesh = _is_primitive(script, pointer.value) or has_new_data(script, pointer.value)
         if not is_new_mesh or "data" in stored_names(script):
             return ""
-    thing = ast.unparse(pointer.value) if isinstance(pointer.value, ast.Name) else ""
-    return f"{thing}.{symbol.name} = …"
+    obj = ast.unparse(pointer.value) if isinstance(pointer.value, ast.Name) else ""
+    return f"{obj}.{symbol.name} = …"
 
 
-def _is_never_assigned(script: Script, symbol: Symbol) -> bool:
+@once_for_each
+def _is_never_assigned(script: Script, path: str) -> bool:
     """Whether a pointer to a data-block, which only an assignment or an operator fills, is given none.
 
     The active one is that of a collection, which adding to it fills.
     """
+    symbol = script.api.symbols.symbol(path)
+    if symbol is None:
+        return False
     is_assigned = "readonly" not in symbol.flags and script.api.descends(f"{T}{symbol.target}", f"{T}ID")
     if not is_assigned or not knows_all(script) or not has_plain_operators_only(script):
         return False
     if symbol.name in asked_names(script) or symbol.name in stored_names(script):
         return False
-    if symbol.name in words_of(script.all(ast.keyword, ast.Constant)):
+    if symbol.name in keywords_and_texts(script):
         return False
     own = {stem(word) for word in words(symbol.name)} - {_ACTIVE_ONE}
     is_active = symbol.name.startswith(_ACTIVE_ONE)
@@ -144,27 +150,40 @@ def _is_never_assigned(script: Script, symbol: Symbol) -> bool:
 
 def _stays_empty(script: Script, symbol: Symbol, place: ast.expr) -> bool:
     """Whether the script names nothing that may have filled a pointer, and does not ask whether it is None."""
-    if not knows_all(script) or symbol.name in asked_names(script) or _is_filled_beside(script, symbol):
-        return False
-    named, operators = named_before(script, place), called_operators(script)
-    is_animated = symbol.name == "animation_data" and any(map(_ANIMATING.search, named | operators))
-    if is_animated or any(map(_COPYING.search, operators)):
-        return False
-    for call in fillers(symbol):
-        parts = _WORD.findall(call)
-        if call.startswith("bpy.ops."):
-            module = parts[2]
-            if parts[3] in named or (
-                module not in _GENERAL
-                and any(word.startswith(module) and word != symbol.name for word in named)
-            ):
-                return False
-        elif ".modifiers.new(" in call:
-            if parts[-1] in named or _computes_kinds(script):
-                return False
-        elif parts[1] in named:
-            return False
-    return True
+    return stage(script, place) < _first_filled(script, symbol.path)
+
+
+@once_for_each
+def _first_filled(script: Script, path: str) -> float:
+    """The stage at which the script may fill a pointer first: infinite for never, -1 where that is not known."""
+    symbol = script.api.symbols.symbol(path)
+    if symbol is None or not knows_all(script) or symbol.name in asked_names(script):
+        return -1
+    operators = called_operators(script)
+    if (
+        _is_filled_beside(script, symbol)
+        or (symbol.name == "animation_data" and any(map(_ANIMATING.search, operators)))
+        or any(map(_COPYING.search, operators))
+    ):
+        return -1
+    stages: list[float] = [math.inf]
+    for word, first in first_named(script).items():
+        is_animating = symbol.name == "animation_data" and _ANIMATING.search(word)
+        if is_animating or any(_may_fill(word, call, symbol.name) for call in fillers(symbol)):
+            stages.append(first)
+    if _computes_kinds(script) and any(".modifiers.new(" in call for call in fillers(symbol)):
+        return -1
+    return min(stages)
+
+
+def _may_fill(word: str, call: str, name: str) -> bool:
+    """Whether a word of a script may stand for a call that fills what is called by a name, or for one like it."""
+    parts = _WORD.findall(call)
+    if call.startswith("bpy.ops."):
+        module = parts[2]
+        is_like_it = module not in _GENERAL and word.startswith(module) and word != name
+        return word == parts[3] or is_like_it
+    return word == (parts[-1] if ".modifiers.new(" in call else parts[1])
 
 
 def _is_filled_beside(script: Script, symbol: Symbol) -> bool:
@@ -209,17 +228,26 @@ def _is_primitive(script: Script, node: ast.expr) -> bool:
 
 def _is_active(script: Script, node: ast.Attribute) -> bool:
     row = script.analysis.resolutions.get(node)
-    if row is None or not _ACTIVE.issuperset(row.symbols) or "active" in named_words(script):
+    if row is None or not active_object.READ.issuperset(row.symbols) or "active" in named_words(script):
         return False
-    made = [call for call in script.resolutions("call") if any(map(_PRIMITIVE.fullmatch, call.symbols))]
-    here = node.lineno, node.col_offset
-    before = any(isinstance(call.node, ast.Call) and _end(call.node) <= here for call in made)
-    computed = any(node.id == "getattr" for node in script.all(ast.Name))
-    return before and not computed and has_plain_operators_only(script)
+    before = _first_primitive(script) <= (node.lineno, node.col_offset)
+    return before and not _computes_members(script) and has_plain_operators_only(script)
 
 
-def _end(node: ast.expr) -> tuple[int, int]:
-    return node.end_lineno or 0, node.end_col_offset or 0
+@once_per_script
+def _first_primitive(script: Script) -> tuple[float, float]:
+    """Where the first call of an operator ends that makes a mesh; behind everything for none."""
+    made = [
+        (row.node.end_lineno or 0, row.node.end_col_offset or 0)
+        for row in script.resolutions("call")
+        if isinstance(row.node, ast.Call) and any(map(_PRIMITIVE.fullmatch, row.symbols))
+    ]
+    return min(made, default=(math.inf, math.inf))
+
+
+@once_per_script
+def _computes_members(script: Script) -> bool:
+    return any(node.id == "getattr" for node in script.all(ast.Name))
 
 
 RULE = Rule("empty-pointer", "warning", "Something read from what is None on a new thing", _check)

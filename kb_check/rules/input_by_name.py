@@ -17,9 +17,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance, literal_text
 from kb_check.findings import Finding
-from kb_check.made_here import callee_path
+from kb_check.group_inputs import named_inputs
 from kb_check.rule import Rule
-from kb_check.script import once_per_script
 from kb_serve.recognise.subscripts import NODES_MODIFIER, CustomProperties
 
 if TYPE_CHECKING:
@@ -27,33 +26,16 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_MAKERS = {"bpy.types.NodeTreeInterface.new_socket": 0, "bpy.types.NodeTreeInputs.new": 1}
-
 
 def _check(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Subscript):
         owner, key = script.type_of(node.value), script.type_of(node.slice)
         name = literal_text(key) if key else None
-        if isinstance(owner, Instance) and owner.cls == NODES_MODIFIER and name in _named(script):
+        if isinstance(owner, Instance) and owner.cls == NODES_MODIFIER and name in named_inputs(script):
             yield Finding(
                 RULE.id, "warning", script.span(node),
                 CustomProperties(script.names.reader).on_inputs(), NODES_MODIFIER,
             )  # fmt: skip
-
-
-@once_per_script
-def _named(script: Script) -> frozenset[str]:
-    """The names that the script gives to the sockets of groups."""
-    found: set[str] = set()
-    for node in script.all(ast.Call):
-        place = _MAKERS.get(callee_path(script, node))
-        if place is None:
-            continue
-        given = [*node.args[place : place + 1], *(word.value for word in node.keywords if word.arg == "name")]
-        found.update(
-            part.value for part in given if isinstance(part, ast.Constant) and isinstance(part.value, str)
-        )
-    return frozenset(found)
 
 
 RULE = Rule("input-by-name", "warning", "An input of a geometry-nodes modifier by its name", _check)

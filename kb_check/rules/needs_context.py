@@ -45,7 +45,7 @@ def _check(script: Script) -> Iterator[Finding]:
         path = call.callee.symbol.path
         first = script.type_of(call.node.args[0]) if call.node.args else None
         line = call.node.lineno
-        if path in asked or isinstance(first, Mapping) or any(start <= line <= end for start, end in given):
+        if path in asked or isinstance(first, Mapping) or line in given:
             continue
         yield Finding(
             RULE.id, "note", script.span(call.node), f"`{path}` {_advice(call.callee.symbol)}", path,

@@ -18,6 +18,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbol_lines import freed_by, is_locked
+from kb_check import active_object
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import is_of_instance
 from kb_check.made_here import named_words
@@ -32,11 +33,10 @@ if TYPE_CHECKING:
 
 _HANDLERS = "bpy.app.handlers."
 _CONTEXT = "bpy.types.Context"
-_ACTIVE = "bpy.types.LayerObjects.active"
 # What to do instead: property → (paths, advice).
 _INSTEAD = {
-    f"{_CONTEXT}.object": ((_ACTIVE,), "Assign to `bpy.context.view_layer.objects.active`."),
-    f"{_CONTEXT}.active_object": ((_ACTIVE,), "Assign to `bpy.context.view_layer.objects.active`."),
+    f"{_CONTEXT}.object": ((active_object.SET,), "Assign to `bpy.context.view_layer.objects.active`."),
+    f"{_CONTEXT}.active_object": ((active_object.SET,), "Assign to `bpy.context.view_layer.objects.active`."),
     f"{_CONTEXT}.selected_objects": (
         ("bpy.types.Object.select_set",), "Call `select_set(True)` on each object.",
     ),

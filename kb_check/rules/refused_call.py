@@ -27,15 +27,21 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.trees import walk
 from kb_build.flow.types import ClassObject, Instance
 from kb_build.records import ENDS_WITHOUT, last_name
 from kb_build.symbol_lines import with_article
-from kb_check.calls import CallSite, calls
+from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
-from kb_check.made_here import bindings, callee_path, knows_all, named_before, named_words, places
-from kb_check.mode_keeping import own_names
+from kb_check.made_here import (
+    OBJECTS_NEW,
+    bindings,
+    callee_path,
+    is_named_before,
+    knows_all,
+)
+from kb_check.repeated_calls import follows
 from kb_check.rule import Rule
+from kb_check.script import once_for_each, once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
@@ -46,7 +52,6 @@ if TYPE_CHECKING:
 
 _WITH_PROPERTIES = ("bpy.types.", "mathutils.", "bmesh.types.")
 _OBJECT = "bpy.types.Object"
-_OBJECTS_NEW = "bpy.types.BlendDataObjects.new"
 _LIGHT = "bpy.types.Light"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
@@ -55,7 +60,6 @@ _OUTSIDE_MAIN = {
     f"{_OBJECT}.to_mesh": "to_mesh_clear", f"{_OBJECT}.to_curve": "to_curve_clear",
 }  # fmt: skip
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
-_REMOVING = frozenset({"remove", "clear", "read_homefile", "open_mainfile", "read_factory_settings"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -77,16 +81,20 @@ def _check(script: Script) -> Iterator[Finding]:
                 continue
             if refusal.again:
                 before = earlier.setdefault((ast.unparse(owner), *_key(refusal, call)), call)
-                if refusal.again == "any" and before is not call and _follows(script, before, call, owner):
+                if (
+                    refusal.again == "any"
+                    and before is not call
+                    and follows(script, before.node, call.node, owner)
+                ):
                     yield _finding(script, call, refusal, "a second time")
             elif refusal.given:
                 if not call.given & set(refusal.given):
                     names = " and ".join(f"`{name}`" for name in refusal.given)
                     yield _finding(script, call, refusal, f"without {names}")
             elif refusal.by:
-                if thing := _refusing(script, owner, refusal):
+                if kind := _refusing(script, owner, refusal):
                     word = "to" if refusal.values else "by"
-                    yield _finding(script, call, refusal, f"{word} {with_article(thing)}")
+                    yield _finding(script, call, refusal, f"{word} {with_article(kind)}")
             elif refusal.values and refusal.message:
                 yield _finding(script, call, refusal, "")
 
@@ -100,7 +108,7 @@ def _ending(script: Script, call: CallSite) -> Iterator[Finding]:
             isinstance(owner, ast.Attribute)
             and knows_all(script)
             and _is_made(script, owner.value)
-            and last_name(needed) not in named_before(script, call.node)
+            and not is_named_before(script, last_name(needed), call.node)
         ):
             yield Finding(
                 RULE.id, "warning", script.span(call.node),
@@ -108,11 +116,19 @@ def _ending(script: Script, call: CallSite) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _is_made(script: Script, thing: ast.expr) -> bool:
+def _is_made(script: Script, owner: ast.expr) -> bool:
     """Whether all that a name stands for was made by the script: ``strips.new_effect(…)``."""
-    values = bindings(script).get(thing.id, []) if isinstance(thing, ast.Name) else []
-    paths = [callee_path(script, value) for value in values if isinstance(value, ast.Call)]
-    return bool(paths) and len(paths) == len(values) and all(last_name(path)[:3] == "new" for path in paths)
+    makers = _makers(script, owner.id) if isinstance(owner, ast.Name) else frozenset[str]()
+    return bool(makers) and all(last_name(path)[:3] == "new" for path in makers)
+
+
+@once_for_each
+def _makers(script: Script, name: str) -> frozenset[str]:
+    """What is called for all that a name stands for; nothing where it stands for other values as well."""
+    values = bindings(script).get(name, [])
+    calls_only = all(isinstance(value, ast.Call) for value in values)
+    paths = {callee_path(script, value) for value in values if isinstance(value, ast.Call)}
+    return frozenset(paths) if calls_only else frozenset()
 
 
 def _called_classes(script: Script) -> Iterator[Finding]:
@@ -136,15 +152,22 @@ def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
     """Data that an object makes for itself, and that the script removes from Blender's."""
     path = call.callee.symbol.path
     given = call.node.args[0] if _REMOVES_DATA.fullmatch(path) and call.node.args else None
-    values = bindings(script).get(given.id, []) if isinstance(given, ast.Name) else [given]
-    made = [value for value in values if isinstance(value, ast.Call)]
-    makers = {callee_path(script, value) for value in made}
-    maker = makers.pop() if len(makers) == 1 and len(made) == len(values) else ""
+    match given:
+        case ast.Name(id=name):
+            made, makers = bindings(script).get(name, []), _makers(script, name)
+        case ast.Call():
+            made, makers = [given], frozenset({callee_path(script, given)})
+        case _:
+            return
+    maker = next(iter(makers)) if len(makers) == 1 else ""
     clear = _OUTSIDE_MAIN.get(maker, "")
     if not clear or script.api.member(_OBJECT, clear) is None or is_tried(script, call.node):
         return
-    function = made[0].func
-    owner = function.value if isinstance(function, ast.Attribute) and len(made) == 1 else None
+    match made:
+        case [ast.Call(func=ast.Attribute(value=owner))]:
+            pass
+        case _:
+            owner = None
     is_fixed = isinstance(owner, ast.Name) and len(bindings(script).get(owner.id, ())) == 1
     edit = Edit(script.span(call.node), f"{ast.unparse(owner)}.{clear}()") if owner and is_fixed else None
     yield Finding(
@@ -199,40 +222,6 @@ def _key(refusal: Refusal, call: CallSite) -> tuple[str, str]:
     return call.callee.symbol.path, ast.unparse(given) if given else ""
 
 
-def _follows(script: Script, before: CallSite, call: CallSite, owner: ast.expr) -> bool:
-    """Whether a call is surely made on the same thing as one before, and nothing is removed."""
-    root = owner
-    while isinstance(root, (ast.Attribute, ast.Subscript)):
-        root = root.value
-    if not isinstance(root, ast.Name):
-        return False
-    rows = {
-        statement.value: (body, place)
-        for statement, (body, place) in places(script).items()
-        if isinstance(statement, (ast.Expr, ast.Assign)) and statement.value in {before.node, call.node}
-    }
-    if len(rows) < 2 or rows[before.node][0] is not rows[call.node][0]:
-        return False
-    body, place = rows[call.node]
-    between = body[rows[before.node][1] : place]
-    return not any(_binds(statement, root.id) for statement in between) and not _may_remove(script, between)
-
-
-def _may_remove(script: Script, statements: list[ast.stmt]) -> bool:
-    """Whether statements remove what was made, themselves or by the script's own functions."""
-    nodes = [node for statement in statements for node in walk(statement)]
-    names = {node.attr for node in nodes if isinstance(node, ast.Attribute)}
-    names |= {node.id for node in nodes if isinstance(node, ast.Name)}
-    return bool(names & _REMOVING) or bool(names & own_names(script) and named_words(script) & _REMOVING)
-
-
-def _binds(statement: ast.stmt, name: str) -> bool:
-    return any(
-        isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store)
-        for node in walk(statement)
-    )
-
-
 def _refusing(script: Script, owner: ast.expr, refusal: Refusal) -> str:
     """What something is that refuses a call by what it is; empty where that is not known."""
     thing = owner.value if isinstance(owner, ast.Attribute) else owner
@@ -264,7 +253,7 @@ def _has_no_data(script: Script, node: ast.expr) -> bool:
     """Whether the one object that a name stands for was made without data."""
     values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
     match values:
-        case [ast.Call() as made] if callee_path(script, made) == _OBJECTS_NEW:
+        case [ast.Call() as made] if callee_path(script, made) == OBJECTS_NEW:
             given = [*made.args[1:2], *(word.value for word in made.keywords if word.arg == "object_data")]
             return [ast.unparse(node) for node in given] == ["None"]
         case _:
@@ -281,14 +270,14 @@ def _made_as(script: Script, node: ast.expr) -> str:
         or _is_retyped(script)
     ):
         return ""
-    for call in calls(script):
-        if call.node is made:
-            for parameter, given in call.arguments():
-                if parameter.enum_items and isinstance(given, ast.Constant) and isinstance(given.value, str):
-                    return given.value.lower()
+    site = calls_by_node(script).get(made)
+    for parameter, given in site.arguments() if site else ():
+        if parameter.enum_items and isinstance(given, ast.Constant) and isinstance(given.value, str):
+            return given.value.lower()
     return ""
 
 
+@once_per_script
 def _is_retyped(script: Script) -> bool:
     """Whether a script gives something another type."""
     return any(node.attr == "type" and isinstance(node.ctx, ast.Store) for node in script.all(ast.Attribute))

@@ -29,6 +29,7 @@ from kb_check.data_paths import follow, item, size
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number, written
 from kb_check.rule import Rule
+from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
@@ -116,7 +117,12 @@ def _elsewhere(script: Script, call: CallSite, followed: Followed, node: ast.exp
 
 def _is_asked_for(script: Script, name: str) -> bool:
     """Whether a name stands in the script as a text of its own, as in ``hasattr(ob, "name")``."""
-    return any(node.value == name for node in script.all(ast.Constant))
+    return name in _texts(script)
+
+
+@once_per_script
+def _texts(script: Script) -> frozenset[str]:
+    return frozenset(node.value for node in script.all(ast.Constant) if isinstance(node.value, str))
 
 
 def _of_item(

@@ -24,7 +24,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.trees import walk
+from kb_build.flow.facts import T
 from kb_build.flow.types import Instance
 from kb_build.records import last_name
 from kb_build.symbol_lines import usual_default
@@ -38,9 +38,11 @@ from kb_check.made_here import (
     knows_all,
     member_path,
     named_words,
-    places,
 )
+from kb_check.opening import OPENING
 from kb_check.rule import Rule
+from kb_check.script import once_per_script
+from kb_check.settings_before import set_before
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -56,10 +58,7 @@ _OR_IF = re.compile(rf"; with {_VALUES} only if .*")
 _ONLY_IF = re.compile(rf"with {_VALUES} only if (\w+)\.(\w+)=(.*)")
 _TEXT = re.compile(r"'([^']*)'")
 _BY = re.compile(r"(only|not) by ([^…]+)")
-_T = "bpy.types."
-_SCENE = f"{_T}Scene"
-_ACTIVE = frozenset({"bpy.types.Context.object", "bpy.types.Context.active_object"})
-_OPENING = frozenset({"bpy.ops.wm.open_mainfile", "bpy.ops.wm.read_homefile"})
+_SCENE = f"{T}Scene"
 _RESETTING = "bpy.ops.wm.read_factory_settings"
 
 
@@ -161,7 +160,7 @@ def _refused_by_setting(
     script: Script, statement: ast.Assign, target: ast.Attribute, setting: _Setting, item: EnumItem
 ) -> Iterator[Finding]:
     name = setting.symbol.name
-    if before := _set_before(script, statement, target.value, setting.symbol):
+    if before := set_before(script, statement, target.value, setting.symbol):
         if isinstance(before, ast.Constant) and setting.refuses(before.value):
             yield _finding(
                 script, statement.value, item, setting.symbol.path, f"`{name}` is {before.value!r} here"
@@ -189,9 +188,9 @@ def _refused_beside(
     if found is None:
         return
     setting, beside = (
-        script.api.symbols.symbol(path) for path in (f"{owner}.{found[1]}", f"{_T}{found[3]}.{found[4]}")
+        script.api.symbols.symbol(path) for path in (f"{owner}.{found[1]}", f"{T}{found[3]}.{found[4]}")
     )
-    before = _set_before(script, statement, target.value, setting) if setting else None
+    before = set_before(script, statement, target.value, setting) if setting else None
     if (
         beside
         and isinstance(before, ast.Constant)
@@ -216,7 +215,7 @@ def _new_owner(script: Script, node: ast.expr, setting: Symbol) -> NewValue | No
         node = alias(script, node.value)
         cls = _class_of(script, node)
         for new in setting.new_values:
-            is_of = any(script.api.is_class(f"{_T}{made}") and cls == f"{_T}{made}" for made in new.made)
+            is_of = any(script.api.is_class(f"{T}{made}") and cls == f"{T}{made}" for made in new.made)
             if is_of and not new.when and is_new(script, node):
                 return new
     return None
@@ -227,64 +226,19 @@ def _values_of_scene(script: Script, symbol: Symbol) -> list[object]:
     new_values = (
         new.value
         for new in symbol.new_values
-        if not any(script.api.is_class(f"{_T}{made}") for made in new.made)
+        if not any(script.api.is_class(f"{T}{made}") for made in new.made)
     )
     return [usual_default(symbol), *new_values]
 
 
-def _set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Symbol) -> ast.expr | None:
-    """What is assigned to a setting before a statement, in the same body, with nothing between that may matter."""
-    name = setting.name
-    body, place = places(script).get(statement, ([], 0))
-    text = ast.unparse(owner)
-    for earlier in reversed(body[:place]):
-        match earlier:
-            case ast.Assign(targets=[ast.Attribute(attr=set_name) as set_here]) if set_name == name:
-                return earlier.value if ast.unparse(set_here.value) == text else None
-            case ast.Expr(value=ast.Call() as call) if callee_path(script, call).startswith("bpy.ops."):
-                return _given_to_maker(script, call, owner, setting)
-            case ast.Assign() | ast.AugAssign() | ast.Expr() if _leaves_alone(script, earlier, text, name):
-                pass
-            case _:
-                return None
-    return None
-
-
-def _given_to_maker(script: Script, call: ast.Call, owner: ast.expr, setting: Symbol) -> ast.expr | None:
-    """What an operator that makes the active object is given for a setting of what belongs to that."""
-    row = script.analysis.resolutions.get(owner.value) if isinstance(owner, ast.Attribute) else None
-    if row is None or not row.symbols or not _ACTIVE.issuperset(row.symbols):
-        return None
-    items = {item.identifier for item in setting.enum_items}
-    for site in calls(script):
-        if site.node is call and site.callee.symbol.name.endswith("_add"):
-            for parameter, given in site.arguments():
-                own = {item.identifier for item in parameter.enum_items}
-                # A few values are called otherwise there.
-                if parameter.name == setting.name and len(own & items) > len(own) / 2:
-                    return given
-    return None
-
-
-def _leaves_alone(script: Script, statement: ast.stmt, owner: str, name: str) -> bool:
-    """Whether a statement changes neither what an expression stands for nor its setting."""
-    for node in walk(statement):
-        if isinstance(node, ast.Call) and (callee_path(script, node) or "bpy.ops.").startswith("bpy.ops."):
-            return False
-        if isinstance(node, (ast.Name, ast.Attribute)) and isinstance(node.ctx, ast.Store):
-            written = ast.unparse(node)
-            is_part = owner == written or owner.startswith((f"{written}.", f"{written}["))
-            if is_part or (isinstance(node, ast.Attribute) and node.attr == name):
-                return False
-    return True
-
-
 def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
     """Whether a script that is run by itself, with nothing hidden, sets something of a scene."""
-    is_add_on = any(
-        isinstance(part, ast.FunctionDef) and part.name == "register" for part in script.tree.body
-    )
-    if is_add_on or not knows_all(script) or called_operators(script) & _OPENING or _takes_template(script):
+    if (
+        _is_add_on(script)
+        or not knows_all(script)
+        or called_operators(script) & OPENING
+        or _takes_template(script)
+    ):
         return False
     node = alias(script, node)
     while isinstance(node, ast.Attribute):
@@ -300,6 +254,12 @@ def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
     return _class_of(script, node) == _SCENE
 
 
+@once_per_script
+def _is_add_on(script: Script) -> bool:
+    return any(isinstance(part, ast.FunctionDef) and part.name == "register" for part in script.tree.body)
+
+
+@once_per_script
 def _takes_template(script: Script) -> bool:
     """Whether the script may read the settings of an application template, which has its own."""
     calls_of_it = [node for node in script.all(ast.Call) if callee_path(script, node) == _RESETTING]
@@ -317,7 +277,7 @@ def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
         node = alias(script, node)
         cls = _class_of(script, node)
         symbol = script.api.symbols.symbol(cls) if cls else None
-        if found and found[1] == "not" and any(script.api.descends(cls, f"{_T}{kind}") for kind in kinds):
+        if found and found[1] == "not" and any(script.api.descends(cls, f"{T}{kind}") for kind in kinds):
             return last_name(cls)
         if symbol and symbol.base and kinds <= _labels_below(script, symbol.base):
             label = symbol.label.lower()

@@ -26,10 +26,12 @@ from kb_build.symbol_lines import NODE_FAMILIES, alike_nodes
 from kb_check.calls import CallSite, calls
 from kb_check.findings import Finding
 from kb_check.rule import Rule
+from kb_check.script import once_for_each
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_check.known_names import Lacking
     from kb_check.script import Script
 
 _TAKERS = {f"{T}Nodes.new": "type", f"{T}NodeTreeInterface.new_socket": "socket_type"}
@@ -56,11 +58,16 @@ def _check(script: Script) -> Iterator[Finding]:
             if script.package.has(("bpy.types",), name) or script.names.still_works(f"{T}{name}"):
                 continue
             if script.names.was("bpy.types", name) or _BLENDERS_OWN.fullmatch(name):
-                lacking = script.names.member("bpy.types", name)
+                lacking = _lacking(script, name)
                 yield Finding(
                     RULE.id, "error", script.span(node), lacking.message, lacking.symbol,
                     tuple(path for path in lacking.instead if script.api.is_class(path)),
                 )  # fmt: skip
+
+
+@once_for_each
+def _lacking(script: Script, name: str) -> Lacking:
+    return script.names.member("bpy.types", name)
 
 
 def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Iterator[Finding]:

@@ -15,6 +15,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_check.made_here import members_taken
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 
@@ -38,10 +39,8 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _of_lost_module(script: Script, row: Resolution) -> Lacking | None:
     """What became of an operator whose module is gone, where the script names one that was in it."""
-    for node in script.all(ast.Attribute):
-        if node.value is row.node:
-            return script.names.path(f"{row.missing[0]}.{row.value}.{node.attr}")
-    return None
+    name = members_taken(script).get(row.node) if isinstance(row.node, ast.expr) else None
+    return script.names.path(f"{row.missing[0]}.{row.value}.{name}") if name else None
 
 
 RULE = Rule("unknown-operator", "error", "An operator that does not exist", _check)

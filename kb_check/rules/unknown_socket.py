@@ -28,7 +28,8 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import Instance
 from kb_build.symbol_lines import subscripts_text
 from kb_check.findings import Finding
-from kb_check.made_here import called_operators, callee_path, is_new, knows_all, named_words
+from kb_check.group_inputs import makes_all_groups, named_inputs
+from kb_check.made_here import is_new
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 
@@ -42,13 +43,10 @@ if TYPE_CHECKING:
 # Of nodes with a set of sockets for each type of data, which Blender finds by name only.
 _BY_NAME_ONLY = "identifier-never"
 _SIDES = ("inputs", "outputs")
-_MODIFIER, _GROUPS_NEW = "bpy.types.NodesModifier", "bpy.types.BlendDataNodeTrees.new"
+_MODIFIER = "bpy.types.NodesModifier"
 # How the inputs and outputs of groups were called that were made before 4.0; these keep it.
 _FORMER = re.compile(r"(?:Input|Output)_(\d+)(?:_use_attribute|_attribute_name)?")
 _RENAMED_IN = (4, 0)
-_BRINGING = frozenset(
-    {"bpy.ops.wm.open_mainfile", "bpy.ops.wm.append", "bpy.ops.wm.link", "bpy.ops.wm.read_homefile"}
-)
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -70,7 +68,7 @@ def _check(script: Script) -> Iterator[Finding]:
                 f"`{first.owner}` finds its sockets by the names that it shows, not by identifiers as {row.value!r}: "
                 f"{subscripts_text(first)}.", first.path,
             )  # fmt: skip
-    if script.version >= _RENAMED_IN and _makes_all_groups(script):
+    if script.version >= _RENAMED_IN and makes_all_groups(script):
         yield from _former_inputs(script)
 
 
@@ -81,6 +79,7 @@ def _former_inputs(script: Script) -> Iterator[Finding]:
         kind = script.type_of(node.value)
         if (
             former
+            and key not in named_inputs(script)  # then it stands for that name: see input-by-name
             and isinstance(kind, Instance)
             and kind.sure
             and kind.cls == _MODIFIER
@@ -93,16 +92,6 @@ def _former_inputs(script: Script) -> Iterator[Finding]:
                 "and `item.identifier` of `node_group.interface.items_tree` says how.",
                 _MODIFIER,
             )  # fmt: skip
-
-
-def _makes_all_groups(script: Script) -> bool:
-    """Whether a script makes groups of nodes, and takes none out of a file."""
-    if not knows_all(script) or "libraries" in named_words(script) or called_operators(script) & _BRINGING:
-        return False
-    used = [node for node in script.all(ast.Attribute) if node.attr == "node_groups"]
-    makers = [call.func.value for call in script.all(ast.Call)
-              if isinstance(call.func, ast.Attribute) and callee_path(script, call) == _GROUPS_NEW]  # fmt: skip
-    return bool(makers) and set(used) <= set(makers)
 
 
 def _sides(row: Resolution) -> tuple[str, ...]:

@@ -30,6 +30,7 @@ In which modes operators run was found by asking each, with objects of all types
 from __future__ import annotations
 
 import ast
+from bisect import bisect_left, bisect_right
 from typing import TYPE_CHECKING
 
 from kb_build.flow.expressions import constants
@@ -43,6 +44,7 @@ from kb_check.rule import Rule
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_check.calls import CallSite
     from kb_check.script import Script
 
 _OF_OBJECTS = frozenset(
@@ -62,7 +64,7 @@ def _check(script: Script) -> Iterator[Finding]:
     yield from _of_another(script)
     yield from _held_modes(script)
     known = states(script)
-    quiet = lines_of_others(script) if known else []
+    quiet = lines_of_others(script)
     never = bool(known) and not is_called_by_others(script) and not enters_modes(script)
     for call in calls(script):
         state = known.get(call.node)
@@ -71,7 +73,7 @@ def _check(script: Script) -> Iterator[Finding]:
         path = call.callee.symbol.path
         if said := refusal(script, call, state):
             yield Finding(RULE.id, "error", script.span(call.node), f"`{path}` {said}.", path)
-        elif never and not state.mode and not any(a <= call.node.lineno <= b for a, b in quiet):
+        elif never and not state.mode and call.node.lineno not in quiet:
             modes = modes_wanted(call.callee.symbol)
             if modes and not modes.is_others and not modes.takes("OBJECT"):
                 yield Finding(
@@ -111,16 +113,21 @@ def _of_another(script: Script) -> Iterator[Finding]:
         given = _object_given(node)
         if given is None or ast.dump(given) in made_active:
             continue
-        for call in moving:
-            if node.lineno <= call.node.lineno <= (node.end_lineno or node.lineno):
-                thing = ast.unparse(given)
-                yield Finding(
-                    RULE.id, "warning", script.span(call.node),
-                    f"`{call.callee.symbol.path}` changes the mode of the view layer's active object, and not of "
-                    f"`{thing}`, which `temp_override` gives. Write `bpy.context.view_layer.objects.active = {thing}` "
-                    "before it.",
-                    call.callee.symbol.path,
-                )  # fmt: skip
+        start = bisect_left(moving, node.lineno, key=_line)
+        end = bisect_right(moving, node.end_lineno or node.lineno, key=_line)
+        for call in moving[start:end]:
+            obj = ast.unparse(given)
+            yield Finding(
+                RULE.id, "warning", script.span(call.node),
+                f"`{call.callee.symbol.path}` changes the mode of the view layer's active object, and not of "
+                f"`{obj}`, which `temp_override` gives. Write `bpy.context.view_layer.objects.active = {obj}` "
+                "before it.",
+                call.callee.symbol.path,
+            )  # fmt: skip
+
+
+def _line(call: CallSite) -> int:
+    return call.node.lineno
 
 
 def _object_given(node: ast.With) -> ast.expr | None:

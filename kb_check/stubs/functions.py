@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, SAME_CLASS, T
 from kb_check.stubs.annotations import ANY, MAYBE_NONE, RNA_TYPES
 from kb_check.stubs.names import docstring, is_writable
+from kb_serve.signatures import signature_arguments
 
 if TYPE_CHECKING:
     from kb_build.records import Parameter, Symbol
@@ -79,7 +80,7 @@ class Functions:
 
     def signature(self, symbol: Symbol) -> Signature:
         """The parameters of a function, as its signature orders them or else as its records do."""
-        arguments = _parsed(symbol.signature)
+        arguments = signature_arguments(symbol.signature)
         known = {parameter.name: parameter for parameter in symbol.parameters}
         if arguments is None:
             return self._from_records(symbol)
@@ -195,17 +196,6 @@ class Functions:
         said = docstring(symbol.label, symbol.description) if self._with_docs else ""
         end = f"\n    {said}" if said else " ..."
         return f"@bpy._typing.operator\ndef {symbol.name}({text}) -> set[bpy._typing.OperatorResult]:{end}"
-
-
-def _parsed(signature: str) -> ast.arguments | None:
-    head, _, rest = signature.partition("(")
-    if not head or not rest:
-        return None
-    try:
-        tree = ast.parse(f"def f({rest}: ...").body[0]
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
-    return tree.args if isinstance(tree, ast.FunctionDef) else None
 
 
 def _is_optional(parameter: Parameter | None) -> bool:

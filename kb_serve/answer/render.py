@@ -35,6 +35,7 @@ from kb_serve.answer.empty_pointers import empty_pointer_to
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.switches import switch_lines
 from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
+from kb_serve.signatures import signature_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
@@ -133,12 +134,9 @@ def _items(items: Sequence[EnumItem], taken: Mapping[str, str] | None = None) ->
 
 def _written_defaults(call: str) -> dict[str, str]:
     """The defaults in a call's text by argument, as Python source, where they are told; {} where it is not Python."""
-    try:
-        definition = ast.parse(f"def _{call[call.index('(') :]}: ...").body[0]
-    except (SyntaxError, ValueError):
+    arguments = signature_arguments(call)
+    if arguments is None:
         return {}
-    assert isinstance(definition, ast.FunctionDef)
-    arguments = definition.args
     by_position = [*arguments.posonlyargs, *arguments.args]
     pairs = [
         *zip(reversed(by_position), reversed(arguments.defaults), strict=False),

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import ast
 import re
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise.contexts import NO_OVERRIDE, with_context
 from kb_serve.recognise.corrections import nearest
+from kb_serve.signatures import signature_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
@@ -133,17 +133,12 @@ def _by_place(symbol: Symbol, text: str) -> Iterator[str]:
 
 def places_of(symbol: Symbol) -> tuple[list[str], list[str]] | None:
     """The arguments that a function takes by place, and those that it takes by name only; None where that is open."""
-    head, bracket, call = symbol.signature.partition("(")
-    try:
-        definition = ast.parse(f"def _({call}: ...").body[0] if head and bracket else None
-    except (SyntaxError, ValueError):
+    listed = signature_arguments(symbol.signature)
+    if listed is None or listed.vararg or listed.kwarg:
         return None
-    if not isinstance(definition, ast.FunctionDef) or definition.args.vararg or definition.args.kwarg:
-        return None
-    told = definition.args
     own = {"self", "cls"} - {parameter.name for parameter in symbol.parameters}
-    names = [one.arg for one in (*told.posonlyargs, *told.args) if one.arg not in own]
-    return names, [one.arg for one in told.kwonlyargs]
+    names = [argument.arg for argument in (*listed.posonlyargs, *listed.args) if argument.arg not in own]
+    return names, [argument.arg for argument in listed.kwonlyargs]
 
 
 def counted(places: int) -> str:

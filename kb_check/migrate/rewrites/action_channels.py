@@ -45,12 +45,9 @@ def _slot(place: Place, action: ast.expr) -> str | None:
 
 def _is_in_use(place: Place, name: str) -> bool:
     """Whether all that a name holds are actions that an owner of animation uses."""
-    values: list[ast.expr | None] = []
-    for node in ast.walk(place.script.tree):
-        if isinstance(node, ast.arg) and node.arg == name:
-            return False
-        if isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store):
-            values.append(place.stored_value(node))
+    if any(node.arg == name for node in place.script.all(ast.arg)):
+        return False
+    values = [place.stored_value(node) for node in place.stores(name)]
     return bool(values) and all(
         isinstance(value, ast.Attribute) and value.attr == "action" and place.is_a(value.value, _DATA)
         for value in values

@@ -24,7 +24,7 @@ _PROPS = "bpy.props."
 def _propose(place: Place) -> Iterator[Change]:
     if place.target < _SINCE:
         return
-    classes = [node for node in ast.walk(place.script.tree) if isinstance(node, ast.ClassDef)]
+    classes = place.script.all(ast.ClassDef)
     registered = _registered(place, classes)
     calls = {row.node: row for row in place.script.resolutions("call")}
     for cls in classes:

@@ -6,6 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import PRODUCTS
+from kb_build.flow.trees import walk
 from kb_check.findings import Edit
 from kb_check.migrate.change import Change
 from kb_check.migrate.rewrite import Rewrite
@@ -25,7 +26,7 @@ _REFUSED = PRODUCTS["@"] - PRODUCTS["*"]
 def _propose(place: Place) -> Iterator[Change]:
     if place.target < _SINCE:
         return
-    for node in ast.walk(place.script.tree):
+    for node in walk(place.script.tree):
         if isinstance(node, ast.BinOp) and isinstance(node.op, ast.Mult):
             left, right = node.left, node.right
         elif isinstance(node, ast.AugAssign) and isinstance(node.op, ast.Mult):

@@ -23,7 +23,7 @@ def _propose(place: Place) -> Iterator[Change]:
         node.name for node in place.script.tree.body
         if isinstance(node, ast.ClassDef) and any(_is_registered(place, base) for base in node.bases)
     ]  # fmt: skip
-    relative = any(isinstance(node, ast.ImportFrom) and node.level for node in ast.walk(place.script.tree))
+    relative = any(node.level for node in place.script.all(ast.ImportFrom))
     if not classes or relative:  # files beside it have classes, too
         return
     for row, symbol in place.gone(_REGISTER, _UNREGISTER):

@@ -42,17 +42,16 @@ def _view_layer(place: Place, scene: ast.expr) -> str:
 
 def _only_context(place: Place, name: str) -> str:
     """``bpy.context`` where that is all that a name's scene is ever taken from; else empty."""
+    if any(node.arg == name for node in place.script.all(ast.arg)):
+        return ""
     values: set[str] = set()
-    for node in ast.walk(place.script.tree):
-        if isinstance(node, ast.arg) and node.arg == name:
+    for node in place.stores(name):
+        value = place.stored_value(node)
+        if not isinstance(value, ast.Attribute) or value.attr != "scene":
             return ""
-        if isinstance(node, ast.Name) and node.id == name and isinstance(node.ctx, ast.Store):
-            value = place.stored_value(node)
-            if not isinstance(value, ast.Attribute) or value.attr != "scene":
-                return ""
-            if not place.is_a(value.value, _CONTEXT):
-                return ""
-            values.add(place.text(value.value))
+        if not place.is_a(value.value, _CONTEXT):
+            return ""
+        values.add(place.text(value.value))
     # Another context's name may mean nothing where the scene is used.
     return values.pop() if len(values) == 1 and values <= {f"{place.bpy}.context"} else ""
 

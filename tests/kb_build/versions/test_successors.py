@@ -45,6 +45,15 @@ def test_every_old_name_went_in_its_version(history: ApiHistory, table: list[Suc
     assert wrong == []
 
 
+def test_an_unknown_release_is_named_with_those_that_are_known(
+    history: ApiHistory, table: list[Succession]
+) -> None:
+    successors = Successors(table, history, "5.1", {})
+    assert successors.before("2.80") == "2.79"
+    with pytest.raises(StoreError, match=r"Blender 2\.81\.5, which .* 2\.80, 2\.81.*successors\.csv"):
+        successors.before("2.81.5")
+
+
 def test_every_new_name_came_by_then_or_later(history: ApiHistory, table: list[Succession]) -> None:
     wrong = [
         target

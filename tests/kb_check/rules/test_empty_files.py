@@ -102,3 +102,13 @@ def test_what_may_be_there_is_left_alone(rule_checker: Checker, text: str) -> No
 )
 def test_functions_and_blocks_behind_it_are_looked_at(rule_checker: Checker, text: str) -> None:
     assert is_found(rule_checker, text)
+
+
+def test_calls_of_calls_are_followed_however_many(rule_checker: Checker) -> None:
+    reading = "def f0():\n    bpy.data.objects['Cube'].location.x = 1\n"
+    chain = "".join(f"def f{n + 1}():\n    f{n}()\n" for n in range(1200))
+    assert is_found(rule_checker, f"{_EMPTYING}{reading}{chain}f1200()\n")
+    fan = "".join(f"def f{n + 1}():\n    f{n}()\n    f{n}()\n" for n in range(40))
+    assert is_found(rule_checker, f"{_EMPTYING}{reading}{fan}f40()\n")
+    assert not is_found(rule_checker, f"{reading}{fan}f40()\n{_EMPTYING}f40()\n")
+    assert not is_found(rule_checker, f"{_EMPTYING}def f0():\n    f0()\n    bpy.data.objects['Cube'].name\n")

@@ -12,6 +12,8 @@ if TYPE_CHECKING:
 
     from conftest import Check
 
+    from kb_check.checker import Checker
+
 _OWN_DATA = """\
 import bpy
 ob = bpy.data.objects["Cube"]
@@ -129,6 +131,12 @@ def test_identifiers_of_before_are_no_inputs_of_new_groups(check: Check, tmp_pat
         ('modifiers.new("x", "NODES")', 'modifiers["x"]'),
         ('bpy.data.node_groups.new("x", "GeometryNodeTree")', 'bpy.data.node_groups["x"]'),
         ("import bpy\n", "import bpy\nbpy.ops.wm.append(filename='x')\n"),
+        ("import bpy\n", "import bpy\nbpy.ops.wm.revert_mainfile()\n"),
+        ("import bpy\n", "import bpy\nbpy.ops.wm.recover_last_session()\n"),
+        ("import bpy\n", "import bpy\nbpy.ops.wm.recover_auto_save(filepath='x')\n"),
+        ("node_group = group", "node_group = bpy.context.object.modifiers['x'].node_group"),
+        ("node_group = group", "node_group = bpy.context.object.modifiers['x'].node_group.copy()"),
+        ("node_group = group", "node_group = bpy.context.space_data.edit_tree"),
         ("import bpy\n", "import bpy\nfrom addon import group\n"),
         ('"NODES"', '"ARRAY"'),
     ],
@@ -137,6 +145,12 @@ def test_groups_of_files_may_have_them(check: Check, old: str, new: str) -> None
     assert old in _GROUP
     code = _GROUP.replace(old, new, 1) + "modifier['Input_0'] = 1.0\n"
     assert not check("unknown-socket", code)
+
+
+def test_a_key_that_is_no_input_is_one_mistake(rule_checker: Checker) -> None:
+    for name in ("x", "Input_0"):
+        code = _GROUP.replace('new_socket("x"', f'new_socket("{name}"') + f"modifier['{name}'] = 1.0\n"
+        assert [finding.rule for finding in rule_checker.check(code)] == ["input-by-name"]
 
 
 _LINKS = """\
@@ -182,6 +196,19 @@ def test_links_to_sockets_that_are_hidden_are_warned_of(check: Check, tmp_path: 
         ('mix.data_type = "RGBA"', 'for node in tree.nodes:\n    node.data_type = "RGBA"'),
         ('mix = tree.nodes.new("ShaderNodeMix")', 'mix = tree.nodes["Mix"]'),
         ('mix.data_type = "RGBA"', 'mix.data_type = "RGBA"\nmix.data_type = "FLOAT"'),
+        ('mix.data_type = "RGBA"', 'mix.data_type = "RGBA"\nsame = mix\nsame.data_type = "FLOAT"'),
+        (
+            'mix.data_type = "RGBA"',
+            'mix.data_type = "RGBA"\nlast = tree.nodes.active\nlast.data_type = "FLOAT"',
+        ),
+        (
+            'mix.data_type = "RGBA"',
+            'mix.data_type = "RGBA"\nsame = mix\nput = setattr\nput(same, "data_" + "type", "FLOAT")',
+        ),
+        (
+            'mix.data_type = "RGBA"',
+            'mix.data_type = "RGBA"\nsame = mix\nsame.__setattr__("data_" + "type", "FLOAT")',
+        ),
     ],
 )
 def test_modes_that_are_not_certain_hide_nothing(check: Check, old: str, new: str) -> None:

@@ -1,0 +1,120 @@
+"""What a script has surely given to a setting when it comes to a statement of the same body.
+
+```python
+images.media_type = "VIDEO"
+scene.frame_end = 20
+images.file_format = "FFMPEG"  # media_type is "VIDEO" here
+```
+"""
+
+from __future__ import annotations
+
+import ast
+from bisect import bisect_left
+from collections import defaultdict
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kb_build.flow.trees import walk
+from kb_check import active_object
+from kb_check.calls import calls_by_node
+from kb_check.made_here import callee_path, places
+from kb_check.script import once_for_each
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_build.records import Symbol
+    from kb_check.script import Script
+
+_OPERATORS = "bpy.ops."
+
+
+@dataclass(frozen=True, slots=True)
+class _Body:
+    """Places in a body of statements, in order: of what may change anything, and of what is written to.
+
+    ``by_name`` are those of attributes by name, ``by_text`` those of expressions as they are written.
+    """
+
+    changing: list[int] = field(default_factory=list[int])
+    by_name: defaultdict[str, list[int]] = field(default_factory=lambda: defaultdict[str, list[int]](list))
+    by_text: defaultdict[str, list[int]] = field(default_factory=lambda: defaultdict[str, list[int]](list))
+
+    def last_before(self, place: int, name: str, owner: ast.expr) -> int:
+        """The last place before one at which a setting of an owner, or the owner, may become another; -1 for none."""
+        written = (self.by_text[text] for text in _beginnings(owner) if text in self.by_text)
+        found = (self.changing, self.by_name.get(name, ()), *written)
+        return max(_last_below(places_of, place) for places_of in found)
+
+
+def set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Symbol) -> ast.expr | None:
+    """What is assigned to a setting before a statement, in the same body, with nothing between that may matter."""
+    if statement not in places(script):
+        return None
+    statements, place = places(script)[statement]
+    last = _body(script, statements[0]).last_before(place, setting.name, owner)
+    match statements[last] if last >= 0 else None:
+        case ast.Assign(targets=[ast.Attribute(attr=name) as target], value=value) if name == setting.name:
+            return value if ast.unparse(target.value) == ast.unparse(owner) else None
+        case ast.Expr(value=ast.Call() as call) if callee_path(script, call).startswith(_OPERATORS):
+            return _given_to_maker(script, call, owner, setting)
+        case _:
+            return None
+
+
+def _given_to_maker(script: Script, call: ast.Call, owner: ast.expr, setting: Symbol) -> ast.expr | None:
+    """What an operator that makes the active object is given for a setting of what belongs to that."""
+    row = script.analysis.resolutions.get(owner.value) if isinstance(owner, ast.Attribute) else None
+    site = calls_by_node(script).get(call)
+    if row is None or not row.symbols or not active_object.READ.issuperset(row.symbols):
+        return None
+    if site is None or not site.callee.symbol.name.endswith("_add"):
+        return None
+    items = {item.identifier for item in setting.enum_items}
+    for parameter, given in site.arguments():
+        own = {item.identifier for item in parameter.enum_items}
+        # A few values are called otherwise there.
+        if parameter.name == setting.name and len(own & items) > len(own) / 2:
+            return given
+    return None
+
+
+@once_for_each
+def _body(script: Script, first: ast.stmt) -> _Body:
+    """The places in the body that begins with a statement."""
+    statements, _ = places(script)[first]
+    body = _Body()
+    for place, statement in enumerate(statements):
+        if not isinstance(statement, (ast.Assign, ast.AugAssign, ast.Expr)):
+            body.changing.append(place)
+            continue
+        for node in walk(statement):
+            match node:
+                case ast.Call() if (callee_path(script, node) or _OPERATORS).startswith(_OPERATORS):
+                    body.changing.append(place)
+                case ast.Attribute(attr=name, ctx=ast.Store()):
+                    body.by_name[name].append(place)
+                    body.by_text[ast.unparse(node)].append(place)
+                case ast.Name(id=name, ctx=ast.Store()):
+                    body.by_text[name].append(place)
+                case _:
+                    pass
+    return body
+
+
+def _last_below(places_of: Sequence[int], place: int) -> int:
+    at = bisect_left(places_of, place)
+    return places_of[at - 1] if at else -1
+
+
+def _beginnings(node: ast.expr) -> Iterator[str]:
+    """An expression as it is written, and what it begins with: ``a.b[0]``, ``a.b``, ``a``."""
+    inner: ast.expr | None = node
+    while inner is not None:
+        yield ast.unparse(inner)
+        match inner:
+            case ast.Attribute(value=value) | ast.Subscript(value=value) | ast.Call(func=value):
+                inner = value
+            case _:
+                inner = None

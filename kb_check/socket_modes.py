@@ -1,0 +1,35 @@
+"""The settings of a node that decide which of its sockets it shows."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kb_build.records import Symbol
+    from kb_check.script import Script
+
+
+def deciding(script: Script, sockets: list[Symbol]) -> set[str]:
+    """The properties that may show sockets: all of their node's, where more than one of them has a say."""
+    names = [showing(socket) for socket in sockets]
+    if all(len(of_socket) == 1 for of_socket in names):
+        return set[str]().union(*names)
+    return {symbol.name for symbol in script.api.own(sockets[0].owner).values() if symbol.type == "enum"}
+
+
+def showing(socket: Symbol) -> set[str]:
+    """The properties with whose values a socket is shown."""
+    return {mode.partition("=")[0] for mode in socket.modes}
+
+
+def is_shown(socket: Symbol, settings: Mapping[str, str]) -> bool:
+    """Whether one of some settings shows a socket."""
+    modes = (mode.partition("=") for mode in socket.modes)
+    return any(settings.get(name) in values.split("|") for name, _, values in modes)
+
+
+def side_of(socket: Symbol) -> str:
+    """``inputs`` or ``outputs``."""
+    return socket.path[len(socket.owner) + 1 :].partition("[")[0]
