@@ -30,7 +30,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 _PLAIN: dict[str, Type] = {
-    "str": STR, "int": INT, "float": FLOAT, "bool": BOOL, "bytes": Plain("bytes"), "None": NONE,
+    "str": STR, "int": INT, "bool": BOOL, "bytes": Plain("bytes"), "None": NONE,
+    "float": union((FLOAT, INT)),  # as for type checkers
 }  # fmt: skip
 _LISTS = {
     "list": "list", "List": "list", "Sequence": "list", "set": "set", "Set": "set", "frozenset": "set",

@@ -722,7 +722,8 @@ class Statements(Calls):
             return received if fallback is UNKNOWN else join(received, general(fallback))
         if fallback is not UNKNOWN and fallback is not NONE:
             return general(fallback)
-        return self._by_convention(function, argument.arg)
+        # An annotation that says nothing here may name another library's class: a ``mesh: trimesh.Trimesh``.
+        return UNKNOWN if argument.annotation is not None else self._by_convention(function, argument.arg)
 
     def _annotated(self, node: ast.expr) -> Type:
         """What an annotation means; a wrong name in it is no error where Python does not read it."""

@@ -202,6 +202,22 @@ def test_what_a_package_registers_may_be_used_in_all_of_it(command: Command) -> 
     assert command("--json").places == [("other.py", 2, "unknown-attribute")]
 
 
+def test_what_a_package_registers_its_projects_tests_may_use(command: Command) -> None:
+    command.write("pyproject.toml", "")
+    command.write("addon/__init__.py", "import bpy\nbpy.types.Scene.mine = bpy.props.IntProperty()\n")
+    command.write(
+        "tests/test_mine.py",
+        "import bpy\nimport addon\nbpy.context.scene.mine = 1\nbpy.context.scene.other\n",
+    )
+    command.write("tests/test_other.py", "import bpy\nbpy.context.scene.mine = 1\n")
+    expected = [
+        ("tests/test_mine.py", 4, "unknown-attribute"),
+        ("tests/test_other.py", 2, "unknown-attribute"),
+    ]
+    assert command("--json").places == expected
+    assert command("--json", "tests").places == expected
+
+
 def test_what_a_broken_file_may_register_is_not_missed(command: Command) -> None:
     command.write(
         "addon/__init__.py", "import bpy\ndef register():\n    bpy.types.Scene.mine = 1\n    print 'x'\n"

@@ -102,3 +102,30 @@ def test_an_annotation_that_callers_keep_to_is_trusted(
     rule_checker: Checker, annotation: str, use: str, given: str
 ) -> None:
     assert _found(rule_checker, annotation, use, given) == 1
+
+
+def test_a_float_may_be_an_int(rule_checker: Checker, tmp_path: Path) -> None:
+    """As type checkers have it: whoever annotates with ``float`` takes both."""
+    code = "import bpy\ndef rate(value: float) -> None:\n    bpy.context.scene.render.fps = value\n"
+    assert rule_checker.check(code) == []
+    lines = ["import bpy", "bpy.context.scene.render.fps = 24", "bpy.context.scene.render.fps = 24.5"]
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    assert [one.span.line for one in rule_checker.check("\n".join(lines))] == refused == [3]
+
+
+@pytest.mark.parametrize("annotation", ["trimesh.base.Trimesh", "'trimesh.Trimesh'", "Any"])
+def test_what_is_annotated_with_another_librarys_class_is_not_guessed_by_its_name(
+    rule_checker: Checker, annotation: str
+) -> None:
+    code = f"""\
+import bpy
+import trimesh
+from typing import Any
+
+
+def normals(mesh: {annotation}):
+    return mesh.vertex_normals[0].mean(axis=1)
+"""
+    assert rule_checker.check(code) == []
+    (finding,) = rule_checker.check(code.replace(f": {annotation}", ""))
+    assert "MeshNormalValue" in finding.message
