@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_serve.reader import STRUCT
+from kb_serve.recognise.enum_values import EnumValues
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -29,6 +30,7 @@ class Notes:
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
+        self._enum_values = EnumValues(reader)
 
     @cached_property
     def _version(self) -> str:
@@ -66,6 +68,9 @@ class Notes:
     def _instead(self, symbol: RemovedSymbol) -> Iterator[str]:
         if symbol.targets:
             yield f"Use {_list(symbol.targets)}."
+            path, _, item = symbol.targets[0].partition(":")
+            if item and (condition := self._enum_values.condition(path, item)):
+                yield condition
         elif symbol.successors:
             yield _NOTHING
         elif symbol.similar:
