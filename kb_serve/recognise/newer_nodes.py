@@ -15,7 +15,7 @@ _HOW = (
     '`{setting}` it is `{side}["{new}"]`, or `{side}[{place}]` at any time.'
 )
 # The name of a socket → (the node made instead, what must be set there, its name, its place, its identifier).
-_INSTEAD = {
+INSTEAD = {
     "Color1": (_MIX, "data_type = 'RGBA'", "A", 6, "A_Color"),
     "Color2": (_MIX, "data_type = 'RGBA'", "B", 7, "B_Color"),
 }
@@ -24,7 +24,7 @@ _OLD = ("bpy.types.ShaderNodeMixRGB", "bpy.types.CompositorNodeMixRGB", "bpy.typ
 
 def tell_of_the_newer_node(name: str, reader: BaseReader, recognition: Recognition) -> None:
     """Notes what a socket of such a name is on the newer node, where this version has that."""
-    node, setting, new, place, identifier = _INSTEAD.get(name, ("", "", "", 0, ""))
+    node, setting, new, place, identifier = INSTEAD.get(name, ("", "", "", 0, ""))
     path = f'{node}.inputs["{identifier}"]'
     if node and reader.entry(path):
         side = "inputs"
@@ -36,4 +36,4 @@ def tell_of_the_newer_node(name: str, reader: BaseReader, recognition: Recogniti
 def name_on_an_old_node(path: str) -> str:
     """The name of an old node's socket that is called otherwise on the newer node; "" for other paths."""
     node, mark, name = path.removesuffix('"]').partition('.inputs["')
-    return name if mark and node in _OLD and name in _INSTEAD else ""
+    return name if mark and node in _OLD and name in INSTEAD else ""

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
+_WITH = "only with "  # … what tells the setting that an item wants begins with
 _NOTHING = "Nothing takes its place."
 
 
@@ -68,8 +69,7 @@ class Notes:
     def _instead(self, symbol: RemovedSymbol) -> Iterator[str]:
         if symbol.targets:
             yield f"Use {_list(symbol.targets)}."
-            path, _, item = symbol.targets[0].partition(":")
-            if item and (condition := self._enum_values.condition(path, item)):
+            if condition := self.setting_of(symbol.targets[0]):
                 yield condition
         elif symbol.successors:
             yield _NOTHING
@@ -79,6 +79,12 @@ class Notes:
         how = next((successor.how for successor in symbol.successors if successor.how), "")
         if how and how != _NOTHING:
             yield how
+
+    def setting_of(self, path: str) -> str:
+        """A sentence on the setting without which an item of an enumeration is not taken; "" for other paths."""
+        owner, _, item = path.partition(":")
+        where = self._enum_values.where(owner, item) if item else ""
+        return self._enum_values.condition(owner, item) if where.startswith(_WITH) else ""
 
     def _missing(self, recognition: Recognition) -> Iterator[str]:
         removed_names = {removed.path.rpartition(".")[2] for removed in recognition.removed}
