@@ -19,6 +19,7 @@ SIMILAR = "similar name"  # why a match is one of the names closest to a missing
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
 _WITH = "only with "  # … what tells the setting that an item wants begins with
+_TELLS_WHAT = ("Use ", "Set ")  # how what says what to do instead begins
 _NOTHING = "Nothing takes its place."
 
 
@@ -71,7 +72,7 @@ class Notes:
             yield f"Use {_list(symbol.targets)}."
             if condition := self.setting_of(symbol.targets[0]):
                 yield condition
-        elif symbol.successors:
+        elif symbol.successors and not symbol.successors[0].how.startswith(_TELLS_WHAT):
             yield _NOTHING
         elif symbol.similar:
             close = _CLOSE * symbol.similar[0][1]

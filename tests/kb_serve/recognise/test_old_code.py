@@ -255,3 +255,19 @@ def is_on(node: bpy.types.Node, name: str) -> bool:
     """Whether a node of render layers has an output that can be used."""
     socket = node.outputs.get(name)
     return socket is not None and socket.enabled and not socket.is_unavailable
+
+
+@pytest.mark.parametrize(
+    ("written", "use"),
+    [
+        ("import imp", "Use importlib.reload(module)"),
+        ("imp.reload(module)", "Use importlib.reload(module)"),
+        ("bpy.app.binary_path_python", "Use sys.executable of Python."),
+    ],
+)
+def test_where_something_is_to_be_used_instead_nothing_is_not_said(
+    kb: KnowledgeBase, written: str, use: str
+) -> None:
+    note = next(note for note in kb.query(written).notes if "does not exist" in note)
+    assert use in note
+    assert "Nothing takes its place" not in note
