@@ -19,7 +19,7 @@ SIMILAR = "similar name"  # why a match is one of the names closest to a missing
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
 _WITH = "only with "  # … what tells the setting that an item wants begins with
-_TELLS_WHAT = ("Use ", "Set ")  # how what says what to do instead begins
+_TELLS_WHAT = "Write "  # how what names something that is no Blender's begins
 _NOTHING = "Nothing takes its place."
 
 

@@ -260,9 +260,8 @@ def is_on(node: bpy.types.Node, name: str) -> bool:
 @pytest.mark.parametrize(
     ("written", "use"),
     [
-        ("import imp", "Use importlib.reload(module)"),
-        ("imp.reload(module)", "Use importlib.reload(module)"),
-        ("bpy.app.binary_path_python", "Use sys.executable of Python."),
+        ("import imp", "Write importlib.reload(module)"),
+        ("imp.reload(module)", "Write importlib.reload(module)"),
     ],
 )
 def test_where_something_is_to_be_used_instead_nothing_is_not_said(
