@@ -148,6 +148,7 @@ class KnownNames:
         first = removed.successors[0] if removed.successors else None
         sure = bool(removed.targets) and len(removed.targets) == 1 and first is not None and not first.how
         replacement = removed.targets[0] if sure else ""
+        sure = sure and not self._notes.setting_of(replacement)  # which is to be made first
         return Lacking(
             removed.path, self._notes.removed(removed), targets, replacement, sure=sure, removed=True
         )

@@ -13,6 +13,7 @@ from kb_serve.answer.render import first_sentence, own_summary, said_of
 from kb_serve.answer.topic_settings import TopicSettings
 from kb_serve.answer.topic_steps import Steps, TopicNames
 from kb_serve.reader import TYPES
+from kb_serve.recognise.enum_values import is_quoted_value
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -73,6 +74,8 @@ class Topics:
         Of several pages with that title, in singular or plural, the one with the most pages and symbols; of many single
         pages none. A modifier's or a constraint's name is enough where nothing else is called so.
         """
+        if is_quoted_value(text, self._reader):
+            return ""
         plain = _WHAT_IS.sub("", text.strip().strip("`'\"?!."))
         if not key(plain) or len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
             return ""

@@ -21,7 +21,7 @@ _KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
 _ARGUMENT = re.compile(r"\s*(?:(\w+)\s*=(?!=))?\s*(.*)", re.DOTALL)
 _STRINGS = re.compile(r"""(["'])((?:(?!\1).)*)\1""")
 _VALUE = re.compile(r"""(["'])[^"']*\1|-?[\d.]+""")  # a text, a number
-_FRACTION = re.compile(r"-?\d*\.\d*")
+_FRACTION = re.compile(r"-?(?:\d+\.\d*|\.\d+)")
 _EXECUTION_CONTEXT = re.compile(r"(?:INVOKE|EXEC)_\w+")
 _DEPTH = 5
 

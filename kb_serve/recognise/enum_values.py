@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
 
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
+_WHOLE = re.compile(r"(['\"])([^'\"\n]{2,60})\1")
 _CAPITALS = re.compile(r"(?<![\w.])(?=[0-9]*[A-Z])[A-Z0-9_]{3,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
@@ -24,6 +25,17 @@ _MOST_COMPARED = 20  # enumerations of which as many items are listed
 _FITTING = 0.5  # how well the words around a bare value must fit its property
 _FITTING_WORD = 1.0  # the same for one that people write in capitals, too: EEVEE, PNG
 _ONLY, _NOT = "only ", "not "  # … what tells where an item is taken begins with
+
+
+def is_value(text: str, reader: BaseReader) -> bool:
+    """Whether a text in capitals is an item of some enumeration."""
+    return text.isupper() and any(text == identifier for _, identifier, _ in reader.enum_owners(key(text)))
+
+
+def is_quoted_value(query: str, reader: BaseReader) -> bool:
+    """Whether a whole query is such an item in quotes: ``'EMITTER'``, then no page or class of that name is meant."""
+    quoted = _WHOLE.fullmatch(query.strip())
+    return quoted is not None and is_value(quoted[2], reader)
 
 
 def _is_taken(item: EnumItem, mode: str) -> bool:
@@ -55,7 +67,11 @@ class EnumValues:
             rest = rest.replace(value, " ")
         around = set(terms(rest))
         alone = not around
-        for rank, (owner, share) in enumerate(self.owners(values, around)):
+        owners = list(self.owners(values, around))
+        if alone:  # nothing else tells which is meant
+            weights = self._reader.weights([owner.partition("(")[0] for owner, _ in owners])
+            owners.sort(key=lambda row: (-row[1], -weights.get(row[0].partition("(")[0], 0.0)))
+        for rank, (owner, share) in enumerate(owners):
             if rank >= 5:
                 break
             least = _FITTING_WORD if self._is_word(owner, values) else _FITTING
@@ -92,7 +108,10 @@ class EnumValues:
         beyond = {owner: self._difference(owner, set(items)) for owner, _ in most}
         of_called = [row for row in shares if called and row[0].startswith(called)]
         likeliest = of_called or [row for row in shares if row[1] == shares[0][1]]
-        likeliest.sort(key=lambda row: (-row[1], beyond.get(row[0], 0)))
+        weights = self._reader.weights([owner.partition("(")[0] for owner, _ in likeliest])
+        likeliest.sort(
+            key=lambda row: (-row[1], beyond.get(row[0], 0), -weights.get(row[0].partition("(")[0], 0.0))
+        )
         return [owner for owner, _ in likeliest]
 
     def as_likely_as_the_first(self, owners: Sequence[str], items: Sequence[str]) -> list[str]:
@@ -101,6 +120,10 @@ class EnumValues:
         """
         beyond = {owner: self._difference(owner, set(items)) for owner in owners}
         return [owner for owner in owners if beyond[owner] == beyond[owners[0]]]
+
+    def has(self, owner: str, value: str) -> bool:
+        """Whether an enumeration takes a value, somewhere."""
+        return any(item.identifier == value for item in self._items(owner))
 
     def where(self, owner: str, value: str) -> str:
         """Where an enumeration takes a value, ``only with media_type='VIDEO'``; "" for everywhere, or nowhere."""
@@ -115,13 +138,14 @@ class EnumValues:
         return f"`{owner}` = '{value}' is {taken}."
 
     def _difference(self, owner: str, values: set[str]) -> int:
-        """How many items an enumeration has more or less than some, in that of its modes in which that is fewest."""
+        """How many items an enumeration has more or less than some, in that of its modes in which that is fewest; older
+        versions may have had no modes, and all items at once.
+        """
         items = self._items(owner)
         modes = {item.where.removeprefix(_ONLY).removeprefix(_NOT) for item in items}
-        return min(
-            (len(values ^ {item.identifier for item in items if _is_taken(item, mode)}) for mode in modes),
-            default=len(values),
-        )
+        taken = [{item.identifier for item in items if _is_taken(item, mode)} for mode in modes]
+        taken.append({item.identifier for item in items})
+        return min(len(values ^ identifiers) for identifiers in taken)
 
     def _items(self, owner: str) -> tuple[EnumItem, ...]:
         """The items that a property, or a function's parameter, takes somewhere."""

@@ -77,7 +77,7 @@ class Expressions:
         for position, chain in enumerate(code):
             later = 0.02 * min(position, 5)
             readings = self._resolver.resolve(chain)
-            if taken_as := self._old.still_taken(readings):
+            if taken_as := self._old.still_taken(chain, readings):
                 recognition.add_former_name(taken_as, 0.97 - later)
                 continue
             variable = not chain.steps and (chain.assigned or len(code) > 1)
@@ -126,6 +126,8 @@ class Expressions:
             return False
         if resolved.keyed and resolved.fit >= _CLEAR:
             return True
+        if 'puts["' in resolved.symbols[-1] and (broken is None or broken.fit < _CLEAR):
+            return True  # what is in brackets tells it, whatever the variable is called
         return resolved.fit >= 1.0 or len(chain.attributes) >= (1 if resolved.fit >= _OWN_CLASS else 2)
 
     def _misspelt(self, chain: Chain, resolved: ResolvedChain) -> bool:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from functools import cache
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, stem, words
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 _MOST_WORDS = 5  # with more of them it is a question, in which the class is one word of many
 _MOST_FOUND = 3  # more members than these are not told apart
 _SHORTEST = 4  # letters of a word that may be a beginning, or misspelt
+_MOST_COMPARED = 20_000  # pairs of words whose likeness is remembered
 _SLIP = 0.79  # similarity of a word with two letters exchanged
 
 
@@ -56,7 +57,7 @@ def _unsaid(entry: SymbolEntry, asked: Collection[str]) -> int:
     return sum(not any(_means(word, other) for word in asked) for other in words(entry.name))
 
 
-@cache
+@lru_cache(maxsize=_MOST_COMPARED)
 def _means(word: str, other: str) -> bool:
     """Whether a word is another one, its beginning, or it with a slip of the fingers."""
     if word == other or stem(word) == stem(other):

@@ -17,6 +17,8 @@ NO_INDEX = re.compile(r"\w+\[index\](?: = value)?: index (?P<index>-?\d+) out of
 SUBSCRIPTED = re.compile(r"\b([a-z]\w*)\[-?\d+\]")
 BAD_ENUM = re.compile(r"(?P<quote>['\"])(?P<name>[^'\"]*)(?P=quote) not found in \((?P<items>[^)]*)\)?")
 ENUM_VALUE = re.compile(r"\benum (?P<quote>['\"])[^'\"\n]*(?P=quote)(?= not found in )")
+# Of modules written in C, which take texts rather than items of enumerations: ``gpu``.
+BAD_TEXT = re.compile(r"expected a string in \((?P<items>[^)]*)\), got '(?P<name>[^']*)'")
 BAD_KEYWORD = re.compile(
     r"keyword \"(?P<name>\w+)\" (?:is invalid|unrecognized)"
     r"|(?:(?<![\w.])(?P<function>[\w.]++)\(\) got an )?unexpected keyword argument ['\"](?P<unexpected>\w+)['\"]"
@@ -24,7 +26,7 @@ BAD_KEYWORD = re.compile(
     r"|['\"](?P<invalid>\w+)['\"] is an invalid keyword argument for (?:this function|(?P<of>[\w.]++)\(\))"
     r"|(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): was called with invalid keyword argument\(s\) \((?P<several>[^)]*)\)"
 )
-IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)++)\(\): error with (?:keyword )?argument")
+IN_FUNCTION = re.compile(r"(?<![\w.])(?P<method>\w++(?:\.\w++)*+)\(\): error with (?:keyword )?argument")
 TOO_MANY = re.compile(
     r"(?<![\w.])(?P<function>\w++(?:\.\w++)*+)(?:\(\):? takes (?:at most|exactly)| expected at most) "
     r"(?P<most>\d+) arguments?[,\s(]+(?:got )?(?P<given>\d+)"
@@ -75,7 +77,7 @@ _WORDING = re.compile(
     |was\ called\ with\ invalid\ keyword\ argument\(s\)\ \([^)]*\),\ expected\ \([^)]*\)?
     |No\ module\ named|cannot\ import\ name|function\ takes\ exactly\ \d+\ arguments?\ \(\d+\ given\)
     |not\ found\ in\ \([^)]*\)?|expected\ an?\ \w+\ type,\ not\ \w+|error\ with\ argument\ \d+,\ "\w+"\ -
-    |\bFunction\.(?=\w+\ expected)|[A-Z][A-Z_0-9]*_OT_\w+\.(?=\w+\ expected)
+    |\bFunction\.(?=\w+(?:\ expected|:\ ))|[A-Z][A-Z_0-9]*_OT_\w+\.(?=\w+\ expected)
     |bpy_struct:\ (?=attribute|Context)|attribute\ "\w+"\ from\ "\w+"\ is\ read-only|Context\ property\ (?="\w+"\ is)
     |(?:StructRNA|BMesh\ data)\ of\ type\ \w+\ has\ been\ removed|BMeshOpsModule:\ operator
     |\bNode\ type\ (?=\w+\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object

@@ -8,18 +8,21 @@ from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, terms
+from kb_build.index.analysis import key, terms, words
 from kb_build.records import EVALUATED
 from kb_build.symbol_lines import GET_EVALUATED, locked_text
-from kb_serve.reader import COLLECTION, TYPES
+from kb_serve.reader import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import counted, places_of, unknown_keywords
+from kb_serve.recognise.changed_by import CHANGED_BY
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.nameless_messages import recognise_nameless
+from kb_serve.recognise.newer_nodes import tell_of_the_newer_node
 from kb_serve.recognise.products import CLASSES, WITH_AT
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import plain_path, socket_node
+from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.unnamed_owners import UnnamedOwners
 
 if TYPE_CHECKING:
@@ -28,7 +31,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
     from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
@@ -39,6 +42,7 @@ _MANY = 8  # where more properties may be None, none is likely enough to be name
 _ON_OPERATORS = "info_gotchas_operators"
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
 _USUAL_NODE = f"{TYPES}ShaderNodeBsdfPrincipled."  # whose sockets scripts set most
+_OF_PROPERTIES = (f"{STRUCT}.get", f"{TYPES}ID.bl_system_properties_get")  # where they are read
 _ON_FREED = "info_gotchas_crashes"
 _FREED = (
     "The variable's data was removed, freed, or moved by an undo or by adding another element: look it up again by "
@@ -60,6 +64,7 @@ _NO_FLUIDS = (
     "Python): every bake of a fluid ends the process there. Run the script with Blender itself: "
     "`blender --background scene.blend --python script.py`."
 )
+_NO_ITEM = "`{name}` is not an item of this enum; closest: {similar}."
 _NO_OPERATOR_NAMED = (
     "The message does not name the operator that was called: ask for that to see its arguments."
 )
@@ -83,6 +88,15 @@ _READS_ONLY = (
     "Write in an operator's `execute()` (a button calls it), in a handler of `bpy.app.handlers`, or later, by "
     "`bpy.app.timers.register(function)`."
 )
+
+
+def _closest(name: str, items: Sequence[str]) -> str:
+    """The items that a wrong one may mean: those that are most like it, or else those that it is made of and more."""
+    similar = [item for item, _ in nearest(name, items)]
+    if not similar:
+        said = set(words(name))
+        similar = sorted((item for item in items if set(words(item)) <= said), key=len, reverse=True)[:1]
+    return ", ".join(f"`{item}`" for item in similar)
 
 
 def _matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str]]:
@@ -150,13 +164,21 @@ class Messages:
             owner = "bpy.context" if match["context"] else TYPES + match["owner"]
             entry = self._named(owner, match["context"] or match["name"])
             if entry:
-                recognition.add(entry.path, 0.98, "error message")
-                recognition.notes.append(self._read_only(entry.path))
+                self._read_only(entry.path, recognition)
         for match in _matches(forms.WRONG_TYPE, query):
             if match["path"] and (entry := self._named(*match["path"].rpartition(".")[::2])):
                 recognition.add(entry.path, 0.98, "error message")
 
-    def _read_only(self, path: str) -> str:
+    def _read_only(self, path: str, recognition: Recognition) -> None:
+        """A property that cannot be assigned, and what changes it, where that is known."""
+        recognition.add(path, 0.98, "error message")
+        recognition.notes.append(self._locked(path))
+        changer, how = CHANGED_BY.get(path, ("", ""))
+        if changer and self._reader.entry(changer):
+            recognition.add(changer, 0.97, "error message")
+            recognition.notes.append(how)
+
+    def _locked(self, path: str) -> str:
         symbol = self._reader.symbol(path)
         if symbol is None or symbol.kind != "property" or "readonly" in symbol.flags:
             return f"`{path}` is read-only: it cannot be assigned."
@@ -166,6 +188,9 @@ class Messages:
 
     def _no_attribute(self, written: str, name: str, recognition: Recognition) -> None:
         """A class or module without an attribute that other versions may have, or that never was."""
+        if written == "module":  # of which the message does not tell the name
+            self._gone(TYPES + name, recognition)
+            return
         owner = _INSTANCES.get(written) or self._class_path(written)
         module = self._reader.entry(f"{owner}.{name}") if owner else None
         if module and module.kind == "module":
@@ -175,7 +200,7 @@ class Messages:
         removed = self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
         if removed is None and not self._reader.entry(TYPES + written):
             members = self._removed.spelled(f"{written}.{name}")
-            removed = next(members, None) or (None if owner else next(self._removed.spelled(written), None))
+            removed = next(members, None) or (None if owner else self._of_a_former_class(written, name))
         if removed and owner and self._reader.entry(removed.path.rpartition(".")[0]) is None:
             # Of a class that took another one's place: what it holds has the name rather than what replaced both.
             removed = None if self._owners.within(owner, name) else removed
@@ -185,6 +210,13 @@ class Messages:
             recognition.missing.append(MissingName(name, owner, sure=True))
             recognition.add(owner, 0.6, "error message")
             self._within(owner, name, recognition)
+
+    def _of_a_former_class(self, written: str, name: str) -> RemovedSymbol | None:
+        """What a removed class lacked already, or else the class."""
+        cls = next(self._removed.spelled(written), None)
+        now = cls.targets[0] if cls and cls.targets else ""
+        member = None if not now or self._resolver.member(now, name) else self._removed.of_member(now, name)
+        return member or cls
 
     def _within(self, owner: str, name: str, recognition: Recognition) -> None:
         """A member that a class lacks, and that something has which it points to."""
@@ -297,6 +329,11 @@ class Messages:
         if symbol is None or not symbol.signature:
             return
         recognition.add(symbol.path, 0.95, "error message")
+        if symbol.kind == "operator":
+            recognition.notes.append(
+                f"`{symbol.path}` takes its arguments by name only: `{symbol.signature}`."
+            )
+            return
         is_sequence = "=(" in symbol.signature.partition(",")[0]
         places = places_of(symbol)
         if places and len(places[0]) < most:
@@ -351,19 +388,48 @@ class Messages:
             owners = owners[:_MANY]
             for rank, owner in enumerate(owners[:2]):
                 recognition.add(owner.partition("(")[0], 0.95 - 0.02 * rank, "error message")
-            removed = None
-            for owner in self._enum_values.as_likely_as_the_first(owners, items):
-                path, _, parameter = owner.partition("(")
-                part = f"({parameter}:" if parameter else ":"
-                removed = removed or self._removed.of_part(path, f"{part}{match['name']}")
+            removed = self._lost_value(self._enum_values.as_likely_as_the_first(owners, items), match["name"])
             if removed:
                 recognition.add_removed(removed)
+            elif owners and (elsewhere := self._of_another_version(owners[0], match["name"], items)):
+                recognition.notes.append(elsewhere)
             elif owners and (condition := self._enum_values.condition(owners[0], match["name"])):
                 recognition.notes.append(condition)
-            elif similar := [f"`{name}`" for name, _ in nearest(match["name"], items)]:
-                recognition.notes.append(
-                    f"`{match['name']}` is not an item of this enum; closest: {', '.join(similar)}."
+            elif similar := _closest(match["name"], items):
+                recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+        for match in _matches(forms.BAD_TEXT, query):
+            once = [path for path in self._reader.removed_named(match["name"]) if "):" in path]
+            if once and (removed := self._removed.of_path(once[0])):
+                recognition.add_removed(removed)
+            elif similar := _closest(match["name"], re.findall(r"'([^']+)'", match["items"])):
+                recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+
+    def _lost_value(self, owners: Iterable[str], value: str) -> RemovedSymbol | None:
+        """A value that the likeliest owners took in other versions; where several did, one of which the successor is
+        known.
+        """
+        found: list[RemovedSymbol] = []
+        for owner in owners:
+            path, _, parameter = owner.partition("(")
+            if removed := self._removed.of_part(path, f"({parameter}:{value}" if parameter else f":{value}"):
+                found.append(removed)
+        return min(found, key=lambda removed: not removed.targets, default=None)
+
+    def _of_another_version(self, owner: str, value: str, items: Iterable[str]) -> str:
+        """A sentence on a value that this version takes, where the items in the message are another version's."""
+        if not self._enum_values.has(owner, value):
+            return ""
+        for item in items:
+            removed = None if self._enum_values.has(owner, item) else self._removed.of_path(f"{owner}:{item}")
+            if removed and removed.gone:
+                version = self._reader.meta.get("minor", "")
+                near = _closest(value, [item])
+                there = f" There, write `{item}`." if near else ""
+                return (
+                    f"Blender {version} takes `{value}` for `{owner}`. The list in the message is another version's: "
+                    f"only Blender {removed.first} to {removed.last} have `{item}`.{there}"
                 )
+        return ""
 
     def _of_classes(self, owners: Iterable[str]) -> list[str]:
         """Those of some properties that classes set to be registered, the most important first."""
@@ -401,20 +467,53 @@ class Messages:
             )
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return
+        if collection != "bpy_prop_collection":
+            recognition.notes.append(
+                f'There is no custom property `{name}`: assigning makes it, and `.get("{name}")` returns None instead '
+                f"of an error. {CustomProperties(self._reader).on_registered(name)}".rstrip()
+            )
+            for rank, path in enumerate(_OF_PROPERTIES):
+                recognition.add(path, 0.9 - 0.01 * rank, "error message")
+            return
+        tell_of_the_newer_node(name, self._reader, recognition)
         around = set(terms(forms.prose_of(query))) - set(terms(f"{name} node"))
         paths = [
             path
             for side in ("inputs", "outputs")
             for path in self._reader.removed_by_key(key(f'{side}["{name}"]'))
         ]
+        taken = {path: new for path in paths if (new := self._reader.still_works(path))}
+        if len(taken) * 2 > len(paths):
+            self._still_taken(name, taken, recognition)
+            return
         fit = {path: len(around & set(terms(socket_node(path).removeprefix(TYPES)))) for path in paths}
         if not any(fit.values()):
             paths = self._lost_by_nobody_else(name, paths, recognition)
         paths.sort(key=lambda path: (-fit[path], not path.startswith(_USUAL_NODE)))
         for removed in islice(filter(None, map(self._removed.of_path, paths)), 1):
             recognition.add_removed(removed)
-        if collection == "bpy_prop_collection" and not recognition.removed:
+        if not recognition.removed:
             recognition.add(f"{COLLECTION}.get", 0.9, "error message")
+
+    def _still_taken(self, name: str, taken: dict[str, str], recognition: Recognition) -> None:
+        """A former name that most of the nodes which had it still take: where it fails."""
+        sockets_now = Counter(target.rpartition(".")[2] for target in taken.values())
+        socket = sockets_now.most_common(1)[0][0]
+        new = socket.partition('["')[2].rstrip('"]')
+        taking = {socket_node(path) for path in taken}
+        sockets = [entry for entry in self._reader.by_name(new) if entry.kind == "socket"]
+        having = {entry.owner: entry.path for entry in sockets if entry.owner not in taking}
+        weights = self._reader.weights(list(having))
+        lacking = sorted(having, key=lambda node: (-weights.get(node, 0.0), node))
+        listed = ", ".join(f"`{node}`" for node in lacking[:_MANY])
+        others = f", and {len(lacking) - _MANY} more" if len(lacking) > _MANY else ""
+        fails = f" Nodes whose `{new}` was never called so refuse it: {listed}{others}." if lacking else ""
+        recognition.notes.append(
+            f"`{name}` is the former name of `{new}`, and still works on the {len(taken)} nodes that had it."
+            f"{fails} So does a group, whose sockets have the names that it gives them."
+        )
+        for node in lacking[:1]:
+            recognition.add(having[node], 0.9, "error message")
 
     def _lost_by_nobody_else(self, name: str, paths: Sequence[str], recognition: Recognition) -> list[str]:
         """Of the sockets of a name that nodes lost, where no node is named: that of the node which scripts use most,
@@ -482,7 +581,7 @@ class Messages:
             listed = ", ".join(f"`{call}`" for call in calls)
             recognition.notes.append(f"`{cls}` is not made by calling it, but by {listed}.")
         for rank, maker in enumerate(makers[:_FEW]):
-            recognition.add(maker, 0.98 - 0.01 * rank, "error message")
+            recognition.add(maker, 0.96 - 0.01 * rank, "error message")
 
     def _returning(self, cls: str) -> list[str]:
         """The functions of a class's package that return an instance of it, most used first; not those of ``bpy``.

@@ -15,12 +15,20 @@ if TYPE_CHECKING:
 _SURE = 0.97
 _T = "bpy.types."
 _O = "bpy.ops.object."
+_NO_CUSTOM_PROPERTIES = (
+    "Only data-blocks (objects, scenes, materials …), bones and their collections, nodes, strips, view layers, "
+    "property groups, the metadata of assets and geometry-nodes modifiers take custom properties in brackets. "
+    "Operators and the "
+    'preferences of add-ons do not: their properties are attributes (`self.name`, `hasattr(self, "name")`, '
+    "`setattr(self, name, value)`). Nor do other modifiers, constraints or sockets: store the value on their object or "
+    "node."
+)
 
 
 @dataclass(frozen=True, slots=True)
 class NamelessMessage:
     """The parts of a message that are always the same, the symbols and pages that it is about, most likely first, and
-    what helps.
+    what helps. A message with one of the parts ``without`` is another one.
 
     It is told only of a Blender that has the first of the symbols.
     """
@@ -28,6 +36,11 @@ class NamelessMessage:
     parts: tuple[str, ...]
     paths: tuple[str, ...]
     help: str
+    without: tuple[str, ...] = ()
+
+    def is_in(self, query: str) -> bool:
+        """Whether a query holds the message."""
+        return all(part in query for part in self.parts) and not any(part in query for part in self.without)
 
 
 NAMELESS_MESSAGES = (
@@ -113,9 +126,61 @@ NAMELESS_MESSAGES = (
         "Give the object data of its own first: `obj.data = obj.data.copy()`.",
     ),
     NamelessMessage(
-        ("value to the existing '", "IDProperty"),
+        ("value to the existing 'Socket_", "IDProperty"),
         (f"{_T}NodesModifier",),
-        "An input of a geometry nodes modifier, or a custom property, keeps its type: give a value of that type.",
+        "An input of a geometry nodes modifier keeps its type: give a value of that type.",
+    ),
+    # Properties in brackets
+    NamelessMessage(
+        ("value to the existing '", "Group IDProperty"),
+        ("bpy.props.PointerProperty", f"{_T}PropertyGroup", f"{_T}ID.bl_system_properties_get"),
+        "The group of a `PointerProperty` cannot be put in another one's place: set its members as attributes "
+        "(`target.settings.size = source.settings.size`), or copy all that were set: "
+        '`target.bl_system_properties_get()["settings"].update(source.bl_system_properties_get()["settings"])`. '
+        "Custom properties of your own do take another type.",
+    ),
+    NamelessMessage(
+        ("value to the existing '", "IDProperty"),
+        (f"{_T}ID.bl_system_properties_get", "bpy.props"),
+        "What is stored of a property that `bpy.props` registered keeps its type: give a value of that type, best by "
+        "the attribute (`scene.count = 3`). Custom properties of your own do take another type.",
+        ("Group IDProperty", "existing 'Socket_"),
+    ),
+    NamelessMessage(
+        ("id properties not supported",),
+        (f"{_T}bpy_struct.keys", f"{_T}PropertyGroup"),
+        _NO_CUSTOM_PROPERTIES,
+    ),
+    NamelessMessage(
+        ("his type doesn't support IDProperties",),
+        (f"{_T}bpy_struct.keys", f"{_T}PropertyGroup"),
+        _NO_CUSTOM_PROPERTIES,
+    ),
+    NamelessMessage(
+        ("'_PropertyDeferred' object is not subscriptable",),
+        ("bpy.props._PropertyDeferred",),
+        "What `bpy.props` returns is no tuple since Blender 2.93: `deferred.function` instead of `deferred[0]`, and "
+        "`deferred.keywords`, a dictionary, instead of `deferred[1]`.",
+    ),
+    # Python
+    NamelessMessage(
+        ("__init__() takes 1 positional argument but ",),
+        (f"{_T}Operator", f"{_T}Panel"),
+        "Blender gives arguments to the `__init__` of classes that derive from its own (operators, panels, property "
+        "groups …): take them and hand them on: `def __init__(self, *args, **kwargs):`, and first in it "
+        "`super().__init__(*args, **kwargs)`.",
+    ),
+    NamelessMessage(
+        ("No module named 'imp'",),
+        ("bpy.ops.script.reload",),
+        "Python 3.12 and later have no module `imp`: `import importlib`, then `importlib.reload(module)`.",
+    ),
+    NamelessMessage(
+        ("cannot create '", "GPUShader' instances"),
+        ("gpu.shader.create_from_info", "gpu.types.GPUShaderCreateInfo", "gpu.shader.from_builtin"),
+        "Shaders of one's own are described, not made by calling the class: fill a `gpu.types.GPUShaderCreateInfo()` "
+        "(`vertex_in`, `push_constant`, `fragment_out`, `vertex_source`, `fragment_source`), then "
+        "`gpu.shader.create_from_info(info)`.",
     ),
     NamelessMessage(
         ('bpy_struct[key]: key "Socket_',),
@@ -320,7 +385,7 @@ _ANYWHERE = (
 def recognise_nameless(query: str, reader: BaseReader, recognition: Recognition) -> None:
     """Adds what a message that names no symbol is about, with what helps."""
     for message in NAMELESS_MESSAGES:
-        if all(part in query for part in message.parts) and reader.entry(message.paths[0]):
+        if message.is_in(query) and reader.entry(message.paths[0]):
             for rank, path in enumerate(message.paths):
                 if "/" not in path or reader.is_page(path):
                     recognition.add(path, _SURE - 0.03 * rank, "error message")

@@ -6,6 +6,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_serve.reader import STRUCT
+from kb_serve.recognise.enum_values import EnumValues
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -17,6 +18,8 @@ if TYPE_CHECKING:
 SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
+_WITH = "only with "  # … what tells the setting that an item wants begins with
+_TELLS_WHAT = "Write "  # how what names something that is no Blender's begins
 _NOTHING = "Nothing takes its place."
 
 
@@ -29,6 +32,7 @@ class Notes:
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
+        self._enum_values = EnumValues(reader)
 
     @cached_property
     def _version(self) -> str:
@@ -66,7 +70,9 @@ class Notes:
     def _instead(self, symbol: RemovedSymbol) -> Iterator[str]:
         if symbol.targets:
             yield f"Use {_list(symbol.targets)}."
-        elif symbol.successors:
+            if condition := self.setting_of(symbol.targets[0]):
+                yield condition
+        elif symbol.successors and not symbol.successors[0].how.startswith(_TELLS_WHAT):
             yield _NOTHING
         elif symbol.similar:
             close = _CLOSE * symbol.similar[0][1]
@@ -74,6 +80,12 @@ class Notes:
         how = next((successor.how for successor in symbol.successors if successor.how), "")
         if how and how != _NOTHING:
             yield how
+
+    def setting_of(self, path: str) -> str:
+        """A sentence on the setting without which an item of an enumeration is not taken; "" for other paths."""
+        owner, _, item = path.partition(":")
+        where = self._enum_values.where(owner, item) if item else ""
+        return self._enum_values.condition(owner, item) if where.startswith(_WITH) else ""
 
     def _missing(self, recognition: Recognition) -> Iterator[str]:
         removed_names = {removed.path.rpartition(".")[2] for removed in recognition.removed}

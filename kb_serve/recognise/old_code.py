@@ -7,10 +7,11 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
+from kb_build.index.analysis import key, words
 from kb_serve.reader import TYPES
 from kb_serve.recognise.calls import arguments, texts_in
 from kb_serve.recognise.chains import find_chains
+from kb_serve.recognise.removed_symbols import socket_node
 from kb_serve.recognise.resolver import ROOTS
 from kb_serve.recognise.variables import USUAL, usual_classes, variable_fit
 
@@ -43,6 +44,7 @@ _IMPORT = re.compile(r"\bimport\s+([a-z][\w.]*)")
 _FROM = re.compile(r"\bfrom\s+([a-z][\w.]*)\s+import\s+\(?\s*(\w+(?:\s*,\s*\w+)*)")
 _INTERFACE = re.compile(r"[A-Z0-9_]+_[A-Z]{2}_")
 _MOST_QUOTED = 12
+_SAY_NOTHING = frozenset({"node", *"0123456789"})  # words of a variable's name that no node is told by
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
 
 
@@ -79,12 +81,23 @@ class OldCode:
             or self._of_any_class(chain, readings)
         )
 
-    def still_taken(self, readings: Sequence[ResolvedChain]) -> str:
+    def still_taken(self, chain: Chain, readings: Sequence[ResolvedChain]) -> str:
         """The present symbol that a name missing on a class still leads to under its former name; "" for none."""
         for resolved in readings:
             if not resolved.complete and resolved.fit >= _LIKELY_FIT:
                 return self._reader.still_works(f"{resolved.owner}.{resolved.missing}")
-        return ""
+        return "" if readings and readings[0].fit >= _LIKELY_FIT else self._socket_still_taken(chain)
+
+    def _socket_still_taken(self, chain: Chain) -> str:
+        """The socket that a former name gives on the nodes that a variable is named after, if all of those take it."""
+        side, name = chain.steps[:2] if len(chain.steps) > 1 else (None, None)
+        named = set(words(chain.root)) - _SAY_NOTHING
+        if side is None or name is None or name.kind != "key" or side.text not in {"inputs", "outputs"}:
+            return ""
+        paths = self._reader.removed_by_key(key(f'{side.text}["{name.text}"]')) if named else ()
+        fitting = (path for path in paths if named <= set(words(socket_node(path).removeprefix(TYPES))))
+        taken = [self._reader.still_works(path) for path in fitting]
+        return taken[0] if all(taken) and taken else ""
 
     def had(self, owner: str, name: str) -> bool:
         """Whether a class, or one below it, had a member of that name in another version."""
@@ -258,7 +271,7 @@ class OldCode:
                     yield removed
                 continue
             known = {item.identifier for item in parameters[name].enum_items}
-            for item in texts_in(value) if known else ():
+            for item in texts_in(value):
                 if item not in known and (removed := self._removed.of_part(symbol.path, f"({name}):{item}")):
                     yield removed
 

@@ -22,6 +22,7 @@ from kb_serve.recognise.message_patterns import (
     without_wording,
 )
 from kb_serve.recognise.messages import Messages
+from kb_serve.recognise.newer_nodes import name_on_an_old_node, tell_of_the_newer_node
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.old_code import OldCode
 from kb_serve.recognise.products import WITH_AT, Products
@@ -84,6 +85,9 @@ class Recogniser:
                 recognition.add(NODES_MODIFIER, _DESCRIBED, "described")
         self._check_uses(query, chains, recognition)
         self._messages.explain(query, recognition)
+        old = next((match.id for match in recognition.matches if match.sure >= _SURE), "")
+        if name := name_on_an_old_node(old):
+            tell_of_the_newer_node(name, self._reader, recognition)
         self._explain_removed(recognition)
         self._explain_missing(recognition)
         recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))

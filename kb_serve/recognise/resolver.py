@@ -8,7 +8,7 @@ from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
+from kb_build.index.analysis import key, words
 from kb_serve.reader import COLLECTION, TYPES, BaseReader, SymbolEntry
 from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import Variables, variable_fit
@@ -35,6 +35,7 @@ _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendDa
 _NUMBERED = re.compile(r"\.\d{3}$")
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
+_NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
 _COLLECTION_FIT = 0.7  # of an indexed variable with the name of a collection property
 _USUAL = 0.05
 _MAX_BRANCHES = 60
@@ -120,10 +121,14 @@ class Resolver:
     def _starts(self, chain: Chain) -> Iterator[tuple[ChainValue, int, float]]:
         """(value, steps used, fit) for everything that the chain's root can stand for."""
         exact = self._rooted(chain)
-        if exact:
-            yield exact
-            return
         first = next((step.text for step in chain.steps if step.kind == "attr"), "")
+        if exact:
+            named = self._named_like_a_module(chain.root, first, exact[0].symbol)
+            for rank, cls in enumerate(named):
+                yield ChainValue(cls, cls), 0, _NAMED_LIKE_A_MODULE - 0.001 * rank
+            if not named:
+                yield exact
+            return
         seen: set[str] = set()
         for cls, fit in self._variables.classes(chain.root):
             if cls not in seen:
@@ -145,6 +150,21 @@ class Resolver:
                 if owner and owner.kind == "class" and entry.owner not in seen:
                     seen.add(entry.owner)
                     yield ChainValue(owner.path, owner.path), 0, 0.3 * variable_fit(chain.root, owner.name)
+
+    def _named_like_a_module(self, variable: str, member: str, module: str) -> list[str]:
+        """The classes that a variable may hold which is called like a module that scripts import by its last name, if
+        that lacks the member: ``noise.outputs`` is of a noise texture.
+        """
+        entry = self._reader.entry(module)
+        short = entry is not None and entry.kind == "module" and module != variable
+        if not (member and short and module.endswith(f".{variable}")) or module.startswith("bpy."):
+            return []
+        if self._reader.entry(f"{module}.{member}"):
+            return []
+        owners = {entry.owner for entry in self._reader.by_name(member)[:_MAX_BRANCHES]}
+        below = (cls for owner in owners for cls in self._reader.descendants(owner))
+        named = {cls.path for cls in below if variable in words(cls.path.rpartition(".")[2])}
+        return sorted(named, key=lambda path: (len(path), path))
 
     def _is_used_as(self, value: ChainValue, chain: Chain) -> bool:
         """Whether a variable with a collection's name is used as one: indexed, or with a member of the collection."""

@@ -9,6 +9,7 @@ from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_serve.reader import TYPES
 from kb_serve.recognise.addresses import find_page
+from kb_serve.recognise.enum_values import is_quoted_value, is_value
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -59,6 +60,8 @@ class Spellings:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds the symbols and pages that the whole query names."""
         text = query.strip().strip("`'\"").rstrip(".:;,?!")
+        if is_quoted_value(query, self._reader):
+            return  # ``'EMITTER'`` is not the page of emitters
         if "[" in text or " " not in text:  # a path; only sockets' have spaces, in brackets
             candidates = (text, f"bpy.{text}")
             self._reader.entry.load(candidates)
@@ -116,9 +119,7 @@ class Spellings:
             recognition.add(entry.path, 0.9 if len(named) == 1 else 0.83 - 0.01 * rank, "label")
 
     def _is_enum_item(self, text: str) -> bool:
-        if not (text.isupper() and "_" in text):
-            return False
-        return any(text == identifier for _, identifier, _ in self._reader.enum_owners(key(text)))
+        return "_" in text and is_value(text, self._reader)
 
     def _is_removed(self, text: str) -> bool:
         return any(self._reader.removed(path) for path in (text, TYPES + text))

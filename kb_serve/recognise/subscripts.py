@@ -14,7 +14,6 @@ NODES_MODIFIER = f"{TYPES}NodesModifier"
 # The classes whose instances, and whose subclasses' instances, take custom properties.
 _TAKING = frozenset(
     {
-        "AddonPreferences",
         "AssetMetaData",
         "Bone",
         "BoneCollection",
@@ -28,6 +27,13 @@ _TAKING = frozenset(
         "Strip",
         "ViewLayer",
     }
+)
+_TAKING_ONCE = frozenset({"AddonPreferences"})  # … before Blender kept registered properties apart
+# There since Blender 5.0, which keeps the properties that are registered apart from the custom ones.
+_APART = f"{TYPES}ID.bl_system_properties_get"
+_REGISTERED = (
+    "A property that is registered by `bpy.props` is not found in brackets since Blender 5.0: it is the attribute "
+    '`.{name}`, and what is stored of it `.bl_system_properties_get()["{name}"]`, once it was set.'
 )
 _PROPERTIES = f"{NODES_MODIFIER}.properties"  # since Blender 5.2
 _ATTRIBUTES = (
@@ -60,18 +66,28 @@ class CustomProperties:
 
     def taken_by(self, cls: str) -> list[str]:
         """The class, if it takes them; else those below it that do."""
-        if any(entry.name in _TAKING for entry in self._reader.lineage(cls)):
+        taking = _TAKING if self._are_apart else _TAKING | _TAKING_ONCE
+        if any(entry.name in taking for entry in self._reader.lineage(cls)):
             return [cls]
-        return [entry.path for entry in self._reader.descendants(cls) if entry.name in _TAKING]
+        return [entry.path for entry in self._reader.descendants(cls) if entry.name in taking]
+
+    @property
+    def _are_apart(self) -> bool:
+        return self._reader.entry(_APART) is not None
+
+    def on_registered(self, name: str) -> str:
+        """A sentence on a registered property that is not found in brackets; empty where it is."""
+        return _REGISTERED.format(name=name) if self._are_apart and name.isidentifier() else ""
 
     def note(self, cls: str, name: str) -> str:
         """A sentence on ``x["name"]``, where ``x`` is of a class that takes custom properties."""
         if cls == NODES_MODIFIER:
             return self.on_inputs()
-        return (
+        said = (
             f'`["{name}"]` is a custom property of `{cls}`, not one of its attributes: assigning makes it, reading '
             f'raises KeyError until then; `.get("{name}")` returns None instead.'
         )
+        return f"{said} {self.on_registered(name)}".rstrip()
 
     def on_attributes(self) -> str:
         """How an attribute is used as an input of such a modifier; empty where inputs are no custom properties."""

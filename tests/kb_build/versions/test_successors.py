@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from kb_build.blender.extract_reader import Extract
 
-UNLISTED = ("bgl.gl", "gpu.shader.from_builtin(")  # names that no version's listing has
+UNLISTED = ("bgl.gl", "gpu.shader.from_builtin(", "imp")  # names that no version's listing has
 
 
 @pytest.fixture(scope="module")

@@ -347,3 +347,12 @@ def test_a_new_name_is_not_sure_where_the_call_gives_what_it_does_not_take(check
         found = next(one for one in checker.check(code.format(given)) if one.rule == "unknown-operator")
         assert found.fix is not None
         assert found.fix.sure is sure
+
+
+def test_a_value_that_wants_a_setting_first_is_no_sure_fix(checker: Checker) -> None:
+    (finding,) = checker.check(
+        "import bpy\nbpy.context.scene.render.image_settings.file_format = 'AVI_JPEG'\n"
+    )
+    assert "'FFMPEG' is taken only with media_type='VIDEO'" in finding.message
+    assert finding.fix is not None
+    assert not finding.fix.sure

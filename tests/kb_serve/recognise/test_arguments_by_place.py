@@ -25,6 +25,7 @@ TAKEN = (
     "bpy.ops.object.select_all('EXEC_DEFAULT', action='SELECT')",
     "mathutils.Matrix.Rotation(0.5, 4, 'X')",
     "scene.collection.objects.link(*[ob])",
+    "scene.frame_set(10)",
 )
 
 
@@ -87,3 +88,8 @@ def test_the_signature_shows_what_is_given_by_name_only(kb: KnowledgeBase) -> No
     assert symbol.signature == (
         "new_effect(name, type, channel, frame_start, *, length=0, input1=None, input2=None)"
     )
+
+
+def test_a_point_alone_is_no_fraction(kb: KnowledgeBase) -> None:
+    assert not any("whole number" in note for note in kb.query("scene.frame_set(.)").notes)
+    assert any("whole number: `.5` is refused" in note for note in kb.query("scene.frame_set(.5)").notes)

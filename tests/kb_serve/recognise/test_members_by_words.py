@@ -6,6 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_serve.recognise import members_by_words
+
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
 
@@ -50,3 +52,7 @@ def test_short_ways_to_write_a_module_are_read(kb: KnowledgeBase, query: str, fi
     answer = kb.query(query)
     assert answer.hits[0].id == first
     assert not [note for note in answer.notes if "WindowManager" in note or "Node" in note]
+
+
+def test_what_words_mean_is_not_remembered_for_ever() -> None:
+    assert members_by_words._means.cache_info().maxsize is not None

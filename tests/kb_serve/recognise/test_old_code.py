@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
+import bpy
 import pytest
+
+from kb_build.versions.successors import load_successors
+from kb_serve.recognise.newer_nodes import INSTEAD
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -148,3 +153,120 @@ def test_an_item_of_an_argument_has_the_successor_of_the_property_with_these_ite
     kb: KnowledgeBase, written: str, instead: str
 ) -> None:
     assert f"Use `{instead}`." in kb.query(written).notes[0]
+
+
+@pytest.mark.parametrize(
+    ("written", "socket"),
+    [
+        ('noise.outputs["Fac"]', 'ShaderNodeTexNoise.outputs["Factor"]'),
+        ('noise_tex.outputs["Fac"]', 'ShaderNodeTexNoise.outputs["Factor"]'),
+        ('mix_shader.inputs["Fac"].default_value = 0.3', 'ShaderNodeMixShader.inputs["Factor"]'),
+    ],
+)
+def test_a_former_name_works_on_the_node_that_a_variable_is_named_after(
+    kb: KnowledgeBase, written: str, socket: str
+) -> None:
+    answer = kb.query(written)
+    assert answer.hits[0].id == T + socket
+    assert answer.notes == (f"The former name still works here; the name is now `{T}{socket}`.",)
+
+
+@pytest.mark.parametrize(
+    ("written", "first"),
+    [
+        ('noise.outputs["Color"]', f'{T}ShaderNodeTexNoise.outputs["Color"]'),
+        ('noise.inputs["Scale"]', f'{T}ShaderNodeTexNoise.inputs["Scale"]'),
+        ("noise.random_vector()", "mathutils.noise.random_vector"),
+    ],
+)
+def test_a_variable_that_is_called_like_a_module_is_it_only_where_that_has_the_member(
+    kb: KnowledgeBase, written: str, first: str
+) -> None:
+    answer = kb.query(written)
+    assert answer.hits[0].id == first
+    assert answer.notes == ()
+
+
+@pytest.mark.parametrize("written", ["mathutils.noise.outputs", "mathutils.noise.wobbliness()"])
+def test_a_module_that_is_spelled_out_is_one(kb: KnowledgeBase, written: str) -> None:
+    assert any("`mathutils.noise` has no" in note for note in kb.query(written).notes)
+
+
+@pytest.mark.parametrize("written", ['color_mix.inputs["Color2"]', 'mix.inputs["Color2"].default_value = c'])
+def test_a_socket_of_a_node_that_is_made_no_more_is_told_as_that_of_the_newer_one(
+    kb: KnowledgeBase, written: str
+) -> None:
+    notes = kb.query(written).notes
+    assert any('it is `inputs["B"]`, or `inputs[7]` at any time' in note for note in notes)
+    assert not any("custom properties" in note for note in notes)
+
+
+def test_the_newer_node_has_the_sockets_that_are_told() -> None:
+    mix = bpy.data.node_groups.new("g", "ShaderNodeTree").nodes.new("ShaderNodeMix")
+    for name, (node, setting, new, place, identifier) in INSTEAD.items():
+        assert node == f"{T}ShaderNodeMix"
+        assert name not in mix.inputs
+        exec(f"mix.{setting}", {"mix": mix})
+        assert mix.inputs[new] == mix.inputs[place]
+        assert mix.inputs[place].identifier == identifier
+
+
+@pytest.mark.parametrize(
+    "written", ["gpu.shader.from_builtin('3D_UNIFORM_COLOR')", "from_builtin('2D_IMAGE')"]
+)
+def test_shaders_have_no_dimension_in_their_names(kb: KnowledgeBase, written: str) -> None:
+    assert any("The names have no 2D_ or 3D_ in front now" in note for note in kb.query(written).notes)
+
+
+@pytest.mark.parametrize(
+    ("written", "instead"),
+    [
+        ("layout.label(icon='SEQUENCE_COLOR_01')", "(icon):STRIP_COLOR_01`"),
+        ("layout.operator('a.b', icon='OUTLINER_DATA_LAMP')", "(icon):OUTLINER_DATA_LIGHT`"),
+        ("layout.prop(ob, 'name', icon='LIGHTPROBE_CUBEMAP')", "(icon):LIGHTPROBE_SPHERE`"),
+    ],
+)
+def test_icons_have_successors_wherever_they_are_given(kb: KnowledgeBase, written: str, instead: str) -> None:
+    assert any(instead in note for note in kb.query(written).notes)
+
+
+def test_passes_have_the_names_that_are_told(kb: KnowledgeBase) -> None:
+    bpy.ops.wm.read_factory_settings()
+    scene = bpy.context.scene
+    scene.render.engine = "CYCLES"
+    tree = bpy.data.node_groups.new("c", "CompositorNodeTree")
+    scene.compositing_node_group = tree
+    node = tree.nodes.new("CompositorNodeRLayers")
+    old = [row.old for row in load_successors() if row.old.startswith(f"{T}CompositorNodeRLayers.outputs[")]
+    assert len(old) > 12
+    for path in old:
+        note = next(
+            note for note in kb.query(f"{path.removeprefix(T)}").notes if "The output is called" in note
+        )
+        found = re.search(r'Use `bpy.types.ViewLayer.(\w+)`. The output is called "([^"]+)"', note)
+        assert found
+        setattr(bpy.context.view_layer, found[1], False)
+        assert not is_on(node, found[2])
+        setattr(bpy.context.view_layer, found[1], True)
+        assert is_on(node, found[2])
+
+
+def is_on(node: bpy.types.Node, name: str) -> bool:
+    """Whether a node of render layers has an output that can be used."""
+    socket = node.outputs.get(name)
+    return socket is not None and socket.enabled and not socket.is_unavailable
+
+
+@pytest.mark.parametrize(
+    ("written", "use"),
+    [
+        ("import imp", "Write importlib.reload(module)"),
+        ("imp.reload(module)", "Write importlib.reload(module)"),
+    ],
+)
+def test_where_something_is_to_be_used_instead_nothing_is_not_said(
+    kb: KnowledgeBase, written: str, use: str
+) -> None:
+    note = next(note for note in kb.query(written).notes if "does not exist" in note)
+    assert use in note
+    assert "Nothing takes its place" not in note

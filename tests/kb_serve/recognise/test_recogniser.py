@@ -553,3 +553,13 @@ def test_names_of_files_are_not_taken_for_code(kb: KnowledgeBase, query: str) ->
 
 def test_an_attribute_that_is_called_as_an_ending_is_known(kb: KnowledgeBase) -> None:
     assert kb.query("brush.blend").hits[0].id == "bpy.types.Brush.blend"
+
+
+@pytest.mark.parametrize("query", ["'CLOTH'", '"CLOTH"'])
+def test_a_value_in_quotes_is_not_the_page_of_that_name(kb: KnowledgeBase, query: str) -> None:
+    assert kb.query("cloth").kind == "page"
+    answer = kb.query(query)
+    symbol = kb.symbol(answer.hits[0].id)
+    assert symbol is not None
+    enumerations = [symbol.enum_items, *(parameter.enum_items for parameter in symbol.parameters)]
+    assert "CLOTH" in {item.identifier for items in enumerations for item in items}

@@ -2,11 +2,20 @@
 
 from __future__ import annotations
 
+import json
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_serve.reader import TYPES, BaseReader
+from kb_serve.recognise.subscripts import CustomProperties
+
 if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from pathlib import Path
+
     from kb_serve.knowledge_base import KnowledgeBase
 
 
@@ -53,6 +62,71 @@ def test_inputs_are_not_told_of_where_others_are_asked_for(kb: KnowledgeBase, qu
 def test_a_custom_property_is_no_attribute(kb: KnowledgeBase, query: str, cls: str) -> None:
     (note,) = kb.query(query).notes
     assert f"is a custom property of `bpy.types.{cls}`" in note
+    assert "registered by `bpy.props` is not found in brackets since Blender 5.0" in note
+
+
+_INSTANCES = """
+import json, sys
+import bpy
+
+ob = bpy.context.object
+bpy.data.materials.new("m").asset_mark()
+rig = bpy.data.objects.new("rig", bpy.data.armatures.new("rig"))
+bpy.context.collection.objects.link(rig)
+bpy.context.view_layer.objects.active = rig
+bpy.ops.object.mode_set(mode="EDIT")
+edit_bone = rig.data.edit_bones.new("b")
+edit_bone.tail = 0, 0, 1
+takes = {}
+
+def try_it(*instances):
+    for one in instances:
+        try:
+            one["a"] = 1
+            takes[type(one).bl_rna.identifier] = True
+        except TypeError:
+            takes[type(one).bl_rna.identifier] = False
+
+try_it(edit_bone)
+bpy.ops.object.mode_set(mode="OBJECT")
+tree = bpy.data.node_groups.new("g", "GeometryNodeTree")
+node = tree.nodes.new("ShaderNodeMath")
+preferences = next(one.preferences for one in bpy.context.preferences.addons if one.preferences)
+strips = bpy.context.scene.sequence_editor_create().strips
+try_it(
+    ob, node, node.inputs[0], bpy.data.materials["m"].asset_data, rig.data.bones[0], rig.pose.bones[0],
+    rig.data.collections.new("c"), ob.modifiers.new("n", "NODES"), ob.modifiers.new("w", "WAVE"), preferences,
+    strips.new_effect("c", "COLOR", 1, 1, length=5), bpy.context.view_layer, bpy.context.scene.render,
+    ob.constraints.new("COPY_LOCATION"), bpy.context.scene.timeline_markers.new("m"),
+)
+open(sys.argv[-1], "w").write(json.dumps(takes))
+"""
+
+
+@pytest.fixture
+def reader(base: Path) -> Iterator[BaseReader]:
+    opened = BaseReader(base)
+    yield opened
+    opened.close()
+
+
+def test_classes_take_custom_properties_where_blender_does(reader: BaseReader, tmp_path: Path) -> None:
+    file = tmp_path / "takes.json"
+    run = [sys.executable, "-P", "-c", _INSTANCES, str(file)]
+    subprocess.run(run, check=True, timeout=120, capture_output=True)
+    takes: dict[str, bool] = json.loads(file.read_text())
+    assert {True, False} == set(takes.values())
+    custom = CustomProperties(reader)
+    known = {name for name in takes if reader.entry(TYPES + name)}
+    assert len(known) > 12
+    assert {name: custom.taken_by(TYPES + name) != [] for name in known} == {
+        name: takes[name] for name in known
+    }
+
+
+def test_a_property_that_is_registered_is_no_custom_one(kb: KnowledgeBase) -> None:
+    notes = kb.query('scene["prop"] KeyError after registering with bpy.props').notes
+    assert any("it is the attribute `.prop`" in note for note in notes)
 
 
 def test_what_takes_no_custom_properties_says_so(kb: KnowledgeBase) -> None:

@@ -1,0 +1,74 @@
+"""What changes properties that cannot be assigned: a function, an operator, or another property."""
+
+from __future__ import annotations
+
+_T = "bpy.types."
+# Property → (what changes it, how).
+CHANGED_BY = {
+    f"{_T}Paint.brush": (
+        "bpy.ops.brush.asset_activate",
+        "Brushes are assets: in the mode that paints, `bpy.ops.brush.asset_activate(asset_library_type='ESSENTIALS', "
+        "relative_asset_identifier='brushes/essentials_brushes-mesh_texture.blend/Brush/Blur')` makes one active.",
+    ),
+    f"{_T}MeshLoop.normal": (
+        f"{_T}Mesh.normals_split_custom_set",
+        "`mesh.normals_split_custom_set([(x, y, z), …])`, one for each corner, sets them all.",
+    ),
+    f"{_T}MeshNormalValue.vector": (
+        f"{_T}Mesh.normals_split_custom_set",
+        "`mesh.normals_split_custom_set([(x, y, z), …])`, one for each corner, sets those of all corners.",
+    ),
+    f"{_T}MeshVertex.normal": (
+        f"{_T}Mesh.normals_split_custom_set_from_vertices",
+        "`mesh.normals_split_custom_set_from_vertices([(x, y, z), …])`, one for each vertex, sets the normals.",
+    ),
+    f"{_T}GreasePencilFrame.frame_number": (
+        f"{_T}GreasePencilFrames.move",
+        "`layer.frames.move(1, 5)` moves a frame to another number, `layer.frames.copy(1, 5)` copies it.",
+    ),
+    f"{_T}Object.mode": (
+        "bpy.ops.object.mode_set",
+        "Make the object active, then `bpy.ops.object.mode_set(mode='EDIT')`.",
+    ),
+    f"{_T}Object.type": (
+        "bpy.ops.object.convert",
+        "It is that of the object's data, for good: `bpy.ops.object.convert(target='MESH')` makes a mesh of a curve or "
+        "text.",
+    ),
+    f"{_T}Image.size": (
+        f"{_T}Image.scale",
+        "`image.scale(width, height)` changes it.",
+    ),
+    f"{_T}Modifier.type": (
+        f"{_T}ObjectModifiers.new",
+        "Remove the modifier and add another: `obj.modifiers.new(name, type)`.",
+    ),
+    f"{_T}Mesh.shape_keys": (
+        f"{_T}Object.shape_key_add",
+        '`obj.shape_key_add(name="Key")` makes them.',
+    ),
+    f"{_T}Context.mode": (
+        "bpy.ops.object.mode_set",
+        "`bpy.ops.object.mode_set(mode='EDIT')` changes that of the active object.",
+    ),
+    f"{_T}Context.scene": (
+        f"{_T}Window.scene",
+        "`bpy.context.window.scene = scene`.",
+    ),
+    f"{_T}Context.view_layer": (
+        f"{_T}Window.view_layer",
+        "`bpy.context.window.view_layer = view_layer`.",
+    ),
+    "bpy.context.object": (
+        f"{_T}LayerObjects.active",
+        "`bpy.context.view_layer.objects.active = obj`.",
+    ),
+    "bpy.context.active_object": (
+        f"{_T}LayerObjects.active",
+        "`bpy.context.view_layer.objects.active = obj`.",
+    ),
+    "bpy.context.selected_objects": (
+        f"{_T}Object.select_set",
+        "`obj.select_set(True)` selects one.",
+    ),
+}

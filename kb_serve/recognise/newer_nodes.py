@@ -1,0 +1,39 @@
+"""Sockets of nodes that Blender keeps for old files, and what they are on the node that it makes instead."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
+
+_SURE = 0.9
+_MIX = "bpy.types.ShaderNodeMix"
+_HOW = (
+    'The node may be a `{node}`, which Blender makes instead since 3.4, and which has no `{side}["{name}"]`: with '
+    '`{setting}` it is `{side}["{new}"]`, or `{side}[{place}]` at any time.'
+)
+# The name of a socket → (the node made instead, what must be set there, its name, its place, its identifier).
+INSTEAD = {
+    "Color1": (_MIX, "data_type = 'RGBA'", "A", 6, "A_Color"),
+    "Color2": (_MIX, "data_type = 'RGBA'", "B", 7, "B_Color"),
+}
+_OLD = ("bpy.types.ShaderNodeMixRGB", "bpy.types.CompositorNodeMixRGB", "bpy.types.TextureNodeMixRGB")
+
+
+def tell_of_the_newer_node(name: str, reader: BaseReader, recognition: Recognition) -> None:
+    """Notes what a socket of such a name is on the newer node, where this version has that."""
+    node, setting, new, place, identifier = INSTEAD.get(name, ("", "", "", 0, ""))
+    path = f'{node}.inputs["{identifier}"]'
+    if node and reader.entry(path):
+        side = "inputs"
+        said = _HOW.format(node=node, side=side, name=name, setting=setting, new=new, place=place)
+        recognition.notes.append(said)
+        recognition.add(path, _SURE, "newer node")
+
+
+def name_on_an_old_node(path: str) -> str:
+    """The name of an old node's socket that is called otherwise on the newer node; "" for other paths."""
+    node, mark, name = path.removesuffix('"]').partition('.inputs["')
+    return name if mark and node in _OLD and name in INSTEAD else ""

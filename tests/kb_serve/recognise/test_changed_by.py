@@ -1,0 +1,157 @@
+"""What is said to change a property that cannot be assigned does change it, in this environment's Blender."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.recognise.changed_by import CHANGED_BY
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_serve.knowledge_base import KnowledgeBase
+
+# Property → (a statement that Blender refuses, statements that change it, what is true before and after them).
+_TRIED = {
+    "Paint.brush": (
+        "paint().brush = None",
+        "paint(); bpy.ops.brush.asset_activate(asset_library_type='ESSENTIALS', relative_asset_identifier="
+        "'brushes/essentials_brushes-mesh_texture.blend/Brush/Blur')",
+        "paint().brush.name == 'Blur'",
+    ),
+    "MeshLoop.normal": (
+        "mesh.loops[0].normal = (1, 0, 0)",
+        "mesh.normals_split_custom_set([(1, 0, 0)] * len(mesh.loops))",
+        "mesh.loops[0].normal.x > 0.9",
+    ),
+    "MeshNormalValue.vector": (
+        "mesh.corner_normals[0].vector = (1, 0, 0)",
+        "mesh.normals_split_custom_set([(1, 0, 0)] * len(mesh.loops))",
+        "mesh.corner_normals[0].vector.x > 0.9",
+    ),
+    "MeshVertex.normal": (
+        "mesh.vertices[0].normal = (1, 0, 0)",
+        "mesh.normals_split_custom_set_from_vertices([(1, 0, 0)] * len(mesh.vertices))",
+        "mesh.loops[0].normal.x > 0.9",
+    ),
+    "GreasePencilFrame.frame_number": (
+        "layer.frames[0].frame_number = 5",
+        "layer.frames.move(1, 5); layer.frames.copy(5, 9)",
+        "[frame.frame_number for frame in layer.frames] == [5, 9]",
+    ),
+    "Object.mode": ("ob.mode = 'EDIT'", "bpy.ops.object.mode_set(mode='EDIT')", "ob.mode == 'EDIT'"),
+    "Object.type": (
+        "text.type = 'MESH'",
+        "bpy.context.view_layer.objects.active = text; bpy.ops.object.convert(target='MESH')",
+        "bpy.data.objects['Text'].type == 'MESH'",
+    ),
+    "Image.size": ("image.size = (4, 2)", "image.scale(4, 2)", "image.size[:] == (4, 2)"),
+    "Modifier.type": (
+        "ob.modifiers.new('w', 'WAVE').type = 'SUBSURF'",
+        "ob.modifiers.clear(); ob.modifiers.new('s', 'SUBSURF')",
+        "[one.type for one in ob.modifiers] == ['SUBSURF']",
+    ),
+    "Mesh.shape_keys": (
+        "mesh.shape_keys = None",
+        "ob.shape_key_add(name='Key')",
+        "mesh.shape_keys is not None",
+    ),
+    "Context.mode": (
+        "bpy.context.mode = 'EDIT_MESH'",
+        "bpy.ops.object.mode_set(mode='EDIT')",
+        "bpy.context.mode == 'EDIT_MESH'",
+    ),
+    "Context.scene": (
+        "bpy.context.scene = other",
+        "bpy.context.window.scene = other",
+        "bpy.context.scene == other",
+    ),
+    "Context.view_layer": (
+        "bpy.context.view_layer = scene.view_layers[0]",
+        "bpy.context.window.view_layer = scene.view_layers.new('Second')",
+        "bpy.context.view_layer.name == 'Second'",
+    ),
+    "object": (
+        "bpy.context.object = camera",
+        "bpy.context.view_layer.objects.active = camera",
+        "bpy.context.object == camera",
+    ),
+    "active_object": (
+        "bpy.context.active_object = camera",
+        "bpy.context.view_layer.objects.active = camera",
+        "bpy.context.active_object == camera",
+    ),
+    "selected_objects": (
+        "bpy.context.selected_objects = [camera]",
+        "camera.select_set(True)",
+        "camera in bpy.context.selected_objects",
+    ),
+}
+_RUN = """
+import json, sys
+import bpy
+
+def paint():
+    if ob.mode != "TEXTURE_PAINT":
+        bpy.ops.object.mode_set(mode="TEXTURE_PAINT")
+    return bpy.context.tool_settings.image_paint
+
+said = {}
+for name, (refused, change, test) in json.load(open(sys.argv[-1])).items():
+    bpy.ops.wm.read_factory_settings()
+    scene = bpy.context.scene
+    other = bpy.data.scenes.new("Other")
+    ob = bpy.data.objects["Cube"]
+    camera = bpy.data.objects["Camera"]
+    mesh = ob.data
+    text = bpy.data.objects.new("Text", bpy.data.curves.new("t", "FONT"))
+    text.data.body = "A"
+    scene.collection.objects.link(text)
+    text.select_set(True)
+    image = bpy.data.images.new("i", 8, 8)
+    layer = bpy.data.grease_pencils.new("g").layers.new("l")
+    layer.frames.new(1)
+    try:
+        exec(refused)
+        message = ""
+    except AttributeError as error:
+        message = f"AttributeError: {error}"
+    before = eval(test)
+    exec(change)
+    said[name] = message, before, eval(test)
+open(sys.argv[-1], "w").write(json.dumps(said))
+"""
+
+
+@pytest.fixture(scope="module")
+def tried(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[str, bool, bool]]:
+    """Property → what Blender says to an assignment, and what is true before and after what changes it."""
+    file: Path = tmp_path_factory.mktemp("changed") / "tried.json"
+    file.write_text(json.dumps(_TRIED))
+    run = [sys.executable, "-P", "-c", _RUN, str(file)]
+    subprocess.run(run, check=True, timeout=120, capture_output=True, cwd=file.parent)
+    return json.loads(file.read_text())
+
+
+def test_each_is_refused_and_then_changed(
+    kb: KnowledgeBase, tried: dict[str, tuple[str, bool, bool]]
+) -> None:
+    wrong = [name for name, (said, before, after) in tried.items() if not said or before or not after]
+    assert wrong == []
+    assert {path.removeprefix("bpy.types.").removeprefix("bpy.context.") for path in CHANGED_BY} == set(tried)
+    assert all(kb.symbol(path) and kb.symbol(changer) for path, (changer, _) in CHANGED_BY.items())
+
+
+def test_the_message_leads_to_what_changes_it(
+    kb: KnowledgeBase, tried: dict[str, tuple[str, bool, bool]]
+) -> None:
+    for said, _, _ in tried.values():
+        answer = kb.query(said)
+        changer, how = CHANGED_BY[answer.hits[0].id]
+        assert how in answer.notes
+        assert changer in [hit.id for hit in answer.hits[:3]]
