@@ -79,7 +79,9 @@ def find_files(
 
 
 def _grouped(wanted: dict[Path, Path], excluded: _Excluded) -> Iterator[FileGroup]:
-    parts: dict[Path, list[Path]] = {}  # a package's folder, or a file of none → the files of it that are wanted
+    parts: dict[
+        Path, list[Path]
+    ] = {}  # a package's folder, or a file of none → the files of it that are wanted
     for real in wanted:
         root = None if real.suffix == NOTEBOOK else package_root(real.parent)
         parts.setdefault(root or real, []).append(real)

@@ -33,6 +33,7 @@ from kb_build.symbol_lines import (
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.empty_pointers import empty_pointer_to
 from kb_serve.answer.panel_lines import panel_lines
+from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
 from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 
@@ -290,7 +291,9 @@ class MarkdownRenderer:
     def symbol(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         """A symbol: a class with a list of its members, an operator or function with its parameters."""
         yield AnswerBlock(self._head(symbol), "description")
-        used = AnswerBlock(self.used(symbol.path), "a use in Blender's scripts")
+        used = AnswerBlock(
+            use_text(symbol.path, self._reached(symbol), self.reader), "a use in Blender's scripts"
+        )
         if symbol.kind == "class":
             members = list(self.reader.members(symbol.path).values())
             pairs = any(entry.name == _PAIRS for entry in members)
@@ -421,17 +424,11 @@ class MarkdownRenderer:
 
     def _place(self, symbol: Symbol) -> Iterator[str]:
         """How to reach and to make the symbol, the version that introduced it, and its manual page."""
-        cls = symbol if symbol.kind == "class" else self.reader.symbol(symbol.owner)
-        reached = cls.reached if cls else ""
-        if reached and symbol.kind in {"class", "property", "socket", "function"}:
-            last = symbol.path[len(symbol.owner) :] if symbol.kind != "class" else ""
-            if symbol.kind == "socket" and (subscript := new_subscript(symbol)):
-                last = f".{subscript}"
-            tail = "(…)" if symbol.kind == "function" else ""
+        if reached := self._reached(symbol):
             if EVALUATED in symbol.flags:
                 yield "filled on evaluated objects only: the original's stays empty, or None"
-                reached = of_evaluated(reached)
-            yield f"reached as `{reached}{last}{tail}`" + (self._empty_before(cls) if cls else "")
+            cls = self._owning_class(symbol)
+            yield f"reached as `{reached}`" + (self._empty_before(cls) if cls else "")
         elif symbol.kind == "context":
             origin = [flag[5:] for flag in symbol.flags if flag.startswith("from:")]
             yield f"provided by: {', '.join(origin)}"
@@ -451,6 +448,22 @@ class MarkdownRenderer:
             yield f"since Blender {version}"
         if page := self.manual_page(symbol.path):
             yield f"manual: {page}"
+
+    def _owning_class(self, symbol: Symbol) -> Symbol | None:
+        return symbol if symbol.kind == "class" else self.reader.symbol(symbol.owner)
+
+    def _reached(self, symbol: Symbol) -> str:
+        """The expression that leads to a symbol from the context; empty where none is known."""
+        cls = self._owning_class(symbol)
+        reached = cls.reached if cls else ""
+        if not reached or symbol.kind not in {"class", "property", "socket", "function"}:
+            return ""
+        last = symbol.path[len(symbol.owner) :] if symbol.kind != "class" else ""
+        if symbol.kind == "socket" and (subscript := new_subscript(symbol)):
+            last = f".{subscript}"
+        if EVALUATED in symbol.flags:
+            reached = of_evaluated(reached)
+        return f"{reached}{last}" + ("(…)" if symbol.kind == "function" else "")
 
     def _key_of(self, cls: str) -> str:
         """The property, not called ``name``, by whose value collections find instances of a class; empty for none."""
@@ -512,11 +525,6 @@ class MarkdownRenderer:
         named = with_names(section.text, found[1], self.reader.label_names(page.slug))
         if text := passage_text(named, found[2]):
             yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")
-
-    def used(self, path: str) -> str:
-        """The clearest use of a symbol in Blender's own scripts; empty for none."""
-        uses = self.reader.uses(path)
-        return f"**Used** ({uses[0].file}:{uses[0].line})\n```python\n{uses[0].code}\n```" if uses else ""
 
     def _class(self, path: str, members: Sequence[SymbolEntry]) -> Iterator[AnswerBlock]:
         lineage = list(self.reader.lineage(path))[1:]
