@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.analysis import analyse
 from kb_build.flow.trees import children
-from kb_build.flow.types import UNKNOWN, ClassObject, Instance, Operator, Resolution
-from kb_build.usage.derived_classes import derived_class
+from kb_build.flow.types import UNKNOWN, ClassObject, Function, Instance, Operator, Resolution
+from kb_build.usage.definitions import decorated_function, derived_class
 from kb_build.usage.scripts import PRESETS
 from kb_build.usage.unfit_calls import unfit_statements
 
@@ -54,6 +54,7 @@ _COSTS = {
     "item": 0.0,
     "made": 0.5,
     "derived": 0.0,
+    "decorates": 0.0,
     "attribute": 3.0,
     "name": 6.0,
     "text": 1.5,
@@ -125,7 +126,9 @@ def analysed_uses(analysis: Analysis, code: str, file: str, api: Api, cost: floa
     candidates: dict[str, list[tuple[float, ast.stmt]]] = defaultdict(list)
     for path, kind, share, resolution in _used(analysis, api):
         uses = found.setdefault(path, Uses(files=1))
-        if uses.count < _MOST_COUNTED and (kind != "derived" or not uses.count):  # its base counts already
+        if uses.count < _MOST_COUNTED and (
+            kind not in {"derived", "decorates"} or not uses.count
+        ):  # its base counts already
             uses.count += 1
         statement = resolution.statement
         if statement is not None and kind in _COSTS and statement not in unfit:
@@ -155,11 +158,24 @@ def _used(analysis: Analysis, api: Api) -> Iterator[tuple[str, str, int, Resolut
                 yield made.cls, "made" if kind == "call" else "given", 1, resolution
             elif isinstance(made, Operator):
                 continue
+    yield from _defined(analysis)
+
+
+def _defined(analysis: Analysis) -> Iterator[tuple[str, str, int, Resolution]]:
+    """The same of the classes and functions that a script defines: what they derive from, and what decorates them."""
     for definition in analysis.classes:
         for base in definition.bases:
             kind = analysis.types.get(base)
             if isinstance(kind, ClassObject):
                 yield kind.cls, "derived", 1, Resolution(base, "derived", "", statement=definition)
+    for definition in analysis.functions:
+        if not isinstance(definition, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            continue
+        for decorator in definition.decorator_list:
+            kind = analysis.types.get(decorator)
+            if isinstance(kind, (ClassObject, Function)):
+                path = kind.cls if isinstance(kind, ClassObject) else kind.path
+                yield path, "decorates", 1, Resolution(decorator, "decorates", "", statement=definition)
 
 
 class _Script:
@@ -237,8 +253,8 @@ class _Script:
 
     def _text(self, statement: ast.stmt) -> tuple[float, int, str] | None:
         """(cost, line, code) of a statement, with the binding of the name that it begins with."""
-        if isinstance(statement, ast.ClassDef):
-            return self._class_text(statement)
+        if isinstance(statement, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            return self._definition_text(statement)
         code = self._quoted(statement)
         if code is None:
             return None
@@ -262,9 +278,8 @@ class _Script:
                 code = f"{line}\n{_indented(code) if line.startswith('for ') else code}"
                 first = min(first, number)
                 of_editors |= number in self._editor_lines
-        if self._file.startswith(PRESETS) and any(map(self._is_of_editors, _OF_CONTEXT.findall(code))):
-            return None
-        if not _is_code(code):
+        is_preset = self._file.startswith(PRESETS)
+        if (is_preset and any(map(self._is_of_editors, _OF_CONTEXT.findall(code)))) or not _is_code(code):
             return None
         cost = 1.2 * unknown + len(code) / 60 + 0.3 * code.count("\n")
         cost += 1.0 if "self." in code else 0.0
@@ -273,11 +288,15 @@ class _Script:
             cost += 2.0 if _is_none(statement.value) else -1.0  # it does not show what is taken
         return cost + (_OF_EDITORS if of_editors else 0.0), first, code
 
-    def _class_text(self, definition: ast.ClassDef) -> tuple[float, int, str] | None:
-        code = derived_class(definition, self._lines)
+    def _definition_text(
+        self, definition: ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+    ) -> tuple[float, int, str] | None:
+        is_class = isinstance(definition, ast.ClassDef)
+        code = derived_class(definition, self._lines) if is_class else decorated_function(definition)
         if code is None:
             return None
-        is_alone = all(isinstance(self._analysis.types.get(base), ClassObject) for base in definition.bases)
+        bases = definition.bases if is_class else ()
+        is_alone = all(isinstance(self._analysis.types.get(base), ClassObject) for base in bases)
         return len(code) / 300 + (0.0 if is_alone else _OWN_BASE), definition.lineno, code
 
     def _is_of_editors(self, member: str) -> bool:

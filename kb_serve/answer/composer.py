@@ -10,6 +10,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Literal
 
 from kb_build.records import PAGE_SOURCES
+from kb_build.symbol_lines import written
 from kb_serve.answer.asked_values import asked_values, asked_words, may_have_more
 from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
 from kb_serve.answer.next_call import next_call
@@ -275,13 +276,18 @@ class AnswerComposer:
                 if entry.kind in {"operator", "function", "class"}
                 else entry.line
             )
-            name = hit.id[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
+            path = self._written(hit.id) if entry.kind == "socket" else hit.id
+            name = path[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
             text = text.removeprefix(f"`{name}`").strip(", ") or self._instead_of_words(entry)
             nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
-            return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS) + nearest
+            return clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS) + nearest
         page = self._reader.page_entry(hit.id)
         text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
+
+    def _written(self, path: str) -> str:
+        symbol = self._reader.symbol(path)
+        return written(symbol) if symbol else path
 
     def _asked(self, hit: Hit, asked: Sequence[str]) -> list[AskedValue]:
         """The arguments and values of a hit that the question speaks of."""
@@ -300,6 +306,9 @@ class AnswerComposer:
         if entry.kind != "class":
             return entry.line if "(" in entry.line else ""
         members = self._reader.members(entry.path)
+        uses = [] if members else self._reader.uses(entry.path)
+        if uses and uses[0].code.startswith("@"):
+            return f"a decorator of functions: `{uses[0].code.partition(chr(10))[0]}`"
         label = f"{entry.label}, " if entry.label not in {"", entry.name} else ""
         return f"{label}a class with {len(members)} members"
 

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
+import textwrap
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -25,16 +27,20 @@ from kb_build.symbol_lines import (
     operator_needs,
     passage_text,
     refusal_lines,
+    said_taken,
     subscripts_text,
+    taken_text,
     taken_where,
     type_text,
     version_meant,
+    written,
 )
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.empty_pointers import empty_pointer_to
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
+from kb_serve.answer.swizzles import without_swizzles
 from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 
 if TYPE_CHECKING:
@@ -67,6 +73,7 @@ _SHOWN_FLAGS = (
     "classmethod",
     "hidden-by-default",
 )
+_PARAGRAPH = "\n\n"
 _BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
 _FEW_PARAMETERS = 8
 _BROWSER_ALWAYS = "filter_folder"  # every operator that opens the file browser has it
@@ -124,8 +131,9 @@ def _items(items: Sequence[EnumItem], taken: Mapping[str, str] | None = None) ->
             continue
         name = item.name if item.name != item.identifier else ""
         text = " — ".join(filter(None, (name, item.description)))
-        where = item.where or (taken or {}).get(item.identifier, "")
-        where = f" (taken {where})" if where else ""
+        among = (taken or {}).get(item.identifier, "")
+        where = taken_text(item.where) if item.where else among and said_taken(among)
+        where = f" ({where})" if where else ""
         lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else "") + where)
     if refused := [f"`{item.identifier!r}`" for item in items if item.where == NOT_TAKEN]:
         lines.append(f"- listed by RNA, taken {NOT_TAKEN}: {', '.join(refused)}")
@@ -180,7 +188,8 @@ def _parameter_line(
     noted = ", ".join(note for note in notes if note)
     text = f"{head} ({noted})" if noted else head
     if parameter.description:
-        text += f": {parameter.description}"
+        said = parameter.description  # its paragraphs belong to the item of the list
+        text += f": {textwrap.indent(said, '  ').lstrip() if _PARAGRAPH in said else said}"
     elif parameter.label:
         text += f": {parameter.label}"
     if parameter.values_asked:
@@ -196,8 +205,9 @@ def _values(identifiers: Sequence[str]) -> str:
     return ", ".join(map(repr, identifiers[:_NAMED_ITEMS])) + more
 
 
-def _listed(title: str, entries: Iterable[SymbolEntry]) -> Iterator[AnswerBlock]:
-    lines = ["- " + entry.line for entry in entries]
+def _listed(title: str, entries: Iterable[SymbolEntry], last: str = "") -> Iterator[AnswerBlock]:
+    """The lines of some symbols below a title, and a ``last`` one if there is any."""
+    lines = ["- " + entry.line for entry in entries] + ([last] if last else [])
     if lines:
         yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), title.lower())
 
@@ -245,8 +255,27 @@ def _parameter_lines(symbol: Symbol, parameters: Iterable[Parameter]) -> list[st
             of_function=of_function,
             refused=never_taken(symbol, item.name),
         )
+        + _taken(symbol, item)
         for item in parameters
     ]
+
+
+def _taken(symbol: Symbol, parameter: Parameter) -> str:
+    """Which values of an argument only some things take, where no list of its values says it."""
+    if _has_list(symbol, parameter):
+        return ""
+    found: dict[str, list[str]] = defaultdict(list)
+    for value, where in taken_where(symbol, parameter.name).items():
+        found[where].append(value)
+    return "".join(f"\n  {said_taken(where)}: {_values(values)}" for where, values in found.items())
+
+
+def _has_list(symbol: Symbol, parameter: Parameter) -> bool:
+    """Whether the values of an argument are listed one by one."""
+    items = () if parameter.name in _of_file_browser(symbol) else parameter.enum_items
+    return len(items) > _NAMED_ITEMS or (
+        len(items) > 3 and any(item.description or item.where for item in items)
+    )
 
 
 def _kept_in(symbol: Symbol) -> str:
@@ -267,12 +296,10 @@ def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
     if lines := "\n".join(f"- {line}" for line in refusal_lines(symbol)):
         yield AnswerBlock(f"**Refused, of all that was tried**\n{lines}", "refused calls")
     for parameter in symbol.parameters:
-        items = () if parameter.name in aside else parameter.enum_items
-        if len(items) > _NAMED_ITEMS or (
-            len(items) > 3 and any(item.description or item.where for item in items)
-        ):
+        if _has_list(symbol, parameter):
+            items = _items(parameter.enum_items, taken_where(symbol, parameter.name))
             yield AnswerBlock(
-                f"**Values of `{parameter.name}`**\n{_items(items, taken_where(symbol, parameter.name))}",
+                f"**Values of `{parameter.name}`**\n{items}",
                 f"values of {parameter.name}",
             )
 
@@ -391,7 +418,7 @@ class MarkdownRenderer:
         return f"- `{page.slug}` ({page.title}) {first_sentence(said_of(page, self.reader))}".rstrip()
 
     def _head(self, symbol: Symbol) -> str:
-        lines = [f"## `{symbol.path}`"]
+        lines = [f"## `{written(symbol)}`"]
         if symbol.signature and symbol.kind in {"operator", "function", "class"}:
             lines.append(f"```python\n{self._call(symbol)}\n```")
         label = f"**{symbol.label}** — " if symbol.label else ""
@@ -530,7 +557,10 @@ class MarkdownRenderer:
         lineage = list(self.reader.lineage(path))[1:]
         if lineage:
             yield AnswerBlock("base classes: " + ", ".join(f"`{entry.name}`" for entry in lineage), "bases")
-        yield from _listed("Properties", [entry for entry in members if entry.kind in {"property", "data"}])
+        properties, swizzles = without_swizzles(
+            [entry for entry in members if entry.kind in {"property", "data"}]
+        )
+        yield from _listed("Properties", properties, swizzles)
         yield from _listed("Functions", _functions(members))
         if inherited := list(self._inherited(path, lineage)):
             yield AnswerBlock(f"inherited: + {', '.join(inherited)}", "inherited members")

@@ -46,4 +46,5 @@ def _editors_note(code: str, reader: BaseReader) -> str:
     if not found:
         return ""
     names = " and ".join(f"`context.{name}`" for name in found)
-    return f"Only the {' and the '.join(dict.fromkeys(found.values()))} has {names}: elsewhere it raises AttributeError."
+    where = " and the ".join(dict.fromkeys(found.values()))
+    return f"Only the {where} has {names}: elsewhere it raises AttributeError."

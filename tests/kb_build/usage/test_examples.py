@@ -231,3 +231,18 @@ def test_what_a_loop_binds_stands_above_what_is_made_of_it(of_panels: dict[str, 
     assert shown(of_panels, "bpy.types.DepsgraphObjectInstance.matrix_world").startswith(
         "for dup in bpy.context.evaluated_depsgraph_get().object_instances:\n    shown = dup.instance_object\n"
     )
+
+
+def test_a_decorator_is_shown_above_a_function(base: Path) -> None:
+    script = dedent("""
+        import bpy
+        from bpy.app.handlers import persistent
+
+        @persistent
+        def after_loading(path):
+            print(path)
+    """)
+    with closing(BaseSymbols(base)) as symbols:
+        found = uses_in(script, "a.py", Api(symbols), (5, 1, 0))
+    expected = "@persistent\ndef after_loading(path): ..."
+    assert shown(found, "bpy.app.handlers.persistent") == expected

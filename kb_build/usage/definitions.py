@@ -1,4 +1,4 @@
-"""Shows how a script derives a class of its own from one of Blender's: what it must say, and what it defines."""
+"""Shows the definitions of a script that use what is Blender's: classes derived from its own, decorated functions."""
 
 from __future__ import annotations
 
@@ -10,6 +10,7 @@ if TYPE_CHECKING:
 
 _MOST_SETTINGS = 6
 _MOST_METHODS = 2
+_MOST_DECORATORS = 2
 _LONGEST_LINE = 110
 
 
@@ -27,6 +28,15 @@ def derived_class(definition: ast.ClassDef, lines: Sequence[str]) -> str | None:
     return "\n".join((head, *(f"    {line}" if line else "" for line in body)))
 
 
+def decorated_function(definition: ast.FunctionDef | ast.AsyncFunctionDef) -> str | None:
+    """The head of a function below its decorators; None where there are none, many, or long ones."""
+    lines = [f"@{ast.unparse(decorator)}" for decorator in definition.decorator_list]
+    head = f"def {definition.name}({ast.unparse(definition.args)}): ..."
+    lines.append(f"async {head}" if isinstance(definition, ast.AsyncFunctionDef) else head)
+    is_short = 1 < len(lines) <= _MOST_DECORATORS + 1 and all(len(line) <= _LONGEST_LINE for line in lines)
+    return "\n".join(lines) if is_short else None
+
+
 def _settings(definition: ast.ClassDef, lines: Sequence[str]) -> Iterator[str]:
     """The settings of one line each."""
     for statement in definition.body:
@@ -39,6 +49,7 @@ def _settings(definition: ast.ClassDef, lines: Sequence[str]) -> Iterator[str]:
 def _methods(definition: ast.ClassDef) -> Iterator[str]:
     """The heads of the methods that are called on an instance, those with a name of Python's own left out."""
     for statement in definition.body:
-        is_plain = isinstance(statement, ast.FunctionDef) and not statement.decorator_list
-        if is_plain and not statement.name.startswith("_"):
+        if not isinstance(statement, ast.FunctionDef) or statement.decorator_list:
+            continue
+        if not statement.name.startswith("_"):
             yield f"def {statement.name}({ast.unparse(statement.args)}): ..."
