@@ -35,6 +35,7 @@ from kb_build.symbol_lines import (
     version_meant,
     written,
 )
+from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.empty_pointers import empty_pointer_to
 from kb_serve.answer.panel_lines import panel_lines
@@ -47,6 +48,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import EnumItem, Parameter, Section, Symbol
+    from kb_serve.answer.asked_values import AskedOf
 
 _NODE = f"{TYPES}Node"
 _PUT_TOGETHER = (
@@ -123,11 +125,20 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield "shown when " + " and ".join(symbol.modes)
 
 
-def _items(items: Sequence[EnumItem], taken: Mapping[str, str] | None = None) -> str:
-    """The values of an enumeration; ``taken``: where else than the items say."""
+def _items(
+    items: Sequence[EnumItem], taken: Mapping[str, str] | None = None, asked: Collection[str] = ()
+) -> str:
+    """The values of an enumeration; ``taken``: where else than the items say.
+
+    Of those besides the ``asked`` ones (as Python source), if there are such, the identifiers alone.
+    """
     lines: list[str] = []
+    others: list[str] = []
     for item in items:
         if item.where == NOT_TAKEN:
+            continue
+        if asked and repr(item.identifier) not in asked:
+            others.append(f"`{item.identifier!r}`")
             continue
         name = item.name if item.name != item.identifier else ""
         text = " — ".join(filter(None, (name, item.description)))
@@ -135,6 +146,8 @@ def _items(items: Sequence[EnumItem], taken: Mapping[str, str] | None = None) ->
         where = taken_text(item.where) if item.where else among and said_taken(among)
         where = f" ({where})" if where else ""
         lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else "") + where)
+    if others:
+        lines.append(f"- others: {', '.join(others)}")
     if refused := [f"`{item.identifier!r}`" for item in items if item.where == NOT_TAKEN]:
         lines.append(f"- listed by RNA, taken {NOT_TAKEN}: {', '.join(refused)}")
     return "\n".join(lines)
@@ -283,13 +296,16 @@ def _kept_in(symbol: Symbol) -> str:
     return " a dict with these keys" if symbol.owner == _BMESH_OPERATORS else ""
 
 
-def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
+def _parameters(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
     aside = _of_file_browser(symbol)
     if symbol.parameters:
-        lines = _parameter_lines(symbol, [item for item in symbol.parameters if item.name not in aside])
+        left_out = {*aside, *asked.told}
+        lines = _parameter_lines(symbol, [item for item in symbol.parameters if item.name not in left_out])
         if aside:
             lines.append(f"- of the file browser; a script leaves them out: {_names(aside)}")
-        yield AnswerBlock("**Parameters**\n" + "\n".join(lines), "parameters")
+        title = "Other parameters" if asked.told else "Parameters"
+        if lines:
+            yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), "parameters")
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))
         yield AnswerBlock(f"**Returns**{_kept_in(symbol)}\n{lines}", "returns")
@@ -297,7 +313,11 @@ def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
         yield AnswerBlock(f"**Refused, of all that was tried**\n{lines}", "refused calls")
     for parameter in symbol.parameters:
         if _has_list(symbol, parameter):
-            items = _items(parameter.enum_items, taken_where(symbol, parameter.name))
+            wanted = asked.values.get(parameter.name, ())
+            listed = [item for item in parameter.enum_items if repr(item.identifier) in wanted]
+            # The argument's own line names the others.
+            shown = listed if listed and len(parameter.enum_items) <= _NAMED_ITEMS else parameter.enum_items
+            items = _items(shown, taken_where(symbol, parameter.name), wanted)
             yield AnswerBlock(
                 f"**Values of `{parameter.name}`**\n{items}",
                 f"values of {parameter.name}",
@@ -315,8 +335,11 @@ class MarkdownRenderer:
 
     reader: BaseReader
 
-    def symbol(self, symbol: Symbol) -> Iterator[AnswerBlock]:
-        """A symbol: a class with a list of its members, an operator or function with its parameters."""
+    def symbol(self, symbol: Symbol, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
+        """A symbol: a class with a list of its members, an operator or function with its parameters.
+
+        What is ``asked`` of it comes before the rest, or alone.
+        """
         yield AnswerBlock(self._head(symbol), "description")
         used = AnswerBlock(
             use_text(symbol.path, self._reached(symbol), self.reader), "a use in Blender's scripts"
@@ -332,7 +355,7 @@ class MarkdownRenderer:
                 yield used
             yield from self._class(symbol.path, members)
         elif symbol.kind in {"operator", "function"}:
-            yield from _parameters(symbol)
+            yield from _parameters(symbol, asked)
         elif symbol.kind in {"module", "data"} and self.reader.members(symbol.path):
             yield from self._module(symbol)
         elif symbol.collection:
@@ -340,7 +363,8 @@ class MarkdownRenderer:
         if is_stand_in(symbol):
             yield AnswerBlock(f"**Values**\n{_PUT_TOGETHER}", "values")
         elif symbol.enum_items:
-            yield AnswerBlock(f"**Values**\n{_items(symbol.enum_items)}", "values")
+            items = _items(symbol.enum_items, asked=asked.values.get("", ()))
+            yield AnswerBlock(f"**Values**\n{items}", "values")
         if symbol.kind == "socket":
             yield from _listed(f"Others called {symbol.label}", self._namesakes(symbol))
         if symbol.kind != "class":

@@ -27,6 +27,7 @@ from whole import examples
 
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_SHORT
+from kb_build.symbol_lines import written as as_written
 from kb_serve.recognise.removed_symbols import plain_path
 
 if TYPE_CHECKING:
@@ -45,7 +46,9 @@ def test_a_full_path_is_that_symbol_and_its_whole_answer(
     for path in sample:
         answer = kb.query(path)
         assert (answer.kind, answer.hits[0].id, answer.hits[0].kind) == ("schema", path, kind)
-        assert f"`{path}`" in answer.text
+        symbol = reader.symbol(path)
+        assert symbol is not None
+        assert f"`{as_written(symbol)}`" in answer.text
 
 
 @pytest.mark.parametrize("around", ["`{}`", "'{}'", '"{}"', " {} ", "{}?", "{}.", "{}:", "{},", "\n{}\n"])
@@ -553,3 +556,10 @@ def test_names_of_files_are_not_taken_for_code(kb: KnowledgeBase, query: str) ->
 
 def test_an_attribute_that_is_called_as_an_ending_is_known(kb: KnowledgeBase) -> None:
     assert kb.query("brush.blend").hits[0].id == "bpy.types.Brush.blend"
+
+
+@pytest.mark.parametrize(("word", "path"), [("handlers", "bpy.app.handlers"), ("timers", "bpy.app.timers")])
+def test_a_bare_word_may_be_a_module_that_nothing_else_is_called_as(
+    kb: KnowledgeBase, word: str, path: str
+) -> None:
+    assert kb.query(word).hits[0].id == path
