@@ -40,6 +40,7 @@ NODE_FAMILIES = ("ShaderNode", "GeometryNode", "CompositorNode", "FunctionNode",
 _ACTIVE = "bpy.context.object"
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
 SET = "set of enum items"
+NEVER_BY_IDENTIFIER = "identifier-never"
 _STAND_INS = frozenset({"NONE", "DEFAULT", "PLACEHOLDER", "UNSUPPORTED"})
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
@@ -47,8 +48,8 @@ _SHOWN_OTHERS = 4
 _SHOWN_LABELS = 3
 # What operators want of the active object, as ``kb_build/blender/inside/operator_needs.py`` words it.
 _NEEDED = re.compile(
-    r"(?:an active(?: and selected)?|none or any active) object(?P<types>(?:, not)? of type [^ ,]+)?"
-    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and not in all other modes)?"
+    r"(?:an active(?: and selected)? object|any active object or none)(?P<types>(?:, not)? of type [^ ,]+)?"
+    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and only some types in mode [^ ,]+)?"
 )
 _QUOTED = re.compile(r"'(\w+)'")
 # Names by which scripts hold what is reached from the context.
@@ -264,6 +265,21 @@ def taken_where(symbol: Symbol, argument: str) -> dict[str, str]:
     }  # fmt: skip
 
 
+def taken_text(where: str) -> str:
+    """Where a value is taken, as it is said of it: ``taken only by a shader or geometry node tree``."""
+    kind, _, labels = where.partition(" by ")
+    if kind in {"only", "not"} and labels:
+        *names, last = labels.split(", ")
+        more = "" if last != "…" else f", {last}"
+        where = f"{kind} by {_things(names if more else [*names, last])}{more}"
+    return said_taken(where)
+
+
+def said_taken(where: str) -> str:
+    """``taken only by a mesh object``, ``not taken by a sound strip``."""
+    return f"not taken {where.removeprefix('not ')}" if where.startswith("not ") else f"taken {where}"
+
+
 def _by(refusal: Refusal) -> str:
     """``only by a MESH object``, or ``not by a sound strip``: whichever names fewer things."""
     few_take = 0 < len(refusal.taken_by) <= len(refusal.by)
@@ -273,9 +289,10 @@ def _by(refusal: Refusal) -> str:
 def _things(labels: Sequence[str], most: int = _SHOWN_VALUES) -> str:
     """``a poly spline or nurbs spline``, ``a MESH, CURVE or FONT object``: what all end with is said once."""
     shown = list(labels[:most])
-    last = {label.rpartition(" ")[2] for label in labels}
-    if len(last) == 1 and len(shown) > 1:
-        shown[:-1] = [label.rpartition(" ")[0] for label in shown[:-1]]
+    ends = [label.split()[::-1] for label in labels]
+    alike = takewhile(lambda column: len(set(column)) == 1, zip(*(end[:-1] for end in ends), strict=False))
+    if (common := sum(1 for _ in alike)) and len(shown) > 1:
+        shown[:-1] = [" ".join(label.split()[:-common]) for label in shown[:-1]]
     more = ", …" if len(shown) < len(labels) else ""
     return with_article(" or ".join(filter(None, (", ".join(shown[:-1]), shown[-1])))) + more
 
@@ -301,7 +318,7 @@ def _refusal_text(refusal: Refusal) -> str:
     if refusal.values:
         parts.append(f"`{refusal.argument}={'|'.join(map(repr, refusal.values))}`")
     if refusal.by:
-        parts.append(f"taken {_by(refusal)}")
+        parts.append(said_taken(_by(refusal)))
     if refusal.given:
         parts.append("without " + " and ".join(f"`{name}`" for name in refusal.given))
     if refusal.mode:
@@ -393,6 +410,13 @@ def new_subscript(socket: Symbol) -> str:
         side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
         return f'{side}["{socket.label}"]'
     return socket.subscripts[0] if socket.subscripts else ""
+
+
+def written(symbol: Symbol) -> str:
+    """A symbol's path as a script can write it: of a socket that its identifier never gives, by its place."""
+    side = symbol.path[len(symbol.owner) + 1 :].partition("[")[0]
+    is_never_so = NEVER_BY_IDENTIFIER in symbol.flags and f'{side}["{symbol.identifier}"]' in symbol.path
+    return f"{symbol.owner}.{symbol.subscripts[0]}" if is_never_so and symbol.subscripts else symbol.path
 
 
 def subscripts_text(socket: Symbol, most: int | None = None) -> str:

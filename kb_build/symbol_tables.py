@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, field, replace
 from itertools import groupby
 from operator import attrgetter, itemgetter
@@ -15,12 +16,14 @@ from kb_build.symbol_lines import member_line, switches
 from kb_build.usage.examples import SymbolUsage
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import Page, PanelCondition, Symbol
     from kb_build.usage.examples import Uses
 
     Row = tuple[object, ...]
+
+_TWO_ACTIONS = re.compile(r"(?P<first>\w+ing) (?:&|and) (?P<second>\w+ing)(?: (?P<rest>\w+))?")
 
 
 @dataclass(frozen=True, slots=True)
@@ -46,7 +49,9 @@ def symbol_tables(
     """
     names = {row for symbol in symbols for row in symbol_names(symbol)}
     # In the order of their keys: SQLite then fills page after page, and splits none.
-    names = sorted(names.union(row for page in pages for row in page_names(page)))
+    names.update(row for page in pages for row in page_names(page))
+    titles = {name for name, form, _ in names if form == FORM_TOPIC}
+    names = sorted(names.union(action_names(pages, titles)))
     items = sorted((row for symbol in symbols for row in enum_rows(symbol)), key=itemgetter(0, 1, 2))
     records = [pack(to_json(symbol)) if symbol.kind != "class" else b"" for symbol in symbols]
     usage = used()
@@ -94,6 +99,18 @@ def page_names(page: Page) -> Iterator[tuple[str, int, str]]:
     yield key(page.slug.removesuffix("/index").rpartition("/")[2]), FORM_NAME, page.slug
     yield key(page.title), FORM_LABEL, page.slug
     yield topic_key(page.title), FORM_TOPIC, page.slug
+
+
+def action_names(pages: Iterable[Page], titles: Container[str]) -> Iterator[tuple[str, int, str]]:
+    """The topics of pages on two actions: ``Importing & Exporting Files`` is asked for by either word.
+
+    Not by one that is a page's own title; ``titles`` are the keys of these.
+    """
+    for page in pages:
+        both = _TWO_ACTIONS.fullmatch(page.title)
+        for action in (both["first"], both["second"]) if both else ():
+            named = {topic_key(action), topic_key(f"{action} {both['rest'] or ''}")} if both else set[str]()
+            yield from ((name, FORM_TOPIC, page.slug) for name in sorted(named) if name not in titles)
 
 
 def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:

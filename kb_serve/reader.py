@@ -405,6 +405,10 @@ class BaseReader:
         """The classes of whose calls one gives a new instance this name."""
         return [row[0] for row in self.rows("SELECT path FROM creation WHERE instr(call, ?)", f'"{name}"')]
 
+    def made_by_choice(self, choice: str) -> list[tuple[str, str]]:
+        """(class, what makes it) of the classes of which a call makes an instance with this choice."""
+        return self.rows("SELECT path, maker FROM creation WHERE choice = ? ORDER BY path", choice)
+
     def operators_taking(self, argument: str) -> list[str]:
         """Paths of the operators with an argument of that name."""
         sql = "SELECT path FROM symbols WHERE kind = 'operator' AND line GLOB ? ORDER BY path"

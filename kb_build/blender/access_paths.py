@@ -183,6 +183,9 @@ def reached_expressions(
         offer(cost, cls, root)
     for cls, expression in {**_told(graph), **graph.told}.items():
         offer(_TOLD_COST, cls, expression)
+        # What RNA's own way leads to may be None: not each add-on has preferences.
+        for base in list(_lineage(cls, graph))[1:]:
+            offer(_TOLD_COST, base, expression)
     while queue:
         cost, _, cls, expression = heapq.heappop(queue)
         if cls in expressions:

@@ -25,6 +25,7 @@ _DECLARATIONS = (
     *("function", "method", "classmethod", "staticmethod"),
     *("class", "data", "attribute", "property", "exception"),
 )
+_OF_ROWS = (nodes.table, nodes.tgroup, nodes.thead, nodes.tbody, nodes.row, nodes.line_block)
 _REMARKS = {
     "seealso": "See also",
     "versionadded": "Added in",
@@ -36,6 +37,8 @@ _OWN = "docstring-"  # Sphinx has these directives too, in a registry that all o
 _SPHINX = re.compile(rf"^(\s*\.\. )(?={'|'.join((*_DECLARATIONS, *_REMARKS))}::)", re.MULTILINE)
 _CALL = re.compile(r"\w+\s*\(")
 _INCLUDED = re.compile(r"\s*\.\. (?:literal)?include:: *(\S+)")
+# “(optional when size is 2)”, of an argument that the call gives no default.
+_OPTIONAL = re.compile(r"\(optional\b|^Optional\b")
 _CONTINUED = re.compile(r"\s*\\\s*\n\s*")
 _LITERAL = re.compile(r"\bLiteral(\[[^\[\]]*\])")
 _LISTED = re.compile(r"\b(?:enum|string|str) in ([\[{(][^\[\]{}()]*[\]})])", re.IGNORECASE)
@@ -173,6 +176,8 @@ def _block(node: nodes.Node) -> str:  # noqa: PLR0911 - one return a kind of nod
     if isinstance(node, nodes.literal_block) and (included := _INCLUDED.match(node.astext())):
         file = PurePosixPath(included[1])  # not there, but templates are pages
         is_template = file.parent.name == "templates_py"
+        if file.suffix == ".rst":
+            return ""  # a part of the reference's own pages, which nobody can look up
         return f"Example: `templates_py/{file.stem}`" if is_template else f"This includes `{included[1]}`"
     if isinstance(node, nodes.literal_block | nodes.doctest_block):
         return f"```python\n{node.astext()}\n```"
@@ -186,6 +191,13 @@ def _block(node: nodes.Node) -> str:  # noqa: PLR0911 - one return a kind of nod
             for item in node.children
             if item.children
         )
+    if isinstance(node, nodes.field_list):
+        return "\n".join(
+            f"- **{_inline(item.children[0])}**: "
+            + textwrap.indent(_blocks(item.children[-1].children), "  ").lstrip()
+            for item in node.children
+            if item.children
+        )
     if isinstance(node, nodes.Admonition):
         return f"**{_title(node)}:** {_blocks(node.children)}"
     if isinstance(node, nodes.section | nodes.block_quote):
@@ -194,7 +206,14 @@ def _block(node: nodes.Node) -> str:  # noqa: PLR0911 - one return a kind of nod
         return _blocks([child for child in node.children if isinstance(child, nodes.literal_block)])
     if isinstance(node, nodes.comment | nodes.substitution_definition | nodes.target):
         return ""
-    return _inline(node) if node.children else node.astext()
+    return _rows(node) if isinstance(node, _OF_ROWS) else _inline(node) if node.children else node.astext()
+
+
+def _rows(node: nodes.Node) -> str:
+    """A table, or a part of one, with a line for each of its rows; lines that are to be kept as they are."""
+    if isinstance(node, nodes.row):
+        return " | ".join(_blocks(entry.children) for entry in node.children)
+    return "\n".join(text for text in map(_block, node.children) if text)
 
 
 def _title(node: nodes.Admonition) -> str:
@@ -353,8 +372,9 @@ def _parameters(signature: str, fields: _Fields) -> tuple[Parameter, ...]:
         _with_values(
             replace(
                 parameter,
-                description=fields.texts.get(parameter.name, ""),
+                description=(text := fields.texts.get(parameter.name, "")),
                 type=fields.types.get(parameter.name, "") or parameter.type,
+                required=parameter.required and not _OPTIONAL.search(text),
             )
         )
         for parameter in parameters.values()

@@ -8,11 +8,11 @@ that all things have.
 from __future__ import annotations
 
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.index.analysis import key
+from kb_build.index.analysis import key, terms
 from kb_build.symbol_lines import held
 
 if TYPE_CHECKING:
@@ -120,13 +120,24 @@ class _Calls:
         for holder in sorted(self._collections(), key=self._far):
             for cls, creation in (*self._by_collection(holder), *self._by_kind(holder)):
                 known = calls.get(cls)
-                if known is None or known.maker.startswith("bpy.ops."):
+                if (
+                    known is None
+                    or known.maker.startswith("bpy.ops.")
+                    or self._holds_alone(holder, cls, known)
+                ):
                     calls[cls] = creation
         calls.update(self._of_interfaces())
         for name, (maker, call) in _METHODS.items():
             if {maker, f"{TYPES}{name}"} <= self._symbols.keys():
                 calls.setdefault(f"{TYPES}{name}", Creation(call, maker))
         yield from calls.items()
+
+    def _holds_alone(self, holder: Symbol, cls: str, known: Creation) -> bool:
+        """Whether a class is reached through a collection, not through that of a known call: IK through a bone's."""
+        reached = held(self._reached.get(cls, ""))
+        known_holder = known.call.partition("(")[0].rpartition(".")[0]
+        is_in = reached.startswith(f"{self._owner(holder)}.{holder.name}[")
+        return is_in and not reached.startswith(f"{known_holder}[")
 
     def _collections(self) -> Iterator[Symbol]:
         for symbol in self._symbols.values():
@@ -164,10 +175,13 @@ class _Calls:
         are_classes = bool(items) and all(TYPES + item in self._symbols for item in items)
         by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"} or are_classes)
         block = next((name for name in _BLOCKS if head.startswith(f"{name}.")), "")
-        for cls in self._descendants(base.path):
+        descendants = list(self._descendants(base.path))
+        labels = Counter(key(cls.label) for cls in descendants)
+        for cls in descendants:
             if base.path == _NODE and not cls.trees:
                 continue  # RNA has the class, and every tree refuses it
-            if choice := cls.name if by_name else _choice(cls, base, items):
+            alone = labels[key(cls.label)] == 1
+            if choice := cls.name if by_name else _choice(cls, base, items, alone=alone):
                 given = self._arguments(maker, cls, choice, block=block)
                 yield cls.path, Creation(f"{head}({given})", maker.path, choice)
         # Where a type must be told, only data-blocks are also made of the base class, and what has no kinds of its own.
@@ -281,8 +295,11 @@ def _tree_taking(socket: EnumItem) -> str:
     return f"{_USUAL_TREE if takes_usual else min(kinds)}_tree"
 
 
-def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:
-    """The item of the maker's enumeration that stands for a subclass: ``CLOTH`` for ClothModifier."""
+def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str], *, alone: bool = False) -> str:
+    """The item of the maker's enumeration that stands for a subclass: ``CLOTH`` for ClothModifier.
+
+    ``alone``: no other subclass has its label.
+    """
     name = key(cls.name.removesuffix(base.name).removeprefix(base.name))
     label = key(cls.label.removesuffix(base.label))
     by_identifier = {key(identifier): identifier for identifier in items}
@@ -291,9 +308,13 @@ def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str]) -> str:
             return by_identifier[wanted]
     # Several classes may have one label, as the modifiers of meshes and of drawings.
     for identifier, text in items.items():
-        if text and key(text) in {label, key(cls.label)} and key(identifier) in key(cls.name):
+        is_called_so = text and key(text) in {label, key(cls.label)}
+        if is_called_so and (alone or key(identifier) in key(cls.name)):
             return identifier
-    return ""
+    # The item may say more: Inverse Kinematics makes a Kinematic Constraint.
+    own = set(terms(cls.label.removesuffix(base.label)))
+    fuller = [identifier for identifier, text in items.items() if own and own < set(terms(text))]
+    return fuller[0] if alone and len(fuller) == 1 else ""
 
 
 def _between(name: str, base: str) -> str:

@@ -11,15 +11,16 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.analysis import analyse
 from kb_build.flow.trees import children
-from kb_build.flow.types import UNKNOWN, Instance, Operator
+from kb_build.flow.types import UNKNOWN, ClassObject, Function, Instance, Operator, Resolution
+from kb_build.usage.definitions import decorated_function, derived_class
 from kb_build.usage.scripts import PRESETS
+from kb_build.usage.unfit_calls import unfit_statements
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.api import Api
-    from kb_build.flow.types import Resolution
     from kb_build.records import PanelCondition
 
 MOST_EXAMPLES = 3  # of one symbol
@@ -42,6 +43,9 @@ _BUILTINS = frozenset(dir(builtins)) | {
 
 _LAYOUT = Instance("bpy.types.UILayout")
 _OF_CONTEXT = re.compile(r"\bbpy\.context\.\w+")
+_CONTEXTS = ("bpy.context.", "bpy.types.Context.")
+_OF_EDITORS = 20.0  # what is added to the cost of code that runs in some editors only
+_OWN_BASE = 3.0  # the same for a class that derives from others of its script, too
 
 # How clearly a use shows its symbol: 0 is best. That a panel or a menu shows it does not tell how it is used.
 _COSTS = {
@@ -49,6 +53,8 @@ _COSTS = {
     "call": 0.0,
     "item": 0.0,
     "made": 0.5,
+    "derived": 0.0,
+    "decorates": 0.0,
     "attribute": 3.0,
     "name": 6.0,
     "text": 1.5,
@@ -115,36 +121,61 @@ def analysed_uses(analysis: Analysis, code: str, file: str, api: Api, cost: floa
     if analysis.tree is None:
         return {}
     script = _Script(code, file, analysis, cost, api)
+    unfit = unfit_statements(analysis, api.symbols)
     found: dict[str, Uses] = {}
     candidates: dict[str, list[tuple[float, ast.stmt]]] = defaultdict(list)
-    for path, kind, share, resolution in _used(analysis):
+    for path, kind, share, resolution in _used(analysis, api):
         uses = found.setdefault(path, Uses(files=1))
-        if uses.count < _MOST_COUNTED:
+        if uses.count < _MOST_COUNTED and (
+            kind not in {"derived", "decorates"} or not uses.count
+        ):  # its base counts already
             uses.count += 1
         statement = resolution.statement
-        if statement is not None and kind in _COSTS:
+        if statement is not None and kind in _COSTS and statement not in unfit:
             step = _COSTS[kind] + 3.0 * (share - 1) + (0.0 if resolution.sure else 2.0)
+            step += script.editor_cost(statement)
             candidates[path].append((step, statement))
     for path, rows in candidates.items():
         found[path].examples = script.examples(rows)
     return found
 
 
-def _used(analysis: Analysis) -> Iterator[tuple[str, str, int, Resolution]]:
+def _used(analysis: Analysis, api: Api) -> Iterator[tuple[str, str, int, Resolution]]:
     """(symbol, kind of use, number of symbols it may be, resolution) for everything that a script uses."""
     called = {node.func for node in analysis.resolutions if isinstance(node, ast.Call)}
+    owners = {node.value for node in analysis.types if isinstance(node, ast.Attribute)}
     for node, resolution in analysis.resolutions.items():
         kind = resolution.kind
         if kind in {"keyword", "value", "compared"} or (kind == "attribute" and node in called):
             continue
         for path in resolution.symbols:
-            yield path, kind, len(resolution.symbols), resolution
+            # A class that is a value among others does not show how it is used.
+            is_value = kind == "attribute" and node not in owners and api.is_class(path)
+            yield path, "value" if is_value else kind, len(resolution.symbols), resolution
         if isinstance(node, (ast.Call, ast.Attribute)) and kind in {"call", "attribute"}:
             made = analysis.types.get(node)
             if isinstance(made, Instance) and made.sure and made.cls.startswith("bpy.types."):
                 yield made.cls, "made" if kind == "call" else "given", 1, resolution
             elif isinstance(made, Operator):
                 continue
+    yield from _defined(analysis)
+
+
+def _defined(analysis: Analysis) -> Iterator[tuple[str, str, int, Resolution]]:
+    """The same of the classes and functions that a script defines: what they derive from, and what decorates them."""
+    for definition in analysis.classes:
+        for base in definition.bases:
+            kind = analysis.types.get(base)
+            if isinstance(kind, ClassObject):
+                yield kind.cls, "derived", 1, Resolution(base, "derived", "", statement=definition)
+    for definition in analysis.functions:
+        if not isinstance(definition, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            continue
+        for decorator in definition.decorator_list:
+            kind = analysis.types.get(decorator)
+            if isinstance(kind, (ClassObject, Function)):
+                path = kind.cls if isinstance(kind, ClassObject) else kind.path
+                yield path, "decorates", 1, Resolution(decorator, "decorates", "", statement=definition)
 
 
 class _Script:
@@ -163,6 +194,7 @@ class _Script:
         # (function, name) → line, block and text of each of its bindings
         self._bound: dict[tuple[int, str], list[tuple[int, int, str]]] = defaultdict(list)
         self._texts: dict[ast.stmt, tuple[float, int, str] | None] = {}
+        self._editor_lines = set(self._lines_of_editors())
         if analysis.tree is not None:
             self._index(analysis.tree.body, 0)
 
@@ -196,6 +228,16 @@ class _Script:
     def _bind(self, scope: int, block: int, name: str, line: int) -> None:
         self._bound[scope, name].append((line, block, self._lines[line - 1]))
 
+    def _lines_of_editors(self) -> Iterator[int]:
+        """The lines that read a member of the context that only some editors provide."""
+        for node, resolution in self._analysis.resolutions.items():
+            if isinstance(node, ast.Attribute) and any(map(self._is_of_editors, resolution.symbols)):
+                yield node.lineno
+
+    def editor_cost(self, statement: ast.stmt) -> float:
+        """What is added to the cost of a statement for the members of the context that a script does not have."""
+        return _OF_EDITORS if statement.lineno in self._editor_lines else 0.0
+
     def examples(self, rows: list[tuple[float, ast.stmt]]) -> list[Example]:
         """The clearest of a symbol's uses: (cost of the way it is used, statement)."""
         found: list[Example] = []
@@ -211,39 +253,56 @@ class _Script:
 
     def _text(self, statement: ast.stmt) -> tuple[float, int, str] | None:
         """(cost, line, code) of a statement, with the binding of the name that it begins with."""
+        if isinstance(statement, (ast.ClassDef, ast.FunctionDef, ast.AsyncFunctionDef)):
+            return self._definition_text(statement)
         code = self._quoted(statement)
         if code is None:
             return None
         names = [node for node in _names(statement) if node.id not in _BUILTINS]
         first = statement.lineno
-        unknown = 0
+        unknown, of_editors = 0, False
         layouts = {node.id for node in names if self._analysis.types.get(node) == _LAYOUT}
+        bound: list[tuple[int, str]] = []
         for name in dict.fromkeys(node.id for node in names if isinstance(node.ctx, ast.Load)):
             if name in layouts:
                 continue  # everyone knows what a layout is
-            line = self._binding(statement, name)
-            lines = code.count("\n") + 1
-            if line is not None and lines < _MOST_LINES and line[1] not in code:
-                is_loop = line[1].startswith("for ")
-                code = f"{line[1]}\n{_indented(code) if is_loop else code}"
-                first = min(first, line[0])
-            elif line is None and any(
-                self._analysis.types.get(n, UNKNOWN) is UNKNOWN for n in names if n.id == name
-            ):
+            if (line := self._binding(statement, name)) is not None:
+                bound.append(line)
+            elif any(self._analysis.types.get(n, UNKNOWN) is UNKNOWN for n in names if n.id == name):
                 unknown += 1
-            elif line is None:
+            else:
                 unknown += 0.4
-        if self._file.startswith(PRESETS) and any(map(self._is_of_editors, _OF_CONTEXT.findall(code))):
+        # The nearest first: what a loop binds may be used by what is bound in it.
+        for number, line in sorted(bound, reverse=True):
+            if code.count("\n") + 1 < _MOST_LINES and line not in code:
+                code = f"{line}\n{_indented(code) if line.startswith('for ') else code}"
+                first = min(first, number)
+                of_editors |= number in self._editor_lines
+        is_preset = self._file.startswith(PRESETS)
+        if (is_preset and any(map(self._is_of_editors, _OF_CONTEXT.findall(code)))) or not _is_code(code):
             return None
         cost = 1.2 * unknown + len(code) / 60 + 0.3 * code.count("\n")
         cost += 1.0 if "self." in code else 0.0
         cost += 1.5 if isinstance(statement, (ast.If, ast.While, ast.Return)) else 0.0
         if isinstance(statement, ast.Assign) and _is_literal(statement.value):
             cost += 2.0 if _is_none(statement.value) else -1.0  # it does not show what is taken
-        return cost, first, code
+        return cost + (_OF_EDITORS if of_editors else 0.0), first, code
+
+    def _definition_text(
+        self, definition: ast.ClassDef | ast.FunctionDef | ast.AsyncFunctionDef
+    ) -> tuple[float, int, str] | None:
+        is_class = isinstance(definition, ast.ClassDef)
+        code = derived_class(definition, self._lines) if is_class else decorated_function(definition)
+        if code is None:
+            return None
+        bases = definition.bases if is_class else ()
+        is_alone = all(isinstance(self._analysis.types.get(base), ClassObject) for base in bases)
+        return len(code) / 300 + (0.0 if is_alone else _OWN_BASE), definition.lineno, code
 
     def _is_of_editors(self, member: str) -> bool:
-        """Whether only some editors provide a member of ``bpy.context``: a preset is run from a panel of such a one."""
+        """Whether only some editors provide a member of the context: a preset is run from a panel of such a one."""
+        if not member.startswith(_CONTEXTS):
+            return False
         symbol = self._api.symbols.symbol(member)
         origins = {flag for flag in symbol.flags if flag.startswith("from:")} if symbol else set[str]()
         return bool(origins) and "from:screen" not in origins
@@ -260,7 +319,9 @@ class _Script:
         while body and lines and (not lines[-1].strip() or lines[-1].lstrip().startswith("#")):
             lines.pop()
         if len(lines) <= _MOST_LINES and all(len(line.strip()) <= _LONGEST_LINE for line in lines):
-            return _dedented(lines)
+            # What a call returns is to be returned: ``return context.window_manager.invoke_popup(self)``.
+            is_value = isinstance(statement, ast.Return) and not isinstance(statement.value, ast.Call)
+            return _alone(_dedented(lines), has_body=bool(body), is_value=is_value)
         if body or len(lines) > 4 * _MOST_LINES:
             return None
         text = ast.unparse(statement)
@@ -304,6 +365,21 @@ def _is_literal(node: ast.expr) -> bool:
 
 def _is_none(node: ast.expr) -> bool:
     return isinstance(node, ast.Constant) and node.value is None
+
+
+def _is_code(code: str) -> bool:
+    """Whether Python can read some code by itself."""
+    try:
+        ast.parse(code)
+    except (SyntaxError, ValueError):
+        return False
+    return True
+
+
+def _alone(code: str, *, has_body: bool, is_value: bool) -> str:
+    """The lines of a statement as code that Python can read without what stands above and below them."""
+    code = code.removeprefix("return " if is_value else "").removeprefix("el" if code[:5] == "elif " else "")
+    return f"{code}\n    ..." if has_body else code
 
 
 def _dedented(lines: list[str]) -> str:

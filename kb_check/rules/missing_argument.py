@@ -47,8 +47,13 @@ def _check(script: Script) -> Iterator[Finding]:
         unreliable = path.startswith(_SEVERAL_SIGNATURES) or callee.is_open or not told
         if callee.symbol.kind != "function" or call.has_unpacking or unreliable:
             continue
-        given = call.given | _may_be_left_out(script, call)
-        missing = [p.name for p in callee.parameters if p.required and p.name not in given]
+        needed = _needed(script, call)
+        left_out = _MAY_BE_LEFT_OUT.get(path, set()) - needed
+        missing = [
+            p.name
+            for p in callee.parameters
+            if (p.required or p.name in needed) and p.name not in call.given and p.name not in left_out
+        ]
         if missing:
             names = ", ".join(f"`{name}`" for name in missing)
             yield Finding(
@@ -58,12 +63,11 @@ def _check(script: Script) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _may_be_left_out(script: Script, call: CallSite) -> set[str]:
-    path = call.callee.symbol.path
-    optional = _MAY_BE_LEFT_OUT.get(path, set())
-    name, other, values = _NEEDED_WITH.get(path, ("", "", set[int]()))
-    node = call.argument(other)
-    return optional - {name} if node is not None and number(script, node) in values else optional
+def _needed(script: Script, call: CallSite) -> set[str]:
+    """The arguments that a call needs for the value of another one, though others of its function's do not."""
+    name, other, values = _NEEDED_WITH.get(call.callee.symbol.path, ("", "", set[int]()))
+    node = call.argument(other) if other else None
+    return {name} if node is not None and number(script, node) in values else set()
 
 
 RULE = Rule("missing-argument", "error", "An argument that a call needs and does not have", _check)

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import terms
 from kb_build.records import NOT_TAKEN
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import EnumItem, Symbol
 
@@ -61,6 +62,28 @@ def asked_values(symbol: Symbol, asked: Sequence[str]) -> list[AskedValue]:
     told = _Told(asked, left)
     found = [*told.arguments(symbol), *told.values(symbol.enum_items, "")]
     return sorted(found, key=lambda value: (-value.words, not value.in_order))[:MOST]
+
+
+class AskedOf(NamedTuple):
+    """What a question asks of a symbol: the arguments that are told already, and values (as Python source) by argument.
+
+    The argument of the symbol's own values is empty.
+    """
+
+    told: frozenset[str] = frozenset()
+    values: Mapping[str, frozenset[str]] = MappingProxyType({})
+
+
+ASKED_NOTHING = AskedOf()
+
+
+def asked_of(found: Iterable[AskedValue], told: Iterable[str] = ()) -> AskedOf:
+    """The same from what was found in a question; ``told`` are the arguments that are told already."""
+    values: dict[str, set[str]] = {}
+    for value in found:
+        if value.text != value.argument:
+            values.setdefault(value.argument, set()).add(value.text.removeprefix(f"{value.argument}="))
+    return AskedOf(frozenset(told), {name: frozenset(each) for name, each in values.items()})
 
 
 class _Told:

@@ -10,8 +10,16 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Literal
 
 from kb_build.records import PAGE_SOURCES
-from kb_serve.answer.asked_values import asked_values, asked_words, may_have_more
+from kb_build.symbol_lines import written
+from kb_serve.answer.asked_values import (
+    ASKED_NOTHING,
+    asked_of,
+    asked_values,
+    asked_words,
+    may_have_more,
+)
 from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
+from kb_serve.answer.made_things import made_with
 from kb_serve.answer.next_call import next_call
 from kb_serve.answer.practice import Practice
 from kb_serve.answer.render import MarkdownRenderer, first_sentence, said_of
@@ -24,7 +32,7 @@ from kb_serve.recognise.several import parts_of
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_serve.answer.asked_values import AskedValue
+    from kb_serve.answer.asked_values import AskedOf, AskedValue
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.several import QuestionPart
 
@@ -140,9 +148,11 @@ class AnswerComposer:
             told = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
             return _draft("none", (), notes, (told,))
         if ranking.named:
-            asked = self._renderer.arguments(hits[0].id, ranking.recognition.arguments.get(hits[0].id, ()))
+            names = ranking.recognition.arguments.get(hits[0].id, ())
+            asked = [*self._renderer.arguments(hits[0].id, names)]
             sockets = self._renderer.sockets(hits[0].id, text)
-            blocks = (*asked, *sockets, *self._whole(hits[0], rows[0]), *self._others(hits[1:], rows[1:]))
+            whole = self._whole(hits[0], rows[0], asked_of((), names if asked else ()))
+            blocks = (*asked, *sockets, *whole, *self._others(hits[1:], rows[1:]))
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
         return _draft("candidates", hits, notes, self._found(hits, rows, asked_words(text)))
 
@@ -150,16 +160,24 @@ class AnswerComposer:
         self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str]
     ) -> Iterator[AnswerBlock]:
         """The best hit in brief, and the others. A page says how, but code needs names: they follow its heading."""
-        excerpt = self._excerpt(hits[0], rows[0])
+        found = self._asked(hits[0], asked)
+        names = {value.argument for value in found if value.argument}
+        told = [*self._renderer.arguments(hits[0].id, names, unless_all_fit=True)]
+        excerpt = self._excerpt(hits[0], rows[0], asked_of(found, names if told else ()))
         others = [*self._others(hits[1:], rows[1:], asked)]
         yield next(excerpt)
-        names = {value.argument for value in self._asked(hits[0], asked)}
-        yield from self._renderer.arguments(hits[0].id, names, unless_all_fit=True)
+        yield from told
+        yield from self._made(hits[0], asked_of(found))
         if _is_page(hits[0]):
             yield from (block for block in others if block.name == _NAMES)
             others = [block for block in others if block.name != _NAMES]
         yield from excerpt
         yield from others
+
+    def _made(self, hit: Hit, asked: AskedOf) -> Iterator[AnswerBlock]:
+        """What the best hit makes with the values that are asked for."""
+        symbol = self._reader.symbol(hit.id) if asked.values else None
+        return made_with(symbol, asked.values, self._reader) if symbol else iter(())
 
     def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> _Draft:
         """The names and the page for each part of a question, in brief."""
@@ -221,19 +239,19 @@ class AnswerComposer:
 
     # The text
 
-    def _whole(self, hit: Hit, row: RankedId) -> Iterator[AnswerBlock]:
+    def _whole(self, hit: Hit, row: RankedId, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
         if self._reader.is_page(hit.id):
             yield from self._renderer.page(hit.id, row.anchor)
         elif symbol := self._reader.symbol(hit.id):
-            yield from self._renderer.symbol(symbol)
+            yield from self._renderer.symbol(symbol, asked)
 
-    def _excerpt(self, hit: Hit, row: RankedId) -> Iterator[AnswerBlock]:
+    def _excerpt(self, hit: Hit, row: RankedId, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
         """The beginning of the best hit: its description, or the heading and the section that matches, the members
         that do, and as much more as is short. Sections that only say in which panel something is are not counted, nor
         are the names that stand with labels: they must not take the place of what was asked for.
         """
         said = 0
-        for number, block in enumerate(self._whole(hit, row)):
+        for number, block in enumerate(self._whole(hit, row, asked)):
             size = tokens(block.plain or block.text)
             if number > 1 and said + size > _EXCERPT_TOKENS and said > _LEAST_SAID:
                 return
@@ -275,13 +293,18 @@ class AnswerComposer:
                 if entry.kind in {"operator", "function", "class"}
                 else entry.line
             )
-            name = hit.id[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
+            path = self._written(hit.id) if entry.kind == "socket" else hit.id
+            name = path[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
             text = text.removeprefix(f"`{name}`").strip(", ") or self._instead_of_words(entry)
             nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
-            return clip(f"`{owner + entry.name if owner else hit.id}` {text}", _LINE_TOKENS) + nearest
+            return clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS) + nearest
         page = self._reader.page_entry(hit.id)
         text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
+
+    def _written(self, path: str) -> str:
+        symbol = self._reader.symbol(path)
+        return written(symbol) if symbol else path
 
     def _asked(self, hit: Hit, asked: Sequence[str]) -> list[AskedValue]:
         """The arguments and values of a hit that the question speaks of."""
@@ -300,6 +323,9 @@ class AnswerComposer:
         if entry.kind != "class":
             return entry.line if "(" in entry.line else ""
         members = self._reader.members(entry.path)
+        uses = [] if members else self._reader.uses(entry.path)
+        if uses and uses[0].code.startswith("@"):
+            return f"a decorator of functions: `{uses[0].code.partition(chr(10))[0]}`"
         label = f"{entry.label}, " if entry.label not in {"", entry.name} else ""
         return f"{label}a class with {len(members)} members"
 

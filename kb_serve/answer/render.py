@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import ast
 import re
+import textwrap
+from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -25,15 +27,21 @@ from kb_build.symbol_lines import (
     operator_needs,
     passage_text,
     refusal_lines,
+    said_taken,
     subscripts_text,
+    taken_text,
     taken_where,
     type_text,
     version_meant,
+    written,
 )
+from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.empty_pointers import empty_pointer_to
 from kb_serve.answer.panel_lines import panel_lines
+from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
+from kb_serve.answer.swizzles import without_swizzles
 from kb_serve.reader import STRUCT, TYPES, BaseReader, PageEntry, SymbolEntry
 from kb_serve.signatures import signature_arguments
 
@@ -41,6 +49,7 @@ if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from kb_build.records import EnumItem, Parameter, Section, Symbol
+    from kb_serve.answer.asked_values import AskedOf
 
 _NODE = f"{TYPES}Node"
 _PUT_TOGETHER = (
@@ -67,6 +76,7 @@ _SHOWN_FLAGS = (
     "classmethod",
     "hidden-by-default",
 )
+_PARAGRAPH = "\n\n"
 _BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
 _FEW_PARAMETERS = 8
 _BROWSER_ALWAYS = "filter_folder"  # every operator that opens the file browser has it
@@ -116,17 +126,29 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield "shown when " + " and ".join(symbol.modes)
 
 
-def _items(items: Sequence[EnumItem], taken: Mapping[str, str] | None = None) -> str:
-    """The values of an enumeration; ``taken``: where else than the items say."""
+def _items(
+    items: Sequence[EnumItem], taken: Mapping[str, str] | None = None, asked: Collection[str] = ()
+) -> str:
+    """The values of an enumeration; ``taken``: where else than the items say.
+
+    Of those besides the ``asked`` ones (as Python source), if there are such, the identifiers alone.
+    """
     lines: list[str] = []
+    others: list[str] = []
     for item in items:
         if item.where == NOT_TAKEN:
             continue
+        if asked and repr(item.identifier) not in asked:
+            others.append(f"`{item.identifier!r}`")
+            continue
         name = item.name if item.name != item.identifier else ""
         text = " — ".join(filter(None, (name, item.description)))
-        where = item.where or (taken or {}).get(item.identifier, "")
-        where = f" (taken {where})" if where else ""
+        among = (taken or {}).get(item.identifier, "")
+        where = taken_text(item.where) if item.where else among and said_taken(among)
+        where = f" ({where})" if where else ""
         lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else "") + where)
+    if others:
+        lines.append(f"- others: {', '.join(others)}")
     if refused := [f"`{item.identifier!r}`" for item in items if item.where == NOT_TAKEN]:
         lines.append(f"- listed by RNA, taken {NOT_TAKEN}: {', '.join(refused)}")
     return "\n".join(lines)
@@ -177,7 +199,8 @@ def _parameter_line(
     noted = ", ".join(note for note in notes if note)
     text = f"{head} ({noted})" if noted else head
     if parameter.description:
-        text += f": {parameter.description}"
+        said = parameter.description  # its paragraphs belong to the item of the list
+        text += f": {textwrap.indent(said, '  ').lstrip() if _PARAGRAPH in said else said}"
     elif parameter.label:
         text += f": {parameter.label}"
     if parameter.values_asked:
@@ -193,8 +216,9 @@ def _values(identifiers: Sequence[str]) -> str:
     return ", ".join(map(repr, identifiers[:_NAMED_ITEMS])) + more
 
 
-def _listed(title: str, entries: Iterable[SymbolEntry]) -> Iterator[AnswerBlock]:
-    lines = ["- " + entry.line for entry in entries]
+def _listed(title: str, entries: Iterable[SymbolEntry], last: str = "") -> Iterator[AnswerBlock]:
+    """The lines of some symbols below a title, and a ``last`` one if there is any."""
+    lines = ["- " + entry.line for entry in entries] + ([last] if last else [])
     if lines:
         yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), title.lower())
 
@@ -242,8 +266,27 @@ def _parameter_lines(symbol: Symbol, parameters: Iterable[Parameter]) -> list[st
             of_function=of_function,
             refused=never_taken(symbol, item.name),
         )
+        + _taken(symbol, item)
         for item in parameters
     ]
+
+
+def _taken(symbol: Symbol, parameter: Parameter) -> str:
+    """Which values of an argument only some things take, where no list of its values says it."""
+    if _has_list(symbol, parameter):
+        return ""
+    found: dict[str, list[str]] = defaultdict(list)
+    for value, where in taken_where(symbol, parameter.name).items():
+        found[where].append(value)
+    return "".join(f"\n  {said_taken(where)}: {_values(values)}" for where, values in found.items())
+
+
+def _has_list(symbol: Symbol, parameter: Parameter) -> bool:
+    """Whether the values of an argument are listed one by one."""
+    items = () if parameter.name in _of_file_browser(symbol) else parameter.enum_items
+    return len(items) > _NAMED_ITEMS or (
+        len(items) > 3 and any(item.description or item.where for item in items)
+    )
 
 
 def _kept_in(symbol: Symbol) -> str:
@@ -251,25 +294,30 @@ def _kept_in(symbol: Symbol) -> str:
     return " a dict with these keys" if symbol.owner == _BMESH_OPERATORS else ""
 
 
-def _parameters(symbol: Symbol) -> Iterator[AnswerBlock]:
+def _parameters(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
     aside = _of_file_browser(symbol)
     if symbol.parameters:
-        lines = _parameter_lines(symbol, [item for item in symbol.parameters if item.name not in aside])
+        left_out = {*aside, *asked.told}
+        lines = _parameter_lines(symbol, [item for item in symbol.parameters if item.name not in left_out])
         if aside:
             lines.append(f"- of the file browser; a script leaves them out: {_names(aside)}")
-        yield AnswerBlock("**Parameters**\n" + "\n".join(lines), "parameters")
+        title = "Other parameters" if asked.told else "Parameters"
+        if lines:
+            yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), "parameters")
     if symbol.returns:
         lines = "\n".join(map(_parameter_line, symbol.returns))
         yield AnswerBlock(f"**Returns**{_kept_in(symbol)}\n{lines}", "returns")
     if lines := "\n".join(f"- {line}" for line in refusal_lines(symbol)):
         yield AnswerBlock(f"**Refused, of all that was tried**\n{lines}", "refused calls")
     for parameter in symbol.parameters:
-        items = () if parameter.name in aside else parameter.enum_items
-        if len(items) > _NAMED_ITEMS or (
-            len(items) > 3 and any(item.description or item.where for item in items)
-        ):
+        if _has_list(symbol, parameter):
+            wanted = asked.values.get(parameter.name, ())
+            listed = [item for item in parameter.enum_items if repr(item.identifier) in wanted]
+            # The argument's own line names the others.
+            shown = listed if listed and len(parameter.enum_items) <= _NAMED_ITEMS else parameter.enum_items
+            items = _items(shown, taken_where(symbol, parameter.name), wanted)
             yield AnswerBlock(
-                f"**Values of `{parameter.name}`**\n{_items(items, taken_where(symbol, parameter.name))}",
+                f"**Values of `{parameter.name}`**\n{items}",
                 f"values of {parameter.name}",
             )
 
@@ -285,10 +333,15 @@ class MarkdownRenderer:
 
     reader: BaseReader
 
-    def symbol(self, symbol: Symbol) -> Iterator[AnswerBlock]:
-        """A symbol: a class with a list of its members, an operator or function with its parameters."""
+    def symbol(self, symbol: Symbol, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
+        """A symbol: a class with a list of its members, an operator or function with its parameters.
+
+        What is ``asked`` of it comes before the rest, or alone.
+        """
         yield AnswerBlock(self._head(symbol), "description")
-        used = AnswerBlock(self.used(symbol.path), "a use in Blender's scripts")
+        used = AnswerBlock(
+            use_text(symbol.path, self._reached(symbol), self.reader), "a use in Blender's scripts"
+        )
         if symbol.kind == "class":
             members = list(self.reader.members(symbol.path).values())
             pairs = any(entry.name == _PAIRS for entry in members)
@@ -300,7 +353,7 @@ class MarkdownRenderer:
                 yield used
             yield from self._class(symbol.path, members)
         elif symbol.kind in {"operator", "function"}:
-            yield from _parameters(symbol)
+            yield from _parameters(symbol, asked)
         elif symbol.kind in {"module", "data"} and self.reader.members(symbol.path):
             yield from self._module(symbol)
         elif symbol.collection:
@@ -308,7 +361,8 @@ class MarkdownRenderer:
         if is_stand_in(symbol):
             yield AnswerBlock(f"**Values**\n{_PUT_TOGETHER}", "values")
         elif symbol.enum_items:
-            yield AnswerBlock(f"**Values**\n{_items(symbol.enum_items)}", "values")
+            items = _items(symbol.enum_items, asked=asked.values.get("", ()))
+            yield AnswerBlock(f"**Values**\n{items}", "values")
         if symbol.kind == "socket":
             yield from _listed(f"Others called {symbol.label}", self._namesakes(symbol))
         if symbol.kind != "class":
@@ -386,7 +440,7 @@ class MarkdownRenderer:
         return f"- `{page.slug}` ({page.title}) {first_sentence(said_of(page, self.reader))}".rstrip()
 
     def _head(self, symbol: Symbol) -> str:
-        lines = [f"## `{symbol.path}`"]
+        lines = [f"## `{written(symbol)}`"]
         if symbol.signature and symbol.kind in {"operator", "function", "class"}:
             lines.append(f"```python\n{self._call(symbol)}\n```")
         label = f"**{symbol.label}** — " if symbol.label else ""
@@ -419,17 +473,11 @@ class MarkdownRenderer:
 
     def _place(self, symbol: Symbol) -> Iterator[str]:
         """How to reach and to make the symbol, the version that introduced it, and its manual page."""
-        cls = symbol if symbol.kind == "class" else self.reader.symbol(symbol.owner)
-        reached = cls.reached if cls else ""
-        if reached and symbol.kind in {"class", "property", "socket", "function"}:
-            last = symbol.path[len(symbol.owner) :] if symbol.kind != "class" else ""
-            if symbol.kind == "socket" and (subscript := new_subscript(symbol)):
-                last = f".{subscript}"
-            tail = "(…)" if symbol.kind == "function" else ""
+        if reached := self._reached(symbol):
             if EVALUATED in symbol.flags:
                 yield "filled on evaluated objects only: the original's stays empty, or None"
-                reached = of_evaluated(reached)
-            yield f"reached as `{reached}{last}{tail}`" + (self._empty_before(cls) if cls else "")
+            cls = self._owning_class(symbol)
+            yield f"reached as `{reached}`" + (self._empty_before(cls) if cls else "")
         elif symbol.kind == "context":
             origin = [flag[5:] for flag in symbol.flags if flag.startswith("from:")]
             yield f"provided by: {', '.join(origin)}"
@@ -449,6 +497,22 @@ class MarkdownRenderer:
             yield f"since Blender {version}"
         if page := self.manual_page(symbol.path):
             yield f"manual: {page}"
+
+    def _owning_class(self, symbol: Symbol) -> Symbol | None:
+        return symbol if symbol.kind == "class" else self.reader.symbol(symbol.owner)
+
+    def _reached(self, symbol: Symbol) -> str:
+        """The expression that leads to a symbol from the context; empty where none is known."""
+        cls = self._owning_class(symbol)
+        reached = cls.reached if cls else ""
+        if not reached or symbol.kind not in {"class", "property", "socket", "function"}:
+            return ""
+        last = symbol.path[len(symbol.owner) :] if symbol.kind != "class" else ""
+        if symbol.kind == "socket" and (subscript := new_subscript(symbol)):
+            last = f".{subscript}"
+        if EVALUATED in symbol.flags:
+            reached = of_evaluated(reached)
+        return f"{reached}{last}" + ("(…)" if symbol.kind == "function" else "")
 
     def _key_of(self, cls: str) -> str:
         """The property, not called ``name``, by whose value collections find instances of a class; empty for none."""
@@ -511,16 +575,14 @@ class MarkdownRenderer:
         if text := passage_text(named, found[2]):
             yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")
 
-    def used(self, path: str) -> str:
-        """The clearest use of a symbol in Blender's own scripts; empty for none."""
-        uses = self.reader.uses(path)
-        return f"**Used** ({uses[0].file}:{uses[0].line})\n```python\n{uses[0].code}\n```" if uses else ""
-
     def _class(self, path: str, members: Sequence[SymbolEntry]) -> Iterator[AnswerBlock]:
         lineage = list(self.reader.lineage(path))[1:]
         if lineage:
             yield AnswerBlock("base classes: " + ", ".join(f"`{entry.name}`" for entry in lineage), "bases")
-        yield from _listed("Properties", [entry for entry in members if entry.kind in {"property", "data"}])
+        properties, swizzles = without_swizzles(
+            [entry for entry in members if entry.kind in {"property", "data"}]
+        )
+        yield from _listed("Properties", properties, swizzles)
         yield from _listed("Functions", _functions(members))
         if inherited := list(self._inherited(path, lineage)):
             yield AnswerBlock(f"inherited: + {', '.join(inherited)}", "inherited members")

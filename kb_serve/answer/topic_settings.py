@@ -7,6 +7,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
+from kb_build.symbol_lines import written
 from kb_serve.answer.budget import clip
 from kb_serve.reader import TYPES
 
@@ -77,5 +78,7 @@ class TopicSettings:
             return ""
         holder = self._reader.symbol(entry.owner)
         reached = holder.reached if holder and holder.reached else entry.owner.removeprefix(TYPES)
-        subscript = path[len(entry.owner) + 1 :] + (".default_value" if entry.kind == "socket" else "")
+        symbol = self._reader.symbol(path) if entry.kind == "socket" else None
+        subscript = (written(symbol) if symbol else path)[len(entry.owner) + 1 :]
+        subscript += ".default_value" if symbol else ""
         return f"`{reached}.{subscript} = {value!r}`"

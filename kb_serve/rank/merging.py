@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_serve.rank.deprecated import replacement
 from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
 from kb_serve.recognise.notes import Notes
@@ -99,13 +100,24 @@ class QueryRanker:
             return Ranking(ranked, recognition, named=False, notes=self._notes.on(recognition))
         prose = prose_of(query)
         hits = self.searcher.search(prose, max(limit, _LEAST_HITS), failed=is_message(query), about=about)
-        ranked = self._merged(recognition, hits)
+        ranked = self._replaced(self._merged(recognition, hits))
         if not operators:
             ranked.sort(key=self._far_from_functions)
         ranked[:1] = [self._at_its_section(row, prose) for row in ranked[:1]]
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         named = named and not recognition.is_open
         return Ranking(ranked, recognition, named, self._notes.on(recognition))
+
+    def _replaced(self, ranked: list[RankedId]) -> list[RankedId]:
+        """The same ids, each deprecated one that was found behind what takes its place."""
+        rows: dict[str, RankedId] = {}
+        self._reader.entry.load(row.id for row in ranked if row.why == "found")
+        for row in ranked:
+            other = replacement(row.id, self._reader) if row.why == "found" and row.id not in rows else ""
+            if other:
+                rows.setdefault(other, row._replace(id=other))
+            rows.setdefault(row.id, row)
+        return list(rows.values())
 
     def _far_from_functions(self, row: RankedId) -> int:
         """Where an id stands for who wants no operators: what a script can use instead, what explains it, the rest."""

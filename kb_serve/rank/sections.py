@@ -22,15 +22,16 @@ _K = 1.2
 _B = 0.5  # how much a section's length counts
 _BETTER = 1.5  # how much more than the opening a section must say of the query
 _LEAST = 0.3  # how much of the query it must say
+_NUMBERS = frozenset(terms_of("two three four five six several multiple"))
 _LABELS = re.compile(r"^[ >]*\*\*.*$", re.MULTILINE)
 
 
 def asked_section(page: Page, concepts: Sequence[Concept]) -> str:
     """The anchor of the section that says most of the query, and clearly more than the opening; empty for none.
 
-    Words of the page's own title do not tell its sections apart, and are left out.
+    Words of the page's own title do not tell its sections apart, and are left out, as is how many there are of a thing.
     """
-    own = frozenset(terms_of(page.title))
+    own = _NUMBERS.union(terms_of(page.title))
     weights = {concept.stem: concept.idf for concept in concepts if concept.stem not in own}
     average = sum(len(section.text) for section in page.sections) / len(page.sections) or 1.0
     scores = [_score(section, weights, average) for section in page.sections]

@@ -73,7 +73,7 @@ def _giving(operator: Symbol, needs: str) -> str:
         return "".join(f"`{call}`; " for call in operator_also(operator)) + _in_area(path, areas[0])
     mode = _MODE.search(needs)
     entered = f"`bpy.ops.object.mode_set(mode='{_entered(mode)}')`" if mode else ""
-    if needs.startswith("none or any"):
+    if needs.startswith("any active object or none"):
         return f"{entered} comes before." if entered else ""
     if not needs.startswith("an active"):
         return ""

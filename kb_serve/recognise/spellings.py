@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3
+_NEAR = 2  # dots in the path of a module that a bare word may mean
 _LONG_LABEL = 3  # words, which no question has by chance
 _WHOLE_LABEL = 0.82  # how sure what is called so is then
 _OTHERWISE = 0.85  # how sure a name is that shares only its key with the query
@@ -100,6 +101,8 @@ class Spellings:
             elif form in {FORM_NAME, FORM_LABEL} and not dotted:
                 same = self._last_part(identifier) == text
                 sure = 0.9 if same and plain and "_" in text else _WHOLE_LABEL if is_long else 0.7
+                if same and len(strange) == 1 and self._is_main_module(identifier):
+                    sure = 1.0
                 recognition.add(identifier, sure, "name")
             else:
                 recognition.add(identifier, _WHOLE_LABEL if is_long else 0.75, "title")
@@ -123,6 +126,12 @@ class Spellings:
 
     def _is_removed(self, text: str) -> bool:
         return any(self._reader.removed(path) for path in (text, TYPES + text))
+
+    def _is_main_module(self, identifier: str) -> bool:
+        """Whether an identifier is a module of ``bpy`` that scripts use: ``bpy.app.handlers``."""
+        entry = self._reader.entry(identifier)
+        is_near = identifier.startswith("bpy.") and identifier.count(".") <= _NEAR
+        return is_near and entry is not None and entry.kind == "module"
 
     @staticmethod
     def _last_part(identifier: str) -> str:

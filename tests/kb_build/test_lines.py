@@ -14,7 +14,9 @@ from kb_build.symbol_lines import (
     literal,
     member_line,
     new_subscript,
+    taken_text,
     type_text,
+    written,
 )
 
 if TYPE_CHECKING:
@@ -195,3 +197,29 @@ def test_every_symbol_of_blender_has_a_line_of_its_own(extract: Extract) -> None
         assert type_text(symbol) in text or not symbol.type
         if symbol.kind == "property":
             assert f"`{symbol.name}`" in text
+
+
+@pytest.mark.parametrize(
+    ("where", "expected"),
+    [
+        ("not by texture node tree", "not taken by a texture node tree"),
+        ("only by shader node tree, geometry node tree", "taken only by a shader or geometry node tree"),
+        ("only by mesh object, child of mesh object, …", "taken only by a mesh or child of mesh object, …"),
+        ("only with domain_type='LIQUID'", "taken only with domain_type='LIQUID'"),
+        ("not with type='EMPTY'", "not taken with type='EMPTY'"),
+        ("by FileOutput only with media_type='IMAGE'", "taken by FileOutput only with media_type='IMAGE'"),
+        (NOT_TAKEN, f"taken {NOT_TAKEN}"),
+    ],
+)
+def test_where_a_value_is_taken_is_plain_english(where: str, expected: str) -> None:
+    assert taken_text(where) == expected
+
+
+def test_a_socket_that_its_identifier_never_gives_is_written_by_its_place() -> None:
+    path = f'{OWNER}.inputs["A_Color"]'
+    flags = ("identifier:A_Color", "identifier-never")
+    assert (
+        written(Symbol(path, "socket", OWNER, flags=flags, subscripts=("inputs[6]",))) == f"{OWNER}.inputs[6]"
+    )
+    assert written(Symbol(path, "socket", OWNER, flags=flags[:1], subscripts=("inputs[6]",))) == path
+    assert written(Symbol(f"{OWNER}.x", "property", OWNER)) == f"{OWNER}.x"

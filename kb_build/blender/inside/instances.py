@@ -355,6 +355,8 @@ class Observer:
             for field, value in before.items():
                 if not field.is_chosen or label == field.unasked:
                     self.add(seen.setdefault(field.path, []), plain(value), label)
+            for field in self.unset(struct, before):
+                self.add(seen.setdefault(field.path, []), "", label)
             self.ask(struct, label + place, "")
             self.ask_choices(struct, label + place)
         for struct, before in parts if vary else ():
@@ -388,6 +390,13 @@ class Observer:
             if value != "" or not field.is_enum:
                 values[field] = plain(value) if field.is_many else value
         return values
+
+    def unset(self, struct, before):
+        """The enumerations of an instance that have none of their items, though RNA says which one is the default."""
+        for field in self.layout(struct).enums:
+            is_plain = not (field.is_flag or field.is_chosen) and field.default in field.static
+            if is_plain and field not in before and getattr(struct, field.name, None) == "":
+                yield field
 
     @staticmethod
     def add(rows, value, label):

@@ -6,6 +6,8 @@ says it all. Labels are Blender's own names of the classes; where there are two 
 operator names the operator.
 """
 
+import os
+import tempfile
 import traceback
 
 import bpy
@@ -294,8 +296,22 @@ def rigid_bodies():
         yield f"{kind.lower().replace('_', ' ')} rigid body constraint", obj.rigid_body_constraint
 
 
+def movie_clip():
+    """A clip of one image, of which the file is gone; None where this Blender cannot make one."""
+    image = bpy.data.images.new("new", 8, 8)
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "new.png")
+        try:
+            image.save(filepath=path)
+            return bpy.data.movieclips.load(path)
+        except (TypeError, RuntimeError):
+            return None
+        finally:
+            bpy.data.images.remove(image)
+
+
 def strips():
-    """Every strip that needs no file, with every modifier of strips."""
+    """Every strip, of files that are not there where it has some, with every modifier of strips."""
     scene = bpy.context.scene
     editor = scene.sequence_editor_create()
     workspace = bpy.context.workspace
@@ -327,6 +343,7 @@ def strips():
     for kind, more in (
         ("new_scene", {"scene": bpy.data.scenes.new("new")}), ("new_mask", {"mask": mask}), ("new_meta", {}),
         ("new_image", {"filepath": "none.png"}), ("new_sound", {"filepath": "none.wav"}),
+        ("new_movie", {"filepath": "none.mp4"}), ("new_clip", {"clip": movie_clip()}),
     ):  # fmt: skip
         try:
             strip = getattr(all_strips, kind)(name="new", channel=1, frame_start=20, **more)

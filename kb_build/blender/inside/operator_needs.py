@@ -29,8 +29,7 @@ MOST_CASES = 3
 MOST_MODIFIERS = 6
 MODIFIER = 'obj.modifiers.new("name", '
 THEN = " then "
-ANY_OR_NONE = "none or any active object"
-SOME_MORE = ", and not in all other modes"
+ANY_OR_NONE = "any active object or none"
 NOT_ASKED = frozenset(
     {
         # It crashes Blender 5.0 where no object is active.
@@ -202,7 +201,8 @@ class Objects:
         if always == refused:
             return f"{ANY_OR_NONE}{in_modes(passed, refused)}"
         told = f", not in mode {listed(always)}" if always else ""
-        return f"{ANY_OR_NONE}{told}{SOME_MORE}"
+        some = [mode for mode in refused if mode not in always]
+        return f"{ANY_OR_NONE}{told}, and only some types in mode {listed(some)}"
 
     def needs(self, path):
         """What an operator wants that refuses in an empty scene, in words."""

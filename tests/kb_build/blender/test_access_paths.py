@@ -151,6 +151,7 @@ def reached(base: Path) -> dict[str, str]:
         ("RigidBodyWorld", "bpy.context.scene.rigidbody_world"),
         ("CyclesRenderSettings", "bpy.context.scene.cycles"),
         ("RenderSettings", "bpy.context.scene.render"),
+        ("AddonPreferences", 'bpy.context.preferences.addons["cycles"].preferences'),
         ("ViewLayer", "bpy.context.view_layer"),
         ("MeshUVLoopLayer", "bpy.context.object.data.uv_layers.active"),
         ("ShaderNodeBsdfPrincipled", 'bpy.context.object.active_material.node_tree.nodes["Principled BSDF"]'),

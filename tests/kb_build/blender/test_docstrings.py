@@ -58,6 +58,8 @@ def test_a_full_docstring_is_taken_apart() -> None:
         ("Like so::\n\n   x = 1\n   y = 2", "Like so:\n\n```python\nx = 1\ny = 2\n```"),
         (".. code-block:: python\n\n   x = 1", "```python\nx = 1\n```"),
         (">>> f(1)\n2", "```python\n>>> f(1)\n2\n```"),
+        ("=== ===\nA   B\n=== ===\nC   D\n=== ===", "A | B\nC | D"),
+        ("Before.\n\n.. include:: include__bmesh.rst\n\nAfter.", "Before.\n\nAfter."),
     ],
 )
 def test_markup_becomes_markdown(text: str, expected: str) -> None:
@@ -214,6 +216,19 @@ def test_annotations_give_types(signature: str, types: list[str], result: str | 
     assert [returned.type for returned in parsed.returns] == ([result] if result else [])
 
 
+def test_fields_within_an_argument_are_a_list() -> None:
+    text = ".. function:: f(a)\n\n:arg a: One of:\n\n   :b: The first\n      one.\n   :c: The last."
+    (parameter,) = parse_docstring(text).parameters
+    assert parameter.description == "One of:\n\n- **b**: The first one.\n- **c**: The last."
+
+
+def test_an_argument_that_is_said_to_be_optional_is_not_required() -> None:
+    parsed = parse_docstring(
+        ".. function:: f(a, b, c, /)\n\n:arg a: What.\n:arg b: How (optional when a is 2).\n:arg c: Optional."
+    )
+    assert [parameter.required for parameter in parsed.parameters] == [True, False, False]
+
+
 def test_a_described_result_wins_over_the_annotation() -> None:
     assert parse_docstring("Text.\n\n:rtype: float", "() -> int").returns == (Parameter("", "float"),)
 
@@ -313,7 +328,8 @@ def test_remarks_that_only_sphinx_knows_are_kept(text: str, expected: str) -> No
 
 
 MARKUP = re.compile(
-    r"\bLiteral(?=\[)|^\s*\.\. (\|\w+\| replace:: .*|[\w-]+:: ?(python|glsl)?)|^\s*:(arg|param|type|returns?|rtype)\b"
+    r"\bLiteral(?=\[)|^\s*\.\. include:: \S+\.rst$"
+    r"|^\s*\.\. (\|\w+\| replace:: .*|[\w-]+:: ?(python|glsl)?)|^\s*:(arg|param|type|returns?|rtype)\b"
     r"|:\w+:(?=`)|<https?:[^>]*>|https?:\S+|^BMeshOpFunc |-> dict",
     re.MULTILINE,
 )

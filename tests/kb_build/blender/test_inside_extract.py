@@ -642,7 +642,7 @@ json.dump(answers, open(sys.argv[2], "w"))
 os._exit(0)
 """
 OBJECT, EDIT = "an active object", "an active object of type 'MESH' in mode 'EDIT'"
-OBJECT_MODE = "none or any active object in mode 'OBJECT'"
+OBJECT_MODE = "any active object or none in mode 'OBJECT'"
 ADDS = re.compile(r"an active object with what (.*) adds")
 
 
@@ -689,7 +689,11 @@ def test_operators_that_want_no_object_refuse_only_the_modes_that_they_are_said_
     [
         ("fluid.bake_all", OBJECT),
         ("object.duplicate", OBJECT_MODE),
-        ("wm.append", "none or any active object, not in mode 'EDIT'"),
+        (
+            "object.shade_smooth",
+            "any active object or none, not in mode 'EDIT'|'SCULPT', and only some types in mode 'OBJECT'",
+        ),
+        ("wm.append", "any active object or none, not in mode 'EDIT'"),
         (
             "sequencer.delete",
             "what `scene.sequence_editor_create()`, then `bpy.context.workspace.sequencer_scene = scene` adds",

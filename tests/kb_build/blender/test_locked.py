@@ -28,6 +28,7 @@ strips = bpy.context.scene.sequence_editor_create().strips
 color = strips.new_effect("a", "COLOR", 1, 1, length=9)
 other = strips.new_effect("b", "COLOR", 2, 1, length=9)
 cross = strips.new_effect("c", "CROSS", 3, 1, length=9, input1=color, input2=other)
+movie = strips.new_movie("d", "none.mp4", 4, 1)
 """
 # A statement that is refused, and what makes Blender take it; empty for nothing.
 _LOCKED = [
@@ -49,7 +50,7 @@ def answers(tmp_path_factory: pytest.TempPathFactory) -> dict[str, bool]:
     for statement, freeing, _ in _LOCKED:
         lines += [statement, *([freeing, f"{statement} "] if freeing else [])]
     lines += [
-        "cross.frame_start = 3", "color.frame_start = 3", "empty.use_mesh_mirror_y = True",
+        "movie.frame_start = 3", "cross.frame_start = 3", "color.frame_start = 3", "empty.use_mesh_mirror_y = True",
         "obj.use_mesh_mirror_y = True", "cloth.internal_tension_stiffness = 3", "cloth.bending_model = 'LINEAR'",
         "cloth.internal_tension_stiffness = 3 ",
     ]  # fmt: skip
@@ -76,10 +77,12 @@ def test_a_property_says_on_what_and_in_which_mode_it_is_locked(
 ) -> None:
     assert answers["cross.frame_start = 3"]
     assert not answers["color.frame_start = 3"]
+    assert not answers["movie.frame_start = 3"]
     told = locked_text(symbols["bpy.types.Strip.frame_start"])
     assert told.startswith("can be assigned only on")
     assert "crossfade" not in told
     assert "color" in told
+    assert told.endswith(", movie or movieclip strip")
     assert answers["empty.use_mesh_mirror_y = True"]
     assert not answers["obj.use_mesh_mirror_y = True"]
     assert (

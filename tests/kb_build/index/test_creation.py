@@ -38,6 +38,8 @@ def calls(extract: Extract) -> dict[str, Creation]:
         ("SunLight", "bpy.data.lights.new(\"Sun\", 'SUN')"),
         ("NodesModifier", "obj.modifiers.new(\"GeometryNodes\", 'NODES')"),
         ("TrackToConstraint", "obj.constraints.new('TRACK_TO')"),
+        ("KinematicConstraint", "obj.pose.bones[\"Bone\"].constraints.new('IK')"),
+        ("TextCurve", "bpy.data.curves.new(\"Text\", 'FONT')"),
         ("ActionSlot", 'scene.animation_data.action.slots.new(scene.id_type, "Action slot")'),
         ("Material", 'bpy.data.materials.new("Material")'),
         ("MeshUVLoopLayer", "mesh.uv_layers.new()"),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 from contextlib import closing
 from textwrap import dedent
 from typing import TYPE_CHECKING
@@ -83,7 +84,7 @@ def test_a_button_counts_as_a_use_but_does_not_tell_how_its_symbol_is_used(found
 
 
 def test_every_line_that_is_shown_is_in_the_script(found: dict[str, Uses]) -> None:
-    text = squeezed(SCRIPT)
+    text = squeezed(SCRIPT) + "..."  # which stands for the lines below a head
     examples = [example for uses in found.values() for example in uses.examples]
     assert len(examples) > 20
     for example in examples:
@@ -149,3 +150,99 @@ def test_a_binding_is_shown_only_where_the_run_comes_through_it(base: Path) -> N
     made = 'image = bpy.data.images.new("a", 8, 8)\n'
     assert shown(found, "bpy.types.Image.pixels") == f"{made}image.pixels = values"
     assert shown(found, "bpy.types.Image.filepath") == f"{made}image.filepath = pixels"
+
+
+PANELS = """
+    import bpy
+    from bpy.types import Panel
+
+    class Sidebar(Panel):
+        '''Words'''
+        bl_label = "Demo"  # as it is shown
+        bl_space_type = 'VIEW_3D'
+        bl_region_type = 'UI'
+
+        @classmethod
+        def poll(cls, context):
+            return context.object.type == 'MESH'
+
+        def draw(self, context):
+            field = context.object.field
+            if field.type == 'WIND':
+                field.strength = 1
+            elif field.shape == 'PLANE':
+                field.flow = 2
+            md = context.fluid
+            domain = md.domain_settings
+            bpy.context.object.data.splines[0].bezier_points.add()
+
+    ignored = (bpy.types.Panel, bpy.types.Menu)
+    for modifier in bpy.context.object.modifiers:
+        domain = modifier.domain_settings
+    for dup in bpy.context.evaluated_depsgraph_get().object_instances:
+        shown = dup.instance_object
+        print(shown.name, dup.matrix_world)
+"""
+
+
+@pytest.fixture(scope="module")
+def of_panels(base: Path) -> Iterator[dict[str, Uses]]:
+    with closing(BaseSymbols(base)) as symbols:
+        yield uses_in(dedent(PANELS), "a/script.py", Api(symbols), (5, 1, 0))
+
+
+def test_a_class_is_shown_where_another_derives_from_it_and_not_as_a_value(
+    of_panels: dict[str, Uses],
+) -> None:
+    assert shown(of_panels, "bpy.types.Panel") == dedent("""\
+        class Sidebar(Panel):
+            bl_label = "Demo"
+            bl_space_type = 'VIEW_3D'
+            bl_region_type = 'UI'
+
+            def draw(self, context): ...""")
+    assert (of_panels["bpy.types.Menu"].count, of_panels["bpy.types.Menu"].examples) == (1, [])
+
+
+def test_every_example_can_be_read_by_itself(of_panels: dict[str, Uses]) -> None:
+    for uses in of_panels.values():
+        for example in uses.examples:
+            ast.parse(example.code)
+    field = "field = context.object.field\n"
+    assert shown(of_panels, "bpy.types.FieldSettings.shape") == (
+        f"{field}if field.shape == 'PLANE':\n    ..."
+    )
+    assert shown(of_panels, "bpy.types.Object.type") == "context.object.type == 'MESH'"
+
+
+def test_a_call_without_what_its_function_requires_is_no_example(of_panels: dict[str, Uses]) -> None:
+    for path in ("bpy.types.SplineBezierPoints.add", "bpy.types.Spline.bezier_points"):
+        assert (of_panels[path].count, of_panels[path].examples) == (1, [])
+
+
+def test_what_runs_in_some_editors_only_comes_last(of_panels: dict[str, Uses]) -> None:
+    settings = of_panels["bpy.types.FluidModifier.domain_settings"].examples
+    assert [example.cost > 20 for example in settings] == [True]
+    assert "context.fluid" in settings[0].code
+    assert of_panels["bpy.types.FieldSettings.flow"].examples[0].cost < 20
+
+
+def test_what_a_loop_binds_stands_above_what_is_made_of_it(of_panels: dict[str, Uses]) -> None:
+    assert shown(of_panels, "bpy.types.DepsgraphObjectInstance.matrix_world").startswith(
+        "for dup in bpy.context.evaluated_depsgraph_get().object_instances:\n    shown = dup.instance_object\n"
+    )
+
+
+def test_a_decorator_is_shown_above_a_function(base: Path) -> None:
+    script = dedent("""
+        import bpy
+        from bpy.app.handlers import persistent
+
+        @persistent
+        def after_loading(path):
+            print(path)
+    """)
+    with closing(BaseSymbols(base)) as symbols:
+        found = uses_in(script, "a.py", Api(symbols), (5, 1, 0))
+    expected = "@persistent\ndef after_loading(path): ..."
+    assert shown(found, "bpy.app.handlers.persistent") == expected

@@ -8,7 +8,7 @@ import pytest
 from asking import classes, of_data, paths
 
 from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Section, Symbol
-from kb_build.symbol_lines import is_stand_in, usual_default
+from kb_build.symbol_lines import is_stand_in, usual_default, written
 from kb_serve.answer.render import MarkdownRenderer, facts, outline, said_of, with_names
 
 if TYPE_CHECKING:
@@ -349,7 +349,7 @@ def test_no_symbol_of_any_kind_fails_to_be_shown(renderer: MarkdownRenderer, rea
             symbol = reader.symbol(path)
             assert symbol is not None
             text = shown(renderer, symbol)
-            assert text.startswith(f"## `{path}`")
+            assert text.startswith(f"## `{written(symbol)}`")
             assert "None" not in text.splitlines()[0]
             assert "\n\n\n\n" not in text
 
@@ -431,3 +431,27 @@ def test_what_items_are_found_by_is_told_where_it_is_no_name(
 ) -> None:
     told = [one for one in kb.query(collection).text.splitlines() if one.startswith("items by")]
     assert told == ([line] if line else [])
+
+
+def test_the_values_that_only_some_trees_take_are_told_by_tree(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.types.NodeGeometryRepeatOutputItems.new").text
+    assert "\n  taken only by a repeat output in a shader node tree: 'SHADER'\n" in text
+
+
+def test_a_socket_is_not_headed_by_what_raises_key_error(kb: KnowledgeBase) -> None:
+    assert kb.query('ShaderNodeMix.inputs["A_Color"]').text.startswith(
+        "## `bpy.types.ShaderNodeMix.inputs[6]`"
+    )
+
+
+def test_a_setting_without_a_value_says_so(kb: KnowledgeBase) -> None:
+    text = kb.query("FFmpegSettings.ffmpeg_preset").text
+    assert "default: `''` (made by" in text
+    assert "`'GOOD'` in the startup file" in text
+
+
+def test_a_decorator_is_said_to_be_one(kb: KnowledgeBase) -> None:
+    assert (
+        "`bpy.app.handlers.persistent` a decorator of functions: `@persistent`"
+        in kb.query("persistent handler load").text
+    )

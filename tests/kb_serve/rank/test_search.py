@@ -15,6 +15,7 @@ from kb_serve.rank.search import Searcher
 from kb_serve.rank.weights import WEIGHTS
 
 if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
 
@@ -169,3 +170,19 @@ def test_words_around_a_query_count_less_than_its_own(searcher: Searcher) -> Non
     assert searcher.search(own, about=around)[0].ref == best.ref
     assert searcher.search(around, about=own)[0].ref == searcher.search(around)[0].ref != best.ref
     assert searcher.search(own, about=own) == searcher.search(own)
+
+
+@pytest.mark.parametrize(
+    ("question", "path"),
+    [
+        ("how do I make a glass material", "bpy.types.ShaderNodeBsdfGlass"),
+        ("bake cloth cache", "bpy.ops.ptcache.bake"),
+        ("bake rigid body simulation to keyframes", "bpy.ops.rigidbody.bake_to_keyframes"),
+        ("how do I make an armature with two bones", "bpy.types.ArmatureEditBones.new"),
+        ("export only selected objects to gltf", "bpy.ops.export_scene.gltf"),
+        ("curve to mesh with a round bevel", "bpy.types.Curve.bevel_depth"),
+        ("set world background to hdri", "bpy.types.ShaderNodeTexEnvironment"),
+    ],
+)
+def test_a_plain_wish_finds_what_does_it(kb: KnowledgeBase, question: str, path: str) -> None:
+    assert path in [hit.id for hit in kb.query(question).hits[:3]]

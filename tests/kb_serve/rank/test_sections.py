@@ -24,7 +24,7 @@ PAGE = Page(
             f"{FILLER}\n\n**Friction**\n  Resistance.\n\n**Bounciness**\n  How far.",
         ),
         Section("sensitivity", "Sensitivity", 2, f"{FILLER} A margin keeps them apart."),
-        Section("removing", "Removing Data", 2, FILLER),
+        Section("removing", "Removing Data", 2, f"{FILLER} Two of them can be removed."),
     ),
 )
 
@@ -42,6 +42,7 @@ def asked(query: str) -> str:
         ("collisions", ""),
         ("margin of collisions", "sensitivity"),
         ("xyzzy", ""),
+        ("two collisions", ""),  # how many says nothing of a section
         (
             "the margin that a big red rubber ball rolling down green hills needs",
             "",

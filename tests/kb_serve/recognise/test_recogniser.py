@@ -27,6 +27,7 @@ from whole import examples
 
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_SHORT
+from kb_build.symbol_lines import written as as_written
 from kb_serve.recognise.removed_symbols import plain_path
 
 if TYPE_CHECKING:
@@ -45,7 +46,9 @@ def test_a_full_path_is_that_symbol_and_its_whole_answer(
     for path in sample:
         answer = kb.query(path)
         assert (answer.kind, answer.hits[0].id, answer.hits[0].kind) == ("schema", path, kind)
-        assert f"`{path}`" in answer.text
+        symbol = reader.symbol(path)
+        assert symbol is not None
+        assert f"`{as_written(symbol)}`" in answer.text
 
 
 @pytest.mark.parametrize("around", ["`{}`", "'{}'", '"{}"', " {} ", "{}?", "{}.", "{}:", "{},", "\n{}\n"])
@@ -563,3 +566,10 @@ def test_a_value_in_quotes_is_not_the_page_of_that_name(kb: KnowledgeBase, query
     assert symbol is not None
     enumerations = [symbol.enum_items, *(parameter.enum_items for parameter in symbol.parameters)]
     assert "CLOTH" in {item.identifier for items in enumerations for item in items}
+
+
+@pytest.mark.parametrize(("word", "path"), [("handlers", "bpy.app.handlers"), ("timers", "bpy.app.timers")])
+def test_a_bare_word_may_be_a_module_that_nothing_else_is_called_as(
+    kb: KnowledgeBase, word: str, path: str
+) -> None:
+    assert kb.query(word).hits[0].id == path

@@ -1,0 +1,57 @@
+"""Says what a function makes with the value that a question asks for: its class, and that class's own settings."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_serve.answer.budget import AnswerBlock, clip
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from kb_build.records import Symbol
+    from kb_serve.reader import BaseReader
+
+_READ_ONLY = "read-only"  # which a pointer to further settings may be
+_SETTINGS = 6
+_LINE_TOKENS = 50
+
+
+def made_with(
+    function: Symbol, values: Mapping[str, frozenset[str]], reader: BaseReader
+) -> Iterator[AnswerBlock]:
+    """The class that a function makes with each of some values (as Python source, by argument)."""
+    result = function.returns[0].type if function.kind == "function" and function.returns else ""
+    if not result:
+        return
+    for argument, each in values.items():
+        for value in sorted(each):
+            if cls := _class_made(function, result, value.strip("'"), reader):
+                yield _block(f"{argument}={value}", cls, reader)
+
+
+def _class_made(function: Symbol, result: str, choice: str, reader: BaseReader) -> str:
+    """The class that a choice stands for: of this function, or of another one with the same result; empty for none."""
+    makers = reader.made_by_choice(choice)
+    for cls, maker in makers:
+        if maker == function.path:
+            return cls
+    for cls, _ in makers:
+        if any(base.path == TYPES + result for base in reader.lineage(cls)):
+            return cls
+    return ""
+
+
+def _block(given: str, cls: str, reader: BaseReader) -> AnswerBlock:
+    settings = [
+        entry
+        for entry in reader.members(cls).values()
+        if entry.kind == "property" and (entry.target or _READ_ONLY not in entry.line.partition(" — ")[0])
+    ]
+    weights = reader.weights([entry.path for entry in settings])
+    settings.sort(key=lambda entry: -weights.get(entry.path, 0.0))
+    lines = [f"- {clip(entry.line, _LINE_TOKENS)}" for entry in settings[:_SETTINGS]]
+    if len(settings) > _SETTINGS:
+        lines.append(f"- and {len(settings) - _SETTINGS} more")
+    return AnswerBlock("\n".join((f"**Made with `{given}`**: `{cls}`", *lines)), "what it makes")
