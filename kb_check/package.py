@@ -55,15 +55,15 @@ class Package:
 
 
 def paths_in_package(names: Iterable[str]) -> dict[str, str]:
-    """Name of a file → its path as other modules import it: from the folder that holds its package on; of a file that
-    belongs to none, only its name, unless another file has the same.
+    """Name of a file → its path as other modules import it: from the folder that holds its package on; of files that
+    belong to none, from the folder around all of them on.
     """
     places = {name: PurePath(os.path.realpath(name)) for name in names}
+    top = PurePath(os.path.commonpath([place.parent for place in places.values()])).parent
     paths: dict[str, str] = {}
     for name, place in places.items():
         root = package_root(Path(place.parent))
-        paths[name] = place.relative_to(root.parent if root else place.parent).as_posix()
-    if len(set(paths.values())) < len(paths):
-        top = PurePath(os.path.commonpath([place.parent for place in places.values()])).parent
-        return {name: place.relative_to(top).as_posix() for name, place in places.items()}
-    return paths
+        paths[name] = place.relative_to(root.parent if root else top).as_posix()
+    if len(set(paths.values())) == len(paths):
+        return paths
+    return {name: place.relative_to(top).as_posix() for name, place in places.items()}

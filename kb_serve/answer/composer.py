@@ -325,7 +325,7 @@ class AnswerComposer:
         members = self._reader.members(entry.path)
         uses = [] if members else self._reader.uses(entry.path)
         if uses and uses[0].code.startswith("@"):
-            return f"a decorator of functions: `{uses[0].code.partition(chr(10))[0]}`"
+            return f"a decorator of functions: `{uses[0].code.splitlines()[0]}`"
         label = f"{entry.label}, " if entry.label not in {"", entry.name} else ""
         return f"{label}a class with {len(members)} members"
 

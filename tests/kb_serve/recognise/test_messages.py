@@ -540,7 +540,7 @@ SHADERS = "expected a string in ('FLAT_COLOR', 'IMAGE', 'SMOOTH_COLOR', 'UNIFORM
         (
             f"TypeError: {SHADERS}'2D_UNIFORM_COLOR'",
             "gpu.shader.from_builtin",
-            "in front now: 'UNIFORM_COLOR'",
+            "Use `gpu.shader.from_builtin(shader_name):UNIFORM_COLOR`",
         ),
         (f"TypeError: {SHADERS}'MY_UNIFORM_COLOR'", "gpu.shader.from_builtin", "closest: `UNIFORM_COLOR`"),
     ],

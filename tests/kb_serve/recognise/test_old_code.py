@@ -212,10 +212,13 @@ def test_the_newer_node_has_the_sockets_that_are_told() -> None:
 
 
 @pytest.mark.parametrize(
-    "written", ["gpu.shader.from_builtin('3D_UNIFORM_COLOR')", "from_builtin('2D_IMAGE')"]
+    ("written", "instead"),
+    [("gpu.shader.from_builtin('3D_UNIFORM_COLOR')", "UNIFORM_COLOR"), ("from_builtin('2D_IMAGE')", "IMAGE")],
 )
-def test_shaders_have_no_dimension_in_their_names(kb: KnowledgeBase, written: str) -> None:
-    assert any("The names have no 2D_ or 3D_ in front now" in note for note in kb.query(written).notes)
+def test_shaders_have_no_dimension_in_their_names(kb: KnowledgeBase, written: str, instead: str) -> None:
+    assert any(
+        f"Use `gpu.shader.from_builtin(shader_name):{instead}`" in note for note in kb.query(written).notes
+    )
 
 
 @pytest.mark.parametrize(
