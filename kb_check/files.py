@@ -79,9 +79,8 @@ def find_files(
 
 
 def _grouped(wanted: dict[Path, Path], excluded: _Excluded) -> Iterator[FileGroup]:
-    parts: dict[
-        Path, list[Path]
-    ] = {}  # a package's folder, or a file of none → the files of it that are wanted
+    # A package's folder, or a file of none → the files of it that are wanted.
+    parts: dict[Path, list[Path]] = {}
     for real in wanted:
         root = None if real.suffix == NOTEBOOK else package_root(real.parent)
         parts.setdefault(root or real, []).append(real)

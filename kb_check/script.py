@@ -188,6 +188,11 @@ class Script:
         written = node.attr if isinstance(node, ast.Attribute) else getattr(node, "arg", None)
         return Edit(span, name) if text == written else None
 
+    def as_attribute(self, item: ast.Subscript, name: str) -> Edit:
+        """The edit that writes an attribute in the place of an item's brackets."""
+        owner, whole = self.span(item.value), self.span(item)
+        return Edit(Span(owner.end_line, owner.end_column, whole.end_line, whole.end_column), f".{name}")
+
     def _characters(self, line: int, column: int) -> int:
         """A column as a number of characters; Python counts the bytes of UTF-8."""
         if line > len(self.lines) or self.lines[line - 1].isascii():

@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
 from kb_build.flow.types import UNKNOWN, Instance, LocalInstance, members
-from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.findings import Finding, Fix
 from kb_check.own_classes import own_classes
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
@@ -65,7 +65,7 @@ def _check(script: Script) -> Iterator[Finding]:
                 yield Finding(
                     RULE.id, "error", script.span(node),
                     f"An instance of `{cls}` takes no custom properties{since}: {advice}.", cls, (),
-                    _as_attribute(script, owner, node, name) if own and _declares(own, name) else None,
+                    _fix(script, node, name) if own and _declares(own, name) else None,
                 )  # fmt: skip
 
 
@@ -118,10 +118,10 @@ def _declares(own: OwnClass, name: str) -> bool:
     )
 
 
-def _as_attribute(script: Script, owner: ast.expr, node: ast.expr, name: str) -> Fix:
-    start, end = script.span(owner), script.span(node)
-    brackets = Span(start.end_line, start.end_column, end.end_line, end.end_column)
-    return Fix(f"Write .{name}", (Edit(brackets, f".{name}"),))
+def _fix(script: Script, node: ast.expr, name: str) -> Fix | None:
+    return (
+        Fix(f"Write .{name}", (script.as_attribute(node, name),)) if isinstance(node, ast.Subscript) else None
+    )
 
 
 RULE = Rule("no-custom-properties", "error", "Custom properties of what takes none", _check)

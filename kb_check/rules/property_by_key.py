@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
 from kb_build.flow.types import UNKNOWN, ClassObject, Instance, members
-from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.findings import Finding, Fix
 from kb_check.made_here import callee_path
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
@@ -50,7 +50,7 @@ def _check(script: Script) -> Iterator[Finding]:
                 RULE.id, "warning", script.span(node),
                 f"`{name}` is a property of `{cls}` that this script registers, which is no custom property since "
                 f"Blender 5.0: write {advice}.",
-                f"{cls}.{name}", (), _as_attribute(script, owner, node),
+                f"{cls}.{name}", (), _as_attribute(script, node),
             )  # fmt: skip
 
 
@@ -90,16 +90,15 @@ def _is_of(script: Script, node: ast.expr, cls: str) -> bool:
     return all(isinstance(kind, Instance) and script.api.descends(kind.cls, cls) for kind in kinds)
 
 
-def _as_attribute(script: Script, owner: ast.expr, node: ast.expr) -> Fix | None:
+def _as_attribute(script: Script, node: ast.expr) -> Fix | None:
     if (
         not isinstance(node, ast.Subscript)
         or not isinstance(node.slice, ast.Constant)
         or isinstance(node.ctx, ast.Del)
     ):
         return None
-    start, end = script.span(owner), script.span(node)
-    brackets = Span(start.end_line, start.end_column, end.end_line, end.end_column)
-    return Fix(f"Write .{node.slice.value}", (Edit(brackets, f".{node.slice.value}"),))
+    name = str(node.slice.value)
+    return Fix(f"Write .{name}", (script.as_attribute(node, name),))
 
 
 RULE = Rule("property-by-key", "warning", "A registered property by its name in brackets", _check)

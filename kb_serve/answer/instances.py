@@ -8,6 +8,7 @@ a pointer on the way to it is None.
 from __future__ import annotations
 
 import re
+from functools import cache
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 from kb_build.index.analysis import key
@@ -15,7 +16,7 @@ from kb_build.symbol_lines import empty_when_new, fillers, held
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from kb_build.records import Symbol
     from kb_serve.reader import BaseReader, Creation
@@ -38,6 +39,16 @@ _ACTIVATE = "bpy.context.view_layer.objects.active = obj"
 _TO_EDIT_MODE = (
     f"`{_ACTIVATE}`; `bpy.ops.object.mode_set(mode='EDIT')` — edit bones are there in Edit Mode only"
 )
+
+
+def stays_empty(pointer: Symbol) -> bool:
+    """Whether a pointer is None on new things, and nothing is known to fill it."""
+    return empty_when_new(pointer) is not None and not fillers(pointer)
+
+
+def filling(calls: Iterable[str], expression: str) -> str:
+    """The step in which calls fill a pointer."""
+    return f"{', then '.join(f'`{call}`' for call in calls)} makes `{expression}`"
 
 
 class Ready(NamedTuple):
@@ -73,6 +84,7 @@ class Instances:
     def __init__(self, reader: BaseReader, makers: Makers) -> None:
         self._reader = reader
         self._makers = makers
+        self._maker = cache(reader.symbol)  # the same one makes all modifiers, and its record is long
         self._names: dict[str, str] = {}
         self._filled: set[str] = set()
         self._kind = _USUAL_KIND  # the type of ``obj``
@@ -157,14 +169,14 @@ class Instances:
 
     def _kinds(self, creation: Creation) -> set[str]:
         """The types of the objects that take what is made; none where Blender was not seen to refuse any."""
-        maker = self._reader.symbol(creation.maker)
+        maker = self._maker(creation.maker)
         refusals = maker.refusals if maker else ()
         taken = (refusal.taken_by for refusal in refusals if creation.choice in refusal.values)
         return {kind.removesuffix(" object") for kind in next(taken, ())}
 
     def _things_given(self, creation: Creation) -> Iterator[tuple[str, str]]:
         """The arguments that a call needs and that are things themselves, as a slot is: name and class."""
-        maker = self._reader.symbol(creation.maker)
+        maker = self._maker(creation.maker)
         for parameter in maker.parameters if maker else ():
             cls = f"{TYPES}{parameter.type}"
             if parameter.required and self._reader.creations([cls]):
@@ -219,10 +231,9 @@ class Instances:
             pointer = self._reader.symbol(entry.path) if entry and entry.type == "pointer" else None
             if pointer is None:
                 break  # of what a subclass has nothing is known here
-            if empty_when_new(pointer) and f"{above}.{name}" not in self._filled:
-                calls = self.filled(pointer, above)
-                if not calls:
-                    return None
-                steps.append(f"{', then '.join(f'`{call}`' for call in calls)} makes `{above}.{name}`")
+            if stays_empty(pointer):
+                return None
+            if calls := self.filled(pointer, above):
+                steps.append(filling(calls, f"{above}.{name}"))
             above, owner = f"{above}.{name}", f"{TYPES}{pointer.target}"
         return Ready(steps, expression)

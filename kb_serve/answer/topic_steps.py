@@ -14,9 +14,9 @@ from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
-from kb_build.symbol_lines import empty_when_new, fillers, held, literal, operator_needs, refused_nothing
+from kb_build.symbol_lines import held, literal, operator_needs, refused_nothing
 from kb_serve.answer.budget import AnswerBlock, tokens
-from kb_serve.answer.instances import Instances
+from kb_serve.answer.instances import Instances, filling, stays_empty
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.render import is_machinery
 from kb_serve.reader import STRUCT, TYPES
@@ -76,9 +76,8 @@ _GROUP_OUTPUT = {
     f"{TYPES}CompositorNodeTree": ("Image", "NodeSocketColor"),
 }
 _NOT_MADE = frozenset({_NODE, *_EMBEDDED})  # for themselves
-_WITH_OUTPUT = frozenset(
-    {f"{TYPES}Material", f"{TYPES}World"}
-)  # those whose new trees have a node that ends them
+# Those whose new trees have a node that ends them.
+_WITH_OUTPUT = frozenset({f"{TYPES}Material", f"{TYPES}World"})
 _USUAL_TREE = f"{TYPES}GeometryNodeTree"
 _OBJECT = f"{TYPES}Object"
 _OTHERS_ELEMENT = re.compile(r"\[.*\].*\.")  # … of what has an element that somebody else must have made
@@ -234,15 +233,16 @@ class Steps:
             if made := [node.path for node in nodes if node.path in self._creations]:
                 tree, holder = f"{TYPES}{entry.target}", f"{self.variable_of(path)}.{entry.name}"
                 self._shown.add(tree)
-                if _is_set(entry):  # there is none yet
+                is_given = _is_set(entry)  # there is none yet
+                if is_given:
                     yield from self._group(tree, holder)
                 else:
                     pointer = self._reader.symbol(entry.path)
-                    if pointer is None or (empty_when_new(pointer) and not fillers(pointer)):
+                    if pointer is None or stays_empty(pointer):
                         continue
                     yield from self._filled(pointer, self.variable_of(path))
                     yield f"`tree = {holder}`"
-                is_ended = _is_set(entry) or path in _WITH_OUTPUT
+                is_ended = is_given or path in _WITH_OUTPUT
                 yield from self._nodes(made, tree) if is_ended else self._call(made)
 
     def _call(self, paths: Sequence[str]) -> list[str]:
@@ -479,7 +479,7 @@ class Steps:
                 if entry.type != "pointer" or not is_own or not self._belongs(target):
                     continue
                 pointer = self._reader.symbol(entry.path)
-                if pointer is None or (empty_when_new(pointer) and not fillers(pointer)):
+                if pointer is None or stays_empty(pointer):
                     continue
                 self._shown.add(target)
                 waiting.append((target, f"{above}.{entry.name}"))
@@ -505,7 +505,7 @@ class Steps:
         elsewhere = "on another object: " if choices & self._chosen else ""
         self._chosen |= choices
         if calls:
-            yield f"{elsewhere}{', then '.join(f'`{call}`' for call in calls)} makes `{above}.{pointer.name}`"
+            yield elsewhere + filling(calls, f"{above}.{pointer.name}")
 
     def _parts(self, path: str, variable: str) -> Iterator[str]:
         """Calls that make parts of a thing through what it points to: ``tree.interface.new_socket(…)``."""

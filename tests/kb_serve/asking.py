@@ -9,6 +9,9 @@ from typing import TYPE_CHECKING
 
 from whole import examples
 
+from kb_build.index.analysis import key
+from kb_serve.answer.topic_steps import Steps, TopicNames
+
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
@@ -90,3 +93,10 @@ def wrong(kb: KnowledgeBase, cases: Iterable[tuple[str, str]], within: int = 1) 
         if expected not in {hit.id for hit in answer.hits[:within]}:
             found.append((query, expected, first_id(answer)))
     return found
+
+
+def steps(reader: BaseReader, topic: str, *classes: str) -> list[str]:
+    """The steps of a topic with some classes, the heaviest first."""
+    weights = {f"{TYPES}{name}": 10.0 - place for place, name in enumerate(classes)}
+    names = TopicNames(frozenset({key(topic)}), (frozenset(topic.split()),), weights)
+    return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]

@@ -5,9 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from asking import TYPES, steps
 
-from kb_build.index.analysis import key, terms
-from kb_serve.answer.topic_steps import Steps, TopicNames
 from measurements.steps import do_steps
 
 if TYPE_CHECKING:
@@ -15,7 +14,6 @@ if TYPE_CHECKING:
 
 pytestmark = pytest.mark.blender
 
-TYPES = "bpy.types."
 # What people ask for, with classes that the manual's pages on it explain, the heaviest first.
 TOPICS = {
     "actions": ("Action", "ActionSlot", "ActionChannelbag", "FCurve"),
@@ -49,15 +47,9 @@ TOPICS = {
 }
 
 
-def steps_of(reader: BaseReader, topic: str, *classes: str) -> list[str]:
-    weights = {f"{TYPES}{name}": 10.0 - place for place, name in enumerate(classes)}
-    names = TopicNames(frozenset({key(topic)}), (frozenset(terms(topic)),), weights)
-    return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
-
-
 def test_what_people_ask_for_is_done_without_an_error(reader: BaseReader) -> None:
-    steps = {topic: steps_of(reader, topic, *classes) for topic, classes in TOPICS.items()}
-    done = do_steps(steps)
+    told = {topic: steps(reader, topic, *classes) for topic, classes in TOPICS.items()}
+    done = do_steps(told)
     assert [(topic.topic, *row) for topic in done for row in topic.failed] == []
     assert all(topic.done for topic in done)
     assert sum(topic.done for topic in done) > 4 * len(TOPICS)
@@ -66,17 +58,16 @@ def test_what_people_ask_for_is_done_without_an_error(reader: BaseReader) -> Non
 def test_whatever_can_be_made_is_made_without_an_error(reader: BaseReader) -> None:
     data = [path for path, name in reader.data_classes if path == f"{TYPES}{name}"]
     makeable = sorted(reader.creations(data))[::7]
-    steps = {
-        path: steps_of(reader, path.removeprefix(TYPES).lower(), path.removeprefix(TYPES))
-        for path in makeable
+    told = {
+        path: steps(reader, path.removeprefix(TYPES).lower(), path.removeprefix(TYPES)) for path in makeable
     }
-    done = do_steps({path: lines for path, lines in steps.items() if lines})
+    done = do_steps({path: lines for path, lines in told.items() if lines})
     assert sum(topic.done for topic in done) > 150
     assert [(topic.topic, *row) for topic in done for row in topic.failed] == []
 
 
 def test_a_step_that_fails_is_told() -> None:
-    steps = [
+    right = [
         "1. `mask = bpy.data.masks.new('a')`",
         "2. `layer = mask.layers[7]`",
         "3. set on `mask`: `frame_start` = 1",
@@ -86,6 +77,6 @@ def test_a_step_that_fails_is_told() -> None:
         "2. `tree = obj.animation_data`",
         "3. call `obj.delete_all()`",
     ]
-    good, bad = do_steps({"good": steps, "bad": wrong})
-    assert [step for step, _ in good.failed] == steps[1:2]
+    good, bad = do_steps({"good": right, "bad": wrong})
+    assert [step for step, _ in good.failed] == right[1:2]
     assert [step for step, _ in bad.failed] == wrong

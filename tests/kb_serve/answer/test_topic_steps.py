@@ -5,19 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
+from asking import steps
 
 from kb_serve.answer.topic_steps import Steps, TopicNames
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
-
-
-def steps(reader: BaseReader, topic: str, *classes: str) -> list[str]:
-    """The steps for classes, the heaviest first."""
-    weights = {f"bpy.types.{name}": 10.0 - place for place, name in enumerate(classes)}
-    words = (frozenset(topic.split()),)
-    names = TopicNames(frozenset({topic.replace(" ", "")}), words, weights)
-    return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
 
 
 def test_settings_that_a_new_thing_lacks_are_made_first_each_on_an_object_of_its_own(
