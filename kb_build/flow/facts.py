@@ -17,7 +17,7 @@ OBJECT_DATA = {
 LOST_MODULES = {
     "binhex": ((4, 1), "3.11", "binascii"),
     "asynchat": ((5, 1), "3.12", "asyncio"), "asyncore": ((5, 1), "3.12", "asyncio"),
-    "imp": ((5, 1), "3.12", "importlib"), "smtpd": ((5, 1), "3.12", ""),
+    "imp": ((5, 1), "3.12", "importlib.reload"), "smtpd": ((5, 1), "3.12", ""),
     "aifc": ((5, 1), "3.13", "aud"), "audioop": ((5, 1), "3.13", "aud"), "cgi": ((5, 1), "3.13", "urllib.parse"),
     "cgitb": ((5, 1), "3.13", "traceback"), "chunk": ((5, 1), "3.13", ""), "crypt": ((5, 1), "3.13", "hashlib"),
     "imghdr": ((5, 1), "3.13", ""), "lib2to3": ((5, 1), "3.13", "ast"), "mailcap": ((5, 1), "3.13", "mimetypes"),

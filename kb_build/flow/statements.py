@@ -491,8 +491,11 @@ class Statements(Calls):
     def _tell_lost(self, node: ast.AST, module: str) -> None:
         """Records an imported module that other Blenders bring and this one does not, unless the files have it."""
         top = module.partition(".")[0]
-        is_lost = top in LOST_MODULES and self.version >= LOST_MODULES[top][0] and not self._may_bring(top)
-        if (is_lost or self.api.had("", top)) and self.local_module(top) is UNKNOWN:
+        if top in LOST_MODULES:
+            is_lost = self.version >= LOST_MODULES[top][0] and not self._may_bring(top)
+        else:
+            is_lost = self.api.had("", top)
+        if is_lost and self.local_module(top) is UNKNOWN:
             self.resolve(node, "name", top, missing=("",))
 
     def _may_bring(self, module: str) -> bool:

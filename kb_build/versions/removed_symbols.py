@@ -7,11 +7,12 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import LOST_MODULES
 from kb_build.index.analysis import key, short_path
 from kb_build.versions.history import SHARED, paths_of
 from kb_build.versions.paths import split_path
 from kb_build.versions.similar_names import find_similar_names
-from kb_build.versions.successors import Successors, load_successors
+from kb_build.versions.successors import Successors, load_successors, lost_modules
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -79,7 +80,7 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
     """
     known = {path for symbol in symbols for path in paths_of(symbol)}
     bases = {symbol.path: symbol.base for symbol in symbols if symbol.base}
-    successors = Successors(load_successors(), history, version, bases, known)
+    successors = Successors([*load_successors(), *lost_modules()], history, version, bases, known)
 
     def moved_up(path: str) -> bool:
         """Whether a base of the class has it now: then it is still there."""
@@ -106,7 +107,10 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
     # An item that an enumeration had means that one, and not also what calls that are gone took.
     others = Counter(item for path, *_ in stated if (item := path.partition(":")[2]) not in items)
     names = [(spelled, path) for path, *_ in removed for spelled in _keys(path, items)]
-    names += [(spelled, path) for path, *_ in stated for spelled in _keys(path, others)]
+    # Modules of Python are plain words too (``pipes``, ``chunk``): only code means them.
+    names += [
+        (spelled, path) for path, *_ in stated if path not in LOST_MODULES for spelled in _keys(path, others)
+    ]
     removed += stated
     rows = [
         (path, position, row.new[0] if row.new else "", row.how, row.version, row.source)

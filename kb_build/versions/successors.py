@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from kb_build.errors import StoreError
+from kb_build.flow.facts import LOST_MODULES
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.versions.paths import joined_path, split_path
 from simworlds.releases import version_key
@@ -54,6 +55,14 @@ def load_successors(path: Path | None = None) -> list[Succession]:
             ]
     except (OSError, csv.Error, ValueError) as error:
         raise StoreError(f"{source} is not a readable table of successors: {error}") from error
+
+
+def lost_modules() -> Iterator[Succession]:
+    """The modules that Python has lost, as rows of the table."""
+    for module, (since, python, instead) in LOST_MODULES.items():
+        use = f"Write it with `{instead}`: " if instead else ""
+        how = f"{use}Python {python} and later have no module `{module}`."
+        yield Succession(module, (), how, ".".join(map(str, since)), f"Python {python}: What's New")
 
 
 class Successors:

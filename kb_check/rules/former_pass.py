@@ -26,20 +26,12 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_SINCE = 5, 0
 _NODE = "bpy.types.CompositorNodeRLayers"
 _OUTPUTS = "bpy.types.Node.outputs"
-NAMES = {
-    "AO": "Ambient Occlusion", "DiffCol": "Diffuse Color", "DiffDir": "Diffuse Direct", "DiffInd": "Diffuse Indirect",
-    "Emit": "Emission", "Env": "Environment", "GlossCol": "Glossy Color", "GlossDir": "Glossy Direct",
-    "GlossInd": "Glossy Indirect", "IndexMA": "Material Index", "IndexOB": "Object Index",
-    "TransCol": "Transmission Color", "TransDir": "Transmission Direct", "TransInd": "Transmission Indirect",
-    "VolumeDir": "Volume Direct", "VolumeInd": "Volume Indirect",
-}  # fmt: skip
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    if script.version < _SINCE or "RLayers" not in script.code:
+    if "RLayers" not in script.code:
         return
     for node in script.all(ast.Subscript, ast.Call):
         match node:
@@ -51,19 +43,25 @@ def _check(script: Script) -> Iterator[Finding]:
                 pass
             case _:
                 continue
-        if (
-            name not in NAMES
-            or not _is_of_layers(script, owner)
-            or name in _own(script)
-            or is_tried(script, node)
-        ):
+        if not _is_of_layers(script, owner):
             continue
-        edit = script.renamed(key, NAMES[name])
+        now, since = _name_now(script, name)
+        if not now or name in _own(script) or is_tried(script, node):
+            continue
+        edit = script.renamed(key, now)
         yield Finding(
             RULE.id, "error" if isinstance(node, ast.Subscript) else "warning", script.span(key),
-            f"`{_NODE}` has no output {name!r} since Blender 5.0: the pass is called {NAMES[name]!r}.", _NODE, (),
-            Fix(f"Write {NAMES[name]}", (edit,), sure=True) if edit else None,
+            f"`{_NODE}` has no output {name!r} since Blender {since}: the pass is called {now!r}.", _NODE, (),
+            Fix(f"Write {now}", (edit,), sure=True) if edit else None,
         )  # fmt: skip
+
+
+def _name_now(script: Script, name: str) -> tuple[str, str]:
+    """The name of a pass that was called so, and since when: the output has that of the setting that turns it on."""
+    for row in script.names.reader.successors(f'{_NODE}.outputs["{name}"]'):
+        if setting := script.api.symbols.symbol(row.target):
+            return setting.label, row.version
+    return "", ""
 
 
 def _is_of_layers(script: Script, node: ast.expr) -> bool:

@@ -18,11 +18,11 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbol_lines import freed_by, is_locked
-from kb_check import active_object
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import is_of_instance
 from kb_check.made_here import named_words
 from kb_check.rule import Rule
+from kb_serve.recognise.changed_by import changed_by
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,27 +32,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _HANDLERS = "bpy.app.handlers."
-_CONTEXT = "bpy.types.Context"
-# What to do instead: property → (paths, advice).
-_INSTEAD = {
-    f"{_CONTEXT}.object": ((active_object.SET,), "Assign to `bpy.context.view_layer.objects.active`."),
-    f"{_CONTEXT}.active_object": ((active_object.SET,), "Assign to `bpy.context.view_layer.objects.active`."),
-    f"{_CONTEXT}.selected_objects": (
-        ("bpy.types.Object.select_set",), "Call `select_set(True)` on each object.",
-    ),
-    f"{_CONTEXT}.scene": (("bpy.types.Window.scene",), "Assign to `bpy.context.window.scene`."),
-    f"{_CONTEXT}.view_layer": (("bpy.types.Window.view_layer",), "Assign to `bpy.context.window.view_layer`."),
-    f"{_CONTEXT}.mode": (("bpy.ops.object.mode_set",), "Call `bpy.ops.object.mode_set(mode=...)`."),
-    "bpy.types.Object.mode": (("bpy.ops.object.mode_set",), "Call `bpy.ops.object.mode_set(mode=...)`."),
-    "bpy.types.Scene.objects": (
-        ("bpy.types.CollectionObjects.link",), "Call `scene.collection.objects.link(...)`.",
-    ),
-    "bpy.types.Mesh.vertices": (("bpy.types.Mesh.from_pydata",), "Fill a mesh with `from_pydata(...)`."),
-    "bpy.types.Mesh.polygons": (("bpy.types.Mesh.from_pydata",), "Fill a mesh with `from_pydata(...)`."),
-    "bpy.types.Mesh.edges": (("bpy.types.Mesh.from_pydata",), "Fill a mesh with `from_pydata(...)`."),
-}  # fmt: skip
-
-
 # Members that cannot be assigned to, of classes whose reference does not say so: tried one by one on instances.
 _REFUSED = {
     "mathutils.": frozenset({
@@ -133,9 +112,10 @@ def _finding(script: Script, row: Resolution, symbol: Symbol) -> Finding:
             f"`{symbol.path}` is a function: it is called, not assigned to.", symbol.path,
             (symbol.path,), _calling(script, row, symbol),
         )  # fmt: skip
-    instead, advice = _INSTEAD.get(symbol.path, ((), ""))
-    told = f"`{symbol.path}` is read-only. {advice}".rstrip()
-    if not advice and symbol.type == "collection" and symbol.collection:
+    changer, advice = changed_by(symbol.path)
+    instead = (changer,) if changer and script.api.symbols.symbol(changer) else ()
+    told = f"`{symbol.path}` is read-only. {advice if instead else ''}".rstrip()
+    if not instead and symbol.type == "collection" and symbol.collection:
         functions = [name for name in ("new", "add", "link", "remove", "clear")
                      if script.api.member(f"bpy.types.{symbol.collection}", name)]  # fmt: skip
         if functions:

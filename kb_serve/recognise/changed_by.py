@@ -3,6 +3,11 @@
 from __future__ import annotations
 
 _T = "bpy.types."
+_CONTEXT = (
+    "bpy.context."  # what an editor adds to the context stands there, what is always in it in its class
+)
+_ACTIVATED = f"{_T}LayerObjects.active", "Write `bpy.context.view_layer.objects.active = obj`."
+_FILLED = f"{_T}Mesh.from_pydata", "`mesh.from_pydata([(x, y, z), …], edges, faces)` fills a new mesh."
 # Property → (what changes it, how).
 CHANGED_BY = {
     f"{_T}Paint.brush": (
@@ -53,22 +58,29 @@ CHANGED_BY = {
     ),
     f"{_T}Context.scene": (
         f"{_T}Window.scene",
-        "`bpy.context.window.scene = scene`.",
+        "Write `bpy.context.window.scene = scene`.",
     ),
     f"{_T}Context.view_layer": (
         f"{_T}Window.view_layer",
-        "`bpy.context.window.view_layer = view_layer`.",
+        "Write `bpy.context.window.view_layer = view_layer`.",
     ),
-    "bpy.context.object": (
-        f"{_T}LayerObjects.active",
-        "`bpy.context.view_layer.objects.active = obj`.",
-    ),
-    "bpy.context.active_object": (
-        f"{_T}LayerObjects.active",
-        "`bpy.context.view_layer.objects.active = obj`.",
-    ),
-    "bpy.context.selected_objects": (
+    f"{_T}Context.object": _ACTIVATED,
+    f"{_T}Context.active_object": _ACTIVATED,
+    f"{_T}Context.selected_objects": (
         f"{_T}Object.select_set",
         "`obj.select_set(True)` selects one.",
     ),
+    f"{_T}Scene.objects": (
+        f"{_T}CollectionObjects.link",
+        "`scene.collection.objects.link(obj)` adds one.",
+    ),
+    f"{_T}Mesh.vertices": _FILLED,
+    f"{_T}Mesh.edges": _FILLED,
+    f"{_T}Mesh.polygons": _FILLED,
 }
+
+
+def changed_by(path: str) -> tuple[str, str]:
+    """What changes a property that cannot be assigned, and how; two empty texts where that is not known."""
+    member = path.removeprefix(_CONTEXT)
+    return CHANGED_BY.get(path if member == path else f"{_T}Context.{member}", ("", ""))

@@ -14,7 +14,7 @@ from kb_build.symbol_lines import GET_EVALUATED, locked_text
 from kb_serve.reader import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import counted, places_of, unknown_keywords
-from kb_serve.recognise.changed_by import CHANGED_BY
+from kb_serve.recognise.changed_by import changed_by
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.nameless_messages import recognise_nameless
@@ -173,7 +173,7 @@ class Messages:
         """A property that cannot be assigned, and what changes it, where that is known."""
         recognition.add(path, 0.98, "error message")
         recognition.notes.append(self._locked(path))
-        changer, how = CHANGED_BY.get(path, ("", ""))
+        changer, how = changed_by(path)
         if changer and self._reader.entry(changer):
             recognition.add(changer, 0.97, "error message")
             recognition.notes.append(how)

@@ -171,11 +171,6 @@ NAMELESS_MESSAGES = (
         "`super().__init__(*args, **kwargs)`.",
     ),
     NamelessMessage(
-        ("No module named 'imp'",),
-        ("bpy.ops.script.reload",),
-        "Python 3.12 and later have no module `imp`: `import importlib`, then `importlib.reload(module)`.",
-    ),
-    NamelessMessage(
         ("cannot create '", "GPUShader' instances"),
         ("gpu.shader.create_from_info", "gpu.types.GPUShaderCreateInfo", "gpu.shader.from_builtin"),
         "Shaders of one's own are described, not made by calling the class: fill a `gpu.types.GPUShaderCreateInfo()` "

@@ -12,23 +12,23 @@ _SURE = 0.9
 _MIX = "bpy.types.ShaderNodeMix"
 _HOW = (
     'The node may be a `{node}`, which Blender makes instead since 3.4, and which has no `{side}["{name}"]`: with '
-    '`{setting}` it is `{side}["{new}"]`, or `{side}[{place}]` at any time.'
+    '`{setting}` it is `{side}["{new}"]`, or `{place}` at any time.'
 )
-# The name of a socket → (the node made instead, what must be set there, its name, its place, its identifier).
-INSTEAD = {
-    "Color1": (_MIX, "data_type = 'RGBA'", "A", 6, "A_Color"),
-    "Color2": (_MIX, "data_type = 'RGBA'", "B", 7, "B_Color"),
-}
+# The name of a socket → the socket in its place, on the node made instead.
+INSTEAD = {"Color1": f'{_MIX}.inputs["A_Color"]', "Color2": f'{_MIX}.inputs["B_Color"]'}
 _OLD = ("bpy.types.ShaderNodeMixRGB", "bpy.types.CompositorNodeMixRGB", "bpy.types.TextureNodeMixRGB")
 
 
 def tell_of_the_newer_node(name: str, reader: BaseReader, recognition: Recognition) -> None:
     """Notes what a socket of such a name is on the newer node, where this version has that."""
-    node, setting, new, place, identifier = INSTEAD.get(name, ("", "", "", 0, ""))
-    path = f'{node}.inputs["{identifier}"]'
-    if node and reader.entry(path):
-        side = "inputs"
-        said = _HOW.format(node=node, side=side, name=name, setting=setting, new=new, place=place)
+    path = INSTEAD.get(name, "")
+    socket = reader.symbol(path) if path else None
+    if socket is not None and socket.modes and socket.subscripts:
+        setting, _, value = socket.modes[0].partition("=")
+        said = _HOW.format(
+            node=socket.owner, side="inputs", name=name, setting=f"{setting} = {value!r}", new=socket.label,
+            place=socket.subscripts[0],
+        )  # fmt: skip
         recognition.notes.append(said)
         recognition.add(path, _SURE, "newer node")
 

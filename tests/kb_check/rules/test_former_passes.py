@@ -6,13 +6,14 @@ from typing import TYPE_CHECKING
 
 from statements_in_blender import run_statements
 
-from kb_check.rules.former_pass import NAMES
+from kb_build.versions.successors import load_successors
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_check.checker import Checker
 
+_OUTPUTS = 'bpy.types.CompositorNodeRLayers.outputs["'
 _START = """\
 import bpy
 scene = bpy.context.scene
@@ -28,17 +29,21 @@ layers.scene = scene
 
 def test_former_names_are_refused_and_the_new_ones_are_there(rule_checker: Checker, tmp_path: Path) -> None:
     start = _START.splitlines()
-    former = [f"layers.outputs[{name!r}]" for name in NAMES]
-    new = [f"layers.outputs[{name!r}]" for name in NAMES.values()]
+    names = [
+        row.old.removeprefix(_OUTPUTS).removesuffix('"]')
+        for row in load_successors()
+        if row.old.startswith(_OUTPUTS)
+    ]
+    assert len(names) == 16
+    former = [f"layers.outputs[{name!r}]" for name in names]
+    found = rule_checker.check("\n".join([*start, *former]), rules=["former-pass"])
+    new = [f"layers.outputs[{one.fix.edits[0].text}]" for one in found if one.fix]
     seen = run_statements(tmp_path, [*start, *former, *new])
     refused = [at for at, (error, *_) in enumerate(seen, 1) if error]
-    found = rule_checker.check("\n".join([*start, *former, *new]), rules=["former-pass"])
-    assert (
-        [one.span.line for one in found]
-        == refused
-        == list(range(len(start) + 1, len(start) + len(former) + 1))
-    )
-    assert [one.fix.edits[0].text for one in found if one.fix] == [repr(name) for name in NAMES.values()]
+    lines = [one.span.line for one in found]
+    assert lines == refused == list(range(len(start) + 1, len(start) + len(former) + 1))
+    assert len(new) == len(former)
+    assert rule_checker.check("\n".join([*start, *new]), rules=["former-pass"]) == []
 
 
 def test_a_pass_of_the_script_is_its_own(rule_checker: Checker) -> None:

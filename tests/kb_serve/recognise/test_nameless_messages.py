@@ -43,7 +43,6 @@ ob.modifiers.new("w", "WAVE")["a"] = 1
 ob.modifiers.new("w", "WAVE").keys()
 bpy.props.IntProperty()["default"]
 register_operator_with_own_init(); bpy.ops.wm.made()
-import imp
 import gpu; gpu.types.GPUShader("", "")
 tree().nodes.new("NodeGroupInput").outputs.new("NodeSocketFloat", "x")
 n = node(); n.id_data.links.new(n.inputs[0], n.inputs[1])

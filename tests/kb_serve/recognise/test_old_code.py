@@ -201,14 +201,18 @@ def test_a_socket_of_a_node_that_is_made_no_more_is_told_as_that_of_the_newer_on
     assert not any("custom properties" in note for note in notes)
 
 
-def test_the_newer_node_has_the_sockets_that_are_told() -> None:
+def test_the_newer_node_has_the_sockets_that_are_told(kb: KnowledgeBase) -> None:
     mix = bpy.data.node_groups.new("g", "ShaderNodeTree").nodes.new("ShaderNodeMix")
-    for name, (node, setting, new, place, identifier) in INSTEAD.items():
-        assert node == f"{T}ShaderNodeMix"
+    for name, path in INSTEAD.items():
+        said = "\n".join(kb.query(f'color_mix.inputs["{name}"]').notes)
+        found = re.search(r"with `(.+?)` it is `(.+?)`, or `(.+?)` at any time", said)
+        assert found
+        setting, new, place = found.groups()
         assert name not in mix.inputs
         exec(f"mix.{setting}", {"mix": mix})
-        assert mix.inputs[new] == mix.inputs[place]
-        assert mix.inputs[place].identifier == identifier
+        by_name, by_place = (eval(f"mix.{one}", {"mix": mix}) for one in (new, place))
+        assert by_name == by_place
+        assert path == f'{T}{mix.bl_idname}.inputs["{by_place.identifier}"]'
 
 
 @pytest.mark.parametrize(
@@ -246,12 +250,14 @@ def test_passes_have_the_names_that_are_told(kb: KnowledgeBase) -> None:
         note = next(
             note for note in kb.query(f"{path.removeprefix(T)}").notes if "The output is called" in note
         )
-        found = re.search(r'Use `bpy.types.ViewLayer.(\w+)`. The output is called "([^"]+)"', note)
+        found = re.search(r'Use `bpy.types.(\w+)\.(\w+)`.*\. The output is called "([^"]+)"', note)
         assert found
-        setattr(bpy.context.view_layer, found[1], False)
-        assert not is_on(node, found[2])
-        setattr(bpy.context.view_layer, found[1], True)
-        assert is_on(node, found[2])
+        cycles = found[1] == "CyclesRenderLayerSettings"
+        holder = bpy.context.view_layer.cycles if cycles else bpy.context.view_layer
+        setattr(holder, found[2], False)
+        assert not is_on(node, found[3])
+        setattr(holder, found[2], True)
+        assert is_on(node, found[3])
 
 
 def is_on(node: bpy.types.Node, name: str) -> bool:
@@ -263,8 +269,10 @@ def is_on(node: bpy.types.Node, name: str) -> bool:
 @pytest.mark.parametrize(
     ("written", "use"),
     [
-        ("import imp", "Write importlib.reload(module)"),
-        ("imp.reload(module)", "Write importlib.reload(module)"),
+        ("import imp", "Write it with `importlib.reload`"),
+        ("imp.reload(module)", "Write it with `importlib.reload`"),
+        ("ModuleNotFoundError: No module named 'imp'", "Write it with `importlib.reload`"),
+        ("from cgi import escape", "Write it with `urllib.parse`"),
     ],
 )
 def test_where_something_is_to_be_used_instead_nothing_is_not_said(
@@ -273,3 +281,8 @@ def test_where_something_is_to_be_used_instead_nothing_is_not_said(
     note = next(note for note in kb.query(written).notes if "does not exist" in note)
     assert use in note
     assert "Nothing takes its place" not in note
+
+
+@pytest.mark.parametrize("word", ["pipes", "chunk"])
+def test_plain_words_that_modules_were_called_by_mean_no_modules(kb: KnowledgeBase, word: str) -> None:
+    assert not any("Python" in note for note in kb.query(word).notes)
