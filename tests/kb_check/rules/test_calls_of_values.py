@@ -129,7 +129,7 @@ def test_functions_that_tell_of_no_result_have_none(rule_checker: Checker) -> No
     assert [name for name, answer in zip(names, gives, strict=True) if answer] == []
 
 
-_BUILT = [
+_BUILT: list[str] = [
     "import bpy",
     "name = bpy.context.scene.name",
     "path = f'/nowhere/{name}'",

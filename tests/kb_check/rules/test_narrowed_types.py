@@ -97,7 +97,7 @@ def test_with_gives_what_a_generator_yields(rule_checker: Checker) -> None:
     assert finding.symbol == "bpy.types.Material.zorn"
 
 
-_CONVERTED = [
+_CONVERTED: list[str] = [
     "import bpy",
     'mesh = bpy.data.meshes.new("line")',
     "mesh.from_pydata([(0, 0, 0), (1, 0, 0)], [(0, 1)], [])",
@@ -116,7 +116,7 @@ def test_an_object_has_other_data_once_it_is_converted(rule_checker: Checker, tm
     assert [one.span.line for one in rule_checker.check("\n".join(_CONVERTED))] == refused == [8]
 
 
-_TREES = [
+_TREES: list[str] = [
     "import bpy",
     "def add(tree: bpy.types.NodeTree):"
     " tree.interface.new_socket(name='a', in_out='INPUT', socket_type='NodeSocketGeometry')",
@@ -132,7 +132,7 @@ def test_a_tree_of_any_kind_may_be_one_that_takes_it(rule_checker: Checker, tmp_
     assert finding.rule == "refused-value"
 
 
-_KEPT = [
+_KEPT: list[str] = [
     "import bpy",
     "bpy.types.kept_server.start",
     "bpy.types.kept_server = bpy.context.scene",
