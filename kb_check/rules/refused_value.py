@@ -279,12 +279,12 @@ def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
         symbol = script.api.symbols.symbol(cls) if cls else None
         if found and found[1] == "not" and any(script.api.descends(cls, f"{T}{kind}") for kind in kinds):
             return last_name(cls)
-        if symbol and not kinds.isdisjoint(_labels_below(script, cls)):
-            return ""  # it may be one of those kinds: a node tree may be that of a geometry
         if symbol and symbol.base and kinds <= _labels_below(script, symbol.base):
             label = symbol.label.lower()
             is_refused = (label in kinds) != (found is not None and found[1] == "only")
-            return label if is_refused else ""
+            # It may be one of those kinds: a node tree may be that of a geometry.
+            is_open = is_refused and not kinds.isdisjoint(_labels_below(script, cls))
+            return label if is_refused and not is_open else ""
         if not isinstance(node, ast.Attribute):
             break
         node = node.value
