@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.analysis import MOST_CHARACTERS, Analysis, analyse, analyse_files
@@ -31,13 +31,14 @@ class Read:
     """A script that was read, before the rules are asked: what the package registers must be known first.
 
     ``error`` says why Python cannot parse it; the analysis is then of what could be read all the same, and
-    ``may_register`` are names that the rest may define.
+    ``may_register`` are names that the rest may define. ``path`` is the file's, as :meth:`Checker.read_files` got it.
     """
 
     code: str
     analysis: Analysis
     error: SyntaxError | None = None
     may_register: frozenset[str] = frozenset()
+    path: str = ""
 
     @property
     def tree(self) -> ast.Module:
@@ -72,7 +73,9 @@ class Checker:
         """
         found = analyse_files(files, self.api, self.version)
         return {
-            path: self.read(files[path]) if analysis.tree is None else Read(files[path], analysis)
+            path: replace(self.read(files[path]), path=path)
+            if analysis.tree is None
+            else Read(files[path], analysis, path=path)
             for path, analysis in found.items()
         }
 
@@ -103,7 +106,7 @@ class Checker:
         """What files register together, for this Blender's classes."""
         package = Package(self.api)
         for read in reads:
-            package.add(read.analysis, read.may_register)
+            package.add(read.analysis, read.may_register, read.path)
         return package
 
     def close(self) -> None:

@@ -3,10 +3,13 @@
 from __future__ import annotations
 
 import os
+from functools import cached_property
 from pathlib import Path, PurePath
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import ANY
+from kb_build.flow.source_files import module_name
+from kb_check.foreign_addons import foreign_addon
 from kb_check.package_roots import package_root
 
 if TYPE_CHECKING:
@@ -25,9 +28,15 @@ class Package:
         self._types: set[str] = set()  # names below bpy.types
         self._possible: set[str] = set()
         self._classes: dict[str, set[str]] = {}  # property → the classes that have it
+        self._analyses: list[Analysis] = []
+        self._files: list[str] = []  # their dotted names
 
-    def add(self, analysis: Analysis, possible: Iterable[str] = ()) -> None:
-        """Adds what a file registers. ``possible`` are names that a part which cannot be read may register."""
+    def add(self, analysis: Analysis, possible: Iterable[str] = (), path: str = "") -> None:
+        """Adds what a file registers. ``possible`` are names that a part which cannot be read may register, ``path``
+        is its place, as :func:`paths_in_package` has it.
+        """
+        self._analyses.append(analysis)
+        self._files.append(module_name(path)[0])
         self._operators |= analysis.own_operators
         self._types |= analysis.own_types
         self._possible.update(possible)
@@ -43,6 +52,13 @@ class Package:
             return True
         holders = self._classes.get(name, set()) | (self._classes.get(ANY, set()) if computed else set())
         return any(self._gives(owner, name, holders, computed=computed) for owner in owners)
+
+    @cached_property
+    def foreign_addon(self) -> str:
+        """An add-on that a file enables and that is not among what is known here; empty for none. Asked for once all
+        files were added.
+        """
+        return foreign_addon(self._analyses, self._files)
 
     def _gives(self, owner: str, name: str, holders: Iterable[str], *, computed: bool) -> bool:
         if owner.startswith("bpy.ops"):

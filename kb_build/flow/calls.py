@@ -76,6 +76,7 @@ _PROPERTIES: dict[str, Type] = {
     "FloatVectorProperty": Sequence("array", FLOAT), "IntVectorProperty": Sequence("array", INT),
     "BoolVectorProperty": Sequence("array", BOOL),
 }  # fmt: skip
+_CONVERTING, _OBJECT = "bpy.ops.object.convert", f"{T}Object"
 _OPERATOR_RESULT = Sequence("set", STR)
 
 
@@ -129,7 +130,18 @@ class Calls(Narrowing):
         self.resolve(node, "call", callee.path, (callee.path,))
         if symbol:
             self._keywords(symbol, keywords)
+        if callee.path == _CONVERTING:
+            self._forget_data()
         return _OPERATOR_RESULT
+
+    def _forget_data(self) -> None:
+        """Objects have got data of another kind: a mesh has become a curve."""
+        state = self.scope.state
+        for name, kind in state.names.items():
+            if isinstance(kind, Instance) and kind.cls == _OBJECT and kind.traits:
+                state.names[name] = replace(kind, traits=())
+        for chain in [chain for chain in state.chains if chain.endswith(".data")]:
+            del state.chains[chain]
 
     def _function(
         self,

@@ -13,6 +13,15 @@ OBJECT_DATA = {
     "POINTCLOUD": "PointCloud", "VOLUME": "Volume",
 }  # fmt: skip
 
+# The add-ons that Blender brings, in any version from 4.2 on: what they register is in the base.
+ADDONS = frozenset(
+    {
+        "bl_pkg", "copy_global_transform", "cycles", "hydra_storm", "io_anim_bvh", "io_curve_svg", "io_mesh_uv_layout",
+        "io_scene_fbx", "io_scene_gltf2", "node_wrangler", "pose_library", "rigify", "ui_translate",
+        "viewport_vr_preview",
+    }
+)  # fmt: skip
+
 # Modules that Python has lost → the Blender that first brings such a Python, that Python, and what to use.
 LOST_MODULES = {
     "binhex": ((4, 1), "3.11", "binascii"),

@@ -8,16 +8,20 @@ from dataclasses import replace
 from kb_build.flow.facts import DISCRIMINANTS, T
 from kb_build.flow.guards import Guards
 from kb_build.flow.scopes import chain_text
+from kb_build.flow.trees import default_values
 from kb_build.flow.types import (
     NONE,
     UNKNOWN,
+    Builtin,
     ClassObject,
     Instance,
     LocalClass,
     LocalInstance,
+    Plain,
     Tuple,
     Type,
     Union,
+    literal,
     literal_text,
     literal_texts,
     members,
@@ -59,6 +63,8 @@ class Narrowing(Guards):
                     self._has(test, holds=holds)
                 elif holds:
                     self._is_instance(name, test)
+                else:
+                    self._is_no_instance(name, test)
             case _:
                 pass
 
@@ -80,7 +86,7 @@ class Narrowing(Guards):
     def _know(self, node: ast.expr, kind: Type) -> None:
         """What a name or a chain holds from here on; only for the way that is being read."""
         text = chain_text(node)
-        if not text or self._type_of(node) == kind:
+        if not text:
             return
         if isinstance(node, ast.Name) and node.id in self.scope.state.names:
             self.scope.state.names[node.id] = kind
@@ -108,8 +114,27 @@ class Narrowing(Guards):
             if len(found) == len(tests):
                 before.names[name] = union(found)
 
+    def _is_no_default(self, node: ast.expr, others: ast.expr) -> None:
+        """What a parameter holds that is not its default: anything, where that is all that tells its type."""
+        if self.function is None or not isinstance(node, ast.Name):
+            return
+        given = self.function.node.args
+        defaults = default_values(given)
+        default = defaults.get(node.id)
+        is_told = self.function.received.get(node.id, UNKNOWN) is not UNKNOWN or any(
+            argument.arg == node.id and argument.annotation is not None
+            for argument in (*given.posonlyargs, *given.args, *given.kwonlyargs)
+        )
+        if is_told or not isinstance(default, ast.Constant) or default.value is None:
+            return
+        kind = self._type_of(others)
+        if default.value in map(literal, kind.items if isinstance(kind, Tuple) else (kind,)):
+            self._know(node, UNKNOWN)
+
     def _comparison(self, left: ast.expr, operator: ast.cmpop, right: ast.expr, *, holds: bool) -> None:
         positive = isinstance(operator, (ast.Eq, ast.In, ast.Is)) == holds
+        if not positive:
+            self._is_no_default(left, right)
         if isinstance(right, ast.Constant) and right.value is None:
             if not positive:
                 self._without_none(left.target if isinstance(left, ast.NamedExpr) else left)
@@ -156,6 +181,23 @@ class Narrowing(Guards):
         if UNKNOWN not in found:
             self._know(subject, union(found))
         elif chain_text(subject):
+            self._know(subject, UNKNOWN)
+
+    def _is_no_instance(self, name: str, call: ast.Call) -> None:
+        """``not isinstance(x, str)`` of what is known to be one: then it is something else."""
+        if name != "isinstance" or len(call.args) != 2:
+            return
+        subject, answer = call.args
+        wanted = self._type_of(answer)
+        # Where the test held, the name was something else, and is still noted as that.
+        held = self.scope.state.names.get(subject.id) if isinstance(subject, ast.Name) else None
+        kind = held or self._type_of(subject)
+        names = {
+            one.name
+            for one in (wanted.items if isinstance(wanted, Tuple) else members(wanted))
+            if isinstance(one, Builtin)
+        }
+        if all(isinstance(member, Plain) and member.kind in names for member in members(kind)):
             self._know(subject, UNKNOWN)
 
     def _has(self, call: ast.Call, *, holds: bool) -> None:

@@ -14,7 +14,7 @@ from kb_build.flow.expressions import is_decided, is_math
 from kb_build.flow.facts import DISCRIMINANTS, LOST_MODULES, PARAMETERS, T
 from kb_build.flow.guards import assigned_names
 from kb_build.flow.scopes import EVERYTHING, Loop, Scope, State, chain_text, joined
-from kb_build.flow.trees import children, walk
+from kb_build.flow.trees import children, default_values, walk
 from kb_build.flow.types import (
     NONE,
     STR,
@@ -39,6 +39,7 @@ from kb_build.flow.types import (
     join,
     literal,
     members,
+    union,
     unsure,
 )
 
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
     from collections.abc import Sequence as Rows
 
+_TYPES = Module("bpy.types")
 _MOST_CLASSES = 1_000  # of one script; which ones later classes are mixed into is not asked
 _FORGIVING = frozenset(
     {
@@ -151,6 +153,11 @@ class Statements(Calls):
             self._store_on_instance(owner, target.attr, kind)
         elif isinstance(owner, LocalClass):
             self.classes[owner.number].bind(target.attr, kind)
+        elif owner == _TYPES:
+            # Whatever is assigned to the module is there, as the server that an add-on keeps.
+            self.own_types[target.attr] = join(self.own_types.get(target.attr, kind), kind)
+            self.resolutions.pop(target, None)
+            return
         else:
             self.register(owner, target.attr, kind, declared=self.is_declared(value))
             if all(isinstance(member, ClassObject) for member in members(owner)):
@@ -332,7 +339,7 @@ class Statements(Calls):
         for item in node.items:
             kind = self.evaluate(item.context_expr)
             if item.optional_vars is not None:
-                self.bind_target(item.optional_vars, kind)
+                self.bind_target(item.optional_vars, _entered(kind))
         forgiving = any(self._suppresses(item.context_expr) for item in node.items)
         self.tolerant += forgiving
         reached = self.read_body(node.body)
@@ -683,12 +690,7 @@ class Statements(Calls):
         arguments = function.node.args
         positional = [*arguments.posonlyargs, *arguments.args]
         declared = self._declared_parameters(function, len(positional))
-        defaults: dict[str, ast.expr] = {}
-        for argument, default in zip(reversed(positional), reversed(arguments.defaults), strict=False):
-            defaults[argument.arg] = default
-        for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
-            if default is not None:
-                defaults[argument.arg] = default
+        defaults = default_values(arguments)
         for place, argument in enumerate((*positional, *arguments.kwonlyargs)):
             given = declared[place] if place < len(declared) else UNKNOWN
             self.scope.bind(
@@ -867,3 +869,9 @@ def _differs(before: State, after: State) -> bool:
         for name, kind in after.names.items()
         if name in before.names
     )
+
+
+def _entered(kind: Type) -> Type:
+    """What ``with`` gives: of a generator, which only a decorator makes a context manager, what it yields."""
+    yielded = [one.element for one in members(kind) if isinstance(one, Sequence) and one.kind == "iterator"]
+    return union(yielded) if yielded else kind

@@ -78,3 +78,15 @@ def walk(node: ast.AST) -> Iterator[ast.AST]:
     for each in waiting:
         waiting += children(each)
         yield each
+
+
+def default_values(arguments: ast.arguments) -> dict[str, ast.expr]:
+    """Parameter → the value that it has by default, for those that have one."""
+    found: dict[str, ast.expr] = {}
+    positional = [*arguments.posonlyargs, *arguments.args]
+    for argument, default in zip(reversed(positional), reversed(arguments.defaults), strict=False):
+        found[argument.arg] = default
+    for argument, default in zip(arguments.kwonlyargs, arguments.kw_defaults, strict=True):
+        if default is not None:
+            found[argument.arg] = default
+    return found

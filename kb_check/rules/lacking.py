@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_check.findings import Finding
+from kb_check.foreign_addons import may_register
 from kb_check.rules.renaming import renaming
 
 if TYPE_CHECKING:
@@ -13,15 +14,33 @@ if TYPE_CHECKING:
     from kb_check.known_names import Lacking
     from kb_check.script import Script
 
+# The kinds of parts of a script that may stand for what an add-on registers.
+_REGISTERED = frozenset({"attribute", "store", "text", "button", "name"})
+
 
 def lacking_finding(
     script: Script, rule: str, row: Resolution, lacking: Lacking, severity: Severity = "error"
 ) -> Finding:
-    """The finding for a name that does not exist, with the edit that writes the right one where there is one."""
+    """The finding for a name that does not exist, with the edit that writes the right one where there is one.
+
+    It is a note where an add-on that the script enables may register such a name.
+    """
+    message = lacking.message
+    if addon := _registering(script, row, lacking):
+        severity = "note"
+        message += f" The add-on `{addon}`, which is enabled here and cannot be looked into, may register it."
     return Finding(
-        rule, severity, script.name_span(row.node), lacking.message, lacking.symbol, lacking.instead,
+        rule, severity, script.name_span(row.node), message, lacking.symbol, lacking.instead,
         renaming(script, row, lacking), absent_paths(row),
     )  # fmt: skip
+
+
+def _registering(script: Script, row: Resolution, lacking: Lacking) -> str:
+    """The add-on that may register a name: no version has had it, and it is no misspelling; empty for none."""
+    if lacking.removed or lacking.replacement or row.kind not in _REGISTERED:
+        return ""
+    is_open = row.missing and all(may_register(script.api, owner) for owner in row.missing)
+    return script.package.foreign_addon if is_open else ""
 
 
 def absent_paths(row: Resolution) -> tuple[str, ...]:

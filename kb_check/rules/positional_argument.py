@@ -17,6 +17,7 @@ Vector((0, 0, 1))
 from __future__ import annotations
 
 import ast
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import (
@@ -32,6 +33,7 @@ from kb_build.flow.types import (
 )
 from kb_check.calls import calls
 from kb_check.findings import Edit, Finding, Fix
+from kb_check.made_here import bindings
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -46,6 +48,8 @@ _EXECUTION_CONTEXTS = frozenset(
     for how in ("INVOKE", "EXEC")
     for where in ("DEFAULT", "REGION_WIN", "REGION_CHANNELS", "REGION_PREVIEW", "AREA", "SCREEN")
 )
+_NO_CONTEXT = re.compile(r"[^A-Z_]")  # in no execution context's name
+_FORMAT = re.compile(r"%(\(\w*\))?[-+ #0-9.*]*\w")
 _NO_DICTIONARY_SINCE = (4, 0)
 # Where the reference shows one of several signatures, or leaves an argument out.
 _UNRELIABLE = ("aud.", "freestyle.", "bpy.types.Gizmo.target_set_value")
@@ -98,9 +102,29 @@ def _is_wrong(script: Script, argument: ast.expr) -> bool:
     text = literal_text(kind) if kind is not None else None
     if text is not None:
         return text not in _EXECUTION_CONTEXTS
+    values = bindings(script).get(argument.id, []) if isinstance(argument, ast.Name) else [argument]
+    if len(values) == 1 and values[0] and any(map(_NO_CONTEXT.search, _texts(values[0]))):
+        return True
     return isinstance(kind, (NoneValue, Tuple, Sequence)) or (
         isinstance(kind, Plain) and kind.kind == "float"
     )
+
+
+def _texts(node: ast.expr) -> Iterator[str]:
+    """What is surely in a text that is put together: ``.obj`` of ``f"{name}.obj"`` and of ``"%s.obj" % name``."""
+    match node:
+        case ast.Constant(value=str(text)):
+            yield text
+        case ast.JoinedStr(values=parts):
+            for part in parts:
+                yield from _texts(part)
+        case ast.BinOp(op=ast.Mod(), left=ast.Constant(value=str(text))):
+            yield _FORMAT.sub("", text)
+        case ast.BinOp(op=ast.Add(), left=left, right=right):
+            yield from _texts(left)
+            yield from _texts(right)
+        case _:
+            pass
 
 
 def _meant(call: CallSite, script: Script, argument: ast.expr) -> Parameter | None:

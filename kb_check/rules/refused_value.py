@@ -282,7 +282,9 @@ def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
         if symbol and symbol.base and kinds <= _labels_below(script, symbol.base):
             label = symbol.label.lower()
             is_refused = (label in kinds) != (found is not None and found[1] == "only")
-            return label if is_refused else ""
+            # It may be one of those kinds: a node tree may be that of a geometry.
+            is_open = is_refused and not kinds.isdisjoint(_labels_below(script, cls))
+            return label if is_refused and not is_open else ""
         if not isinstance(node, ast.Attribute):
             break
         node = node.value

@@ -11,7 +11,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.trees import walk
-from kb_build.flow.types import Module
+from kb_build.flow.types import UNKNOWN, Module, Plain, members
 from kb_check.conversions import misfit
 from kb_check.findings import Edit, Fix, Span
 from kb_check.given import assigned, property_taker
@@ -68,10 +68,14 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
 # Calls.
 
 
-def may_take(parameter: Parameter, value: ast.expr) -> bool:
-    """Whether a parameter may take the literal that is given: what was a switch may have become a choice."""
-    if not isinstance(value, ast.Constant) or parameter.plain_type not in _TAKES:
+def may_take(script: Script, parameter: Parameter, value: ast.expr) -> bool:
+    """Whether a parameter may take what is given: what was a switch may have become a choice."""
+    if parameter.plain_type not in _TAKES:
         return True
+    if not isinstance(value, ast.Constant):
+        taken = {kind.__name__ for kind in _TAKES[parameter.plain_type]}
+        kinds = members(script.type_of(value) or UNKNOWN)
+        return not all(isinstance(kind, Plain) and kind.kind not in taken for kind in kinds)
     listed = {item.identifier for item in parameter.enum_items}
     if isinstance(value.value, str) and listed and not parameter.is_open:
         return value.value in listed
@@ -115,12 +119,12 @@ def _takes_keyword(
     script: Script, former: str, parameters: dict[str, Parameter], keyword: ast.keyword
 ) -> bool:
     if keyword.arg in parameters:
-        return may_take(parameters[keyword.arg], keyword.value)
+        return may_take(script, parameters[keyword.arg], keyword.value)
     known = script.names.path(f"{former}({keyword.arg})")
     if known is None or not known.sure:
         return False
     named = parameters.get(_split(known.replacement)[1])
-    return named is None or may_take(named, keyword.value)
+    return named is None or may_take(script, named, keyword.value)
 
 
 def _is_of_right_callee(script: Script, row: Resolution) -> bool:

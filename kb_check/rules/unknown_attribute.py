@@ -12,6 +12,9 @@ light.energy.value = 100  # reported: a number is assigned as it is, `light.ener
 mesh.vertices.add(1).co = (0, 0, 0)  # reported: the call returns nothing
 ```
 
+A note, no error: what an add-on may register that the script enables and that nobody can look into here. A warning: an
+object's member of a parameter that nothing but its annotation says is the object's data.
+
 Not reported: what stands behind ``hasattr``, in a ``try`` that catches AttributeError, or in a branch for another
 version (``if bpy.app.version < (2, 80, 0)``).
 """
@@ -19,11 +22,13 @@ version (``if bpy.app.version < (2, 80, 0)``).
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import OBJECT_DATA
+from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Plain, members
+from kb_check.annotated_parameters import is_annotated
 from kb_check.calls import nothing_from
 from kb_check.findings import Finding, Fix
 from kb_check.made_here import bindings, callee_path, member_path, words_of
@@ -36,10 +41,12 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Resolution
+    from kb_check.known_names import Lacking
     from kb_check.script import Script
 
 _DATA, _LOAD = "bpy.types.BlendData", "bpy.types.BlendDataLibraries.load"
-_CONTEXT = "bpy.types.Context"
+_CONTEXT, _OBJECT = "bpy.types.Context", "bpy.types.Object"
+_OF_OBJECTS = frozenset(OBJECT_DATA.values())
 _LET_PASS = frozenset({"driver_remove"})
 # Before, what is assigned to an unknown name of a property group is lost, and no error.
 _OF_SCRIPTS, _REFUSED = "bpy.types.PropertyGroup", (5, 0)
@@ -55,9 +62,45 @@ def _check(script: Script) -> Iterator[Finding]:
             had = _owner_that_had(script, row, owner)
             lacking = script.names.member(had, row.value, reading=row.kind != "store")
             level = "warning" if lost or _is_let_pass(row) else "error"
+            if not lacking.removed and _is_of_object(script, row, owner):
+                level, lacking = "warning", _confused(row, owner, lacking)
             yield lacking_finding(script, RULE.id, row, lacking, level)
     yield from _of_python(script)
     yield from _of_libraries(script)
+
+
+def _is_of_object(script: Script, row: Resolution, owner: str) -> bool:
+    """Whether what is annotated as an object's data is used as the object: one of the two is wrong."""
+    node = _owner_node(row)
+    return (
+        node is not None
+        and owner.removeprefix(T) in _OF_OBJECTS
+        and script.api.member(_OBJECT, row.value) is not None
+        and is_annotated(script, node, owner)
+    )
+
+
+def _owner_node(row: Resolution) -> ast.expr | None:
+    """What a member is asked of: by a dot, or by its name as the first argument of a function of it."""
+    if isinstance(row.node, ast.Attribute):
+        return row.node.value
+    for node in walk(row.statement) if row.kind == "text" and row.statement else ():
+        match node:
+            case ast.Call(func=ast.Attribute(value=owner), args=[first, *_]) if first is row.node:
+                return owner
+            case _:
+                pass
+    return None
+
+
+def _confused(row: Resolution, owner: str, lacking: Lacking) -> Lacking:
+    node = _owner_node(row)
+    name = ast.unparse(node) if node else ""
+    message = (
+        f"`{name}` is annotated as `{owner}`, which has no `{row.value}`; `{_OBJECT}` has it: the annotation or the"
+        f" use is wrong. Annotate what is an object as `{_OBJECT}`, or pass its `data` and use that."
+    )
+    return replace(lacking, message=message, instead=(f"{_OBJECT}.{row.value}",))
 
 
 def _of_libraries(script: Script) -> Iterator[Finding]:
@@ -132,14 +175,20 @@ def _is_let_pass(row: Resolution) -> bool:
 
 
 def _owner_that_had(script: Script, row: Resolution, owner: str) -> str:
-    """Of several classes that lack a name, and of those of objects' data, the one that had it; or the owner."""
+    """Of several classes that lack a name, of those of objects' data, and of those below a class, the one that had it;
+    or the owner.
+    """
     if known := next((cls for cls in row.missing if script.names.had(cls, row.value)), ""):
         return known
     read = script.analysis.resolutions.get(row.node.value) if isinstance(row.node, ast.Attribute) else None
-    if read is None or read.symbols != ("bpy.types.Object.data",):
-        return owner
-    kinds = (f"bpy.types.{name}" for name in OBJECT_DATA.values())
-    return next((kind for kind in kinds if script.names.had(kind, row.value)), owner)
+    if read is not None and read.symbols == ("bpy.types.Object.data",):
+        kinds = (f"bpy.types.{name}" for name in OBJECT_DATA.values())
+        if known := next((kind for kind in kinds if script.names.had(kind, row.value)), ""):
+            return known
+    below = [cls for cls in script.api.descendants(owner) if script.names.was(cls, row.value)]
+    # What went from all of them at once was one thing: each kind of light had a contact shadow.
+    spans = {script.names.reader.removed(f"{cls}.{row.value}") for cls in below}
+    return below[0] if len(spans) == 1 else owner
 
 
 def _class_of(script: Script, owner: str) -> str:

@@ -33,7 +33,7 @@ def _check(script: Script) -> Iterator[Finding]:
         lacking = script.names.parameter(function, row.value, parameters)
         named = parameters.get(lacking.replacement.rpartition("(")[2].removesuffix(")"))
         value = row.node.value if isinstance(row.node, ast.keyword) else row.node
-        if named is not None and isinstance(value, ast.expr) and not may_take(named, value):
+        if named is not None and isinstance(value, ast.expr) and not may_take(script, named, value):
             lacking = replace(lacking, replacement="", sure=False)
         yield lacking_finding(script, RULE.id, row, lacking)
 

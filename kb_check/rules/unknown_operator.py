@@ -2,7 +2,7 @@
 
 ``bpy.ops`` finds an operator only when it is called, so a wrong name is an error late. Operators that the files of the
 same folder register are known; those of other add-ons cannot be, so a script that calls them says so in a comment
-(``# simworlds: ignore[unknown-operator]``).
+(``# simworlds: ignore[unknown-operator]``), or enables the add-on: then what no Blender has is a note.
 
 ```python
 bpy.ops.object.select_pattern_by_name()  # reported

@@ -129,3 +129,52 @@ def normals(mesh: {annotation}):
     assert rule_checker.check(code) == []
     (finding,) = rule_checker.check(code.replace(f": {annotation}", ""))
     assert "MeshNormalValue" in finding.message
+
+
+_CONFUSED = """
+import bpy
+
+
+def look(camera: {annotation}, place):
+    {use}
+"""
+
+
+@pytest.mark.parametrize("annotation", ["bpy.types.Camera", "'bpy.types.Camera'", "bpy.types.Camera | None"])
+@pytest.mark.parametrize(
+    "use", ["camera.matrix_world = place", "return camera.location", "camera.keyframe_insert('location')"]
+)
+def test_the_object_of_what_is_annotated_as_its_data_is_a_doubt(
+    rule_checker: Checker, annotation: str, use: str
+) -> None:
+    (finding,) = rule_checker.check(_CONFUSED.format(annotation=annotation, use=use))
+    assert finding.severity == "warning"
+    assert "`camera` is annotated as `bpy.types.Camera`" in finding.message
+    assert finding.instead[0].startswith("bpy.types.Object.")
+
+
+@pytest.mark.parametrize(
+    ("annotation", "use"),
+    [
+        ("bpy.types.Camera", "return camera.zorn"),  # no object has it
+        ("bpy.types.Camera", "camera.draw_size = 1"),  # a camera had it
+        ("bpy.types.Camera", "camera = bpy.data.cameras['a']; return camera.location"),
+        ("bpy.types.ID", "return camera.location if isinstance(camera, bpy.types.Camera) else None"),
+        ("bpy.types.Object", "return camera.lens"),
+    ],
+)
+def test_what_more_than_the_annotation_tells_is_an_error(
+    rule_checker: Checker, annotation: str, use: str
+) -> None:
+    (finding,) = rule_checker.check(_CONFUSED.format(annotation=annotation, use=use))
+    assert finding.severity == "error"
+
+
+def test_a_member_that_went_from_kinds_of_data_is_told_where_the_kind_is_not_known(
+    rule_checker: Checker,
+) -> None:
+    code = "import bpy\nlight = bpy.data.objects['Light'].data\nlight.use_contact_shadow = True\n"
+    (finding,) = rule_checker.check(code)
+    assert "Light.use_contact_shadow` does not exist in Blender 5.1: removed in 4.3" in finding.message
+    (finding,) = rule_checker.check(code.replace("use_contact_shadow", "zorn"))
+    assert "`bpy.types.ID` has no `zorn`" in finding.message

@@ -127,3 +127,24 @@ def test_functions_that_tell_of_no_result_have_none(rule_checker: Checker) -> No
     gives = json.loads(done.stdout.splitlines()[-1])
     assert len(names) > 500
     assert [name for name, answer in zip(names, gives, strict=True) if answer] == []
+
+
+_BUILT: list[str] = [
+    "import bpy",
+    "name = bpy.context.scene.name",
+    "path = f'/nowhere/{name}'",
+    "bpy.ops.wm.obj_export(f'{name}.obj')",
+    "bpy.ops.wm.obj_export('%s.obj' % name)",
+    "bpy.ops.wm.obj_export(name + '/a.obj')",
+    "bpy.ops.wm.obj_export(path)",
+    "how = bpy.app.binary_path and 'INVOKE' or 'EXEC'",
+    "bpy.ops.object.select_all(f'{how}_DEFAULT', action='SELECT')",
+    "bpy.ops.object.select_all('%s_DEFAULT' % how, action='SELECT')",
+    "bpy.ops.object.select_all(how + '_DEFAULT', action='SELECT')",
+]
+
+
+def test_a_text_that_is_put_together_is_no_execution_context(rule_checker: Checker, tmp_path: Path) -> None:
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, _BUILT), 1) if error]
+    found = rule_checker.check("\n".join(_BUILT), rules=["positional-argument"])
+    assert [one.span.line for one in found] == refused == [4, 5, 6, 7]

@@ -136,3 +136,19 @@ bpy.ops.object.mode_set(mode=mode)
     held, chosen = rule_checker.check(code, rules=["wrong-mode"])
     assert (held.severity, held.span.line, chosen.severity, chosen.span.line) == ("warning", 4, "warning", 7)
     assert "write 'EDIT'" in held.message
+
+
+@pytest.mark.parametrize(("given", "is_mended"), [("flag", False), ("kind", True), ("True", False)])
+def test_a_new_name_is_not_written_where_it_takes_no_value_of_that_type(
+    rule_checker: Checker, given: str, is_mended: bool
+) -> None:
+    code = f"""\
+import bpy
+
+
+def save(path: str, flag: bool = True, kind: str = "NONE"):
+    bpy.ops.export_scene.gltf(filepath=path, export_colors={given})
+"""
+    (finding,) = rule_checker.check(code)
+    assert finding.instead == ("bpy.ops.export_scene.gltf(export_vertex_color)",)
+    assert (finding.fix is not None) is is_mended

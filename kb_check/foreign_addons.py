@@ -1,0 +1,76 @@
+"""Add-ons that scripts enable and that nobody can look into here: what they register may be anything.
+
+Those are the ones that neither Blender brings nor the files that are checked together are.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.facts import ADDONS, T
+from kb_build.flow.trees import walk
+from kb_build.flow.types import UNKNOWN, literal_texts
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from kb_build.flow.analysis import Analysis
+    from kb_build.flow.api import Api
+
+# What enables an add-on → the argument that names it.
+_ENABLING = {
+    "addon_enable": "module",  # bpy.ops.preferences, and bpy.ops.wm before 2.80
+    "package_install": "pkg_id",  # bpy.ops.extensions
+    "enable": "module_name",  # addon_utils
+}
+_BY_PLACE = "addon_utils"
+# The classes that add-ons give properties to; a file's own data and Blender's settings are hardly among them.
+_HOLDERS = tuple(
+    f"{T}{name}"
+    for name in (
+        "ID",
+        "Bone",
+        "EditBone",
+        "PoseBone",
+        "ViewLayer",
+        "Node",
+        "NodeSocket",
+        "Strip",
+        "TimelineMarker",
+    )
+)
+
+
+def may_register(api: Api, owner: str) -> bool:
+    """Whether add-ons register things below a path: operators, classes, properties of a file's data."""
+    return (
+        owner == T.rstrip(".")
+        or owner.startswith("bpy.ops")
+        or any(api.descends(owner, cls) for cls in _HOLDERS)
+    )
+
+
+def foreign_addon(analyses: Collection[Analysis], own: Collection[str]) -> str:
+    """The first foreign add-on that scripts enable; empty for none. ``own`` are the dotted names of the files."""
+    parts = {part for name in own for part in name.split(".")}
+    for analysis in analyses:
+        for name in _enabled(analysis):
+            if name not in ADDONS and parts.isdisjoint(name.split(".")):
+                return name
+    return ""
+
+
+def _enabled(analysis: Analysis) -> Iterator[str]:
+    """The names of the add-ons that a script enables, as far as they stand in it."""
+    for node in walk(analysis.tree) if analysis.tree else ():
+        match node:
+            case ast.Call(func=ast.Attribute(value=owner, attr=called)) if called in _ENABLING:
+                is_by_place = isinstance(owner, ast.Name) and owner.id == _BY_PLACE
+                if called == "enable" and not is_by_place:
+                    continue
+                given = [keyword.value for keyword in node.keywords if keyword.arg == _ENABLING[called]]
+                for argument in [*given, *(node.args[:1] if is_by_place else ())]:
+                    yield from literal_texts(analysis.types.get(argument, UNKNOWN))
+            case _:
+                pass

@@ -1,0 +1,90 @@
+"""A script that enables an add-on which nobody can look into may use whatever that one registers."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_build.flow.facts import ADDONS
+
+if TYPE_CHECKING:
+    from kb_check.checker import Checker
+
+_USE = """\
+import addon_utils
+import bpy
+{enabling}
+ob = bpy.context.object
+bpy.ops.stranger_things.add()
+bpy.ops.object.stranger()
+ob.stranger.kind = "WET"
+bpy.context.scene.stranger.count = 1
+bpy.types.STRANGER_PT_panel
+"""
+# Whatever is enabled.
+_WRONG = """\
+ob.locaton = (1, 2, 3)
+ob.draw_type = "WIRE"
+bpy.ops.object.lamp_add()
+bpy.context.scene.render.stranger = 1
+bpy.context.stranger
+"""
+_ENABLING = 'bpy.ops.preferences.addon_enable(module="stranger")'
+
+
+def _severities(checker: Checker, code: str) -> list[str]:
+    return [one.severity for one in checker.check(code)]
+
+
+@pytest.mark.parametrize(
+    "enabling",
+    [
+        _ENABLING,
+        'bpy.ops.preferences.addon_enable(module="bl_ext.user_default.stranger")',
+        'NAME = "stranger"\nbpy.ops.wm.addon_enable(module=NAME) if bpy.app.version < (2, 80) else None\n'
+        "bpy.ops.preferences.addon_enable(module=NAME)",
+        'addon_utils.enable("stranger", default_set=True)',
+        'addon_utils.enable(module_name="stranger")',
+        'for name in ("rigify", "stranger"):\n    addon_utils.enable(name)',
+        'bpy.ops.extensions.package_install(repo_index=0, pkg_id="stranger")',
+    ],
+)
+def test_what_a_foreign_addon_may_register_is_no_error(rule_checker: Checker, enabling: str) -> None:
+    found = rule_checker.check(_USE.format(enabling=enabling))
+    assert [one.severity for one in found] == ["note"] * 5
+    assert all("`" in one.message and "may register it" in one.message for one in found)
+
+
+@pytest.mark.parametrize(
+    "enabling", ["", "addon_utils.enable(name)", 'settings.enable("stranger")']
+    + [f'bpy.ops.preferences.addon_enable(module="{name}")' for name in ("rigify", "io_scene_fbx")],
+)  # fmt: skip
+def test_without_one_nothing_may(rule_checker: Checker, enabling: str) -> None:
+    assert _severities(rule_checker, _USE.format(enabling=enabling)) == ["error"] * 5
+
+
+def test_what_blender_had_or_a_misspelling_stays_an_error(rule_checker: Checker) -> None:
+    assert _severities(rule_checker, _USE.format(enabling=_ENABLING) + _WRONG) == ["note"] * 5 + ["error"] * 5
+
+
+def test_an_addon_that_is_checked_with_the_script_can_be_looked_into(rule_checker: Checker) -> None:
+    files = {
+        "stranger/__init__.py": "import bpy\nbpy.types.Object.stranger = bpy.props.StringProperty()\n",
+        "stranger/tests/try_it.py": f"import bpy\n{_ENABLING}\nbpy.context.object.strangr = 'a'\n",
+    }
+    reads = rule_checker.read_files(files)
+    package = rule_checker.package(reads.values())
+    (finding,) = rule_checker.check(reads["stranger/tests/try_it.py"], package)
+    assert finding.severity == "error"
+
+
+def test_the_addons_of_blender_are_known() -> None:
+    code = "import addon_utils\nprint(*(module.__name__ for module in addon_utils.modules()))"
+    done = subprocess.run(
+        [sys.executable, "-c", f"import bpy\n{code}"], capture_output=True, check=True, text=True, timeout=60
+    )
+    brought = {name for name in done.stdout.split() if name.isidentifier()}
+    assert {"cycles", "rigify"} <= brought <= ADDONS

@@ -1,0 +1,147 @@
+"""Conditions on what a parameter holds: its default is only one of the values that it may have."""
+
+from __future__ import annotations
+
+from textwrap import indent
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_check.checker import Checker
+
+_FUNCTION = """\
+from mathutils import Vector
+
+
+def place(pivot{annotation}="object", ready=True):
+{body}
+"""
+
+
+def _found(checker: Checker, body: str, annotation: str = "") -> int:
+    return len(checker.check(_FUNCTION.format(annotation=annotation, body=indent(body, "    "))))
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        "if isinstance(pivot, (tuple, list)):\n    return Vector(pivot)",
+        "if isinstance(pivot, (tuple, list)) and len(pivot) == 3:\n    return Vector(pivot)",
+        "if ready and isinstance(pivot, tuple):\n    return Vector(pivot)",
+        "if pivot == 'object':\n    return 1\nreturn Vector(pivot)",
+        "if pivot in ('object', 'world'):\n    return 1\nelse:\n    return Vector(pivot)",
+        "return Vector(pivot) if pivot != 'object' else 1",
+        "if not isinstance(pivot, str):\n    return Vector(pivot)",
+        "if isinstance(pivot, str):\n    return 1\nreturn Vector(pivot)",
+        "if isinstance(pivot, (str, bytes)):\n    return 1\nreturn Vector(pivot)",
+    ],
+)
+def test_what_is_not_the_default_may_be_anything(rule_checker: Checker, body: str) -> None:
+    assert _found(rule_checker, body) == 0
+
+
+@pytest.mark.parametrize(
+    ("body", "annotation"),
+    [
+        ("return Vector(pivot)", ""),
+        ("if pivot == 'world':\n    return 1\nreturn Vector(pivot)", ""),
+        ("if pivot == 'object':\n    return Vector(pivot)", ""),
+        ("if pivot == 'object':\n    return 1\nreturn Vector(pivot)", ": str"),
+        ("if isinstance(pivot, list):\n    return 1\nreturn Vector(pivot)", ""),
+    ],
+)
+def test_the_default_itself_is_refused(rule_checker: Checker, body: str, annotation: str) -> None:
+    assert _found(rule_checker, body, annotation) == 1
+
+
+def test_both_conditions_tell_what_an_attribute_is(rule_checker: Checker) -> None:
+    code = """\
+import bpy
+
+
+class Holder:
+    def use(self):
+        if isinstance(self.data, bpy.types.Mesh) and self.data.users:
+            return self.data.{name}
+"""
+    assert rule_checker.check(code.format(name="vertices")) == []
+    (finding,) = rule_checker.check(code.format(name="zorn"))
+    assert finding.symbol == "bpy.types.Mesh.zorn"
+
+
+_MANAGED = """\
+import bpy
+from contextlib import contextmanager
+
+
+class Card:
+    @staticmethod
+    @contextmanager
+    def made():
+        yield bpy.data.materials.new("card")
+
+    def use(self):
+        with self.made() as card:
+            bpy.context.object.active_material = card
+            card.{name}
+"""
+
+
+def test_with_gives_what_a_generator_yields(rule_checker: Checker) -> None:
+    assert rule_checker.check(_MANAGED.format(name="diffuse_color")) == []
+    (finding,) = rule_checker.check(_MANAGED.format(name="zorn"))
+    assert finding.symbol == "bpy.types.Material.zorn"
+
+
+_CONVERTED: list[str] = [
+    "import bpy",
+    'mesh = bpy.data.meshes.new("line")',
+    "mesh.from_pydata([(0, 0, 0), (1, 0, 0)], [(0, 1)], [])",
+    'ob = bpy.data.objects.new("line", mesh)',
+    "bpy.context.collection.objects.link(ob)",
+    "bpy.context.view_layer.objects.active = ob",
+    "ob.select_set(True)",
+    "ob.data.bevel_depth = 1.0",
+    'bpy.ops.object.convert(target="CURVE")',
+    "ob.data.bevel_depth = 1.0",
+]
+
+
+def test_an_object_has_other_data_once_it_is_converted(rule_checker: Checker, tmp_path: Path) -> None:
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, _CONVERTED), 1) if error]
+    assert [one.span.line for one in rule_checker.check("\n".join(_CONVERTED))] == refused == [8]
+
+
+_TREES: list[str] = [
+    "import bpy",
+    "def add(tree: bpy.types.NodeTree):"
+    " tree.interface.new_socket(name='a', in_out='INPUT', socket_type='NodeSocketGeometry')",
+    "add(bpy.data.node_groups.new('a', 'GeometryNodeTree'))",
+]
+
+
+def test_a_tree_of_any_kind_may_be_one_that_takes_it(rule_checker: Checker, tmp_path: Path) -> None:
+    assert not any(error for error, *_ in run_statements(tmp_path, _TREES))
+    assert rule_checker.check("\n".join(_TREES)) == []
+    shaders = "\n".join(_TREES[:2]).replace("types.NodeTree", "types.ShaderNodeTree")
+    (finding,) = rule_checker.check(shaders)
+    assert finding.rule == "refused-value"
+
+
+_KEPT: list[str] = [
+    "import bpy",
+    "bpy.types.kept_server.start",
+    "bpy.types.kept_server = bpy.context.scene",
+    "bpy.types.kept_server.name",
+    "bpy.types.lost_server.name",
+]
+
+
+def test_what_is_assigned_to_the_module_of_types_is_there(rule_checker: Checker, tmp_path: Path) -> None:
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, _KEPT), 1) if error]
+    assert refused == [2, 5]
+    assert [one.span.line for one in rule_checker.check("\n".join(_KEPT))] == [5]
