@@ -128,7 +128,7 @@ class Narrowing(Guards):
         if is_told or not isinstance(default, ast.Constant) or default.value is None:
             return
         kind = self._type_of(others)
-        if default.value in map(literal, kind.items if isinstance(kind, Tuple) else (kind,)):
+        if any(literal(one) == default.value for one in (kind.items if isinstance(kind, Tuple) else (kind,))):
             self._know(node, UNKNOWN)
 
     def _comparison(self, left: ast.expr, operator: ast.cmpop, right: ast.expr, *, holds: bool) -> None:
