@@ -602,6 +602,7 @@ class MarkdownRenderer:
 
     def _module(self, symbol: Symbol) -> Iterator[AnswerBlock]:
         members = [entry for entry in self.reader.members(symbol.path).values() if entry.group != "ui"]
+        members.sort(key=lambda entry: entry.name.startswith("_"))  # what is Blender's own comes last
         lines = ["- " + entry.line for entry in members]
         if lines:
             yield AnswerBlock("**Contents**\n" + "\n".join(lines), "contents")

@@ -24,6 +24,8 @@ ROOTS = (
 # Class → path of those written so far.
 WRITTEN = {}
 PRIVATE_BUT_DOCUMENTED = {"bpy.props._PropertyDeferred"}
+# What modules have that are struct sequences, as bpy.app.handlers, besides their fields.
+TUPLES_OWN = {*dir(tuple), "n_fields", "n_sequence_fields", "n_unnamed_fields"}
 PLAIN = (bool, int, float, str, bytes, tuple, list, dict, set, frozenset)
 
 
@@ -197,6 +199,8 @@ class Walk:
         below = []
         for attribute in dir(module):
             if attribute.startswith("_") and not self.is_documented(name, module, attribute):
+                continue
+            if isinstance(module, tuple) and attribute in TUPLES_OWN:
                 continue
             try:
                 value = getattr(module, attribute)

@@ -291,6 +291,12 @@ def test_a_name_of_a_module_is_there(symbols: dict[str, Symbol], path: str) -> N
     assert path in symbols
 
 
+def test_a_struct_sequence_has_only_its_fields(symbols: dict[str, Symbol]) -> None:
+    fields = {path for path in symbols if path.startswith("bpy.app.handlers.")}
+    assert "bpy.app.handlers.render_post" in fields
+    assert not {path for path in fields if path.endswith((".count", ".index", "_fields"))}
+
+
 def test_docstrings_are_read_as_markup(symbols: dict[str, Symbol]) -> None:
     lerp = symbols["mathutils.Vector.lerp"]
     assert [parameter.name for parameter in lerp.parameters] == ["other", "factor"]

@@ -190,6 +190,11 @@ def test_a_way_to_a_thing_says_what_is_none_on_it(kb: KnowledgeBase) -> None:
     assert "made by `obj.animation_data_create()`" in kb.query("bpy.types.AnimData.action").text
 
 
+def test_a_module_lists_names_with_an_underscore_last(kb: KnowledgeBase) -> None:
+    text = kb.query("bpy.app.handlers", max_tokens=ALL).text
+    assert text.index("`version_update`") < text.index("`_extension_repos_sync`")
+
+
 def test_a_module_lists_its_contents(kb: KnowledgeBase) -> None:
     text = kb.query("bpy.ops.rigidbody", max_tokens=ALL).text
     assert "**Contents**" in text
