@@ -32,6 +32,9 @@ OR_NONE = " or None"
 # How flags begin that say what fills a pointer that is None on a new thing, and on which new things it is not None.
 FILLED_BY = "filled-by:"
 FILLED_ON = "filled-on:"
+# The flags of a member of the context that is None: where no object is active, and outside the areas of windows.
+WITHOUT_ACTIVE = "none-without-active-object"
+WITHOUT_AREA = "none-without-area"
 # How a flag begins that says what an operator's poll wants, of all that was tried; nothing follows if it wants nothing.
 NEEDS = "needs:"
 # How flags begin that name the types of areas in which alone an operator runs (``any``), and the member of the context

@@ -266,6 +266,10 @@ class BaseReader:
         sql = "SELECT name FROM symbols WHERE owner = ? AND (name = ? OR substr(name, 1, ?) = ?) ORDER BY id"
         return [row[0] for row in self.rows(sql, owner, stem, len(stem) + 1, f"{stem}_")]
 
+    def member_of(self, cls: str, name: str) -> SymbolEntry | None:
+        """A class's own or inherited member."""
+        return self.member((ancestor.path for ancestor in self.lineage(cls)), name)
+
     def descends(self, cls: str, ancestor: str) -> bool:
         """Whether a class is ``ancestor`` or derives from it."""
         return any(entry.path == ancestor for entry in self.lineage(cls))
@@ -290,6 +294,12 @@ class BaseReader:
         """All that point to a class."""
         sql = f"SELECT {_ENTRY} FROM symbols WHERE type = 'pointer' AND target != '' ORDER BY path"
         return [SymbolEntry._make(row) for row in self.rows(sql)]
+
+    def collections_with(self, cls: str) -> list[SymbolEntry]:
+        """The properties that are collections of a class, given by its name."""
+        sql = f"""SELECT {_ENTRY} FROM symbols
+            WHERE target = ? AND kind = 'property' AND type = 'collection' ORDER BY path"""
+        return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
     def pointers_called(self, name: str, cls: str) -> list[str]:
         """Paths of the pointer properties of this name whose value is a class, given by its name."""
@@ -386,6 +396,12 @@ class BaseReader:
     def weights(self, paths: Collection[str]) -> dict[str, float]:
         """How much symbols count among their like; those that count nothing are left out."""
         return dict(self.rows_of("SELECT path, weight FROM weights WHERE path", paths))
+
+    def heaviest(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
+        """Entries by weight; those of equal weight keep their order."""
+        found = list(entries)
+        weights = self.weights([entry.path for entry in found])
+        return sorted(found, key=lambda entry: -weights.get(entry.path, 0.0))
 
     def member_weights(self, owners: Collection[str]) -> dict[str, list[float]]:
         """The weights of the members of classes, by class."""

@@ -9,7 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN
+from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN, WITHOUT_ACTIVE, WITHOUT_AREA
 from kb_build.symbol_lines import (
     SET,
     alike_nodes,
@@ -76,6 +76,10 @@ _SHOWN_FLAGS = (
     "classmethod",
     "hidden-by-default",
 )
+_NONE_IN_CONTEXT = {
+    WITHOUT_ACTIVE: "`None` where no object is active",
+    WITHOUT_AREA: "`None` outside the areas of windows, as in a Blender without a window",
+}
 _PARAGRAPH = "\n\n"
 _BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
 _FEW_PARAMETERS = 8
@@ -479,8 +483,9 @@ class MarkdownRenderer:
             cls = self._owning_class(symbol)
             yield f"reached as `{reached}`" + (self._empty_before(cls) if cls else "")
         elif symbol.kind == "context":
-            origin = [flag[5:] for flag in symbol.flags if flag.startswith("from:")]
-            yield f"provided by: {', '.join(origin)}"
+            if origin := symbol.flagged("from:"):
+                yield f"provided by: {', '.join(origin)}"
+            yield from (text for flag, text in _NONE_IN_CONTEXT.items() if flag in symbol.flags)
         if symbol.kind == "class" and (creation := self.reader.creations([symbol.path]).get(symbol.path)):
             yield f"made by `{creation.call}`"
         if target := self._assigned(symbol):
@@ -516,7 +521,7 @@ class MarkdownRenderer:
 
     def _key_of(self, cls: str) -> str:
         """The property, not called ``name``, by whose value collections find instances of a class; empty for none."""
-        if self.reader.member((one.path for one in self.reader.lineage(cls)), "name"):
+        if self.reader.member_of(cls, "name"):
             return ""
         for ancestor in self.reader.lineage(cls):
             for member in self.reader.members(ancestor.path).values():

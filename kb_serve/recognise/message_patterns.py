@@ -9,8 +9,9 @@ _REPORT = re.compile(r"Error:\s*Error:|^\s*(?:Error|Warning):\s")  # reported by
 _TRACEBACK = re.compile(r"Traceback \(most recent call last\):|File \"[^\"]*\", line \d+(?:, in \S+)?|\^{2,}")
 _QUOTED = re.compile(r"(?<!\w)(['\"])[^'\"\n]{0,60}\1")
 
-HAS_NO = re.compile(r"['\"](?P<owner>[\w.]+)['\"] object has no attribute ['\"](?P<name>\w+)['\"]")
-MODULE_HAS_NO = re.compile(r"module ['\"](?P<owner>[\w.]+)['\"] has no attribute ['\"](?P<name>\w+)['\"]")
+# Who types a message from memory leaves its quotes out.
+HAS_NO = re.compile(r"(?<![\w.])(?P<owner>[\w.]++)['\"]? object has no attribute ['\"]?(?P<name>\w+)")
+MODULE_HAS_NO = re.compile(r"module ['\"]?(?P<owner>[\w.]++)['\"]? has no attribute ['\"]?(?P<name>\w+)")
 NOT_IN_COLLECTION = re.compile(r"\bbpy_prop_collection: attribute \"(?P<name>\w+)\" not found")
 NO_KEY = re.compile(r"\b(?P<on>bpy_\w+)\[key\]: key \"(?P<name>[^\"]+)\" not found")
 NO_INDEX = re.compile(r"\w+\[index\](?: = value)?: index (?P<index>-?\d+) out of range, size (?P<size>\d+)")
@@ -71,7 +72,8 @@ _WORDING = re.compile(
     r"""bpy_struct:\ item\.attr\s*=\s*val:|bpy_\w+\[(?:key|index|slice)\](?:\ =\ value)?:|BMElemSeq\[index\]:
     |bpy_prop_collection:\ attribute\ "\w+"\ not\ found|cannot\ create\ '[\w.]+'\ instances
     |'_Restrict(?:Context|Data)'\ object
-    |(?:object\ )?has\ no\ attribute\ '\w+'|and\ no\ __dict__\ for\ setting\ new\ attributes
+    |(?:object\ )?has\ no\ attribute\ '\w+'|\bobject\ has\ no\ attribute\ \w+
+    |and\ no\ __dict__\ for\ setting\ new\ attributes
     |Converting\ py\ args\ to\ operator\ properties::?|keyword\ "\w+"\ (?:is\ invalid|unrecognized)
     |(?:got\ an\ )?unexpected\ keyword\ argument|is\ an\ invalid\ keyword\ argument\ for(?:\ this\ function)?
     |was\ called\ with\ invalid\ keyword\ argument\(s\)\ \([^)]*\),\ expected\ \([^)]*\)?

@@ -19,6 +19,7 @@ from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.nameless_messages import recognise_nameless
 from kb_serve.recognise.newer_nodes import tell_of_the_newer_node
+from kb_serve.recognise.none_before import NoneBefore
 from kb_serve.recognise.products import CLASSES, WITH_AT
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import plain_path, socket_node
@@ -115,6 +116,7 @@ class Messages:
         self._removed = removed
         self._enum_values = enum_values
         self._owners = UnnamedOwners(reader, removed)
+        self._none_before = NoneBefore(reader, removed)
 
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what a message is about: a class without an attribute, an operator, the owner of an enum."""
@@ -149,7 +151,7 @@ class Messages:
         for pattern in (forms.HAS_NO, forms.MODULE_HAS_NO):
             for match in _matches(pattern, query):
                 if match["owner"] == "NoneType":
-                    self._owners.of_none(match["name"], query, recognition)
+                    self._none_before.explain(match["name"], query, recognition)
                 elif match["owner"] == "bpy_prop_collection":
                     self._owners.of_a_collection(match["name"], recognition)
                 else:

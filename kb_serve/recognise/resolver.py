@@ -95,7 +95,7 @@ class Resolver:
 
     def member(self, cls: str, name: str) -> SymbolEntry | None:
         """A class's own or inherited member."""
-        return self._reader.member((ancestor.path for ancestor in self._reader.lineage(cls)), name)
+        return self._reader.member_of(cls, name)
 
     def resolve(self, chain: Chain) -> list[ResolvedChain]:
         """Every reading of a chain, best first: most steps resolved, then the likelier class for a variable."""

@@ -1,28 +1,18 @@
-"""Finds whose a member is that a message tells of without its class: of None, of some collection, of a thing within."""
+"""Finds whose a member is that a message tells of without its class: of some collection, of a thing within."""
 
 from __future__ import annotations
 
-from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import terms
-from kb_build.records import FILLED_BY
-from kb_build.symbol_lines import empty_when_new
 from kb_serve.reader import COLLECTION, STRUCT, TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
 
 _FEW = 3
-_MANY = 8  # where more properties may be None, none is likely enough to be named
-_WEIGHTY = 9.0  # the weight from which on a pointer is one that scripts come upon without having asked for it
-_ANY = frozenset({STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup"})  # pointers to these may lead to anything
-_IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
 
 
 class UnnamedOwners:
@@ -31,163 +21,6 @@ class UnnamedOwners:
     def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup) -> None:
         self._reader = reader
         self._removed = removed
-        # class → the pointers to it that are None on new things
-        self._empty: dict[str, list[SymbolEntry]] = {}
-
-    def of_none(self, name: str, query: str, recognition: Recognition) -> None:
-        """What may have been None before ``.name``: the pointers to classes that have the name, or once had it."""
-        owners = {
-            entry.owner.removeprefix(TYPES)
-            for entry in self._reader.by_name(name)
-            if entry.kind in {"property", "function"}
-            and entry.owner.startswith(TYPES)
-            and entry.group != "ui"
-        }
-        gone = [] if owners else self._once(name)
-        for removed in gone:
-            recognition.add_removed(removed)
-            owners.add(removed.path.rpartition(".")[0].removeprefix(TYPES))
-        around = set(terms(query))
-        named_first = sorted(owners, key=lambda owner: (not around.issuperset(terms(owner)), owner))
-        holders = [entry for owner in named_first[:_MANY] for entry in self._holders(owner)]
-        likely = [
-            entry for entry in holders if set(terms(f"{entry.owner} {entry.name}")) <= around | {"type"}
-        ]
-        few = len(owners) <= _FEW
-        told = set(likely)
-        if few and len(holders) <= _MANY:
-            likely = likely or holders
-        elif not few and len(owners) <= _MANY and not likely:
-            likely = [entry for entry in holders if self._flag(entry, FILLED_BY) is not None]
-            told = set(self._weightiest(likely)[:1])
-        if not likely:
-            likely = self._empty_before(name)
-            told = set(likely)
-        self._tell(name, owners, holders, recognition)
-        for rank, entry in enumerate(self._weightiest(likely)[:_FEW]):
-            recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
-            if not gone:
-                recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
-            if (few or entry in told) and (call := self._flag(entry, FILLED_BY)):
-                recognition.notes.append(f"`{entry.path}` is None before `{call}`.")
-            elif entry in told and (setting := self._setting(entry)):
-                recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
-
-    def _empty_before(self, name: str) -> list[SymbolEntry]:
-        """The likeliest pointers that are None on new things, and lead to what has a member of that name, once filled.
-
-        None where that leads to too many classes, and none to a class whose member scripts use far less than another's:
-        then they say nothing.
-        """
-        members = {target: self._member(target, name) for target in self._that_may_have(name)}
-        having = {
-            target: one.path
-            for target, one in members.items()
-            if one and one.group != "ui" and self._empty_pointers(target)
-        }
-        if not 0 < len(having) <= _MANY:
-            return []
-        weights = self._reader.weights([entry.path for entry in self._reader.by_name(name)])
-        least = max(weights.values(), default=0) / 2
-        usual = {target for target, path in having.items() if weights.get(path, 0) >= least}
-        empty = (entry for target in usual for entry in self._empty_pointers(target))
-        found = self._weightiest(sorted(empty, key=lambda entry: entry.path))
-        weights = self._reader.weights([entry.path for entry in found])
-        least = max(_WEIGHTY, max(weights.values(), default=0) / 2)
-        return [entry for entry in found if weights.get(entry.path, 0) >= least]
-
-    def _member(self, cls: str, name: str) -> SymbolEntry | None:
-        return self._reader.member([entry.path for entry in self._reader.lineage(TYPES + cls)], name)
-
-    def _that_may_have(self, name: str) -> set[str]:
-        """The classes that pointers lead to, of those with a member of that name and of the classes below them."""
-        owners = {entry.owner for entry in self._reader.by_name(name)}
-        below = {cls.path for owner in owners for cls in self._reader.descendants(owner)}
-        return {path.removeprefix(TYPES) for path in owners | below} & self._pointers.keys()
-
-    @cached_property
-    def _pointers(self) -> dict[str, list[SymbolEntry]]:
-        """Class → the pointers that lead to it."""
-        found: dict[str, list[SymbolEntry]] = defaultdict(list)
-        for entry in self._reader.pointers():
-            found[entry.target].append(entry)
-        return dict(found)
-
-    def _empty_pointers(self, target: str) -> list[SymbolEntry]:
-        """The pointers to a class that are None on new things, of which it is known how they are filled.
-
-        None of a class that many point to (objects, materials): scripts fill these as a matter of course.
-        """
-        if target not in self._empty:
-            empty = [
-                entry
-                for entry in self._pointers[target]
-                if entry.group != "ui" and self._is_empty_when_new(entry)
-            ]
-            self._empty[target] = [
-                entry
-                for entry in empty
-                if len(empty) <= _MANY
-                and entry.owner != TYPES + target
-                and (self._flag(entry, FILLED_BY) or self._setting(entry))
-            ]
-        return self._empty[target]
-
-    def _is_empty_when_new(self, entry: SymbolEntry) -> bool:
-        symbol = self._reader.symbol(entry.path)
-        return symbol is not None and empty_when_new(symbol) is not None
-
-    def _setting(self, entry: SymbolEntry) -> str:
-        """The statement that sets a pointer which is None on new things; empty for other pointers."""
-        symbol = self._reader.symbol(entry.path)
-        if symbol is None or "readonly" in symbol.flags or not empty_when_new(symbol):
-            return ""
-        made = self._reader.creations([TYPES + entry.target]).get(TYPES + entry.target)
-        is_value = made is not None and not made.maker.startswith("bpy.ops.")  # operators return no thing
-        value = made.call if made and is_value else entry.target.lower()
-        return f"{entry.owner.removeprefix(TYPES).lower()}.{entry.name} = {value}"
-
-    def _tell(
-        self, name: str, owners: set[str], holders: list[SymbolEntry], recognition: Recognition
-    ) -> None:
-        """Notes that something was None, and where only one class has the name, of which class, held by what."""
-        of = may_be = ""
-        if len(owners) == 1:
-            of = f", a `{TYPES}{next(iter(owners))}`,"
-            # What is None on new things is likelier None than what hardly ever is.
-            likeliest = sorted(
-                self._weightiest(holders), key=lambda entry: not self._is_empty_when_new(entry)
-            )
-            listed = ", ".join(f"`{entry.path}`" for entry in likeliest[:_FEW])
-            may_be = f" One is reached by {listed}." if listed else ""
-        recognition.notes.append(_IS_NONE.format(name=name, of=of) + may_be)
-
-    def _holders(self, cls: str) -> list[SymbolEntry]:
-        """The pointers that may lead to an instance of a class, and may be None; those to itself only if no others."""
-        below = self._reader.subclasses(TYPES + cls)
-        kinds = [entry.name for entry in self._reader.lineage(TYPES + cls) if entry.path not in _ANY]
-        kinds += [entry.name for entry in below] if len(below) <= _MANY else []
-        holders = [
-            entry
-            for kind in kinds
-            for entry in self._reader.pointing_at(kind)
-            if entry.group != "ui" and self._flag(entry, "never-none") is None
-        ]
-        return [entry for entry in holders if entry.owner != TYPES + cls] or holders
-
-    def _once(self, name: str) -> list[RemovedSymbol]:
-        """The removed data members of that name, if few: those with a successor first."""
-        paths = [path for path in self._removed.paths_named(name) if path.startswith(TYPES)]
-        if len(paths) > _MANY:
-            return []
-        found = list(filter(None, map(self._removed.of_path, paths)))
-        return sorted(found, key=lambda removed: not removed.successors) if len(found) <= _FEW else []
-
-    def _flag(self, entry: SymbolEntry, prefix: str) -> str | None:
-        """What follows the prefix in a symbol's flags; None where no flag begins with it."""
-        symbol = self._reader.symbol(entry.path)
-        flags = symbol.flags if symbol else ()
-        return next((flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix)), None)
 
     def of_a_collection(self, name: str, recognition: Recognition) -> None:
         """A member that a collection lacks: the one that lost it, and the collections that have it, weightiest first.
@@ -203,7 +36,7 @@ class UnnamedOwners:
         else:
             recognition.add(COLLECTION, 0.6, "error message")
         members = [entry for entry in self._reader.by_name(name) if entry.kind in {"property", "function"}]
-        having = self._weightiest(entry for entry in members if entry.owner in self._collections)
+        having = self._reader.heaviest(entry for entry in members if entry.owner in self._collections)
         for rank, entry in enumerate(having[:_FEW]):
             recognition.add(entry.path, 0.86 - 0.01 * rank, "same name")
         if having:
@@ -230,12 +63,7 @@ class UnnamedOwners:
             if cls.path != STRUCT
             for pointer in self._reader.members(cls.path).values()
             if pointer.type == "pointer" and pointer.target
-            for member in [self._member(pointer.target, name)]
+            for member in [self._reader.member_of(TYPES + pointer.target, name)]
             if member and member.owner != STRUCT
         }
-        return [(found[member], member) for member in self._weightiest(found)]
-
-    def _weightiest(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
-        listed = list(entries)
-        weights = self._reader.weights([entry.path for entry in listed])
-        return sorted(listed, key=lambda entry: -weights.get(entry.path, 0))
+        return [(found[member], member) for member in self._reader.heaviest(found)]

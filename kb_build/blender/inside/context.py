@@ -2,8 +2,8 @@
 """Members of ``bpy.context``: those of its class, and those that the screen provides.
 
 Which of the latter exist, and of what type, depends on editor and mode: a member's type is what Blender
-returns for it in one of the scratch situations made here. The reference lists them below ``bpy.context`` in
-some versions, below ``bpy.types.Context`` in others; both names are written.
+returns for it in one of the scratch situations made here, and so is where it is None. The reference lists them
+below ``bpy.context`` in some versions, below ``bpy.types.Context`` in others; both names are written.
 """
 
 import bpy
@@ -11,6 +11,8 @@ import bpy
 from .rna import describe
 
 MODES = ("EDIT", "POSE", "OBJECT")
+# Flags of what is None: where no object is active, in whatever editor; outside the areas of windows.
+WITHOUT_ACTIVE, WITHOUT_AREA = "none-without-active-object", "none-without-area"
 
 
 def member_names():
@@ -78,9 +80,14 @@ def make_object(kind):
 
 
 def probe(names):
-    """name → (type, target), from a mesh, a curve and an armature in each mode that they have."""
-    found = {}
+    """name → (type, target), from a mesh, a curve and an armature in each mode that they have; names → where None."""
+    found, none = {}, {}
+    bpy.context.view_layer.objects.active = None
+    ask(names, found)
+    outside = set(found)
     ask_editors(names, found)
+    none |= dict.fromkeys(found.keys() - outside, WITHOUT_AREA)
+    in_areas = set(found)
     for kind in ("MESH", "CURVE", "ARMATURE"):
         if not make_object(kind):
             continue
@@ -90,7 +97,7 @@ def probe(names):
             except Exception:
                 continue
             ask_editors(names, found)
-    return found
+    return found, none | dict.fromkeys(found.keys() - in_areas, WITHOUT_ACTIVE)
 
 
 def guess(name):
@@ -107,13 +114,22 @@ def guess(name):
     return "", ""
 
 
-def write_global(write, screen):
+def where_none(name, kind, none):
+    """The flag of a pointer that is None somewhere."""
+    return [none[name]] if kind == "pointer" and name in none else []
+
+
+def write_global(write, names, none):
     """The properties of the class ``Context`` as members of ``bpy.context``."""
     for prop in bpy.types.Context.bl_rna.properties:
         name = prop.identifier
-        if name != "rna_type" and name not in screen:
+        if name in names:
             row = describe(prop)
-            row["flags"] = [*row["flags"], f"same-as:bpy.types.Context.{name}"]
+            row["flags"] = [
+                *row["flags"],
+                *where_none(name, row["type"], none),
+                f"same-as:bpy.types.Context.{name}",
+            ]
             write("symbol", path=f"bpy.context.{name}", kind="context", owner="bpy.context", **row)
 
 
@@ -124,12 +140,17 @@ def write_all(write):
     for place, names in by_place.items():
         for name in names:
             places.setdefault(name, []).append(place)
-    write_global(write, places)
     own = set(bpy.types.Context.bl_rna.properties.keys())
-    found = probe(tuple(places))
+    everywhere = own - places.keys() - {"rna_type"}
+    found, none = probe((*places, *sorted(everywhere)))
+    write_global(write, everywhere, none)
     for name in sorted(places):
         kind, target = found.get(name) or guess(name)
-        flags = ["readonly", *(f"from:{place}" for place in sorted(places[name]))]
+        flags = [
+            "readonly",
+            *(f"from:{place}" for place in sorted(places[name])),
+            *where_none(name, kind, none),
+        ]
         row = {"kind": "context", "type": kind, "target": target}
         write("symbol", path=f"bpy.context.{name}", owner="bpy.context", flags=flags, **row)
         if name not in own:

@@ -198,9 +198,7 @@ class Walk:
         )
         below = []
         for attribute in dir(module):
-            if attribute.startswith("_") and not self.is_documented(name, module, attribute):
-                continue
-            if isinstance(module, tuple) and attribute in TUPLES_OWN:
+            if not self.is_told(name, module, attribute):
                 continue
             try:
                 value = getattr(module, attribute)
@@ -219,6 +217,12 @@ class Walk:
         for path, value in below:
             if value is not None:
                 self.module(path, value)
+
+    def is_told(self, name, module, attribute):
+        """Whether an attribute is one of the module's own, and not private."""
+        if isinstance(module, tuple) and attribute in TUPLES_OWN:
+            return False
+        return not attribute.startswith("_") or self.is_documented(name, module, attribute)
 
     def is_documented(self, name, module, attribute):
         """Whether a name with an underscore in front has documentation all the same."""

@@ -14,7 +14,7 @@ import pytest
 from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
-from kb_build.records import ENDS_WITHOUT, NewValue
+from kb_build.records import ENDS_WITHOUT, WITHOUT_ACTIVE, WITHOUT_AREA, NewValue
 from kb_build.symbol_lines import (
     fillers,
     never_taken,
@@ -313,6 +313,17 @@ def test_types_are_words_and_not_memory(extract: Extract) -> None:
 def test_deferred_properties_of_mixins_are_read(symbols: dict[str, Symbol]) -> None:
     filepath = symbols["bpy_extras.io_utils.ImportHelper.filepath"]
     assert (filepath.type, filepath.label, filepath.subtype) == ("string", "File Path", "FILE_PATH")
+
+
+def test_context_members_say_where_they_are_none(symbols: dict[str, Symbol]) -> None:
+    flags = {
+        name: symbols[f"bpy.context.{name}"].flags
+        for name in ("object", "active_object", "space_data", "scene")
+    }
+    assert WITHOUT_ACTIVE in flags["object"]
+    assert WITHOUT_ACTIVE in flags["active_object"]
+    assert WITHOUT_AREA in flags["space_data"]
+    assert not {WITHOUT_ACTIVE, WITHOUT_AREA}.intersection(flags["scene"])
 
 
 def test_context_members_have_types(symbols: dict[str, Symbol]) -> None:

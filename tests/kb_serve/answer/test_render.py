@@ -201,6 +201,12 @@ def test_a_module_lists_its_contents(kb: KnowledgeBase) -> None:
     assert "- `bake_to_keyframes(" in text
 
 
+def test_a_context_member_says_where_it_is_none(kb: KnowledgeBase) -> None:
+    assert "`None` where no object is active" in kb.query("bpy.context.object").text
+    assert "`None` outside the areas of windows" in kb.query("bpy.context.space_data").text
+    assert "provided by: \n" not in kb.query("bpy.context.space_data").text
+
+
 def test_a_context_member_says_which_editors_provide_it(kb: KnowledgeBase) -> None:
     assert "provided by: " in kb.query("bpy.context.active_bone").text
 

@@ -203,10 +203,55 @@ def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str
     assert said in "\n".join(kb.query(message).notes)
 
 
-@pytest.mark.parametrize("name", ["name", "location", "type"])
-def test_what_many_things_have_says_not_which_of_them_is_none(kb: KnowledgeBase, name: str) -> None:
-    notes = kb.query(f"AttributeError: 'NoneType' object has no attribute '{name}'").notes
-    assert [note for note in notes if "None on what is new" in note] == []
+@pytest.mark.parametrize(
+    ("name", "first", "said"),
+    [
+        ("location", "bpy.context.active_object", "`bpy.context.object` are None where no object is active"),
+        (
+            "select_set",
+            "bpy.context.active_object",
+            "`bpy.data.objects.get(name)` is None where nothing has the name",
+        ),
+        (
+            "name",
+            "bpy.context.active_object",
+            "Often: `bpy.context.active_object` and `bpy.context.object` are None",
+        ),
+        ("inputs", "bpy.types.NodeTree.nodes", "`nodes.get(name)` is None where nothing has the name"),
+        ("vertices", "bpy.types.Object.data", "`bpy.types.Object.data` is None on a new empty object"),
+        ("diffuse_color", "bpy.types.Object.active_material", "`bpy.data.materials.get(name)` is None where"),
+        ("drivers", "bpy.types.Object.animation_data", "is None before `obj.animation_data_create()`"),
+    ],
+)
+def test_what_many_things_have_was_mostly_asked_of_what_is_not_there(
+    kb: KnowledgeBase, name: str, first: str, said: str
+) -> None:
+    answer = kb.query(f"AttributeError: 'NoneType' object has no attribute '{name}'")
+    assert answer.hits[0].id == first
+    assert said in "\n".join(answer.notes)
+
+
+@pytest.mark.blender
+def test_what_is_said_to_be_none_where_nothing_is_there_is_none() -> None:
+    bpy = pytest.importorskip("bpy")
+    bpy.context.view_layer.objects.active = None
+    assert bpy.context.active_object is None
+    assert bpy.context.object is None
+    assert bpy.data.objects.get("none has this name") is None
+    assert bpy.data.materials.new("new").node_tree.nodes.get("none has this name") is None
+    assert bpy.data.objects.new("empty", None).data is None
+    assert bpy.data.objects.new("new", bpy.data.meshes.new("new")).active_material is None
+
+
+@pytest.mark.parametrize(
+    "message",
+    ["AttributeError: Object object has no attribute select", "Mesh object has no attribute calc_normals",
+     "NoneType object has no attribute mass", "module bpy.utils has no attribute register_module"],
+)  # fmt: skip
+def test_a_message_without_its_quotes_is_the_same_message(kb: KnowledgeBase, message: str) -> None:
+    quoted = re.sub(r"(?<=module )([\w.]+)|(\w+)(?= object has)|(\w+)$", r"'\g<0>'", message)
+    assert quoted.count("'") == 4
+    assert kb.query(message).notes == kb.query(quoted).notes != []
 
 
 @pytest.mark.blender

@@ -1,0 +1,111 @@
+"""What is None where there is nothing to give: members of the context, look-ups by name, pointers of new things."""
+
+from __future__ import annotations
+
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key
+from kb_build.records import WITHOUT_ACTIVE
+from kb_build.symbol_lines import empty_when_new, fillers
+from kb_serve.reader import STRUCT, TYPES
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader, SymbolEntry
+
+ANY = frozenset({STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup"})  # what leads to these may lead to anything
+WEIGHTY = 9.0  # the weight from which on a pointer is one that scripts come upon without having asked for it
+_CONTEXT, _DATA = f"{TYPES}Context", f"{TYPES}BlendData"
+_KINDS, _OBJECT_DATA = f"{TYPES}Object.type", f"{TYPES}Object.data"
+_FEW = 2
+
+
+class Absent:
+    """Finds in one base what may give no thing of a class."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def usual(self, name: str) -> SymbolEntry | None:
+        """The member of that name which scripts use most, of those of things that may be absent; None if none is."""
+        entries = [
+            entry
+            for entry in self._reader.by_name(name)
+            if entry.kind in {"property", "function"}
+            and entry.owner.startswith(TYPES)
+            and entry.group != "ui"
+        ]
+        weights = self._reader.weights([entry.path for entry in entries])
+        least = max(weights.values(), default=0.0) / 2
+        usual = (entry for entry in self._reader.heaviest(entries) if weights.get(entry.path, 0.0) >= least)
+        return next((entry for entry in usual if self.sources(entry.owner)), None)
+
+    def in_context(self, cls: str) -> list[str]:
+        """The paths of what in the context leads to such a thing, and is None where no object is active."""
+        leading = (one for one in self._of_what_is_active if self._reader.descends(TYPES + one.target, cls))
+        return [f"bpy.context.{entry.name}" for entry in leading][:_FEW]
+
+    def looked_up(self, cls: str) -> str:
+        """The path of the collection in which scripts mostly look for such things by name; empty where they do not.
+
+        Data-blocks are looked for among all that there are.
+        """
+        if not self._reader.member_of(cls, "name"):
+            return ""
+        kinds = [entry.name for entry in self._reader.lineage(cls) if entry.path not in ANY]
+        collections = [entry for kind in kinds for entry in self._reader.collections_with(kind)]
+        ranked = sorted(self._reader.heaviest(collections), key=lambda entry: entry.owner != _DATA)
+        return ranked[0].path if ranked else ""
+
+    def pointer_to(self, cls: str) -> str:
+        """The path of the pointer, None on new things, by which scripts mostly come to such a thing; empty for none."""
+        if any(owner == _KINDS for owner, *_ in self._reader.enum_owners(key(cls.removeprefix(TYPES)))):
+            return _OBJECT_DATA
+        pointers = [one for one in self._reader.pointing_at(cls.removeprefix(TYPES)) if one.owner != cls]
+        weights = self._reader.weights([entry.path for entry in pointers])
+        ranked = self._reader.heaviest(pointers)
+        weighty = (entry.path for entry in ranked if weights.get(entry.path, 0.0) >= WEIGHTY)
+        return next((path for path in weighty if is_empty_when_new(path, self._reader)), "")
+
+    def sources(self, cls: str) -> list[str]:
+        """The paths of all of these, the likeliest first."""
+        return [path for path in (*self.in_context(cls), self.pointer_to(cls), self.looked_up(cls)) if path]
+
+    def note(self, cls: str) -> str:
+        """Where a thing of a class may have come from that is None."""
+        causes: list[str] = []
+        if context := self.in_context(cls):
+            names = " and ".join(f"`{path}`" for path in context)
+            causes.append(f"{names} {'are' if len(context) > 1 else 'is'} None where no object is active")
+        if pointer := self.pointer_to(cls):
+            causes.append(f"`{pointer}` is None {self._where_empty(pointer)}")
+        if looked_up := self.looked_up(cls):
+            owner, _, name = looked_up.rpartition(".")
+            on = "bpy.data." if owner == _DATA else ""
+            causes.append(f"`{on}{name}.get(name)` is None where nothing has the name")
+        return f"{'Often' if cls in ANY else f'Mostly it is a `{cls}`'}: {', '.join(causes)}."
+
+    def _where_empty(self, pointer: str) -> str:
+        symbol = self._reader.symbol(pointer)
+        empty = empty_when_new(symbol) if symbol else None
+        if symbol and (calls := fillers(symbol)):
+            return f"before `{calls[0]}`"
+        return f"on a new {empty.made[0]}" if empty and empty.made else "on what is new"
+
+    @cached_property
+    def _of_what_is_active(self) -> list[SymbolEntry]:
+        """The members of the context, most used first, that are None where no object is active."""
+        symbols = {
+            entry: self._reader.symbol(entry.path)
+            for entry in self._reader.members(_CONTEXT).values()
+            if entry.kind == "context" and entry.type == "pointer"
+        }
+        return self._reader.heaviest(
+            entry for entry, symbol in symbols.items() if symbol and WITHOUT_ACTIVE in symbol.flags
+        )
+
+
+def is_empty_when_new(path: str, reader: BaseReader) -> bool:
+    """Whether a pointer is None on new things."""
+    symbol = reader.symbol(path)
+    return symbol is not None and empty_when_new(symbol) is not None

@@ -1,0 +1,205 @@
+"""Says what may have been None before a member, where a message tells the member alone."""
+
+from __future__ import annotations
+
+from collections import defaultdict
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import terms
+from kb_build.records import FILLED_BY
+from kb_build.symbol_lines import empty_when_new
+from kb_serve.reader import TYPES
+from kb_serve.recognise.absent import ANY, WEIGHTY, Absent, is_empty_when_new
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+
+_FEW = 3
+_OFTEN = 6.0  # the weight from which on scripts use a pointer often
+_MANY = 8  # where more properties may be None, none is likely enough to be named
+_IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
+
+
+class NoneBefore:
+    """Finds in one base what may have been None."""
+
+    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup) -> None:
+        self._reader = reader
+        self._removed = removed
+        self._absent = Absent(reader)
+        # class → the pointers to it that are None on new things
+        self._empty: dict[str, list[SymbolEntry]] = {}
+
+    def explain(self, name: str, query: str, recognition: Recognition) -> None:
+        """Adds what may have been None before ``.name``: pointers to classes that have the name, or once had it, what
+        the context gives, and look-ups by name.
+        """
+        owners = {
+            entry.owner.removeprefix(TYPES)
+            for entry in self._reader.by_name(name)
+            if entry.kind in {"property", "function"}
+            and entry.owner.startswith(TYPES)
+            and entry.group != "ui"
+        }
+        gone = [] if owners else self._once(name)
+        for removed in gone:
+            recognition.add_removed(removed)
+            owners.add(removed.path.rpartition(".")[0].removeprefix(TYPES))
+        around = set(terms(query))
+        named_first = sorted(owners, key=lambda owner: (not around.issuperset(terms(owner)), owner))
+        holders = [entry for owner in named_first[:_MANY] for entry in self._holders(owner)]
+        likely = [
+            entry for entry in holders if set(terms(f"{entry.owner} {entry.name}")) <= around | {"type"}
+        ]
+        told = set(likely)  # of these is said what fills them
+        usual = None if likely or gone else self._absent.usual(name)
+        if usual and self._absent.in_context(usual.owner):
+            self._tell_absent(usual, recognition)
+            return
+        few = len(owners) <= _FEW
+        if few and len(holders) <= _MANY and (not usual or self._are_used(holders)):
+            likely = likely or holders
+        elif not few and len(owners) <= _MANY and not likely:
+            likely = [entry for entry in holders if self._flag(entry, FILLED_BY) is not None]
+            told = set(self._reader.heaviest(likely)[:1])
+        if not likely:
+            likely = self._empty_before(name)
+            told = set(likely)
+        if usual and not likely:
+            self._tell_absent(usual, recognition)
+            return
+        self._tell(name, owners, holders, recognition)
+        for rank, entry in enumerate(self._reader.heaviest(likely)[:_FEW]):
+            recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
+            if not gone:
+                recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
+            if (few or entry in told) and (call := self._flag(entry, FILLED_BY)):
+                recognition.notes.append(f"`{entry.path}` is None before `{call}`.")
+            elif entry in told and (setting := self._setting(entry)):
+                recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
+
+    def _are_used(self, holders: list[SymbolEntry]) -> bool:
+        weights = self._reader.weights([entry.path for entry in holders])
+        return max(weights.values(), default=0.0) >= _OFTEN
+
+    def _tell_absent(self, member: SymbolEntry, recognition: Recognition) -> None:
+        """Adds where a thing with this member comes from that may be None."""
+        recognition.notes += [_IS_NONE.format(name=member.name, of=""), self._absent.note(member.owner)]
+        for rank, path in enumerate(self._absent.sources(member.owner)):
+            recognition.add(path, 0.86 - 0.01 * rank, "may be None")
+        recognition.add(member.path, 0.81, "attribute of None")
+
+    def _empty_before(self, name: str) -> list[SymbolEntry]:
+        """The likeliest pointers that are None on new things, and lead to what has a member of that name, once filled.
+
+        None where that leads to too many classes, and none to a class whose member scripts use far less than another's:
+        then they say nothing.
+        """
+        members = {
+            target: self._reader.member_of(TYPES + target, name) for target in self._that_may_have(name)
+        }
+        having = {
+            target: one.path
+            for target, one in members.items()
+            if one and one.group != "ui" and self._empty_pointers(target)
+        }
+        if not 0 < len(having) <= _MANY:
+            return []
+        weights = self._reader.weights([entry.path for entry in self._reader.by_name(name)])
+        least = max(weights.values(), default=0) / 2
+        usual = {target for target, path in having.items() if weights.get(path, 0) >= least}
+        empty = (entry for target in usual for entry in self._empty_pointers(target))
+        found = self._reader.heaviest(sorted(empty, key=lambda entry: entry.path))
+        weights = self._reader.weights([entry.path for entry in found])
+        least = max(WEIGHTY, max(weights.values(), default=0) / 2)
+        return [entry for entry in found if weights.get(entry.path, 0) >= least]
+
+    def _that_may_have(self, name: str) -> set[str]:
+        """The classes that pointers lead to, of those with a member of that name and of the classes below them."""
+        owners = {entry.owner for entry in self._reader.by_name(name)}
+        below = {cls.path for owner in owners for cls in self._reader.descendants(owner)}
+        return {path.removeprefix(TYPES) for path in owners | below} & self._pointers.keys()
+
+    @cached_property
+    def _pointers(self) -> dict[str, list[SymbolEntry]]:
+        """Class → the pointers that lead to it."""
+        found: dict[str, list[SymbolEntry]] = defaultdict(list)
+        for entry in self._reader.pointers():
+            found[entry.target].append(entry)
+        return dict(found)
+
+    def _empty_pointers(self, target: str) -> list[SymbolEntry]:
+        """The pointers to a class that are None on new things, of which it is known how they are filled.
+
+        None of a class that many point to (objects, materials): scripts fill these as a matter of course.
+        """
+        if target not in self._empty:
+            empty = [
+                entry
+                for entry in self._pointers[target]
+                if entry.group != "ui" and is_empty_when_new(entry.path, self._reader)
+            ]
+            self._empty[target] = [
+                entry
+                for entry in empty
+                if len(empty) <= _MANY
+                and entry.owner != TYPES + target
+                and (self._flag(entry, FILLED_BY) or self._setting(entry))
+            ]
+        return self._empty[target]
+
+    def _setting(self, entry: SymbolEntry) -> str:
+        """The statement that sets a pointer which is None on new things; empty for other pointers."""
+        symbol = self._reader.symbol(entry.path)
+        if symbol is None or "readonly" in symbol.flags or not empty_when_new(symbol):
+            return ""
+        made = self._reader.creations([TYPES + entry.target]).get(TYPES + entry.target)
+        is_value = made is not None and not made.maker.startswith("bpy.ops.")  # operators return no thing
+        value = made.call if made and is_value else entry.target.lower()
+        return f"{entry.owner.removeprefix(TYPES).lower()}.{entry.name} = {value}"
+
+    def _tell(
+        self, name: str, owners: set[str], holders: list[SymbolEntry], recognition: Recognition
+    ) -> None:
+        """Notes that something was None, and where only one class has the name, of which class, held by what."""
+        of = may_be = ""
+        if len(owners) == 1:
+            of = f", a `{TYPES}{next(iter(owners))}`,"
+            # What is None on new things is likelier None than what hardly ever is.
+            likeliest = sorted(
+                self._reader.heaviest(holders),
+                key=lambda entry: not is_empty_when_new(entry.path, self._reader),
+            )
+            listed = ", ".join(f"`{entry.path}`" for entry in likeliest[:_FEW])
+            may_be = f" One is reached by {listed}." if listed else ""
+        recognition.notes.append(_IS_NONE.format(name=name, of=of) + may_be)
+
+    def _holders(self, cls: str) -> list[SymbolEntry]:
+        """The pointers that may lead to an instance of a class, and may be None; those to itself only if no others."""
+        below = self._reader.subclasses(TYPES + cls)
+        kinds = [entry.name for entry in self._reader.lineage(TYPES + cls) if entry.path not in ANY]
+        kinds += [entry.name for entry in below] if len(below) <= _MANY else []
+        holders = [
+            entry
+            for kind in kinds
+            for entry in self._reader.pointing_at(kind)
+            if entry.group != "ui" and self._flag(entry, "never-none") is None
+        ]
+        return [entry for entry in holders if entry.owner != TYPES + cls] or holders
+
+    def _once(self, name: str) -> list[RemovedSymbol]:
+        """The removed data members of that name, if few: those with a successor first."""
+        paths = [path for path in self._removed.paths_named(name) if path.startswith(TYPES)]
+        if len(paths) > _MANY:
+            return []
+        found = list(filter(None, map(self._removed.of_path, paths)))
+        return sorted(found, key=lambda removed: not removed.successors) if len(found) <= _FEW else []
+
+    def _flag(self, entry: SymbolEntry, prefix: str) -> str | None:
+        """What follows the prefix in a symbol's flags; None where no flag begins with it."""
+        symbol = self._reader.symbol(entry.path)
+        flags = symbol.flags if symbol else ()
+        return next((flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix)), None)
