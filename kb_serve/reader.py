@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from kb_build.index.analysis import key
 from kb_build.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import NoBase, open_read_only, unpack
 from kb_serve.errors import BadQuery, BaseMissing, BaseUnreadable
@@ -274,6 +275,13 @@ class BaseReader:
         """Whether a class is ``ancestor`` or derives from it."""
         return any(entry.path == ancestor for entry in self.lineage(cls))
 
+    def is_object_data(self, cls: str) -> bool:
+        """Whether objects have such a class as data: a type of objects is called as it, or as one of its bases."""
+        names = (entry.name for entry in self.lineage(cls))
+        return any(
+            owner == f"{TYPES}Object.type" for name in names for owner, *_ in self.enum_owners(key(name))
+        )
+
     def symbol(self, path: str) -> Symbol | None:
         """The whole record of an identifier."""
         rows = self.rows("SELECT record FROM symbols WHERE path = ?", path)
@@ -464,6 +472,6 @@ class BaseReader:
 def _grouped(rows: Iterable[tuple[str, _Value]]) -> dict[str, tuple[_Value, ...]]:
     """Key → its values, in the order of the rows."""
     groups: dict[str, list[_Value]] = {}
-    for key, value in rows:
-        groups.setdefault(key, []).append(value)
-    return {key: tuple(values) for key, values in groups.items()}
+    for own, value in rows:
+        groups.setdefault(own, []).append(value)
+    return {own: tuple(values) for own, values in groups.items()}

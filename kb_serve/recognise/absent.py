@@ -5,7 +5,6 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
 from kb_build.records import WITHOUT_ACTIVE
 from kb_build.symbol_lines import empty_when_new, fillers
 from kb_serve.reader import STRUCT, TYPES
@@ -16,7 +15,7 @@ if TYPE_CHECKING:
 ANY = frozenset({STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup"})  # what leads to these may lead to anything
 WEIGHTY = 9.0  # the weight from which on a pointer is one that scripts come upon without having asked for it
 _CONTEXT, _DATA = f"{TYPES}Context", f"{TYPES}BlendData"
-_KINDS, _OBJECT_DATA = f"{TYPES}Object.type", f"{TYPES}Object.data"
+_OBJECT_DATA = f"{TYPES}Object.data"
 _FEW = 2
 
 
@@ -59,7 +58,7 @@ class Absent:
 
     def pointer_to(self, cls: str) -> str:
         """The path of the pointer, None on new things, by which scripts mostly come to such a thing; empty for none."""
-        if any(owner == _KINDS for owner, *_ in self._reader.enum_owners(key(cls.removeprefix(TYPES)))):
+        if self._reader.is_object_data(cls):
             return _OBJECT_DATA
         pointers = [one for one in self._reader.pointing_at(cls.removeprefix(TYPES)) if one.owner != cls]
         weights = self._reader.weights([entry.path for entry in pointers])
@@ -72,7 +71,7 @@ class Absent:
         return [path for path in (*self.in_context(cls), self.pointer_to(cls), self.looked_up(cls)) if path]
 
     def note(self, cls: str) -> str:
-        """Where a thing of a class may have come from that is None."""
+        """Where a thing of a class may have come from that is None; empty where that is not known."""
         causes: list[str] = []
         if context := self.in_context(cls):
             names = " and ".join(f"`{path}`" for path in context)
@@ -80,10 +79,8 @@ class Absent:
         if pointer := self.pointer_to(cls):
             causes.append(f"`{pointer}` is None {self._where_empty(pointer)}")
         if looked_up := self.looked_up(cls):
-            owner, _, name = looked_up.rpartition(".")
-            on = "bpy.data." if owner == _DATA else ""
-            causes.append(f"`{on}{name}.get(name)` is None where nothing has the name")
-        return f"{'Often' if cls in ANY else f'Mostly it is a `{cls}`'}: {', '.join(causes)}."
+            causes.append(f"`{as_written(looked_up)}.get(name)` is None where nothing has the name")
+        return ", ".join(causes)
 
     def _where_empty(self, pointer: str) -> str:
         symbol = self._reader.symbol(pointer)
@@ -103,6 +100,12 @@ class Absent:
         return self._reader.heaviest(
             entry for entry, symbol in symbols.items() if symbol and WITHOUT_ACTIVE in symbol.flags
         )
+
+
+def as_written(collection: str) -> str:
+    """What scripts write for a collection: ``bpy.data.objects``, ``nodes``."""
+    owner, _, name = collection.rpartition(".")
+    return f"bpy.data.{name}" if owner == _DATA else name
 
 
 def is_empty_when_new(path: str, reader: BaseReader) -> bool:

@@ -129,6 +129,15 @@ class EnumValues:
         """Where an enumeration takes a value, ``only with media_type='VIDEO'``; "" for everywhere, or nowhere."""
         return next((item.where for item in self._items(owner) if item.identifier == value), "")
 
+    def labelled(self, owner: str, value: str) -> list[str]:
+        """The items whose labels have all words of a value, those with the fewest others first: SUBSURF, which is
+        labelled Subdivision Surface, of ``SUBDIVISION``.
+        """
+        said = set(terms(value))
+        labels = {item.identifier: set(terms(item.name)) for item in self._items(owner)}
+        having = [identifier for identifier, label in labels.items() if said and said <= label]
+        return sorted(having, key=lambda identifier: len(labels[identifier]))
+
     def condition(self, owner: str, value: str) -> str:
         """A sentence on where an enumeration takes a value; "" if everywhere, or nowhere."""
         where = self.where(owner, value)

@@ -11,6 +11,7 @@ _QUOTED = re.compile(r"(?<!\w)(['\"])[^'\"\n]{0,60}\1")
 
 # Who types a message from memory leaves its quotes out.
 HAS_NO = re.compile(r"(?<![\w.])(?P<owner>[\w.]++)['\"]? object has no attribute ['\"]?(?P<name>\w+)")
+TYPE_HAS_NO = re.compile(r"\btype object ['\"](?P<owner>[\w.]++)['\"] has no attribute ['\"](?P<name>\w+)")
 MODULE_HAS_NO = re.compile(r"module ['\"]?(?P<owner>[\w.]++)['\"]? has no attribute ['\"]?(?P<name>\w+)")
 NOT_IN_COLLECTION = re.compile(r"\bbpy_prop_collection: attribute \"(?P<name>\w+)\" not found")
 NO_KEY = re.compile(r"\b(?P<on>bpy_\w+)\[key\]: key \"(?P<name>[^\"]+)\" not found")
@@ -42,6 +43,10 @@ POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 WRONG_TYPE = re.compile(
     # Only from the start of a dotted name, and the whole of it: trying each part of a long one takes seconds.
     r"(?<![\w.])(?:(?P<operator>[A-Z][A-Z_0-9]*_OT_\w+)\.\w+|(?P<path>\w++(?:\.\w++)++)) expected [^,]{1,80}, not \w+"
+)
+GIVEN = re.compile(
+    r"expected an? (?P<wanted>\w+) type, not (?P<given>\w+)"
+    r"|does not support a '(?P<none>None)' assignment (?P<of>\w+) type"
 )
 READ_ONLY = re.compile(
     r"attribute \"(?P<name>\w+)\" from \"(?P<owner>\w+)\" is read-only"
@@ -79,7 +84,7 @@ _WORDING = re.compile(
     |was\ called\ with\ invalid\ keyword\ argument\(s\)\ \([^)]*\),\ expected\ \([^)]*\)?
     |No\ module\ named|cannot\ import\ name|function\ takes\ exactly\ \d+\ arguments?\ \(\d+\ given\)
     |not\ found\ in\ \([^)]*\)?|expected\ an?\ \w+\ type,\ not\ \w+|error\ with\ argument\ \d+,\ "\w+"\ -
-    |\bFunction\.(?=\w+(?:\ expected|:\ ))|[A-Z][A-Z_0-9]*_OT_\w+\.(?=\w+\ expected)
+    |\bFunction\.(?=\w+(?:\ expected|:\ |\ does\ not))|[A-Z][A-Z_0-9]*_OT_\w+\.(?=\w+\ expected)
     |bpy_struct:\ (?=attribute|Context)|attribute\ "\w+"\ from\ "\w+"\ is\ read-only|Context\ property\ (?="\w+"\ is)
     |(?:StructRNA|BMesh\ data)\ of\ type\ \w+\ has\ been\ removed|BMeshOpsModule:\ operator
     |\bNode\ type\ (?=\w+\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object

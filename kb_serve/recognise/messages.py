@@ -13,10 +13,12 @@ from kb_build.records import EVALUATED
 from kb_build.symbol_lines import GET_EVALUATED, locked_text
 from kb_serve.reader import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.absent import Absent, as_written
 from kb_serve.recognise.calls import counted, places_of, unknown_keywords
 from kb_serve.recognise.changed_by import changed_by
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.given import what_to_give
 from kb_serve.recognise.nameless_messages import recognise_nameless
 from kb_serve.recognise.newer_nodes import tell_of_the_newer_node
 from kb_serve.recognise.none_before import NoneBefore
@@ -42,6 +44,8 @@ _MANY = 8  # where more properties may be None, none is likely enough to be name
 # Pages of the API's own guides that explain a kind of message; named where the base has them.
 _ON_OPERATORS = "info_gotchas_operators"
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
+_PYTHONS = frozenset({"tuple", "list", "str", "dict", "set", "int", "float", "bool", "function", "method"})
+_VECTOR = "mathutils.Vector"
 _USUAL_NODE = f"{TYPES}ShaderNodeBsdfPrincipled."  # whose sockets scripts set most
 _OF_PROPERTIES = (f"{STRUCT}.get", f"{TYPES}ID.bl_system_properties_get")  # where they are read
 _ON_FREED = "info_gotchas_crashes"
@@ -66,6 +70,7 @@ _NO_FLUIDS = (
     "`blender --background scene.blend --python script.py`."
 )
 _NO_ITEM = "`{name}` is not an item of this enum; closest: {similar}."
+_LABELLED = "`{name}` is not an item of this enum; of that label: {items}."
 _NO_OPERATOR_NAMED = (
     "The message does not name the operator that was called: ask for that to see its arguments."
 )
@@ -116,7 +121,8 @@ class Messages:
         self._removed = removed
         self._enum_values = enum_values
         self._owners = UnnamedOwners(reader, removed)
-        self._none_before = NoneBefore(reader, removed)
+        self._absent = Absent(reader)
+        self._none_before = NoneBefore(reader, removed, self._absent)
 
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what a message is about: a class without an attribute, an operator, the owner of an enum."""
@@ -126,6 +132,7 @@ class Messages:
         self._data(query, recognition)
         self._products(query, recognition)
         self._registration(query, recognition)
+        self._given(query, recognition)
         self._refused(query, recognition)
         recognise_nameless(query, self._reader, recognition)
 
@@ -148,7 +155,7 @@ class Messages:
     # Attributes
 
     def _attributes(self, query: str, recognition: Recognition) -> None:
-        for pattern in (forms.HAS_NO, forms.MODULE_HAS_NO):
+        for pattern in (forms.HAS_NO, forms.TYPE_HAS_NO, forms.MODULE_HAS_NO):
             for match in _matches(pattern, query):
                 if match["owner"] == "NoneType":
                     self._none_before.explain(match["name"], query, recognition)
@@ -193,6 +200,9 @@ class Messages:
         if written == "module":  # of which the message does not tell the name
             self._gone(TYPES + name, recognition)
             return
+        if written in _PYTHONS:
+            self._of_python(written, name, recognition)
+            return
         owner = _INSTANCES.get(written) or self._class_path(written)
         module = self._reader.entry(f"{owner}.{name}") if owner else None
         if module and module.kind == "module":
@@ -212,6 +222,21 @@ class Messages:
             recognition.missing.append(MissingName(name, owner, sure=True))
             recognition.add(owner, 0.6, "error message")
             self._within(owner, name, recognition)
+
+    def _of_python(self, written: str, name: str, recognition: Recognition) -> None:
+        """What one of Python's own types lacks: a vector's member, or that of the thing which a text names."""
+        if written in {"tuple", "list"} and (entry := self._reader.entry(f"{_VECTOR}.{name}")):
+            recognition.add(entry.path, 0.95, "error message")
+            recognition.notes.append(
+                f"A {written} has no `.{name}`; a vector has: `mathutils.Vector(value).{name}`."
+            )
+        elif written == "str" and (member := self._absent.usual(name)):
+            recognition.add(member.path, 0.95, "error message")
+            if collection := self._absent.looked_up(member.owner):
+                recognition.add(collection, 0.93, "error message")
+                recognition.notes.append(
+                    f'The text is only the name of a thing, which is `{as_written(collection)}["…"]`.'
+                )
 
     def _of_a_former_class(self, written: str, name: str) -> RemovedSymbol | None:
         """What a removed class lacked already, or else the class."""
@@ -399,12 +424,21 @@ class Messages:
                 recognition.notes.append(condition)
             elif similar := _closest(match["name"], items):
                 recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+            elif owners and (labelled := self._enum_values.labelled(owners[0], match["name"])):
+                listed = ", ".join(f"`{item}`" for item in labelled[:_FEW])
+                recognition.notes.append(_LABELLED.format(name=match["name"], items=listed))
         for match in _matches(forms.BAD_TEXT, query):
             once = [path for path in self._reader.removed_named(match["name"]) if "):" in path]
             if once and (removed := self._removed.of_path(once[0])):
                 recognition.add_removed(removed)
             elif similar := _closest(match["name"], re.findall(r"'([^']+)'", match["items"])):
                 recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+
+    def _given(self, query: str, recognition: Recognition) -> None:
+        """What to give in place of a value of another type."""
+        for match in _matches(forms.GIVEN, query):
+            wanted, given = match["wanted"] or match["of"], match["given"] or match["none"]
+            recognition.notes += what_to_give(wanted, given, self._reader, self._absent)
 
     def _lost_value(self, owners: Iterable[str], value: str) -> RemovedSymbol | None:
         """A value that the likeliest owners took in other versions; where several did, one of which the successor is

@@ -15,6 +15,15 @@ if TYPE_CHECKING:
 _SURE = 0.97
 _T = "bpy.types."
 _O = "bpy.ops.object."
+_GET = f"{_T}bpy_prop_collection.get"
+_FROM_WHERE = (
+    "`.get(name)` of a collection finds nothing of that name, a pointer was not set (`obj.active_material`, "
+    "`scene.camera`), or a function ended without `return`."
+)
+_NO_FACTOR = (
+    "A tuple or list is no factor: make it a vector first, `matrix @ Vector(value)`, `Vector(value) * 2`; two vectors "
+    "are multiplied number by number: `Vector(value) * v`."
+)
 _NO_CUSTOM_PROPERTIES = (
     "Only data-blocks (objects, scenes, materials …), bones and their collections, nodes, strips, view layers, "
     "property groups, the metadata of assets and geometry-nodes modifiers take custom properties in brackets. "
@@ -75,6 +84,12 @@ NAMELESS_MESSAGES = (
         (f"{_T}Object.ray_cast", f"{_T}Object.closest_point_on_mesh", f"{_T}ID.evaluated_get"),
         "The object must be in the view layer and computed: link it, then `bpy.context.view_layer.update()`.",
     ),
+    NamelessMessage(
+        ("ID type '", "is not valid for an object"),
+        (f"{_T}BlendDataObjects.new", f"{_T}ID.copy"),
+        "The second argument is the data, not an object: `bpy.data.objects.new(name, obj.data)`. `obj.copy()` "
+        "copies an object.",
+    ),
     # Meshes
     NamelessMessage(
         ("Tangent space can only be computed for tris/quads",),
@@ -108,12 +123,28 @@ NAMELESS_MESSAGES = (
         (f"{_T}Curves.add_curves",),
         "Each size is the number of points in a curve, 1 or more: `curves.add_curves([3, 5])`.",
     ),
+    NamelessMessage(
+        ("expected 'Mesh' type found 'Object' instead",),
+        ("bmesh.types.BMesh.from_mesh", "bmesh.types.BMesh.to_mesh", "bmesh.from_edit_mesh"),
+        "Give the data of the object: `bm.from_mesh(obj.data)`, `bm.to_mesh(obj.data)`.",
+    ),
+    NamelessMessage(
+        ("BMElemSeq[index]: index ", " out of range"),
+        ("bmesh.types.BMVertSeq", "bmesh.types.BMVertSeq.new"),
+        "There are fewer elements, `len(bm.verts)`, and they are counted from 0.",
+    ),
     # Modifiers, transforms
     NamelessMessage(
         ("Modifier cannot be applied to a mesh with shape keys",),
         (f"{_O}modifier_apply", f"{_T}Object.shape_key_clear"),
         "Remove the shape keys first (`obj.shape_key_clear()`), or make a mesh of the result: "
         "`bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph))`.",
+    ),
+    NamelessMessage(
+        ("Modifier is disabled, skipping apply",),
+        (f"{_O}modifier_apply", f"{_T}Modifier.show_viewport"),
+        "The modifier lacks what it works with (a Boolean without an object), or is not shown: "
+        "`modifier.show_viewport = True`.",
     ),
     NamelessMessage(
         ("Modifiers cannot be applied to multi-user data",),
@@ -182,6 +213,53 @@ NAMELESS_MESSAGES = (
         (f"{_T}NodesModifier", f"{_T}NodeTreeInterfaceSocket.identifier"),
         "The group has no input of that identifier: `item.identifier` of its `interface.items_tree` tells it.",
     ),
+    NamelessMessage(
+        ("bpy_prop_collection[key]: invalid key, must be",),
+        (f"{_T}bpy_prop_collection", f"{_T}bpy_prop_collection.get"),
+        "A collection is asked for a name or a whole number: `collection[thing.name]`, `collection[int(number)]`.",
+    ),
+    NamelessMessage(
+        ("'NoneType' object is not subscriptable",),
+        (_GET,),
+        f"What stands before the bracket is None. {_FROM_WHERE}",
+    ),
+    NamelessMessage(
+        ("'NoneType' object is not iterable",),
+        (_GET,),
+        f"What the loop, or the function, goes through is None. {_FROM_WHERE}",
+    ),
+    NamelessMessage(
+        ("of type 'NoneType'",),
+        (_GET,),
+        f"What is counted or searched is None. {_FROM_WHERE}",
+    ),
+    NamelessMessage(
+        ("unsupported operand type(s) for", "'NoneType'"),
+        (_GET,),
+        f"One of the two values is None. {_FROM_WHERE}",
+    ),
+    # Vectors
+    NamelessMessage(
+        ("Vector ", "vectors must have the same dimensions for this operation"),
+        ("mathutils.Vector.to_3d", "mathutils.Vector.to_2d", "mathutils.Vector.resized"),
+        "One vector has more numbers than the other: `v.to_3d()` adds what lacks, `v.to_2d()` drops what is too much.",
+    ),
+    NamelessMessage(
+        ("Vector ", "invalid type for this operation"),
+        ("mathutils.Vector",),
+        "Vectors are added to vectors: `v + Vector(value)`, with a value of as many numbers; `Vector((n, n, n))` for "
+        "one number.",
+    ),
+    NamelessMessage(
+        ("multiplication: not supported between ", "'tuple'"),
+        ("mathutils.Vector", "mathutils.Matrix"),
+        _NO_FACTOR,
+    ),
+    NamelessMessage(
+        ("multiplication: not supported between ", "'list'"),
+        ("mathutils.Vector", "mathutils.Matrix"),
+        _NO_FACTOR,
+    ),
     # Nodes
     NamelessMessage(
         ("Cannot add socket to built-in node",),
@@ -208,6 +286,16 @@ NAMELESS_MESSAGES = (
         "data is keyed there (`obj.data.keyframe_insert(…)`).",
     ),
     NamelessMessage(
+        ("keyframe_insert() path includes index",),
+        (f"{_T}bpy_struct.keyframe_insert",),
+        'One number of several is keyed by its index: `obj.keyframe_insert("location", index=0)`.',
+    ),
+    NamelessMessage(
+        ("keyframe_insert()() takes at most 1 positional argument",),
+        (f"{_T}bpy_struct.keyframe_insert",),
+        'All but the path is given by name: `obj.keyframe_insert("location", frame=10)`.',
+    ),
+    NamelessMessage(
         ("driver_add(): property", "not found"),
         (f"{_T}bpy_struct.driver_add",),
         'The path is a property of the very thing, as text: `obj.driver_add("location", 0)`; what belongs to its '
@@ -230,6 +318,17 @@ NAMELESS_MESSAGES = (
         ("Cannot render, no camera",),
         (f"{_T}Scene.camera", f"{_T}BlendDataCameras.new"),
         "`scene.camera = obj`, an object with a camera as data.",
+    ),
+    NamelessMessage(
+        ("Cannot write a single file with an animation format selected",),
+        (
+            "bpy.ops.render.render",
+            f"{_T}ImageFormatSettings.media_type",
+            f"{_T}ImageFormatSettings.file_format",
+        ),
+        "A video is rendered by `bpy.ops.render.render(animation=True)`. For one image choose a format of images: "
+        "`settings = scene.render.image_settings`, `settings.media_type = 'IMAGE'` (since 5.0), "
+        "`settings.file_format = 'PNG'`.",
     ),
     NamelessMessage(
         ("Current render engine does not support baking",),
@@ -341,6 +440,21 @@ NAMELESS_MESSAGES = (
         ("Cannot open file", "for writing: No such file or directory"),
         ("bpy.ops.wm.save_as_mainfile",),
         "The folder does not exist: make it first (`os.makedirs(folder, exist_ok=True)`).",
+    ),
+    NamelessMessage(
+        ('Cannot read file "', "No such file or directory"),
+        ("bpy.ops.wm.open_mainfile",),
+        "There is no such .blend where Blender looks: a relative path begins where Blender was started.",
+    ),
+    NamelessMessage(
+        ("Unable to save an unsaved file",),
+        ("bpy.ops.wm.save_as_mainfile", "bpy.ops.wm.save_mainfile"),
+        'A file that was never saved has no path: `bpy.ops.wm.save_as_mainfile(filepath="/folder/name.blend")`.',
+    ),
+    NamelessMessage(
+        ("Please select a file",),
+        ("bpy.ops.import_scene.gltf",),
+        "There is no file of that path.",
     ),
     NamelessMessage(
         ("OBJ Import: Cannot open file",),

@@ -10,10 +10,11 @@ from kb_build.index.analysis import terms
 from kb_build.records import FILLED_BY
 from kb_build.symbol_lines import empty_when_new
 from kb_serve.reader import TYPES
-from kb_serve.recognise.absent import ANY, WEIGHTY, Absent, is_empty_when_new
+from kb_serve.recognise.absent import ANY, WEIGHTY, is_empty_when_new
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.recognise.absent import Absent
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
@@ -26,10 +27,10 @@ _IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or
 class NoneBefore:
     """Finds in one base what may have been None."""
 
-    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup) -> None:
+    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup, absent: Absent) -> None:
         self._reader = reader
         self._removed = removed
-        self._absent = Absent(reader)
+        self._absent = absent
         # class → the pointers to it that are None on new things
         self._empty: dict[str, list[SymbolEntry]] = {}
 
@@ -87,7 +88,9 @@ class NoneBefore:
 
     def _tell_absent(self, member: SymbolEntry, recognition: Recognition) -> None:
         """Adds where a thing with this member comes from that may be None."""
-        recognition.notes += [_IS_NONE.format(name=member.name, of=""), self._absent.note(member.owner)]
+        mostly = "Often" if member.owner in ANY else f"Mostly it is a `{member.owner}`"
+        recognition.notes.append(_IS_NONE.format(name=member.name, of=""))
+        recognition.notes.append(f"{mostly}: {self._absent.note(member.owner)}.")
         for rank, path in enumerate(self._absent.sources(member.owner)):
             recognition.add(path, 0.86 - 0.01 * rank, "may be None")
         recognition.add(member.path, 0.81, "attribute of None")

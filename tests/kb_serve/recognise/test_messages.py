@@ -197,6 +197,38 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "has only 1, counted from 0: there is no `[1]` yet. `.materials.append()` adds one.",
         ),
         ("IndexError: bpy_prop_collection[index]: index 0 out of range, size 0", "there is no `[0]` yet."),
+        (
+            "TypeError: bpy_struct: item.attr = val: Object.parent expected a Object type, not Armature",
+            "Give the object, not its data: `obj`, whose `.data` is the `Armature`.",
+        ),
+        (
+            "TypeError: NodeLinks.new(): error with argument 1, \"input\" -  Function.input does not support a 'None' "
+            "assignment NodeSocket type",
+            "None was given for a `bpy.types.NodeSocket`: `outputs.get(name)` is None where nothing has the name.",
+        ),
+        (
+            'TypeError: IDMaterials.append(): error with argument 1, "material" -  Function.material expected a '
+            "Material type, not str",
+            'Give the thing itself, not its name: `bpy.data.materials["…"]`.',
+        ),
+        (
+            'TypeError: Scene.frame_set(): error with argument 1, "frame" -  Function.frame expected an int type, not '
+            "float",
+            "Give a whole number: `int(value)`, or `round(value)`.",
+        ),
+        (
+            "TypeError: bpy_struct: item.attr = val: NodeSocketFloatFactor.default_value expected a float type, not "
+            "tuple",
+            "Give one number, not a tuple of them.",
+        ),
+        ("AttributeError: 'tuple' object has no attribute 'x'", "`mathutils.Vector(value).x`"),
+        ("AttributeError: 'str' object has no attribute 'location'", '`bpy.data.objects["…"]`'),
+        ("AttributeError: type object 'Object' has no attribute 'mine'", "`bpy.types.Object` has no `mine`"),
+        (
+            'TypeError: ObjectModifiers.new(): error with argument 2, "type" -  enum "SUBDIVISION" not found in '
+            "('BEVEL', 'BOOLEAN', 'MULTIRES', 'SUBSURF')",
+            "`SUBDIVISION` is not an item of this enum; of that label: `SUBSURF`.",
+        ),
     ],
 )
 def test_notes_explain_error_messages(kb: KnowledgeBase, message: str, said: str) -> None:

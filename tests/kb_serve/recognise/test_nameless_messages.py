@@ -77,10 +77,30 @@ scene.render.engine = "CYCLES"; bpy.ops.object.bake(type="DIFFUSE"); bpy.ops.obj
 scene.render.engine = "CYCLES"; mesh.materials.clear(); bpy.ops.object.bake(type="DIFFUSE")
 cycle()
 ob.location = (1, 2, 3, 4)
+bpy.data.objects.new("o", ob)
+bmesh.new().verts[0]
+bmesh.new().from_mesh(ob)
+ob.modifiers.new("b", "BOOLEAN"); bpy.ops.object.modifier_apply(modifier="b")
+bpy.data.objects[1.0]
+bpy.data.objects.get("none")[0]
+for _ in bpy.data.objects.get("none"): pass
+len(bpy.data.objects.get("none"))
+"x" in bpy.data.objects.get("none")
+scene.camera.parent + 1
+mathutils.Vector((1, 2, 3)) + mathutils.Vector((1, 2))
+mathutils.Vector((1, 2, 3)) - (1, 2, 3)
+mathutils.Matrix() @ (1, 2, 3)
+[1, 2, 3] * mathutils.Vector((1, 2, 3))
+ob.keyframe_insert("location.x")
+ob.keyframe_insert("location", 10)
+film(); bpy.ops.render.render(write_still=True)
+bpy.ops.wm.open_mainfile(filepath="/none.blend")
+bpy.ops.wm.save_mainfile()
+bpy.ops.import_scene.gltf(filepath="/none.glb")
 """.splitlines()
 _RUN = """
 import json, os, sys, tempfile
-import bpy, bmesh
+import bpy, bmesh, mathutils
 import _bpy_restrict_state
 
 def ngon():
@@ -140,6 +160,12 @@ def cycle():
     ob.parent = other
     other.constraints.new("COPY_LOCATION").target = ob
     bpy.context.view_layer.update()
+
+def film():
+    scene.render.engine = "CYCLES"
+    settings = scene.render.image_settings
+    settings.media_type = "VIDEO"
+    settings.file_format = "FFMPEG"
 
 restriction = []
 printed = tempfile.TemporaryFile()
@@ -202,6 +228,20 @@ def test_each_message_leads_to_what_it_is_about(kb: KnowledgeBase, messages: lis
             assert answer.hits[0].id in one.paths, said
             assert one.help in answer.notes
         assert answer.notes, said
+
+
+@pytest.mark.blender
+def test_what_they_advise_about_vectors_and_formats_works() -> None:
+    bpy = pytest.importorskip("bpy")
+    from mathutils import Matrix, Vector
+
+    assert len(Vector((1, 2)).to_3d() + Vector((1, 2, 3))) == 3
+    assert Matrix() @ Vector((1, 2, 3)) == Vector((1, 2, 3))
+    assert Vector((1, 2, 3)) * Vector((1, 2, 3)) == Vector((1, 4, 9))
+    settings = bpy.data.scenes.new("new").render.image_settings
+    settings.media_type = "VIDEO"
+    settings.media_type = "IMAGE"
+    settings.file_format = "PNG"
 
 
 def test_what_they_lead_to_exists(kb: KnowledgeBase) -> None:
