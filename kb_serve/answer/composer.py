@@ -295,6 +295,8 @@ class AnswerComposer:
             )
             path = self._written(hit.id) if entry.kind == "socket" else hit.id
             name = path[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
+            if entry.kind == "operator" and text == entry.label:  # which its name says already
+                text = ""
             text = text.removeprefix(f"`{name}`").strip(", ") or self._instead_of_words(entry)
             nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
             return clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS) + nearest
@@ -321,7 +323,7 @@ class AnswerComposer:
     def _instead_of_words(self, entry: SymbolEntry) -> str:
         """What is said of a symbol without a description: its call, or how many members it has."""
         if entry.kind != "class":
-            return entry.line if "(" in entry.line else ""
+            return entry.line.partition(" — ")[0] if "(" in entry.line else ""
         members = self._reader.members(entry.path)
         uses = [] if members else self._reader.uses(entry.path)
         if uses and uses[0].code.startswith("@"):

@@ -596,7 +596,7 @@ class Steps:
         arguments = [f"{p.name}={literal(p.default)}" for p in given[:_ARGUMENTS]]
         left = len(symbol.parameters) - len(arguments) if symbol else 0
         entry = self._reader.entry(path)
-        said = entry.line.partition(" — ")[2].removeprefix("(undocumented operator)") if entry else ""
+        said = entry.line.partition(" — ")[2] if entry else ""
         more = f" and {left} more" if left else ""
         asked = "; ".join(_asked(symbol, self._reader)) if symbol else ""
         return (

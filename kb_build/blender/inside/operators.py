@@ -7,6 +7,7 @@ from .instances import refused_items
 from .rna import parameter
 
 REFUSED = "\x01"
+NOTHING_SAID = "(undocumented operator)"  # what Blender puts in a description's place
 
 
 def names_in_file():
@@ -56,7 +57,7 @@ def write_all(write):
                 kind="operator",
                 owner=owner,
                 label=rna.name,
-                description=rna.description,
+                description=rna.description.replace(NOTHING_SAID, ""),
                 parameters=[
                     argument(operator, prop) for prop in rna.properties if prop.identifier != "rna_type"
                 ],

@@ -315,6 +315,11 @@ def test_deferred_properties_of_mixins_are_read(symbols: dict[str, Symbol]) -> N
     assert (filepath.type, filepath.label, filepath.subtype) == ("string", "File Path", "FILE_PATH")
 
 
+def test_an_operator_without_a_description_has_none(symbols: dict[str, Symbol]) -> None:
+    assert symbols["bpy.ops.render.render"].description == ""
+    assert not [path for path, symbol in symbols.items() if "(undocumented operator)" in symbol.description]
+
+
 def test_context_members_say_where_they_are_none(symbols: dict[str, Symbol]) -> None:
     flags = {
         name: symbols[f"bpy.context.{name}"].flags
