@@ -9,6 +9,10 @@ ob.shape_key_add("Smile")  # reported
 ob.shape_key_add(name="Smile")
 bpy.ops.object.select_all("SELECT")  # reported
 bpy.ops.object.select_all(action="SELECT")
+bpy.ops.mesh.primitive_cube_add(
+    4
+)  # reported: Blender takes the number for a truth value, and makes the usual cube
+bpy.ops.mesh.primitive_cube_add(size=4)
 Vector(0, 0, 1)  # reported
 Vector((0, 0, 1))
 ```
@@ -50,6 +54,10 @@ _EXECUTION_CONTEXTS = frozenset(
 )
 _NO_CONTEXT = re.compile(r"[^A-Z_]")  # in no execution context's name
 _FORMAT = re.compile(r"%(\(\w*\))?[-+ #0-9.*]*\w")
+_FIELD = re.compile(r"\{[^{}]*\}")
+_PATHS = frozenset(
+    {"os.path.join", "os.path.abspath", "bpy.path.abspath"}
+)  # what these return has a separator
 _NO_DICTIONARY_SINCE = (4, 0)
 # Where the reference shows one of several signatures, or leaves an argument out.
 _UNRELIABLE = ("aud.", "freestyle.", "bpy.types.Gizmo.target_set_value")
@@ -102,6 +110,8 @@ def _is_wrong(script: Script, argument: ast.expr) -> bool:
     text = literal_text(kind) if kind is not None else None
     if text is not None:
         return text not in _EXECUTION_CONTEXTS
+    if _is_number(argument):
+        return True
     values = bindings(script).get(argument.id, []) if isinstance(argument, ast.Name) else [argument]
     if len(values) == 1 and values[0] and any(map(_NO_CONTEXT.search, _texts(values[0]))):
         return True
@@ -110,8 +120,21 @@ def _is_wrong(script: Script, argument: ast.expr) -> bool:
     )
 
 
+def _is_number(node: ast.expr) -> bool:
+    """Whether an argument is written as a number that nobody writes for a truth value."""
+    value = node.operand if isinstance(node, ast.UnaryOp) else node
+    return (
+        isinstance(value, ast.Constant)
+        and isinstance(value.value, int)
+        and not isinstance(value.value, bool)
+        and (value is not node or value.value > 1)
+    )
+
+
 def _texts(node: ast.expr) -> Iterator[str]:
-    """What is surely in a text that is put together: ``.obj`` of ``f"{name}.obj"`` and of ``"%s.obj" % name``."""
+    """What is surely in a text that is put together: ``.obj`` of ``f"{name}.obj"`` and ``"%s.obj" % name``, a separator
+    of a path.
+    """
     match node:
         case ast.Constant(value=str(text)):
             yield text
@@ -120,6 +143,10 @@ def _texts(node: ast.expr) -> Iterator[str]:
                 yield from _texts(part)
         case ast.BinOp(op=ast.Mod(), left=ast.Constant(value=str(text))):
             yield _FORMAT.sub("", text)
+        case ast.Call(func=ast.Attribute(value=ast.Constant(value=str(text)), attr="format")):
+            yield _FIELD.sub("", text)
+        case ast.Call(func=ast.Attribute() as function) if ast.unparse(function) in _PATHS:
+            yield "/"
         case ast.BinOp(op=ast.Add(), left=left, right=right):
             yield from _texts(left)
             yield from _texts(right)

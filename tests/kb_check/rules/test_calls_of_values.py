@@ -137,6 +137,10 @@ _BUILT: list[str] = [
     "bpy.ops.wm.obj_export('%s.obj' % name)",
     "bpy.ops.wm.obj_export(name + '/a.obj')",
     "bpy.ops.wm.obj_export(path)",
+    "import os",
+    "bpy.ops.wm.obj_export(os.path.join(path, name))",
+    "bpy.ops.wm.obj_export('{}.obj'.format(name))",
+    "bpy.ops.wm.obj_export(bpy.path.abspath(path))",
     "how = bpy.app.binary_path and 'INVOKE' or 'EXEC'",
     "bpy.ops.object.select_all(f'{how}_DEFAULT', action='SELECT')",
     "bpy.ops.object.select_all('%s_DEFAULT' % how, action='SELECT')",
@@ -147,4 +151,16 @@ _BUILT: list[str] = [
 def test_a_text_that_is_put_together_is_no_execution_context(rule_checker: Checker, tmp_path: Path) -> None:
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, _BUILT), 1) if error]
     found = rule_checker.check("\n".join(_BUILT), rules=["positional-argument"])
-    assert [one.span.line for one in found] == refused == [4, 5, 6, 7]
+    assert [one.span.line for one in found] == refused == [4, 5, 6, 7, 9, 10, 11]
+
+
+def test_a_number_by_place_is_taken_for_a_truth_value(rule_checker: Checker, tmp_path: Path) -> None:
+    calls = ["4", "-1", "1", "True", "'EXEC_DEFAULT', 1", "'EXEC_DEFAULT', 4"]
+    code = ["import bpy", *(f"bpy.ops.mesh.primitive_cube_add({call})" for call in calls)]
+    found = rule_checker.check("\n".join(code), rules=["positional-argument"])
+    assert [one.span.line for one in found] == [2, 3, 7]
+    made = [
+        *code,
+        "assert {tuple(ob.dimensions) for ob in bpy.context.selected_objects} == {(2.0, 2.0, 2.0)}",
+    ]
+    assert [error for error, *_ in run_statements(tmp_path, made) if error] == []
