@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections import defaultdict
+from collections import Counter, defaultdict
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING
@@ -75,8 +75,11 @@ def former_nodes(history: ApiHistory) -> dict[str, dict[str, list[str]]]:
 
 
 def _run(runtime: Runtime, part: Path, log: Path) -> None:
-    """Extracts; a maker of new things that crashes Blender is left out of the next attempt."""
-    former, skipped = former_nodes(ApiHistory.load()), list[str]()
+    """Extracts; a maker of new things in which Blender crashes twice is left out of the next attempt.
+
+    Some crash in one run of many: what they make would be lost for nothing.
+    """
+    former, crashes, skipped = former_nodes(ApiHistory.load()), Counter[str](), list[str]()
     with TemporaryDirectory(prefix="simworlds-") as folder:
         given = Path(folder) / "given.json"
         while True:
@@ -89,7 +92,9 @@ def _run(runtime: Runtime, part: Path, log: Path) -> None:
                 crashed = _maker_at_work(part)
                 if not crashed or crashed in skipped or len(skipped) == _CRASHES:
                     raise ExtractError(str(error)) from error
-                skipped.append(crashed)
+                crashes[crashed] += 1
+                if crashes[crashed] > 1:
+                    skipped.append(crashed)
     if not _is_whole(part):
         raise ExtractError(
             f"Blender {runtime.version} ended without an error, but its extract is not complete. "

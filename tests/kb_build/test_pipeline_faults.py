@@ -188,7 +188,20 @@ def test_a_blender_that_fails_half_way_is_named_with_its_output_kept(
     assert files_below(tmp_path / "home" / "extracts") == [log.name]
 
 
-def test_what_crashes_blender_is_left_out_of_the_next_attempt(small: Built, tmp_path: Path) -> None:
+def test_what_crashes_blender_once_is_made_in_the_next_attempt(small: Built, tmp_path: Path) -> None:
+    extract = next((small.home / "extracts").glob("*.jsonl"))
+    crashed = tmp_path / "crashed"
+    body = (
+        "for word; do given=$last; last=$word; done\n"
+        f"if test -e {crashed} && grep -q '\"skipped\": \\[\\]' $given; then\n"
+        f"""sed 's#"scripts":"[^"]*"#"scripts":""#' {extract} > $last; exit; fi\n"""
+        f"""touch {crashed}; echo '{{"record":"making","maker":"strips"}}' > $last; exit 11"""
+    )
+    options = BuildOptions(blender_exe=program(tmp_path, body), pages=False)
+    assert build("5.1", options=options, home=tmp_path / "home").built
+
+
+def test_what_crashes_blender_again_is_left_out_of_the_next_attempt(small: Built, tmp_path: Path) -> None:
     extract = next((small.home / "extracts").glob("*.jsonl"))
     # It names no folder of scripts: reading them is not what this is about, and most of what a build takes.
     told = f"""sed 's#"scripts":"[^"]*"#"scripts":""#' {extract} > $last"""

@@ -11,6 +11,9 @@ import bpy
 from .rna import describe
 
 MODES = ("EDIT", "POSE", "OBJECT")
+# Of the class Context, what an area gives. Nothing else of it is read: where more was, four of ten runs of Blender 4.2
+# ended later, in the poll of some operator.
+OF_AREAS = ("area", "space_data", "region", "region_data")
 # Flags of what is None: where no object is active, in whatever editor; outside the areas of windows.
 WITHOUT_ACTIVE, WITHOUT_AREA = "none-without-active-object", "none-without-area"
 
@@ -114,22 +117,15 @@ def guess(name):
     return "", ""
 
 
-def where_none(name, kind, none):
-    """The flag of a pointer that is None somewhere."""
-    return [none[name]] if kind == "pointer" and name in none else []
-
-
-def write_global(write, names, none):
+def write_global(write, screen):
     """The properties of the class ``Context`` as members of ``bpy.context``."""
     for prop in bpy.types.Context.bl_rna.properties:
         name = prop.identifier
-        if name in names:
+        if name != "rna_type" and name not in screen:
             row = describe(prop)
-            row["flags"] = [
-                *row["flags"],
-                *where_none(name, row["type"], none),
-                f"same-as:bpy.types.Context.{name}",
-            ]
+            row["flags"] = [*row["flags"], f"same-as:bpy.types.Context.{name}"]
+            if name in OF_AREAS and getattr(bpy.context, name) is None:
+                row["flags"].append(WITHOUT_AREA)
             write("symbol", path=f"bpy.context.{name}", kind="context", owner="bpy.context", **row)
 
 
@@ -140,17 +136,14 @@ def write_all(write):
     for place, names in by_place.items():
         for name in names:
             places.setdefault(name, []).append(place)
+    write_global(write, places)
     own = set(bpy.types.Context.bl_rna.properties.keys())
-    everywhere = own - places.keys() - {"rna_type"}
-    found, none = probe((*places, *sorted(everywhere)))
-    write_global(write, everywhere, none)
+    found, none = probe(tuple(places))
     for name in sorted(places):
         kind, target = found.get(name) or guess(name)
-        flags = [
-            "readonly",
-            *(f"from:{place}" for place in sorted(places[name])),
-            *where_none(name, kind, none),
-        ]
+        flags = ["readonly", *(f"from:{place}" for place in sorted(places[name]))]
+        if kind == "pointer" and name in none:
+            flags.append(none[name])
         row = {"kind": "context", "type": kind, "target": target}
         write("symbol", path=f"bpy.context.{name}", owner="bpy.context", flags=flags, **row)
         if name not in own:
