@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, terms, topic_key
 from kb_serve.answer.budget import AnswerBlock, clip, tokens
 from kb_serve.answer.render import first_sentence, own_summary, said_of
+from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.topic_settings import TopicSettings
-from kb_serve.answer.topic_steps import Steps, TopicNames
+from kb_serve.answer.topic_steps import Steps
 from kb_serve.reader import TYPES
 from kb_serve.recognise.enum_values import is_quoted_value
 

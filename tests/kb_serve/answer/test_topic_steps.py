@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import steps
 
-from kb_serve.answer.topic_steps import Steps, TopicNames
+from kb_serve.answer.steps.topic_names import TopicNames
+from kb_serve.answer.topic_steps import Steps
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

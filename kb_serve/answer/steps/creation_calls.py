@@ -1,0 +1,54 @@
+"""The calls that make what a topic is about, on holders that are there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_serve.answer.steps.made_line import made_line
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+    from kb_serve.answer.steps.instances import Instances
+    from kb_serve.answer.steps.new_scene import NewScene
+    from kb_serve.answer.steps.trees import TreeSteps
+    from kb_serve.reader import Creation
+
+_CHOICES = 12  # types that one maker is shown with
+
+
+class CreationCalls:
+    """The creation calls of one list of steps."""
+
+    def __init__(self, scene: NewScene, instances: Instances, trees: TreeSteps) -> None:
+        self._scene = scene
+        self._instances = instances
+        self._trees = trees
+
+    def making(self, creations: Mapping[str, Creation]) -> list[str]:
+        """The call that makes the first of the classes that one maker makes, and the types of the others; before it the
+        steps that it needs. Nothing where nothing is known to make what it is called on.
+        """
+        main, creation = next(iter(creations.items()))
+        ready = self._instances.call(creation)
+        if ready is None:
+            return []
+        steps = ready.steps
+        if ready.expression.startswith("tree."):
+            steps = [*self._trees.any_for(creation.call), *steps]
+        self._scene.variables.add(main, self._scene.variables.of(main))
+        made = made_line(main, ready.expression, self._scene)
+        on = ready.expression.partition(".")[0]
+        choices = [
+            other.choice
+            for other in list(creations.values())[1:]
+            if other.choice and self._scene.obj.is_made_on(on, other)
+        ]
+        return [*steps, made + _also([one for one in choices if f"'{one}'" not in creation.call])]
+
+
+def _also(choices: list[str]) -> str:
+    if not choices:
+        return ""
+    more = f", … {len(choices) - _CHOICES} more" if len(choices) > _CHOICES else ""
+    return "; also " + ", ".join(f"`{choice}`" for choice in choices[:_CHOICES]) + more

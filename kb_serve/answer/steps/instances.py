@@ -1,0 +1,105 @@
+"""Instances that steps work on: which are there, and what makes the others.
+
+A call that makes something begins with an expression for what holds it (``obj.data.edit_bones.new("Bone")``). That is
+written for a scene in which everything is there already; on a new one it fails, where the holder must be made first or
+a pointer on the way to it is None.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.symbol_lines import held
+from kb_serve.answer.steps.pointer_fills import Ready
+from kb_serve.answer.steps.variable_names import MESH, OBJECT, TREE
+from kb_serve.answer.steps.working_object import ACTIVATE
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kb_serve.answer.steps.new_scene import NewScene
+    from kb_serve.reader import Creation
+
+_DEEPEST = 6  # holders of holders
+_EDIT_BONES = "edit_bones"
+_TO_EDIT_MODE = (
+    f"`{ACTIVATE}`; `bpy.ops.object.mode_set(mode='EDIT')` — edit bones are there in Edit Mode only"
+)
+
+
+class Instances:
+    """The instances of one list of steps.
+
+    ``tree_of``: gives the steps that make the tree which takes a node, where it is not there. It is given as a function
+    because what makes trees puts them on instances.
+    """
+
+    def __init__(self, scene: NewScene, tree_of: Callable[[str], list[str]]) -> None:
+        self._scene = scene
+        self._reader = scene.reader
+        self._tree_of = tree_of
+
+    def call(self, creation: Creation) -> Ready | None:
+        """The call that makes something, on a holder that is there; None where nothing is known to make the holder."""
+        return self._call(creation, 0)
+
+    def of(self, cls: str) -> Ready | None:
+        """An instance of a class; None where nothing is known to make one."""
+        return self._of(cls, 1)
+
+    def _call(self, creation: Creation, depth: int) -> Ready | None:
+        head, maker, rest = creation.call.rpartition(f".{creation.maker.rpartition('.')[2]}(")
+        before, _, holder = head.rpartition(".")
+        owner = self._scene.makers.owner_of(creation.maker, holder)
+        if not owner or before == "bpy.data":
+            return Ready([], creation.call)
+        steps: list[str] = []
+        if owner == TREE and depth:
+            steps += self._tree_of(f"{TYPES}{creation.choice}")
+        on = self._object_taking(creation, depth) if owner == OBJECT else self._of(owner, depth + 1)
+        if on is None:
+            return None
+        steps += on.steps
+        if holder == _EDIT_BONES:
+            steps.append(_TO_EDIT_MODE)
+        for name, cls in self._scene.makers.things_given(creation):
+            if (given := self._of(cls, depth + 1)) is not None:
+                steps += given.steps
+                rest = re.sub(rf"\b{name}\b(?!\s*=)", given.expression, rest)
+        return Ready(steps, f"{on.expression}.{holder}{maker}{rest}")
+
+    def _object_taking(self, creation: Creation, depth: int) -> Ready | None:
+        """An object of a type that takes what is added."""
+        if name := self._scene.obj.name_taking(creation):
+            return Ready([], name)
+        ready = self._of(self._scene.obj.data_taking(creation), depth + 1)
+        return Ready(ready.steps, "obj") if ready else None
+
+    def _of(self, cls: str, depth: int) -> Ready | None:
+        if name := self._scene.variables.there(cls):
+            return Ready([], name)
+        if cls == MESH:
+            self._scene.variables.add(cls, "mesh")
+            return Ready([f"`mesh = {self._scene.obj.mesh_object()}.data`, of a mesh object"], "mesh")
+        creation = self._reader.creations([cls]).get(cls)
+        if creation is None or creation.maker.startswith("bpy.ops."):
+            return self._reached(cls)
+        ready = self._call(creation, depth) if depth < _DEEPEST else None
+        if ready is None:
+            return None
+        variable = self._scene.variables.of(cls)
+        self._scene.variables.add(cls, variable)
+        made = f"`{variable} = {ready.expression}` → `{cls.removeprefix(TYPES)}`"
+        return Ready([*ready.steps, made, *self._scene.obj.made_of(cls)], variable)
+
+    def _reached(self, cls: str) -> Ready | None:
+        """The expression by which scripts mostly reach an instance, where all on its way is there or can be filled."""
+        symbol = self._reader.symbol(cls)
+        if symbol is None or not symbol.reached or "[" in symbol.reached or "(" in symbol.reached:
+            return None
+        ready = self._scene.pointers.reach(held(symbol.reached))
+        if ready is not None:
+            self._scene.variables.add(cls, ready.expression)
+        return ready

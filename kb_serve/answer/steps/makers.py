@@ -1,0 +1,46 @@
+"""The functions and operators that make things, and what they take."""
+
+from __future__ import annotations
+
+from functools import cache
+from typing import TYPE_CHECKING
+
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.reader import BaseReader, Creation
+
+
+class Makers:
+    """The makers that one list of steps uses."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+        self._record = cache(reader.symbol)  # the same one makes all modifiers, and its record is long
+
+    def kinds_taken(self, creation: Creation) -> set[str]:
+        """The types of the objects that take what is made; none where Blender was not seen to refuse any."""
+        maker = self._record(creation.maker)
+        refusals = maker.refusals if maker else ()
+        taken = (refusal.taken_by for refusal in refusals if creation.choice in refusal.values)
+        return {kind.removesuffix(" object") for kind in next(taken, ())}
+
+    def things_given(self, creation: Creation) -> Iterator[tuple[str, str]]:
+        """The arguments that a call needs and that are things themselves, as a slot is: name and class."""
+        maker = self._record(creation.maker)
+        for parameter in maker.parameters if maker else ():
+            cls = f"{TYPES}{parameter.type}"
+            if parameter.required and self._reader.creations([cls]):
+                yield parameter.name, cls
+
+    def owner_of(self, maker: str, holder: str) -> str:
+        """The class that has what makes something as its property ``holder``; empty where it is no property."""
+        made_by = maker.rpartition(".")[0].removeprefix(TYPES)
+        owners = (
+            entry.owner
+            for entry in self._reader.by_name(holder)
+            if made_by in {entry.collection, entry.target if entry.type == "pointer" else ""}
+        )
+        return next(owners, "")

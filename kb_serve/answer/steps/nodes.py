@@ -1,0 +1,97 @@
+"""The nodes of trees: how they are made, joined and completed."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_serve.answer.render import is_machinery
+from kb_serve.answer.steps.members import call_of, can_be_set, heaviest
+from kb_serve.answer.steps.pointer_fills import stays_empty
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping
+
+    from kb_serve.answer.steps.creation_calls import CreationCalls
+    from kb_serve.answer.steps.new_scene import NewScene
+    from kb_serve.answer.steps.trees import TreeSteps
+    from kb_serve.reader import Creation, SymbolEntry
+
+NODE = f"{TYPES}Node"
+_FUNCTIONS = 3  # of one node
+# Those whose new trees have a node that ends them.
+_WITH_OUTPUT = frozenset({f"{TYPES}Material", f"{TYPES}World"})
+
+
+class NodeSteps:
+    """The nodes of one list of steps."""
+
+    def __init__(self, scene: NewScene, calls: CreationCalls, trees: TreeSteps) -> None:
+        self._scene = scene
+        self._reader = scene.reader
+        self._calls = calls
+        self._trees = trees
+
+    def made(self, creations: Mapping[str, Creation]) -> Iterator[str]:
+        """Nodes, in the tree that takes the first of them."""
+        tree = self._trees.taking(next(iter(creations)))
+        yield from tree.steps
+        yield from self._joined(creations, tree.cls)
+        yield from self._functions(creations)
+
+    def in_own_tree(self, cls: str) -> Iterator[str]:
+        """The nodes of what holds a tree, as a material does."""
+        if self._scene.kinds.is_data(cls):
+            return
+        for entry in self._reader.members(cls).values():
+            if entry.type == "pointer" and entry.target.endswith("NodeTree"):
+                yield from self._in_tree(entry, cls)
+
+    def _in_tree(self, pointer: SymbolEntry, holder: str) -> Iterator[str]:
+        """The nodes of the tree that a pointer of a holder leads to."""
+        kinds = self._reader.descendants(f"{TYPES}{pointer.target.removesuffix('Tree')}")
+        nodes = [node.path for node in heaviest(kinds, self._reader)]
+        known = self._reader.creations(nodes)
+        creations = {node: known[node] for node in nodes if node in known}
+        if not creations:
+            return
+        tree, variable = f"{TYPES}{pointer.target}", self._scene.variables.of(holder)
+        self._scene.shown.add(tree)
+        is_given = can_be_set(pointer)  # there is none yet
+        if is_given:
+            yield from self._trees.group(tree, f"{variable}.{pointer.name}")
+        else:
+            symbol = self._reader.symbol(pointer.path)
+            if symbol is None or stays_empty(symbol):
+                return
+            yield from self._scene.pointers.steps(symbol, variable)
+            yield f"`tree = {variable}.{pointer.name}`"
+        if is_given or holder in _WITH_OUTPUT:
+            yield from self._joined(creations, tree)
+        else:
+            yield from self._calls.making(creations)
+
+    def _joined(self, creations: Mapping[str, Creation], tree: str) -> Iterator[str]:
+        """How nodes are made, and the first of them joined to the tree's end."""
+        main = next(iter(creations))
+        yield from self._calls.making(creations)
+        if any(name.startswith("outputs[") for name in self._reader.members(main)):
+            yield from self._trees.joined(tree, self._scene.variables.of(main))
+
+    def _functions(self, creations: Mapping[str, Creation]) -> Iterator[str]:
+        """The functions that nodes themselves have, as those at the ends of zones do."""
+        told: set[str] = set()
+        for node, creation in creations.items():
+            entries = self._reader.members(node).values()
+            functions = [entry for entry in entries if entry.kind == "function" and not is_machinery(entry)]
+            if not functions or functions[0].name in told or not self._trees.is_made_for(node):
+                continue
+            if node not in self._scene.shown:
+                yield from self._calls.making({node: creation})
+            partner = node.replace("Input", "Output")
+            for entry in functions[:_FUNCTIONS]:
+                told.add(entry.name)
+                call = call_of(entry)
+                if partner in self._scene.shown:
+                    call = call.replace("output_node", self._scene.variables.of(partner))
+                yield f"`{self._scene.variables.of(node)}.{call}`"

@@ -1,0 +1,68 @@
+"""Settings that are there without being made, as those of rendering are."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.symbol_lines import held
+from kb_serve.answer.steps.members import settings_of
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kb_serve.answer.steps.new_scene import NewScene
+
+_MOST = 2
+_INTERFACE = (
+    "tool_settings",
+    "space_data",
+    "preferences",
+    "window",
+    "studio_light",
+    "region",
+    ".area",
+    "gizmo",
+)
+
+
+def is_of_interface(expression: str) -> bool:
+    """Whether an expression leads to what belongs to Blender's windows and tools."""
+    return any(part in expression for part in _INTERFACE)
+
+
+class ReachedSettings:
+    """The settings of one list of steps that are reached without being made.
+
+    ``waiting``: the steps that can be done only once something has been made that no step makes.
+    """
+
+    def __init__(self, scene: NewScene) -> None:
+        self._scene = scene
+        self._reader = scene.reader
+        self.waiting: list[str] = []
+
+    def steps(self, classes: Iterable[str]) -> Iterator[str]:
+        """The steps that set the first of some classes which are there and have not been shown."""
+        left = _MOST
+        for cls in classes:
+            expression = self._expression(cls) if left and cls not in self._scene.shown else ""
+            settings = settings_of(cls, self._reader) if expression else ""
+            if not settings:
+                continue
+            left -= 1
+            self._scene.shown.add(cls)
+            step = f"on `{expression}` (`{cls.removeprefix(TYPES)}`): {settings}"
+            ready = self._scene.pointers.reach(held(expression))
+            if ready is None:
+                self.waiting.append(f"set, once it is not None, {step}")
+                continue
+            yield from ready.steps
+            yield f"set {step}"
+
+    def _expression(self, cls: str) -> str:
+        """How the one instance of a class is reached; empty where there is none, or it is the interface's."""
+        symbol = self._reader.symbol(cls)
+        reached = symbol.reached if symbol else ""
+        # An element of a collection is there only if somebody has made it.
+        return "" if "[" in reached or is_of_interface(reached) else reached

@@ -1,0 +1,103 @@
+"""What is set and called on a thing: its own settings, its parts, and the settings of what it points to."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_serve.answer.steps.members import call_of, can_be_set, heaviest, settings_of
+from kb_serve.answer.steps.operators import POINT_CACHE
+from kb_serve.answer.steps.parts import parts
+from kb_serve.answer.steps.pointer_fills import stays_empty
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Symbol
+    from kb_serve.answer.steps.new_scene import NewScene
+    from kb_serve.answer.steps.topic_names import TopicNames
+    from kb_serve.reader import Creation, SymbolEntry
+
+_LEAST = 1  # weight of a collection or function
+_MEMBERS = 3  # collections, and functions
+_HOLDERS = 4  # pointers of a thing whose settings are shown
+_OTHERS_ELEMENT = re.compile(r"\[.*\].*\.")  # … of what has an element that somebody else must have made
+
+
+class SettingSteps:
+    """The settings in one list of steps."""
+
+    def __init__(self, names: TopicNames, scene: NewScene) -> None:
+        self._names = names
+        self._scene = scene
+        self._reader = scene.reader
+
+    def of(self, cls: str, creation: Creation) -> Iterator[str]:
+        """A new thing's own settings and functions, then the settings that it points to, and those below, where they
+        belong to the topic or are its cache.
+        """
+        variable = self._expression(cls, creation)
+        if not variable:
+            return
+        if own := settings_of(cls, self._reader):
+            yield f"set on `{variable}`: {own}"
+        entries = self._reader.members(cls).values()
+        collections = (entry for entry in entries if entry.type == "collection")
+        if items := [self._held(entry, variable) for entry in self._main(collections)]:
+            yield f"in `{variable}`: " + ", ".join(items)
+        yield from parts(cls, variable, self._names, self._reader)
+        functions = (entry for entry in entries if entry.kind == "function")
+        if calls := [f"`{variable}.{call_of(entry)}`" for entry in self._main(functions)]:
+            yield "call " + ", ".join(calls)
+        yield from self._below(cls, variable)
+
+    def _expression(self, cls: str, creation: Creation) -> str:
+        """What leads to a new thing; empty where what an operator made is an element of something else."""
+        symbol = self._reader.symbol(cls) if creation.call.startswith("bpy.ops.") else None
+        if symbol is None or not symbol.reached:
+            return self._scene.variables.of(cls)
+        return "" if _OTHERS_ELEMENT.search(symbol.reached) else symbol.reached
+
+    def _main(self, entries: Iterator[SymbolEntry]) -> list[SymbolEntry]:
+        return heaviest(entries, self._reader, _LEAST)[:_MEMBERS]
+
+    def _held(self, entry: SymbolEntry, variable: str) -> str:
+        """A collection of a thing, and the call that adds to it."""
+        target = f"{TYPES}{entry.target}"
+        made = self._reader.creations([target]).get(target)
+        adds = made is not None and made.maker.rpartition(".")[0] == f"{TYPES}{entry.collection}"
+        call = made.call.partition(f".{entry.name}.")[2] if made and adds else ""
+        by = f", by `{variable}.{entry.name}.{call}`" if call else ""
+        return f"`.{entry.name}` (`{entry.target}`{by})"
+
+    def _below(self, cls: str, variable: str) -> Iterator[str]:
+        """The settings of what a thing points to, the nearest first."""
+        waiting, left = [(cls, variable)], _HOLDERS
+        while waiting and left:
+            owner, above = waiting.pop(0)
+            for entry in heaviest(self._reader.members(owner).values(), self._reader):
+                pointer = self._pointer(entry)
+                if pointer is None:
+                    continue
+                target = f"{TYPES}{entry.target}"
+                self._scene.shown.add(target)
+                waiting.append((target, f"{above}.{entry.name}"))
+                if left and (settings := settings_of(target, self._reader)):
+                    left -= 1
+                    yield from self._scene.pointers.steps(pointer, above)
+                    yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
+
+    def _pointer(self, entry: SymbolEntry) -> Symbol | None:
+        """The pointer that leads to settings of the topic which are the thing's own; None for any other member."""
+        target = f"{TYPES}{entry.target}"
+        if entry.type != "pointer" or not self._belongs(target):
+            return None
+        # What is a thing's own cannot be replaced; another data-block can.
+        if can_be_set(entry) and not self._reader.descends(target, f"{TYPES}ID"):
+            return None
+        pointer = self._reader.symbol(entry.path)
+        return None if pointer is None or stays_empty(pointer) else pointer
+
+    def _belongs(self, cls: str) -> bool:
+        return cls not in self._scene.shown and (cls in self._names.classes or cls == POINT_CACHE)

@@ -1,0 +1,42 @@
+"""The names of a topic: its words, and the classes and operators that belong to it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, terms
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+_SHORTEST = 4  # of the keys that members are called as
+
+
+@dataclass(slots=True)
+class TopicNames:
+    """The classes and operators of a topic, each with a weight, the heaviest first."""
+
+    keys: frozenset[str]
+    words: tuple[frozenset[str], ...]
+    classes: dict[str, float] = field(default_factory=dict[str, float])
+    operators: dict[str, float] = field(default_factory=dict[str, float])
+
+    def names(self, name: str) -> bool:
+        """Whether a name holds the topic's words."""
+        return any(words <= set(terms(name)) for words in self.words)
+
+    def stems(self) -> list[str]:
+        """The topic's keys, in the singular too."""
+        names = (name for each in sorted(self.keys) for name in (each, each.removesuffix("s")))
+        return [name for name in dict.fromkeys(names) if len(name) >= _SHORTEST]
+
+    def has_modifier(self, path: str) -> bool:
+        """Whether a class is the modifier that is called as the topic is."""
+        name = path.removeprefix(TYPES)
+        return name.endswith("Modifier") and key(name.removesuffix("Modifier")) in self.keys
+
+    def weight_of(self, classes: Iterable[str]) -> float:
+        """What some of its classes weigh together."""
+        return sum(map(self.classes.__getitem__, classes))

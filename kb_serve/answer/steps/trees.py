@@ -1,0 +1,106 @@
+"""The trees that nodes are made in: where each kind comes from, and what ends it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_serve.answer.steps.made_line import made_line
+from kb_serve.answer.steps.parts import parts
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.answer.steps.new_scene import NewScene
+    from kb_serve.answer.steps.places import PlaceSteps
+    from kb_serve.answer.steps.topic_names import TopicNames
+
+# Trees that cannot be assigned: what has one of its own, and the node that ends a new one.
+_EMBEDDED = {f"{TYPES}ShaderNodeTree": (f"{TYPES}Material", "node_tree")}
+_ENDS = {f"{TYPES}ShaderNodeTree": "tree.get_output_node('ALL')"}
+_GROUP_END = "group_output"  # what ends the others
+# What these must give to be of use: a socket's name and type.
+_GROUP_OUTPUT = {
+    f"{TYPES}GeometryNodeTree": ("Geometry", "NodeSocketGeometry"),
+    f"{TYPES}CompositorNodeTree": ("Image", "NodeSocketColor"),
+}
+_USUAL_TREE = f"{TYPES}GeometryNodeTree"
+EMBEDDED_TREES = frozenset(_EMBEDDED)
+
+
+class TreeReady(NamedTuple):
+    """The class of a tree, empty where a node is in none; and the steps after which it is there."""
+
+    cls: str
+    steps: list[str]
+
+
+class TreeSteps:
+    """The trees of one list of steps."""
+
+    def __init__(self, names: TopicNames, scene: NewScene, places: PlaceSteps) -> None:
+        self._names = names
+        self._scene = scene
+        self._reader = scene.reader
+        self._places = places
+        self._ended: set[str] = set()
+
+    def taking(self, node: str) -> TreeReady:
+        """The tree that takes a node."""
+        name = node.removeprefix(TYPES)
+        own = sorted(self._trees_of(node), key=lambda tree: not name.startswith(tree.removesuffix("Tree")))
+        tree = f"{TYPES}{own[0]}" if own else ""
+        return TreeReady(tree, [] if tree in self._scene.shown else [*self._new(tree)])
+
+    def is_made_for(self, node: str) -> bool:
+        """Whether a tree that is there takes a node."""
+        return any(f"{TYPES}{tree}" in self._scene.shown for tree in self._trees_of(node))
+
+    def any_for(self, call: str) -> Iterator[str]:
+        """The steps that make the tree which a call on ``tree`` was written for, where no tree is there."""
+        if not any(cls.endswith("NodeTree") for cls in self._scene.shown):
+            kind = call.partition("_tree.")[0].capitalize()
+            tree = f"{TYPES}{kind}NodeTree"
+            yield from self.group(tree if self._reader.entry(tree) else _USUAL_TREE)
+
+    def group(self, tree: str, holder: str = "") -> Iterator[str]:
+        """A tree that is a data-block of its own. ``holder``: what it becomes the tree of, where that is known."""
+        creation = self._reader.creations([tree]).get(tree)
+        if creation is None:
+            return
+        yield made_line(tree, creation.call, self._scene)
+        variable = self._scene.variables.of(tree)
+        if holder:
+            yield f"`{holder} = {variable}`"
+        else:
+            yield from self._places.of(tree)
+        yield from parts(tree, variable, self._names, self._reader)
+
+    def joined(self, tree: str, node: str) -> Iterator[str]:
+        """The steps that join a node, given by its variable, to the end of a tree, which gets one where it has none."""
+        if tree not in self._ended and tree not in _ENDS:
+            self._ended.add(tree)
+            name, socket = _GROUP_OUTPUT.get(tree, ("", ""))
+            if name:
+                yield f"`tree.interface.new_socket(\"{name}\", in_out='OUTPUT', socket_type='{socket}')`"
+            yield (
+                f'`{_GROUP_END} = tree.nodes.new("NodeGroupOutput")`; also `NodeGroupInput`, for its inputs'
+            )
+        yield f"`tree.links.new({node}.outputs[0], {_ENDS.get(tree, _GROUP_END)}.inputs[0])`"
+
+    def _new(self, tree: str) -> Iterator[str]:
+        holder, name = _EMBEDDED.get(tree, ("", ""))
+        made = self._reader.creations([holder]).get(holder)
+        if made is None:
+            yield from self.group(tree)
+            return
+        self._scene.shown.add(tree)
+        yield made_line(holder, made.call, self._scene)
+        variable = self._scene.variables.of(holder)
+        if pointer := self._reader.symbol(f"{holder}.{name}"):
+            yield from self._scene.pointers.steps(pointer, variable)
+        yield f"`tree = {variable}.{name}`"
+
+    def _trees_of(self, node: str) -> tuple[str, ...]:
+        symbol = self._reader.symbol(node)
+        return tuple(symbol.trees) if symbol else ()

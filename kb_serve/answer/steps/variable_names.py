@@ -1,0 +1,63 @@
+"""What scripts call the instances that they work on."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from kb_serve.answer.steps.object_kinds import ObjectKinds
+    from kb_serve.reader import BaseReader
+
+OBJECT, MESH, TREE = f"{TYPES}Object", f"{TYPES}Mesh", f"{TYPES}NodeTree"
+OBJ = "obj"
+DATA = "object_data"
+# What every script has, or writes without a step that makes it.
+_THERE = {
+    OBJECT: OBJ,
+    f"{TYPES}Scene": "scene",
+    f"{TYPES}ViewLayer": "view_layer",
+    f"{TYPES}BlendData": "bpy.data",
+    TREE: "tree",
+}
+_ROOTS = {name: cls for cls, name in _THERE.items()} | {"mesh": MESH}
+_HUMPS = re.compile(r"[A-Z]+[a-z0-9]*")
+
+
+def class_called(name: str) -> str:
+    """The class of what every script calls so; empty for another name."""
+    return _ROOTS.get(name, "")
+
+
+class VariableNames:
+    """The names of instances in one list of steps."""
+
+    def __init__(self, reader: BaseReader, kinds: ObjectKinds) -> None:
+        self._reader = reader
+        self._kinds = kinds
+        self._expressions: dict[str, str] = {}
+
+    def add(self, cls: str, expression: str) -> None:
+        """Notes that an instance is there."""
+        self._expressions[cls] = expression
+
+    def there(self, cls: str) -> str:
+        """The expression for an instance of a class that is there already; empty for none."""
+        known = (name for made, name in self._expressions.items() if self._reader.descends(made, cls))
+        return next(known, "") or _THERE.get(cls, "")
+
+    def of(self, cls: str) -> str:
+        """What a script calls an instance: ``object_data``, or the name's last word; its last two if another is so."""
+        if cls == OBJECT:
+            return OBJ
+        if self._kinds.is_data(cls):
+            return DATA
+        *before, last = _HUMPS.findall(cls.removeprefix(TYPES)) or ["it"]
+        name = last.lower()
+        return "_".join((*map(str.lower, before[-1:]), name)) if self._is_taken(name, cls) else name
+
+    def _is_taken(self, name: str, cls: str) -> bool:
+        """Whether a variable of this name is another class's instance."""
+        return any(own == name and made != cls for made, own in self._expressions.items())
