@@ -405,11 +405,12 @@ class BaseReader:
         """How much symbols count among their like; those that count nothing are left out."""
         return dict(self.rows_of("SELECT path, weight FROM weights WHERE path", paths))
 
-    def heaviest(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
-        """Entries by weight; those of equal weight keep their order."""
+    def heaviest(self, entries: Iterable[SymbolEntry], least: float = 0.0) -> list[SymbolEntry]:
+        """Entries of at least some weight, by weight; those of equal weight keep their order."""
         found = list(entries)
         weights = self.weights([entry.path for entry in found])
-        return sorted(found, key=lambda entry: -weights.get(entry.path, 0.0))
+        heavy = [entry for entry in found if weights.get(entry.path, 0.0) >= least]
+        return sorted(heavy, key=lambda entry: -weights.get(entry.path, 0.0))
 
     def member_weights(self, owners: Collection[str]) -> dict[str, list[float]]:
         """The weights of the members of classes, by class."""
@@ -424,6 +425,10 @@ class BaseReader:
         """Class → how an instance is made, for those that have a call."""
         rows = self.rows_of("SELECT path, call, maker, choice FROM creation WHERE path", paths)
         return {row[0]: Creation(*row[1:]) for row in rows}
+
+    def made_by_call(self, call: str) -> str:
+        """The class of which a call makes an instance; empty for none."""
+        return next((row[0] for row in self.rows("SELECT path FROM creation WHERE call = ?", call)), "")
 
     def made_as(self, name: str) -> list[str]:
         """The classes of whose calls one gives a new instance this name."""

@@ -1,11 +1,11 @@
-"""Pointers on the way to a class that are None on new things."""
+"""Pointers to a class, or on the way to it, that are None on new things."""
 
 from __future__ import annotations
 
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import empty_when_new
+from kb_build.symbol_lines import empty_when_new, fillers
 
 if TYPE_CHECKING:
     from kb_build.records import Symbol
@@ -31,6 +31,16 @@ def empty_pointer_to(reader: BaseReader, cls: Symbol) -> Symbol | None:
         owner = _below(reader, pointers[0].owner, before)
         return empty_pointer_to(reader, owner) if owner else None
     return None
+
+
+def calls_before(reader: BaseReader, cls: str, call: str) -> list[str]:
+    """The calls after which an operator makes an instance of a class, as a scene gets a world for its rigid bodies."""
+    for pointer in reader.pointing_at(cls.rpartition(".")[2]):
+        symbol = reader.symbol(pointer.path)
+        calls = fillers(symbol) if symbol else []
+        if call in calls:
+            return calls[: calls.index(call)]
+    return []
 
 
 def _below(reader: BaseReader, cls: str, expression: str) -> Symbol | None:

@@ -37,7 +37,7 @@ from kb_build.symbol_lines import (
 )
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
-from kb_serve.answer.empty_pointers import empty_pointer_to
+from kb_serve.answer.empty_pointers import calls_before, empty_pointer_to
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
@@ -487,7 +487,8 @@ class MarkdownRenderer:
                 yield f"provided by: {', '.join(origin)}"
             yield from (text for flag, text in _NONE_IN_CONTEXT.items() if flag in symbol.flags)
         if symbol.kind == "class" and (creation := self.reader.creations([symbol.path]).get(symbol.path)):
-            yield f"made by `{creation.call}`"
+            calls = [*calls_before(self.reader, symbol.path, creation.call), creation.call]
+            yield "made by " + ", then ".join(f"`{call}`" for call in calls)
         if target := self._assigned(symbol):
             yield f"assign `{target}`"
         if symbol.type == "collection" and (key := self._key_of(TYPES + symbol.target)):

@@ -7,14 +7,13 @@ own settings and those it points to are set; the operators of the topic that nei
 from __future__ import annotations
 
 from collections import defaultdict
-from operator import itemgetter
 from typing import TYPE_CHECKING
 
 from kb_build.symbol_lines import operator_needs, refused_nothing
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
 from kb_serve.answer.steps.instances import Instances
-from kb_serve.answer.steps.members import call_of, heaviest
+from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.new_scene import NewScene
 from kb_serve.answer.steps.nodes import NODE, NodeSteps
 from kb_serve.answer.steps.operators import POINT_CACHE, runs
@@ -22,7 +21,7 @@ from kb_serve.answer.steps.places import PlaceSteps
 from kb_serve.answer.steps.reached import ReachedSettings, is_of_interface
 from kb_serve.answer.steps.settings import SettingSteps
 from kb_serve.answer.steps.trees import EMBEDDED_TREES, TreeSteps
-from kb_serve.reader import STRUCT
+from kb_serve.reader import STRUCT, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -77,7 +76,17 @@ class Steps:
         named = [path for path in self._names.classes if self._names.names(path)]
         if self._creations and self._creations.keys().isdisjoint(named):
             named = []
-        return named or list(self._names.classes)
+        called = tuple(path.removeprefix(TYPES) for path in named if self._is_the_topic(path))
+        return [path for path in named if not self._is_anothers(path, called)] or list(self._names.classes)
+
+    def _is_the_topic(self, path: str) -> bool:
+        return path in self._creations and self._names.is_called(path)
+
+    def _is_anothers(self, path: str, called: tuple[str, ...]) -> bool:
+        """Whether an operator makes what only ends as the topic is called: the world of rigid bodies."""
+        creation = self._creations.get(path)
+        is_by_operator = creation is not None and creation.call.startswith("bpy.ops.")
+        return is_by_operator and path.endswith(called) and path.removeprefix(TYPES) not in called
 
     def _tree_of(self, node: str) -> list[str]:
         return self._trees.taking(node).steps
@@ -92,20 +101,21 @@ class Steps:
         """Functions that every thing has and that are called as the topic is: ``keyframe_insert``."""
         paths = [path for name in self._names.stems() for path in self._reader.functions_named(name)]
         entries = (self._reader.entry(path) for path in paths if path.startswith(f"{STRUCT}."))
-        for entry in heaviest((entry for entry in entries if entry), self._reader)[:_FUNCTIONS]:
+        for entry in self._reader.heaviest(entry for entry in entries if entry)[:_FUNCTIONS]:
             yield f"`obj.{call_of(entry)}` — {entry.line.partition(' — ')[2]}"
 
     def _make(self) -> Iterator[str]:
-        made: list[tuple[bool, list[str]]] = []
-        for creations in self._groups():
-            main = next(iter(creations))
-            is_main = self._names.has_modifier(main) or self._counts(*creations)
-            if is_main and main not in self._scene.shown and len(made) < _MAKERS:
-                steps = [*self._make_one(creations, is_first=not made)]
-                made.append((not self._needs_nothing(creations[main]), steps))
+        groups = [group for group in self._groups() if self._is_main(group)][:_MAKERS]
         # What an operator makes that needs nothing comes first: a world, before what is in it makes one.
-        for _, steps in sorted(made, key=itemgetter(0)):
-            yield from steps
+        for creations in sorted(
+            groups, key=lambda group: not self._needs_nothing(next(iter(group.values())))
+        ):
+            if next(iter(creations)) not in self._scene.shown:
+                yield from self._make_one(creations, is_first=creations is groups[0])
+
+    def _is_main(self, creations: Mapping[str, Creation]) -> bool:
+        """Whether the topic is about what one maker makes."""
+        return self._names.has_modifier(next(iter(creations))) or self._counts(*creations)
 
     def _groups(self) -> list[dict[str, Creation]]:
         """The classes that are made, by what makes them, each group with its heaviest class first."""

@@ -10,7 +10,7 @@ from kb_build.symbol_lines import literal, usual_default
 from kb_serve.packs.section import TYPES, fitting, is_of_interface, short
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterable, Iterator
+    from collections.abc import Callable, Iterable
 
     from kb_build.records import Symbol
     from kb_serve.reader import BaseReader, SymbolEntry
@@ -114,21 +114,17 @@ class SchemaLines:
         return fitting((line for symbol in plain if (line := self._class_line(symbol))), budget)
 
     def _class_line(self, symbol: Symbol) -> str:
-        members = [*self._heaviest(self._reader.members(symbol.path).values())][:_MEMBERS]
+        members = self._heaviest(self._reader.members(symbol.path).values())[:_MEMBERS]
         if not members:
             return ""
         reached = f" (`{symbol.reached}`)" if symbol.reached else ""
         return f"- `{short(symbol.path)}`{reached}: " + ", ".join(map(_member, members))
 
-    def _heaviest(self, entries: Iterable[SymbolEntry]) -> Iterator[SymbolEntry]:
-        found = [
+    def _heaviest(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
+        kept = (
             entry for entry in entries if entry.kind in {"property", "function"} and entry.name not in _PLAIN
-        ]
-        weights = self._reader.weights([entry.path for entry in found])
-        least = 0.0 if self._concerns else _LEAST
-        for entry in sorted(found, key=lambda entry: -weights.get(entry.path, 0.0)):
-            if weights.get(entry.path, 0.0) >= least:
-                yield entry
+        )
+        return self._reader.heaviest(kept, 0.0 if self._concerns else _LEAST)
 
 
 def _socket(name: str, entry: SymbolEntry) -> str:

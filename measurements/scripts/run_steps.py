@@ -3,8 +3,8 @@
 
 TOPICS is a JSON file: name → steps, a list of lines. Prints a JSON line for each topic: ``{"topic": …, "done": number,
 "left": number, "failed": [[step, error], …]}``. What makes or fills something is run; what is set is set to what it
-has; what is called is looked up. From an operator that needs more than an active object on, steps are left: they would
-fail whatever they say.
+has; what is called is looked up. From an operator on that makes something, and cannot run on a mesh object, steps are
+left: they would fail whatever they say.
 """
 
 from __future__ import annotations
@@ -100,14 +100,15 @@ def _fill(calls: str, pointer: str, names: Names) -> None:
 
 
 def _operate(step: str, names: Names) -> None:
-    """An operator that needs something is not called; one that makes a thing is, and of others ``poll`` is asked."""
+    """An operator that makes a thing is called, if what it says to need is there; of others ``poll`` is asked."""
     code = _CODE.findall(step)[0]
-    if " (takes " in step or " (not seen " in step:
-        if " → " in step:
+    runs = eval(code.partition("(")[0], names).poll()  # noqa: S307 - our own answers
+    is_told = " (takes " in step or " (not seen " in step
+    if " → " in step:
+        if is_told and not runs:
             raise _UnjudgedError
-    elif " → " in step:
         _run(code, names)
-    elif not eval(code.partition("(")[0], names).poll():  # noqa: S307 - our own answers
+    elif not (runs or is_told):
         raise RuntimeError("poll() failed")
 
 

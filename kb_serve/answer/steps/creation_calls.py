@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_serve.answer.empty_pointers import calls_before
 from kb_serve.answer.steps.made_line import made_line
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
+    from collections.abc import Iterator, Mapping
 
     from kb_serve.answer.steps.instances import Instances
     from kb_serve.answer.steps.new_scene import NewScene
@@ -36,6 +37,7 @@ class CreationCalls:
         steps = ready.steps
         if ready.expression.startswith("tree."):
             steps = [*self._trees.any_for(creation.call), *steps]
+        steps += self._before(main, creation.call)
         self._scene.variables.add(main, self._scene.variables.of(main))
         made = made_line(main, ready.expression, self._scene)
         on = ready.expression.partition(".")[0]
@@ -45,6 +47,14 @@ class CreationCalls:
             if other.choice and self._scene.obj.is_made_on(on, other)
         ]
         return [*steps, made + _also([one for one in choices if f"'{one}'" not in creation.call])]
+
+    def _before(self, cls: str, call: str) -> Iterator[str]:
+        """The steps that make what must be there before an operator makes an instance of a class."""
+        reader = self._scene.reader
+        for earlier in calls_before(reader, cls, call):
+            made = reader.made_by_call(earlier)
+            if made and made not in self._scene.shown:
+                yield made_line(made, earlier, self._scene)
 
 
 def _also(choices: list[str]) -> str:

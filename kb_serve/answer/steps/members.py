@@ -1,24 +1,14 @@
-"""Members of classes as steps tell them: in which order, and how each is written."""
+"""How steps write the members of classes."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _MOST_SETTINGS = 10
 _PLAIN = ("name", "index")  # every thing has them
-
-
-def heaviest(entries: Iterable[SymbolEntry], reader: BaseReader, least: float = 0.0) -> list[SymbolEntry]:
-    """Entries of at least some weight, by weight; those of equal weight keep their order."""
-    found = list(entries)
-    weights = reader.weights([entry.path for entry in found])
-    heavy = [entry for entry in found if weights.get(entry.path, 0.0) >= least]
-    return sorted(heavy, key=lambda entry: -weights.get(entry.path, 0.0))
 
 
 def settings_of(cls: str, reader: BaseReader) -> str:
@@ -31,7 +21,7 @@ def settings_of(cls: str, reader: BaseReader) -> str:
         and entry.name not in _PLAIN
         and can_be_set(entry)
     ]
-    return ", ".join(_short(entry) for entry in heaviest(entries, reader)[:_MOST_SETTINGS])
+    return ", ".join(_short(entry) for entry in reader.heaviest(entries)[:_MOST_SETTINGS])
 
 
 def can_be_set(entry: SymbolEntry) -> bool:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.render import is_machinery
-from kb_serve.answer.steps.members import call_of, can_be_set, heaviest
+from kb_serve.answer.steps.members import call_of, can_be_set
 from kb_serve.answer.steps.pointer_fills import stays_empty
 from kb_serve.reader import TYPES
 
@@ -19,8 +19,11 @@ if TYPE_CHECKING:
 
 NODE = f"{TYPES}Node"
 _FUNCTIONS = 3  # of one node
-# Those whose new trees have a node that ends them.
-_WITH_OUTPUT = frozenset({f"{TYPES}Material", f"{TYPES}World"})
+# Those whose new trees have a node that ends them, and the nodes that these end take of those of shaders.
+_WITH_OUTPUT = {
+    f"{TYPES}Material": frozenset[str](),
+    f"{TYPES}World": frozenset({f"{TYPES}ShaderNodeBackground"}),
+}
 
 
 class NodeSteps:
@@ -50,9 +53,10 @@ class NodeSteps:
     def _in_tree(self, pointer: SymbolEntry, holder: str) -> Iterator[str]:
         """The nodes of the tree that a pointer of a holder leads to."""
         kinds = self._reader.descendants(f"{TYPES}{pointer.target.removesuffix('Tree')}")
-        nodes = [node.path for node in heaviest(kinds, self._reader)]
+        nodes = [node.path for node in self._reader.heaviest(kinds)]
         known = self._reader.creations(nodes)
-        creations = {node: known[node] for node in nodes if node in known}
+        only = _WITH_OUTPUT.get(holder)
+        creations = {node: known[node] for node in nodes if node in known and (not only or node in only)}
         if not creations:
             return
         tree, variable = f"{TYPES}{pointer.target}", self._scene.variables.of(holder)
@@ -76,7 +80,7 @@ class NodeSteps:
         main = next(iter(creations))
         yield from self._calls.making(creations)
         if any(name.startswith("outputs[") for name in self._reader.members(main)):
-            yield from self._trees.joined(tree, self._scene.variables.of(main))
+            yield from self._trees.joined(tree, main)
 
     def _functions(self, creations: Mapping[str, Creation]) -> Iterator[str]:
         """The functions that nodes themselves have, as those at the ends of zones do."""

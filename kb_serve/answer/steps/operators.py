@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbol_lines import literal, operator_needs, refused_nothing
 from kb_serve.answer.panel_lines import panel_lines
-from kb_serve.answer.steps.members import heaviest
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -80,7 +79,7 @@ def _bakes(reader: BaseReader) -> Iterator[str]:
         paths = reader.symbols_of_page(target.partition("#")[0])
         entries = (reader.entry(path) for path in paths if _runs(path))
         operators = [entry for entry in entries if entry and entry.kind == "operator"]
-        yield from (entry.path for entry in heaviest(operators, reader)[:1])
+        yield from (entry.path for entry in reader.heaviest(operators)[:1])
 
 
 def _line(path: str, reader: BaseReader) -> str:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_serve.answer.steps.members import can_be_set, heaviest
+from kb_serve.answer.steps.members import can_be_set
 from kb_serve.answer.steps.variable_names import OBJ, OBJECT, TREE
 from kb_serve.reader import TYPES
 
@@ -45,7 +45,7 @@ class PlaceSteps:
 
     def _assigned(self, variable: str, pointers: list[SymbolEntry]) -> Iterator[str]:
         """The heaviest pointer to it whose owner is there, or can be made."""
-        for pointer in heaviest(pointers, self._reader)[:_MOST]:
+        for pointer in self._reader.heaviest(pointers)[:_MOST]:
             owner = pointer.owner
             # A modifier of the object itself cannot lead to it, nor can its own pointers.
             if variable == OBJ and (owner == OBJECT or self._is_on_object(owner)):

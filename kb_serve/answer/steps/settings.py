@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_serve.answer.steps.members import call_of, can_be_set, heaviest, settings_of
+from kb_serve.answer.steps.members import call_of, can_be_set, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE
 from kb_serve.answer.steps.parts import parts
 from kb_serve.answer.steps.pointer_fills import stays_empty
@@ -60,7 +60,7 @@ class SettingSteps:
         return "" if _OTHERS_ELEMENT.search(symbol.reached) else symbol.reached
 
     def _main(self, entries: Iterator[SymbolEntry]) -> list[SymbolEntry]:
-        return heaviest(entries, self._reader, _LEAST)[:_MEMBERS]
+        return self._reader.heaviest(entries, _LEAST)[:_MEMBERS]
 
     def _held(self, entry: SymbolEntry, variable: str) -> str:
         """A collection of a thing, and the call that adds to it."""
@@ -76,7 +76,7 @@ class SettingSteps:
         waiting, left = [(cls, variable)], _HOLDERS
         while waiting and left:
             owner, above = waiting.pop(0)
-            for entry in heaviest(self._reader.members(owner).values(), self._reader):
+            for entry in self._reader.heaviest(self._reader.members(owner).values()):
                 pointer = self._pointer(entry)
                 if pointer is None:
                     continue

@@ -27,6 +27,10 @@ class TopicNames:
         """Whether a name holds the topic's words."""
         return any(words <= set(terms(name)) for words in self.words)
 
+    def is_called(self, path: str) -> bool:
+        """Whether a class has the topic's words and no other."""
+        return frozenset(terms(path.removeprefix(TYPES))) in self.words
+
     def stems(self) -> list[str]:
         """The topic's keys, in the singular too."""
         names = (name for each in sorted(self.keys) for name in (each, each.removesuffix("s")))

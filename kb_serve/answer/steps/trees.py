@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 # Trees that cannot be assigned: what has one of its own, and the node that ends a new one.
 _EMBEDDED = {f"{TYPES}ShaderNodeTree": (f"{TYPES}Material", "node_tree")}
 _ENDS = {f"{TYPES}ShaderNodeTree": "tree.get_output_node('ALL')"}
+_END_NODE = f"{TYPES}ShaderNodeOutputMaterial"  # what that gives
 _GROUP_END = "group_output"  # what ends the others
 # What these must give to be of use: a socket's name and type.
 _GROUP_OUTPUT = {
@@ -77,7 +78,7 @@ class TreeSteps:
         yield from parts(tree, variable, self._names, self._reader)
 
     def joined(self, tree: str, node: str) -> Iterator[str]:
-        """The steps that join a node, given by its variable, to the end of a tree, which gets one where it has none."""
+        """The steps that join a node to the end of a tree, which gets one where it has none."""
         if tree not in self._ended and tree not in _ENDS:
             self._ended.add(tree)
             name, socket = _GROUP_OUTPUT.get(tree, ("", ""))
@@ -86,7 +87,15 @@ class TreeSteps:
             yield (
                 f'`{_GROUP_END} = tree.nodes.new("NodeGroupOutput")`; also `NodeGroupInput`, for its inputs'
             )
-        yield f"`tree.links.new({node}.outputs[0], {_ENDS.get(tree, _GROUP_END)}.inputs[0])`"
+        end = f"{_ENDS[tree]}.{self._input_for(node)}" if tree in _ENDS else f"{_GROUP_END}.inputs[0]"
+        yield f"`tree.links.new({self._scene.variables.of(node)}.outputs[0], {end})`"
+
+    def _input_for(self, node: str) -> str:
+        """The input of a material's end that is called as a node's first output (Displacement), or else the first."""
+        members = self._reader.members(node)
+        output = next((name for name in members if name.startswith("outputs[")), "")
+        called = output.replace("outputs", "inputs", 1)
+        return called if called in self._reader.members(_END_NODE) else "inputs[0]"
 
     def _new(self, tree: str) -> Iterator[str]:
         holder, name = _EMBEDDED.get(tree, ("", ""))

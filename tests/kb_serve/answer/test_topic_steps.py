@@ -11,6 +11,7 @@ from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.topic_steps import Steps
 
 if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
 
@@ -77,3 +78,23 @@ def test_a_pointer_that_is_none_is_filled_before_what_it_holds_is_set(reader: Ba
     made, held = steps(reader, "force field", "FieldSettings")
     assert made.endswith("`bpy.ops.object.forcefield_toggle()` makes `obj.field`")
     assert "set on `bpy.context.object.field`" in held
+
+
+def test_a_node_goes_to_the_input_that_is_called_as_what_it_gives(reader: BaseReader) -> None:
+    said = "\n".join(steps(reader, "displacement", "ShaderNodeDisplacement"))
+    assert """displacement.outputs[0], tree.get_output_node('ALL').inputs["Displacement"])""" in said
+
+
+def test_a_world_has_a_background_and_no_rigid_bodies(reader: BaseReader) -> None:
+    said = "\n".join(steps(reader, "world", "World", "RigidBodyWorld"))
+    assert 'tree.nodes.new("ShaderNodeBackground")' in said
+    assert "Principled" not in said
+    assert "rigidbody" not in said
+
+
+def test_what_must_be_there_before_an_operator_is_made_before(kb: KnowledgeBase, reader: BaseReader) -> None:
+    said = steps(reader, "rigid body constraint", "RigidBodyConstraint")
+    assert said[0].startswith("1. `bpy.ops.rigidbody.world_add()` → `RigidBodyWorld`")
+    assert said[1].startswith("2. `bpy.ops.rigidbody.constraint_add()` → `RigidBodyConstraint`")
+    both = "made by `bpy.ops.rigidbody.world_add()`, then `bpy.ops.rigidbody.constraint_add()`"
+    assert both in kb.query("bpy.types.RigidBodyConstraint").text.replace("; made by", "\nmade by")
