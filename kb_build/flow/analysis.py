@@ -7,7 +7,9 @@ import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.flow.calls import Calls
 from kb_build.flow.core import StepsExhausted
+from kb_build.flow.functions import Functions
 from kb_build.flow.other_versions import doubt_what_others_use
 from kb_build.flow.source_files import SourceFile, keeps_annotations, module_name
 from kb_build.flow.statements import Statements
@@ -53,7 +55,7 @@ class Analysis:
     classes: Sequence[ast.ClassDef] = ()
 
 
-class Analyzer(Statements):
+class Analyzer(Statements, Functions, Calls):
     """One analysis of the files that are read together."""
 
     importing = 0

@@ -3,9 +3,8 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
+from kb_build.flow.core import DEEPEST, Core
 from kb_build.flow.trees import walk
 from kb_build.flow.types import (
     BOOL,
@@ -14,20 +13,14 @@ from kb_build.flow.types import (
     NONE,
     STR,
     UNKNOWN,
-    ClassObject,
-    Instance,
-    LocalClass,
-    LocalInstance,
     Mapping,
     Plain,
     Sequence,
     Tuple,
     Type,
+    instance_of,
     union,
 )
-
-if TYPE_CHECKING:
-    from collections.abc import Callable
 
 _PLAIN: dict[str, Type] = {
     "str": STR, "int": INT, "bool": BOOL, "bytes": Plain("bytes"), "None": NONE,
@@ -42,15 +35,78 @@ _LONGEST = 10_000  # characters of a quoted annotation
 _QUOTES = frozenset({1, 3})
 
 
-@dataclass(frozen=True, slots=True)
-class Readers:
-    """What gives an annotation its meaning: the classes that names stand for, and what a quoted one says."""
+class Annotations(Core):
+    """Reads annotations."""
 
-    evaluate: Callable[[ast.expr], Type]
-    quoted: Callable[[ast.Constant], Type]
+    def annotated(self, node: ast.expr) -> Type:
+        """The type of a value with this annotation; a wrong name in it is no error where Python does not read it."""
+        unread = self.file.keeps_annotations
+        self.tolerant += unread
+        kind = self._meant(node)
+        self.tolerant -= unread
+        return kind
+
+    def _quoted(self, node: ast.Constant) -> Type:
+        """What a quoted annotation means, which Python does not read."""
+        if node not in self.file.quoted:
+            self.file.quoted[node] = _unquoted(node)
+        inner = self.file.quoted[node]
+        if inner is None or self.depth > DEEPEST:
+            return UNKNOWN
+        self.tolerant += 1
+        self.depth += 1
+        kind = self._meant(inner)
+        self.depth -= 1
+        self.tolerant -= 1
+        return kind
+
+    def _meant(self, node: ast.expr, depth: int = 0) -> Type:  # noqa: PLR0911 - one return a form
+        """The same of a part, which lies so deep inside."""
+        if depth > _DEEPEST:
+            return UNKNOWN
+        match node:
+            case ast.Constant(value=None):
+                return NONE
+            case ast.Constant(value=str()):
+                return self._quoted(node)
+            case ast.BinOp(op=ast.BitOr()):
+                return union(self._meant(side, depth + 1) for side in (node.left, node.right))
+            case ast.Subscript():
+                return self._generic(node, depth + 1)
+            case ast.Name(id=name) if name in _PLAIN:
+                return _PLAIN[name]
+            case ast.Name(id=name) if name in _LISTS:
+                return Sequence(_LISTS[name], UNKNOWN)
+            case ast.Name() | ast.Attribute():
+                return instance_of(self.evaluate(node))
+            case _:
+                self.evaluate(node)
+                return UNKNOWN
+
+    def _generic(self, node: ast.Subscript, depth: int) -> Type:  # noqa: PLR0911 - one return a form
+        head = node.value
+        name = head.id if isinstance(head, ast.Name) else head.attr if isinstance(head, ast.Attribute) else ""
+        inside = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
+        if not inside:
+            return UNKNOWN
+        if name == "Optional":
+            return union((self._meant(inside[0], depth), NONE))
+        if name == "Union":
+            return union(self._meant(item, depth) for item in inside)
+        if name in _LISTS:
+            return Sequence(_LISTS[name], self._meant(inside[0], depth))
+        if name in {"tuple", "Tuple"}:
+            if isinstance(inside[-1], ast.Constant) and inside[-1].value is ...:
+                return Sequence("tuple", self._meant(inside[0], depth))
+            return Tuple(tuple(self._meant(item, depth) for item in inside))
+        if name in {"dict", "Dict", "Mapping"} and len(inside) == 2:
+            key, value = (self._meant(item, depth) for item in inside)
+            return Mapping(key, value)
+        self.evaluate(node)
+        return UNKNOWN
 
 
-def unquoted(node: ast.Constant) -> ast.expr | None:
+def _unquoted(node: ast.Constant) -> ast.expr | None:
     """What a quoted annotation says, in its place in the script; None for what cannot be read.
 
     Where its text is not written as it is read, each part has the place of the whole.
@@ -72,53 +128,3 @@ def unquoted(node: ast.Constant) -> ast.expr | None:
             part.col_offset += node.col_offset + quotes
             part.end_col_offset = (part.end_col_offset or 0) + node.col_offset + quotes
     return tree
-
-
-def annotated(node: ast.expr, readers: Readers, depth: int = 0) -> Type:  # noqa: PLR0911 - one return a form
-    """The type of a value with this annotation."""
-    if depth > _DEEPEST:
-        return UNKNOWN
-    match node:
-        case ast.Constant(value=None):
-            return NONE
-        case ast.Constant(value=str()):
-            return readers.quoted(node)
-        case ast.BinOp(op=ast.BitOr()):
-            return union(annotated(side, readers, depth + 1) for side in (node.left, node.right))
-        case ast.Subscript():
-            return _generic(node, readers, depth + 1)
-        case ast.Name(id=name) if name in _PLAIN:
-            return _PLAIN[name]
-        case ast.Name(id=name) if name in _LISTS:
-            return Sequence(_LISTS[name], UNKNOWN)
-        case ast.Name() | ast.Attribute():
-            kind = readers.evaluate(node)
-            if isinstance(kind, ClassObject):
-                return Instance(kind.cls)
-            return LocalInstance(kind.number) if isinstance(kind, LocalClass) else UNKNOWN
-        case _:
-            readers.evaluate(node)
-            return UNKNOWN
-
-
-def _generic(node: ast.Subscript, readers: Readers, depth: int) -> Type:  # noqa: PLR0911 - one return a form
-    head = node.value
-    name = head.id if isinstance(head, ast.Name) else head.attr if isinstance(head, ast.Attribute) else ""
-    inside = node.slice.elts if isinstance(node.slice, ast.Tuple) else [node.slice]
-    if not inside:
-        return UNKNOWN
-    if name == "Optional":
-        return union((annotated(inside[0], readers, depth), NONE))
-    if name == "Union":
-        return union(annotated(item, readers, depth) for item in inside)
-    if name in _LISTS:
-        return Sequence(_LISTS[name], annotated(inside[0], readers, depth))
-    if name in {"tuple", "Tuple"}:
-        if isinstance(inside[-1], ast.Constant) and inside[-1].value is ...:
-            return Sequence("tuple", annotated(inside[0], readers, depth))
-        return Tuple(tuple(annotated(item, readers, depth) for item in inside))
-    if name in {"dict", "Dict", "Mapping"} and len(inside) == 2:
-        key, value = (annotated(item, readers, depth) for item in inside)
-        return Mapping(key, value)
-    readers.evaluate(node)
-    return UNKNOWN

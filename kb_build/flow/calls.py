@@ -33,6 +33,7 @@ from kb_build.flow.types import (
     Type,
     Union,
     bounded,
+    instance_of,
     join,
     literal,
     literal_text,
@@ -297,7 +298,7 @@ class Calls(Narrowing):
                 self._pass(kind.number, [UNKNOWN, Instance(f"{T}Context")], {})
         if name in {"PointerProperty", "CollectionProperty"}:
             given = next((kind for keyword, kind in keywords if keyword.arg == "type"), UNKNOWN)
-            element = self._instance(given)
+            element = instance_of(given)
             if name == "PointerProperty" or element is UNKNOWN:
                 return element
             return Collection(element, "bpy.types.bpy_prop_collection_idprop", "", UNKNOWN)

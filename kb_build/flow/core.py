@@ -87,6 +87,10 @@ class Core:
         """What a call returns."""
         raise NotImplementedError
 
+    def read_body(self, body: Sequence[ast.stmt]) -> bool:
+        """Reads statements one after the other; whether what follows them can be reached."""
+        raise NotImplementedError
+
     def run(self, number: int) -> None:
         """Reads a function of the script with what it is known to receive."""
         raise NotImplementedError
@@ -229,15 +233,16 @@ class Core:
 
         A class without any that others of the script derive from has those of the others: it is mixed into them.
         """
-        bases, known = self._direct_bases(number)
+        bases, known = self.direct_bases(number)
         if bases or not known:
             return bases, known
         mixed = dict.fromkeys(
-            base for other in self.derived.get(number, ()) for base in self._direct_bases(other)[0]
+            base for other in self.derived.get(number, ()) for base in self.direct_bases(other)[0]
         )
         return tuple(mixed), not mixed
 
-    def _direct_bases(self, number: int) -> tuple[tuple[str, ...], bool]:
+    def direct_bases(self, number: int) -> tuple[tuple[str, ...], bool]:
+        """The same without what others are mixed into: what the class itself derives from."""
         found = self._bases.get(number)
         if found is None:
             bases: list[str] = []

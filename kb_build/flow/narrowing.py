@@ -13,14 +13,12 @@ from kb_build.flow.types import (
     NONE,
     UNKNOWN,
     Builtin,
-    ClassObject,
     Instance,
-    LocalClass,
-    LocalInstance,
     Plain,
     Tuple,
     Type,
     Union,
+    instance_of,
     literal,
     literal_text,
     literal_texts,
@@ -177,7 +175,7 @@ class Narrowing(Guards):
         subject, answer = call.args
         wanted = self._type_of(answer)
         kinds = wanted.items if isinstance(wanted, Tuple) else members(wanted)
-        found = [self._instance(kind) for kind in kinds]
+        found = [instance_of(kind) for kind in kinds]
         if UNKNOWN not in found:
             self._know(subject, union(found))
         elif chain_text(subject):
@@ -217,9 +215,3 @@ class Narrowing(Guards):
             self.scope.state.chains[f"{text}.{attribute}"] = found.type
         if found.missing:
             self._doubt_chain(text)
-
-    @staticmethod
-    def _instance(kind: Type) -> Type:
-        if isinstance(kind, ClassObject):
-            return Instance(kind.cls)
-        return LocalInstance(kind.number) if isinstance(kind, LocalClass) else UNKNOWN

@@ -336,6 +336,13 @@ def bounded(kind: Type, depth: int = DEEPEST_TYPE) -> Type:  # noqa: PLR0911 - o
             return kind
 
 
+def instance_of(kind: Type) -> Type:
+    """What a class makes; UNKNOWN for what is no class, or none that is known."""
+    if isinstance(kind, ClassObject):
+        return Instance(kind.cls)
+    return LocalInstance(kind.number) if isinstance(kind, LocalClass) else UNKNOWN
+
+
 def literal(kind: Type) -> str | int | float | bool | None:
     """The value of a type that is a literal."""
     return kind.value if isinstance(kind, Plain) else None

@@ -1,0 +1,203 @@
+"""Reads assignments: what names, attributes and items hold from there on."""
+
+from __future__ import annotations
+
+import ast
+
+from kb_build.flow.annotations import Annotations
+from kb_build.flow.expressions import is_math
+from kb_build.flow.facts import DISCRIMINANTS
+from kb_build.flow.guards import Guards
+from kb_build.flow.scopes import chain_text
+from kb_build.flow.types import (
+    NONE,
+    UNKNOWN,
+    ClassObject,
+    Instance,
+    LocalClass,
+    LocalInstance,
+    Mapping,
+    Module,
+    Sequence,
+    Tuple,
+    Type,
+    general,
+    join,
+    members,
+)
+
+_TYPES = Module("bpy.types")
+
+
+class Assignments(Guards, Annotations):
+    """Reads assignments; each reader tells whether the next statement can be reached."""
+
+    def read_assignment(self, node: ast.Assign) -> bool:
+        """Reads ``name = value``."""
+        kind = self.evaluate(node.value)
+        for target in node.targets:
+            self.bind_target(target, kind, node.value)
+            if isinstance(target, ast.Name):
+                self._note_asked(target.id, node.value)
+        return True
+
+    def _note_asked(self, name: str, value: ast.expr) -> None:
+        """Notes ``name = hasattr(owner, "member")`` and ``name = getattr(owner, "member", default)``."""
+        self.scope.asked.pop(name, None)
+        match value:
+            case (
+                ast.Call(func=ast.Name(id="hasattr"), args=[_, _])
+                | ast.Call(func=ast.Name(id="getattr"), args=[_, _, _])
+            ):
+                self.scope.asked[name] = value
+            case _:
+                pass
+
+    def read_annotated_assignment(self, node: ast.AnnAssign) -> bool:
+        """Reads ``name: type = value``, also without a value."""
+        kind = self.evaluate(node.value) if node.value is not None else UNKNOWN
+        if isinstance(node.annotation, ast.Call):  # ``size: FloatProperty(...)``
+            declared = self.evaluate(node.annotation)
+        else:
+            declared = self.annotated(node.annotation)
+        if kind is UNKNOWN or kind is NONE or (isinstance(kind, Sequence) and kind.element is UNKNOWN):
+            kind = declared
+        self.bind_target(node.target, kind, node.value)
+        return True
+
+    def read_augmented_assignment(self, node: ast.AugAssign) -> bool:
+        """Reads ``name += value``."""
+        right = self.evaluate(node.value)
+        before = self.evaluate(node.target)
+        if isinstance(node.op, (ast.Mult, ast.MatMult)) and is_math(before) and is_math(right):
+            before = self.operation(node, before, right)
+        if isinstance(node.target, ast.Name):
+            grown = isinstance(before, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple))
+            if grown:
+                before = Sequence("list", join(self.iterated(before), self.iterated(right)))
+            self.scope.bind(node.target.id, general(before))
+        elif isinstance(node.target, ast.Attribute):
+            self._store(node.target, general(before), None)
+        return True
+
+    def bind_target(self, target: ast.expr, kind: Type, value: ast.expr | None = None) -> None:
+        """See :class:`core.Core`."""
+        kind = self.told(kind, value)
+        match target:
+            case ast.Name():
+                self.scope.bind(target.id, kind)
+                self.types[target] = kind
+            case ast.Attribute():
+                self._store(target, kind, value)
+            case ast.Tuple() | ast.List():
+                self._unpack(target, kind)
+            case ast.Subscript():
+                owner = self.evaluate(target.value)
+                key = self.evaluate(target.slice)
+                if owner is not UNKNOWN:
+                    self.item(owner, key, target)
+                self._fill(target, owner, key, kind)
+            case ast.Starred():
+                self.bind_target(target.value, Sequence("list", UNKNOWN))
+            case _:
+                pass
+
+    def _unpack(self, target: ast.Tuple | ast.List, kind: Type) -> None:
+        starred = next((at for at, item in enumerate(target.elts) if isinstance(item, ast.Starred)), None)
+        if starred is None:
+            for item, one in zip(target.elts, self.unpacked(kind, len(target.elts)), strict=True):
+                self.bind_target(item, one)
+            return
+        element = self.iterated(kind)
+        for item in target.elts:
+            if isinstance(item, ast.Starred):
+                self.bind_target(item.value, Sequence("list", element))
+            else:
+                self.bind_target(item, element)
+
+    def _fill(self, target: ast.Subscript, owner: Type, key: Type, kind: Type) -> None:
+        """A dictionary or a list that a name or an attribute holds learns what it is filled with."""
+        filled: Type
+        match owner:
+            case Mapping():
+                value = kind if owner.value is UNKNOWN and not owner.items else join(owner.value, kind)
+                known = key if owner.key is UNKNOWN else join(owner.key, key)
+                filled = Mapping(general(known), value)
+            case Tuple() | Sequence(kind="list"):
+                held = self.iterated(kind) if isinstance(target.slice, ast.Slice) else kind
+                filled = Sequence("list", join(self.iterated(owner), held))
+            case _:
+                return
+        match target.value:
+            case ast.Name(id=name) if name in self.scope.state.names:
+                self.scope.bind(name, filled)
+            case ast.Name(id=name):
+                self.scope.fill_outside(name, filled)
+            case ast.Attribute(value=value, attr=name):
+                of = self.types.get(value, UNKNOWN)
+                if isinstance(of, (LocalInstance, LocalClass)):
+                    self.classes[of.number].bind(name, filled)
+            case _:
+                pass
+
+    def _store(self, target: ast.Attribute, kind: Type, value: ast.expr | None) -> None:
+        owner = self.evaluate(target.value)
+        text = chain_text(target)
+        if isinstance(owner, LocalInstance):
+            self._store_on_instance(owner, target.attr, kind)
+        elif isinstance(owner, LocalClass):
+            self.classes[owner.number].bind(target.attr, kind)
+        elif owner == _TYPES:
+            # Whatever is assigned to the module is there, as the server that an add-on keeps.
+            self.own_types[target.attr] = join(self.own_types.get(target.attr, kind), kind)
+            self.resolutions.pop(target, None)
+            return
+        else:
+            self.register(owner, target.attr, kind, declared=self.is_declared(value))
+            if all(isinstance(member, ClassObject) for member in members(owner)):
+                self.resolutions.pop(target, None)
+                return
+        is_expected = text in self.scope.state.chains
+        if text and self.scope.state.chains:
+            self.scope.forget(text)
+        self.resolutions.pop(target, None)
+        if owner is UNKNOWN:
+            return
+        found = self.attribute(owner, target.attr)
+        if found.symbols or found.missing or found.possible:
+            missing = () if is_expected else found.missing
+            self.resolve(
+                target, "store", target.attr, found.symbols, missing, found.possible,
+                sure=found.sure, guarded=self.scope.state.doubts(chain_text(target.value)),
+            )  # fmt: skip
+        if target.attr in DISCRIMINANTS:
+            self._forget_kinds(owner)
+        if found.symbols and value is not None:
+            self.check_value(found.type, value)
+        elif found.possible and found.sure and not found.missing and value is not None:
+            self.check_possible(owner, target.attr, found.possible, value)
+        converts = is_math(kind) and is_math(found.type)  # a vector, given to a colour, becomes a colour
+        holds = (
+            isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts
+        )
+        if text and holds:
+            self.scope.state.chains[text] = kind
+
+    def _forget_kinds(self, owner: Type) -> None:
+        """Something becomes of another class: what is read anew from a chain may be that."""
+        bases = {
+            self.api.settable_kind(kind.cls) for kind in members(owner) if isinstance(kind, Instance)
+        } - {""}
+        chains = self.scope.state.chains
+        for text, kind in [*chains.items()] if bases else ():
+            if any(self.api.descends(one.cls, base) for one in members(kind) for base in bases
+                   if isinstance(one, Instance)):  # fmt: skip
+                del chains[text]
+
+    def _store_on_instance(self, owner: LocalInstance, name: str, kind: Type) -> None:
+        if self.class_attribute(owner.number, name) is None:
+            bases, _ = self.api_bases(owner.number)
+            if any(self.api.member(base, name) for base in bases):
+                return
+        found = self.class_attribute(owner.number, name)
+        self.classes[found[1] if found else owner.number].bind(name, general(kind))

@@ -1,0 +1,85 @@
+"""Reads statements of which one way is taken: ``if`` and ``match``."""
+
+from __future__ import annotations
+
+import ast
+
+from kb_build.flow.expressions import is_decided
+from kb_build.flow.guards import Guards, assigned_names
+from kb_build.flow.scopes import EVERYTHING, State
+from kb_build.flow.trees import walk
+from kb_build.flow.types import UNKNOWN, Type, literal
+from kb_build.flow.ways import Ways
+
+
+class Branches(Guards, Ways):
+    """Reads ``if`` and ``match``; each reader tells whether the next statement can be reached."""
+
+    def read_if(self, node: ast.If) -> bool:
+        """Reads ``if``: both ways, unless this Blender decides for one."""
+        test = self.evaluate(node.test)
+        # Only another version's code is left out: a switch may be set by whoever reads the script.
+        truth = literal(test) if is_decided(test) else None
+        before = self.scope.state
+        ways: list[State | None] = []
+        for holds, body in ((True, node.body), (False, node.orelse)):
+            if isinstance(truth, bool) and truth is not holds:
+                self.file.left_out.update(body)
+                continue
+            self.scope.state = before.copy()
+            self.narrow(node.test, holds=holds)
+            ways.append(self.way(self.scope.state, body))
+        reached = self.meet(ways, before)
+        if None not in ways:
+            self.scope.state.doubted = before.doubted
+        if flags := assigned_names([*node.body, *node.orelse]):
+            decided = truth is not None
+            asked = frozenset({EVERYTHING}) if decided else self.asked(node.test)
+            self.tell(flags, asked, decided=decided)
+        return reached
+
+    def read_match(self, node: ast.Match) -> bool:
+        """Reads ``match``: each case with what it tells of the subject."""
+        subject = self.evaluate(node.subject)
+        before = self.scope.state
+        otherwise = before.copy()
+        otherwise.doubted |= self.asked(node.subject)
+        ways: list[State | None] = []
+        whole = False
+        for case in node.cases:
+            self.scope.state = otherwise.copy()
+            self._bind_pattern(case.pattern, subject, node.subject)
+            if case.guard is not None:
+                self.evaluate(case.guard)
+                self.narrow(case.guard, holds=True)
+            whole = whole or (
+                isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None and not case.guard
+            )
+            ways.append(self.way(self.scope.state, case.body))
+        if not whole:
+            ways.append(otherwise)
+        reached = self.meet(ways, before)
+        if None not in ways:
+            self.scope.state.doubted = before.doubted
+        self.tell(assigned_names(part for case in node.cases for part in case.body), self.asked(node.subject))
+        return reached
+
+    def _bind_pattern(self, pattern: ast.pattern, subject: Type, node: ast.expr) -> None:
+        if isinstance(pattern, ast.MatchValue):
+            self.evaluate(pattern.value)
+            self.check_value(subject, pattern.value, "compared")
+            compared = ast.Compare(node, [ast.Eq()], [pattern.value])
+            self.narrow(compared, holds=True)
+            return
+        for part in walk(pattern):
+            match part:
+                case ast.MatchValue(value=value) | ast.MatchClass(cls=value):
+                    self.evaluate(value)
+                case ast.MatchMapping(keys=keys):
+                    for key in keys:
+                        self.evaluate(key)
+                case _:
+                    pass
+            name = getattr(part, "name", None) or getattr(part, "rest", None)
+            if isinstance(name, str):
+                self.scope.bind(name, UNKNOWN)

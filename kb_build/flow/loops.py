@@ -1,0 +1,78 @@
+"""Reads loops: what one turn binds is known in the next."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.flow.members import Members
+from kb_build.flow.scopes import Loop, State, joined
+from kb_build.flow.ways import Ways
+
+if TYPE_CHECKING:
+    import ast
+    from collections.abc import Callable
+    from collections.abc import Sequence as Rows
+
+
+class Loops(Members, Ways):
+    """Reads ``for``, ``while``, and what leaves a turn; each reader tells whether the next statement can be reached."""
+
+    def read_for(self, node: ast.For | ast.AsyncFor) -> bool:
+        """Reads ``for``: the target is bound in each turn."""
+        kind = self.iterated(self.evaluate(node.iter))
+
+        def enter() -> None:
+            self.statement = node
+            self.bind_target(node.target, kind)
+
+        return self._loop(node.body, node.orelse, enter)
+
+    def read_while(self, node: ast.While) -> bool:
+        """Reads ``while``: the condition holds in each turn."""
+
+        def enter() -> None:
+            self.statement = node
+            self.evaluate(node.test)
+            self.narrow(node.test, holds=True)
+
+        return self._loop(node.body, node.orelse, enter)
+
+    def read_break(self, _node: ast.Break) -> bool:
+        """Notes what is known where a loop is left."""
+        if self.loops:
+            self.loops[-1].left.append(self.scope.state)
+        return False
+
+    def read_continue(self, _node: ast.Continue) -> bool:
+        """Notes what is known where a turn of a loop ends."""
+        if self.loops:
+            self.loops[-1].continued.append(self.scope.state)
+        return False
+
+    def _loop(self, body: Rows[ast.stmt], orelse: Rows[ast.stmt], enter: Callable[[], None]) -> bool:
+        """Reads a loop's body twice, so that what one turn binds is known in the next."""
+        before = self.scope.state
+        loop = Loop()
+        self.loops.append(loop)
+        start = before
+        for turn in range(2):
+            self.scope.state = start.copy()
+            enter()
+            after = self.way(self.scope.state, body)
+            ends = [state for state in (after, *loop.continued) if state is not None]
+            start = joined([before, *ends])
+            if turn == 0 and not _differs(before, start):
+                break
+        self.loops.pop()
+        self.scope.state = start.copy()
+        reached = self.read_body(orelse) if orelse else True
+        return self.meet([self.scope.state if reached else None, *loop.left], start)
+
+
+def _differs(before: State, after: State) -> bool:
+    """Whether a loop's first turn bound something that its beginning has otherwise."""
+    return any(
+        before.names.get(name) is not kind and before.names.get(name) != kind
+        for name, kind in after.names.items()
+        if name in before.names
+    )
