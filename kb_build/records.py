@@ -161,7 +161,8 @@ class Refusal:
     ``message`` has … for what things are called and what was given; it is empty where the call returned None. Refused
     were these ``values`` of the ``argument``, () for all; made of what ``by`` names, () for everything that was tried,
     while ``taken_by`` names what takes them. ``given`` are the further arguments with which they were taken, ``mode``
-    the mode of the object. ``again``: only a call after another one was refused, ``any`` or the ``same``.
+    the mode of the object. ``again``: only a call after another one was refused, ``any`` with its choice,
+    the ``same`` one, or one with an ``other`` choice, too.
     """
 
     message: str

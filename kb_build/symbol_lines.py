@@ -312,6 +312,13 @@ def mode_needed(symbol: Symbol) -> str:
     return "".join(_mode_text(refusal) for refusal in islice(whole, 1))
 
 
+_AGAIN = {
+    "any": "a second time",
+    "same": "a second time with the same arguments",
+    "other": "after any other",
+}
+
+
 def _refusal_text(refusal: Refusal) -> str:
     """``type='COLOR'|'TEXT'`` without ``length``: “Strips.new_effect: invalid length”."""
     parts: list[str] = []
@@ -324,7 +331,7 @@ def _refusal_text(refusal: Refusal) -> str:
     if refusal.mode:
         parts.append(f"outside of {_mode_text(refusal)}")
     if refusal.again:
-        parts.append("a second time" if refusal.again == "any" else "a second time with the same arguments")
+        parts.append(_AGAIN[refusal.again])
     said = f"“{refusal.message}”" if refusal.message else "returns `None`"
     return f"{' '.join(parts)}: {'else ' if refusal.by else ''}{said}"
 

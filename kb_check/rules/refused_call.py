@@ -59,6 +59,7 @@ _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _OUTSIDE_MAIN = {
     f"{_OBJECT}.to_mesh": "to_mesh_clear", f"{_OBJECT}.to_curve": "to_curve_clear",
 }  # fmt: skip
+_NOT_AFTER = {"any": "a second time", "other": "after another"}
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
 
@@ -75,18 +76,16 @@ def _check(script: Script) -> Iterator[Finding]:
             continue
         owner = call.node.func.value
         for refusal in refusals:
+            key = (ast.unparse(owner), *_key(refusal, call))
+            before = earlier.setdefault(key, call) if refusal.again else call
             if not _is_of(refusal, call) or (not refusal.given and not refusal.by and _gives_more(call)):
                 continue
             if refusal.given and not unknown.isdisjoint(call.node.keywords):  # one of those may stand for it
                 continue
             if refusal.again:
-                before = earlier.setdefault((ast.unparse(owner), *_key(refusal, call)), call)
-                if (
-                    refusal.again == "any"
-                    and before is not call
-                    and follows(script, before.node, call.node, owner)
-                ):
-                    yield _finding(script, call, refusal, "a second time")
+                why = _NOT_AFTER.get(refusal.again, "")
+                if why and before is not call and follows(script, before.node, call.node, owner):
+                    yield _finding(script, call, refusal, why)
             elif refusal.given:
                 if not call.given & set(refusal.given):
                     names = " and ".join(f"`{name}`" for name in refusal.given)
@@ -217,8 +216,8 @@ def _gives_more(call: CallSite) -> bool:
 
 
 def _key(refusal: Refusal, call: CallSite) -> tuple[str, str]:
-    """The function, and the value that is refused the second time, if only some are."""
-    given = call.argument(refusal.argument)
+    """The function, and the value that is refused the second time, if only some are, and only after itself."""
+    given = call.argument(refusal.argument) if refusal.again != "other" else None
     return call.callee.symbol.path, ast.unparse(given) if given else ""
 
 

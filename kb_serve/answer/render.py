@@ -76,6 +76,8 @@ _SHOWN_FLAGS = (
     "classmethod",
     "hidden-by-default",
 )
+# What the manual says of a setting may be true of one engine only.
+ENGINES = {"render/eevee/": "EEVEE", "render/cycles/": "Cycles", "render/workbench/": "Workbench"}
 _NONE_IN_CONTEXT = {
     WITHOUT_ACTIVE: "`None` where no object is active",
     WITHOUT_AREA: "`None` outside the areas of windows, as in a Blender without a window",
@@ -576,7 +578,8 @@ class MarkdownRenderer:
         if found is None or page is None:
             return
         section = page.sections[found[1]]
-        where = page.title if found[1] == 0 else f"{page.title} › {section.title}"
+        engine = next((f"{name} › " for start, name in ENGINES.items() if page.slug.startswith(start)), "")
+        where = engine + (page.title if found[1] == 0 else f"{page.title} › {section.title}")
         named = with_names(section.text, found[1], self.reader.label_names(page.slug))
         if text := passage_text(named, found[2]):
             yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")

@@ -33,3 +33,5 @@ def what_to_give(wanted: str, given: str, reader: BaseReader, absent: Absent) ->
         yield "Give a whole number: `int(value)`, or `round(value)`."
     elif wanted in {"int", "float"} and given in _SEQUENCES:
         yield f"Give one number, not a {given} of them."
+    elif (symbol := reader.symbol(cls)) and symbol.reached and "[" not in symbol.reached:
+        yield f"A `{cls}` is reached as `{symbol.reached}`."

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections import Counter
+from dataclasses import replace
 from functools import cached_property
 from itertools import islice
 from typing import TYPE_CHECKING
@@ -40,6 +41,7 @@ if TYPE_CHECKING:
 _FEW = 3
 _MOST_TAKING = 12  # operators with an argument of one name that are listed
 _ADD = ("new", "append", "add", "link")  # functions of collections
+_LONG = 4  # letters of an item that a wrong one begins with
 _MANY = 8  # where more properties may be None, none is likely enough to be named
 # Pages of the API's own guides that explain a kind of message; named where the base has them.
 _ON_OPERATORS = "info_gotchas_operators"
@@ -97,8 +99,12 @@ _READS_ONLY = (
 
 
 def _closest(name: str, items: Sequence[str]) -> str:
-    """The items that a wrong one may mean: those that are most like it, or else those that it is made of and more."""
+    """The items that a wrong one may mean: those that are most like it, that it begins with, or else those that it is
+    made of and more.
+    """
     similar = [item for item, _ in nearest(name, items)]
+    if not similar:
+        similar = [item for item in items if len(item) >= _LONG and name.startswith(item)]
     if not similar:
         said = set(words(name))
         similar = sorted((item for item in items if set(words(item)) <= said), key=len, reverse=True)[:1]
@@ -149,6 +155,7 @@ class Messages:
             self._by_name(match["function"], match["name"], recognition)
         for match in _matches(forms.NO_INDEX, query):
             recognition.notes.append(self._index(match["index"], int(match["size"]), query, recognition))
+            recognition.add(COLLECTION, 0.81, "error message")
         for match in _matches(forms.NO_KEY, query):
             self._key(match["on"], match["name"], query, recognition)
 
@@ -217,11 +224,19 @@ class Messages:
             # Of a class that took another one's place: what it holds has the name rather than what replaced both.
             removed = None if self._owners.within(owner, name) else removed
         if removed:
-            recognition.add_removed(removed)
+            recognition.add_removed(self._own_first(removed, owner))
         elif owner and not self._resolver.member(owner, name):
             recognition.missing.append(MissingName(name, owner, sure=True))
             recognition.add(owner, 0.6, "error message")
             self._within(owner, name, recognition)
+
+    def _own_first(self, removed: RemovedSymbol, owner: str) -> RemovedSymbol:
+        """A removed symbol of another class, with what the class that is asked has in its place before the rest."""
+        if removed.path.startswith(f"{owner}."):
+            return removed
+        own = {entry.path for entry in self._reader.lineage(owner)}
+        successors = sorted(removed.successors, key=lambda one: one.target.rpartition(".")[0] not in own)
+        return replace(removed, successors=tuple(successors))
 
     def _of_python(self, written: str, name: str, recognition: Recognition) -> None:
         """What one of Python's own types lacks: a vector's member, or that of the thing which a text names."""
@@ -329,7 +344,11 @@ class Messages:
             listed = ", ".join(f"`{path}`" for path in taking)
             recognition.notes.append(f"`{name}` is an argument of {listed}.")
         recognition.notes.append(_NO_OPERATOR_NAMED)
-        once = [path for path in self._reader.removed_named(name) if path.endswith(f"({name})")]
+        once = [
+            path
+            for path in self._reader.removed_named(name)
+            if path.startswith("bpy.ops.") and path.endswith(f"({name})")
+        ]
         uses = self._reader.use_counts([plain_path(path) for path in once])
         once.sort(key=lambda path: -uses.get(plain_path(path), 0))
         for removed in filter(None, map(self._removed.of_path, once[:_FEW])):
@@ -344,10 +363,9 @@ class Messages:
         if not taking and not recognition.removed:
             words = {near for near, _ in nearest(name, self._reader.operator_arguments, _FEW)}
         for word in sorted(words - {name}):
-            if others := self._reader.operators_taking(word):
+            if 0 < len(others := self._reader.operators_taking(word)) <= _MOST_TAKING:
                 listed = ", ".join(f"`{path}`" for path in others)
-                which = listed if len(others) <= _MOST_TAKING else f"{len(others)} operators"
-                recognition.notes.append(f"`{word}` is the argument of {which}.")
+                recognition.notes.append(f"`{word}` is the argument of {listed}.")
 
     def _too_many(self, function: str, most: int, recognition: Recognition) -> None:
         """More arguments than a function or class takes: what it takes, one sequence perhaps."""

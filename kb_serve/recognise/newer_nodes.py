@@ -14,6 +14,11 @@ _HOW = (
     'The node may be a `{node}`, which Blender makes instead since 3.4, and which has no `{side}["{name}"]`: with '
     '`{setting}` it is `{side}["{new}"]`, or `{place}` at any time.'
 )
+_OLD_MIX = "bpy.types.ShaderNodeMixRGB"
+_NEWER = (
+    "Blender keeps `{old}` for old files; since 3.4 its menus make a `{new}`, which mixes colours with "
+    "`data_type = 'RGBA'`."
+)
 # The name of a socket → the socket in its place, on the node made instead.
 INSTEAD = {"Color1": f'{_MIX}.inputs["A_Color"]', "Color2": f'{_MIX}.inputs["B_Color"]'}
 _OLD = ("bpy.types.ShaderNodeMixRGB", "bpy.types.CompositorNodeMixRGB", "bpy.types.TextureNodeMixRGB")
@@ -31,6 +36,13 @@ def tell_of_the_newer_node(name: str, reader: BaseReader, recognition: Recogniti
         )  # fmt: skip
         recognition.notes.append(said)
         recognition.add(path, _SURE, "newer node")
+
+
+def tell_of_the_newer_mix(path: str, reader: BaseReader, recognition: Recognition) -> None:
+    """Notes which node takes the place of Mix (Legacy), where a query names that and this version has both."""
+    if path == _OLD_MIX and reader.entry(_MIX) and reader.entry(_OLD_MIX):
+        recognition.notes.append(_NEWER.format(old=_OLD_MIX, new=_MIX))
+        recognition.add(_MIX, _SURE, "newer node")
 
 
 def name_on_an_old_node(path: str) -> str:

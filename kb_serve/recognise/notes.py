@@ -21,6 +21,11 @@ _MOST_NAMED = 3
 _WITH = "only with "  # … what tells the setting that an item wants begins with
 _TELLS_WHAT = "Write "  # how what names something that is no Blender's begins
 _NOTHING = "Nothing takes its place."
+_UNLISTED = (
+    "_",
+    "aud",
+    "bpy_extras",
+)  # modules of which the history has nothing, or nothing of most versions
 
 
 def _list(paths: Iterable[str]) -> str:
@@ -110,7 +115,7 @@ class Notes:
         What a class inherited in other versions is not: one without a base may have lost it.
         """
         versions = self._reader.history_versions
-        if not versions or owner.startswith("_"):  # the history has no such modules
+        if not versions or owner.startswith(_UNLISTED):
             return ""
         entry = self._reader.entry(owner)
         if entry is not None and entry.base in {"", STRUCT}:

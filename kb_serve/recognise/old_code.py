@@ -29,7 +29,8 @@ _NAMED_AFTER = 0.8  # … it is named after a class
 _SHORTEST = 4  # letters of a name that tells a class by its end
 _MOST_NAMES = 6
 _MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
-_CLASS_NAME = re.compile(r"""(["'])(?=[A-Z]+[a-z_]+[A-Z])([A-Z]\w+)\1""")  # not ``"Lamp"``, an object's name
+_WORDS_OF_CLASS = re.compile(r"(?=[A-Z]+[a-z_]+[A-Z])[A-Z]\w+")
+_CLASS_NAME = re.compile(rf"""(["'])({_WORDS_OF_CLASS.pattern})\1""")  # not ``"Lamp"``, an object's name
 _OPERATOR_NAME = re.compile(r"""(["'])([a-z]\w*\.[a-z]\w+)\1""")
 # A property named in a string: ``layout.prop(ob, "name")``, ``getattr(ob, "name")``, ``ob.keyframe_insert("name")``.
 _PROPERTY_NAMES = (
@@ -75,6 +76,7 @@ class OldCode:
             return self._member(chain, self._likelier(chain, readings))
         return (
             self._path(chain)
+            or self._class(chain)
             or self._member(chain, readings)
             or self._socket(chain)
             or self._of_fitting_class(chain, readings)
@@ -119,6 +121,13 @@ class OldCode:
             and whole.symbols[0] not in usual
             and not self._reader.descends(reading.symbols[0], whole.symbols[0])
         ]
+
+    def _class(self, chain: Chain) -> OldName | None:
+        """A class by its name alone, of several words: ``CompositorNodeComposite``, not ``Lamp``."""
+        if not _WORDS_OF_CLASS.fullmatch(chain.root) or self._reader.entry(TYPES + chain.root):
+            return None
+        removed = self._removed.of_path(TYPES + chain.root)
+        return OldName(removed, chain.steps) if removed else None
 
     def _path(self, chain: Chain) -> OldName | None:
         """A removed symbol that the chain spells out from its root: ``bgl.glEnable``, ``bpy.ops.wm.addon_enable``."""

@@ -208,6 +208,7 @@ class Trial:
         self.skipped = skipped
         self.tried = set()
         self.unset = set()
+        self.taken = {}  # function → the arguments of a call with another choice that was taken
         self.things = []
         self.modes = {}
 
@@ -252,10 +253,23 @@ class Trial:
             yield row
             # The next one that is added may move it elsewhere in memory.
             place = next((place for place, one in enumerate(owner) if one == made[0]), None)
-            if message := refusal(owner, function, arguments):
-                other = refusal(owner, function, other_arguments(arguments, chosen))
-                yield {"message": message, "again": "any" if other == message else "same"}
+            message = refusal(owner, function, arguments)
+            others = message and refusal(owner, function, other_arguments(arguments, chosen))
             take_away(owner, made[0] if place is None else owner[place])
+            if message:
+                again = "any" if others == message else "same"
+                yield {"message": message, "again": "other" if self.is_first(owner, function, arguments) else again}
+            else:
+                self.taken.setdefault(function, arguments)
+
+    def is_first(self, owner, function, arguments):
+        """Whether a call is refused after one with another choice, too."""
+        made = []
+        if refusal(owner, function, self.taken.get(function, arguments), made) or not made:
+            return False
+        is_refused = bool(refusal(owner, function, arguments))
+        take_away(owner, made[0])
+        return is_refused and function in self.taken
 
 
 def objects():

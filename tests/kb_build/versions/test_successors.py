@@ -20,7 +20,12 @@ if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract
 
 # Names that no version's listing has.
-UNLISTED = ("bgl.gl", "gpu.shader.from_builtin(", 'bpy.types.CompositorNodeRLayers.outputs["Volume')
+UNLISTED = (
+    "bgl.gl",
+    "bpy_extras.",
+    "gpu.shader.from_builtin(",
+    'bpy.types.CompositorNodeRLayers.outputs["Volume',
+)
 
 
 @pytest.fixture(scope="module")

@@ -164,3 +164,28 @@ def test_a_number_by_place_is_taken_for_a_truth_value(rule_checker: Checker, tmp
         "assert {tuple(ob.dimensions) for ob in bpy.context.selected_objects} == {(2.0, 2.0, 2.0)}",
     ]
     assert [error for error, *_ in run_statements(tmp_path, made) if error] == []
+
+
+_STACKED = """\
+import bpy
+ob = bpy.data.objects.new("ob", None)
+ob.keyframe_insert("location")
+bag = ob.animation_data.action.layers[0].strips[0].channelbags[0]
+first, second, third = bag.fcurves
+assert first.modifiers.new("NOISE")
+assert not first.modifiers.new("CYCLES")
+assert second.modifiers.new("CYCLES")
+assert not second.modifiers.new("CYCLES")
+assert third.modifiers.new("CYCLES")
+assert third.modifiers.new("NOISE")
+"""
+
+
+def test_what_must_be_first_is_refused_after_any_other(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _STACKED.splitlines()
+    assert [error for error, *_ in run_statements(tmp_path, lines) if error] == []
+    typed = _STACKED.replace("bag.fcurves", "bag.fcurves[0], bag.fcurves[1], bag.fcurves[2]").replace(
+        "assert not ", ""
+    )
+    found = rule_checker.check(typed.replace("assert ", ""), rules=["refused-call"])
+    assert [(one.span.line, "after another" in one.message) for one in found] == [(7, True), (9, True)]

@@ -9,12 +9,14 @@ from asking import classes, of_data, paths
 
 from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Section, Symbol
 from kb_build.symbol_lines import is_stand_in, usual_default, written
+from kb_serve.answer import render
 from kb_serve.answer.render import MarkdownRenderer, facts, outline, said_of, with_names
+from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
+    from pathlib import Path
 
-    from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
 ALL = 1_000_000
@@ -333,6 +335,14 @@ def test_the_section_asked_for_comes_first(renderer: MarkdownRenderer, kb: Knowl
 def test_an_unknown_page_renders_nothing(renderer: MarkdownRenderer) -> None:
     assert list(renderer.page("nowhere")) == []
     assert renderer.manual_page("bpy.types.Nothing") == ""
+
+
+def test_a_passage_of_an_engines_page_names_the_engine(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        render, "ENGINES", {"physics/cloth/": "An Engine"}
+    )  # the miniature manual has no engine's page
+    with KnowledgeBase(base) as kb:
+        assert "**In the manual** (An Engine › Settings)" in kb.query("ClothSettings.quality").text
 
 
 def test_pages_below_are_listed(kb: KnowledgeBase) -> None:

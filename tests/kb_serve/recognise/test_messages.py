@@ -221,6 +221,16 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "tuple",
             "Give one number, not a tuple of them.",
         ),
+        (
+            'TypeError: Scene.ray_cast(): error with argument 1, "depsgraph" -  Function.depsgraph expected a '
+            "Depsgraph type, not ViewLayer",
+            "A `bpy.types.Depsgraph` is reached as `bpy.context.view_layer.depsgraph`.",
+        ),
+        (
+            'TypeError: ObjectModifiers.new(): error with argument 2, "type" -  enum "SUBSURFACE" not found in '
+            "('BEVEL', 'BOOLEAN', 'MULTIRES', 'SUBSURF')",
+            "`SUBSURFACE` is not an item of this enum; closest: `SUBSURF`.",
+        ),
         ("AttributeError: 'tuple' object has no attribute 'x'", "`mathutils.Vector(value).x`"),
         ("AttributeError: 'str' object has no attribute 'location'", '`bpy.data.objects["…"]`'),
         ("AttributeError: type object 'Object' has no attribute 'mine'", "`bpy.types.Object` has no `mine`"),
@@ -261,6 +271,45 @@ def test_what_many_things_have_was_mostly_asked_of_what_is_not_there(
     answer = kb.query(f"AttributeError: 'NoneType' object has no attribute '{name}'")
     assert answer.hits[0].id == first
     assert said in "\n".join(answer.notes)
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("'GreasePencilLayer' object has no attribute 'info'", "bpy.types.GreasePencilTreeNode.name"),
+        ("AttributeError: 'Action' object has no attribute 'fcurves'", "bpy.types.ActionChannelbag.fcurves"),
+        (
+            'AttributeError: Calling operator "bpy.ops.wm.fbx_export" error, could not be found',
+            "bpy.ops.export_scene.fbx",
+        ),
+        ("bpy.ops.object.add_cube()", "bpy.ops.mesh.primitive_cube_add"),
+        ("which node replaces CompositorNodeMixRGB", "bpy.types.ShaderNodeMix"),
+        ("what happened to CompositorNodeComposite", "bpy.types.NodeGroupOutput"),
+        (
+            "ImportError: cannot import name 'orientation_helper_factory' from 'bpy_extras.io_utils'",
+            "bpy_extras.io_utils.orientation_helper",
+        ),
+        (
+            "IndexError: bpy_prop_collection[index]: index 0 out of range, size 0",
+            "bpy.types.bpy_prop_collection",
+        ),
+    ],
+)
+def test_what_is_gone_or_never_was_leads_to_what_there_is(kb: KnowledgeBase, query: str, first: str) -> None:
+    assert kb.query(query).hits[0].id == first
+
+
+def test_the_legacy_mix_node_leads_to_the_one_that_menus_make(kb: KnowledgeBase) -> None:
+    answer = kb.query("ShaderNodeMixRGB")
+    assert [hit.id for hit in answer.hits[:2]] == ["bpy.types.ShaderNodeMixRGB", "bpy.types.ShaderNodeMix"]
+    assert "`data_type = 'RGBA'`" in answer.notes[0]
+
+
+def test_an_operators_unknown_keyword_is_that_of_operators_alone(kb: KnowledgeBase) -> None:
+    notes = kb.query(
+        'TypeError: Converting py args to operator properties:: keyword "size" unrecognized'
+    ).notes
+    assert all("gpu." not in note and "39 operators" not in note for note in notes)
 
 
 @pytest.mark.blender
