@@ -23,6 +23,12 @@ _FEW = 3
 _NEAR = 2  # dots in the path of a module that a bare word may mean
 _LONG_LABEL = 3  # words, which no question has by chance
 _WHOLE_LABEL = 0.82  # how sure what is called so is then
+_MOST_WORDS = 9  # of a question in which labels are looked for
+_LABEL_WORDS = (3, 2)
+_LABEL_WITHIN = (
+    0.79  # how sure what a part of a question is called is: it comes after the first that the words find
+)
+_OF_A_LABEL = 2
 _OTHERWISE = 0.85  # how sure a name is that shares only its key with the query
 
 
@@ -79,6 +85,7 @@ class Spellings:
         called = _MEMBER.sub(".", _called(text))
         if " " in text:
             self._labelled(text, recognition)
+            self._labels_within(text.split(), recognition)
         rows = self._reader.by_key(key(called))
         if rows:
             self._spelled(called, rows, recognition)
@@ -120,6 +127,29 @@ class Spellings:
         named = [entry for entry in entries if entry.kind in {"class", "operator"}]
         for rank, entry in enumerate(named[:_FEW]):
             recognition.add(entry.path, 0.9 if len(named) == 1 else 0.83 - 0.01 * rank, "label")
+
+    def _labels_within(self, words: Sequence[str], recognition: Recognition) -> None:
+        """Adds the classes whose labels, of several words, are part of a question: ``sky texture world``."""
+        if not _LONG_LABEL <= len(words) <= _MOST_WORDS:
+            return
+        parts = [
+            " ".join(words[start : start + length])
+            for length in _LABEL_WORDS
+            for start in range(len(words) - length + 1)
+            if length < len(words)
+        ]
+        self._reader.by_key.load(map(key, parts))
+        for part in parts:
+            entries = (
+                self._reader.entry(identifier)
+                for form, identifier in self._reader.by_key(key(part))
+                if form == FORM_LABEL
+            )
+            classes = [
+                one for one in entries if one and one.kind == "class" and one.label.lower() == part.lower()
+            ]
+            for rank, entry in enumerate(self._reader.heaviest(classes)[:_OF_A_LABEL]):
+                recognition.add(entry.path, _LABEL_WITHIN - 0.01 * rank, "label")
 
     def _is_enum_item(self, text: str) -> bool:
         return "_" in text and is_value(text, self._reader)

@@ -258,7 +258,10 @@ class Trial:
             take_away(owner, made[0] if place is None else owner[place])
             if message:
                 again = "any" if others == message else "same"
-                yield {"message": message, "again": "other" if self.is_first(owner, function, arguments) else again}
+                yield {
+                    "message": message,
+                    "again": "other" if self.is_first(owner, function, arguments) else again,
+                }
             else:
                 self.taken.setdefault(function, arguments)
 

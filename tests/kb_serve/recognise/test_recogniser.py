@@ -573,3 +573,24 @@ def test_a_bare_word_may_be_a_module_that_nothing_else_is_called_as(
     kb: KnowledgeBase, word: str, path: str
 ) -> None:
     assert kb.query(word).hits[0].id == path
+
+
+@pytest.mark.parametrize(
+    ("question", "told"),
+    [
+        ("sky texture world", ["bpy.types.ShaderNodeTexSky"]),
+        (
+            "noise texture color ramp material",
+            ["bpy.types.ShaderNodeTexNoise", "bpy.types.ShaderNodeValToRGB"],
+        ),
+    ],
+)
+def test_what_a_part_of_a_question_is_called_is_told(
+    kb: KnowledgeBase, question: str, told: list[str]
+) -> None:
+    assert set(told) <= {hit.id for hit in kb.query(question).hits}
+
+
+def test_icons_are_told_only_of_who_asks_for_icons(kb: KnowledgeBase) -> None:
+    assert "bl_icon" not in kb.query("push action to NLA strip").text
+    assert "bpy.types.Node.bl_icon" in {hit.id for hit in kb.query("icon NLA of a node").hits}
