@@ -12,7 +12,9 @@ from kb_serve.reader import STRUCT, TYPES
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
-ANY = frozenset({STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup"})  # what leads to these may lead to anything
+ANY = frozenset(
+    {STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup", f"{TYPES}AnyType"}
+)  # what leads to these may lead to anything
 WEIGHTY = 9.0  # the weight from which on a pointer is one that scripts come upon without having asked for it
 _CONTEXT, _DATA = f"{TYPES}Context", f"{TYPES}BlendData"
 _OBJECT_DATA = f"{TYPES}Object.data"

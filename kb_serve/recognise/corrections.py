@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 LIKELY = 0.72  # similarity from which on a name is offered as a correction
 _CONTAINED = 0.8  # for a name whose words are all in the other one: ``select`` and ``select_set``
+_CUT_OFF = 6  # letters of what may be the beginning of a name
 _SEVERAL = 3  # words of a name that may be made of two others
 _ROUNDS = 3
 _LONG = 8  # letters of a name that is compared with all others
@@ -49,8 +50,10 @@ def _alike(written: str, mine: set[str], name: str) -> float:
         return 1.0
     alike = OSA.normalized_similarity(written, right)
     # Only names that may contain all the words are split: that is slow for thousands of names.
-    if mine and all(word in right for word in mine) and mine < (theirs := set(words(name))):
+    if mine and all(word in right for word in mine) and mine <= (theirs := set(words(name))):
         alike = max(alike, _CONTAINED + 0.1 * len(mine) / len(theirs))
+    elif len(written) >= _CUT_OFF and right.startswith(written):  # focus_dist, of focus_distance
+        alike = max(alike, _CONTAINED + 0.1 * len(written) / len(right))
     elif share := _share(mine, name):
         alike = max(alike, _CONTAINED + 0.1 * share)
     return alike

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_serve.reader import TYPES
-from kb_serve.recognise.absent import as_written
+from kb_serve.recognise.absent import ANY, as_written
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -33,5 +33,5 @@ def what_to_give(wanted: str, given: str, reader: BaseReader, absent: Absent) ->
         yield "Give a whole number: `int(value)`, or `round(value)`."
     elif wanted in {"int", "float"} and given in _SEQUENCES:
         yield f"Give one number, not a {given} of them."
-    elif (symbol := reader.symbol(cls)) and symbol.reached and "[" not in symbol.reached:
+    elif cls not in ANY and (symbol := reader.symbol(cls)) and symbol.reached and "[" not in symbol.reached:
         yield f"A `{cls}` is reached as `{symbol.reached}`."

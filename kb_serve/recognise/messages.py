@@ -42,6 +42,7 @@ _FEW = 3
 _MOST_TAKING = 12  # operators with an argument of one name that are listed
 _ADD = ("new", "append", "add", "link")  # functions of collections
 _LONG = 4  # letters of an item that a wrong one begins with
+_SHORT = 3  # … of a wrong one that an item begins with
 _MANY = 8  # where more properties may be None, none is likely enough to be named
 # Pages of the API's own guides that explain a kind of message; named where the base has them.
 _ON_OPERATORS = "info_gotchas_operators"
@@ -99,12 +100,14 @@ _READS_ONLY = (
 
 
 def _closest(name: str, items: Sequence[str]) -> str:
-    """The items that a wrong one may mean: those that are most like it, that it begins with, or else those that it is
-    made of and more.
+    """The items that a wrong one may mean: those that are most like it, those that it begins with, or the other way
+    round, or else those that it is made of and more.
     """
     similar = [item for item, _ in nearest(name, items)]
     if not similar:
-        similar = [item for item in items if len(item) >= _LONG and name.startswith(item)]
+        said = name.upper()
+        similar = [item for item in items if len(item) >= _LONG and said.startswith(item)]
+        similar = similar or [item for item in items if len(said) >= _SHORT and item.startswith(said)]
     if not similar:
         said = set(words(name))
         similar = sorted((item for item in items if set(words(item)) <= said), key=len, reverse=True)[:1]
@@ -445,12 +448,22 @@ class Messages:
             elif owners and (labelled := self._enum_values.labelled(owners[0], match["name"])):
                 listed = ", ".join(f"`{item}`" for item in labelled[:_FEW])
                 recognition.notes.append(_LABELLED.format(name=match["name"], items=listed))
+            elif (others := self._taking_only(match["name"])) and owners:
+                listed = ", ".join(f"`{other}`" for other in others)
+                recognition.notes.append(f"`{match['name']}` is a value of {listed}.")
         for match in _matches(forms.BAD_TEXT, query):
             once = [path for path in self._reader.removed_named(match["name"]) if "):" in path]
             if once and (removed := self._removed.of_path(once[0])):
                 recognition.add_removed(removed)
             elif similar := _closest(match["name"], re.findall(r"'([^']+)'", match["items"])):
                 recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+
+    def _taking_only(self, value: str) -> list[str]:
+        """The properties that take a value, where only a few do."""
+        owners = [
+            owner for owner, identifier, _ in self._reader.enum_owners(key(value)) if identifier == value
+        ]
+        return owners if len(owners) < _FEW and all("(" not in owner for owner in owners) else []
 
     def _given(self, query: str, recognition: Recognition) -> None:
         """What to give in place of a value of another type."""
@@ -535,6 +548,7 @@ class Messages:
             path
             for side in ("inputs", "outputs")
             for path in self._reader.removed_by_key(key(f'{side}["{name}"]'))
+            if path.endswith(f'["{name}"]')  # keys tell small letters from capitals
         ]
         taken = {path: new for path in paths if (new := self._reader.still_works(path))}
         if len(taken) * 2 > len(paths):
@@ -615,6 +629,20 @@ class Messages:
             else:
                 for removed in self._removed.spelled(match["type"]):
                     recognition.add_removed(removed)
+                if not recognition.removed:
+                    self._like_nodes(match["type"], recognition)
+
+    def _like_nodes(self, name: str, recognition: Recognition) -> None:
+        """The nodes that a name which none has may mean: those of its words but one, or else the most like it."""
+        names = [entry.name for entry in self._reader.descendants(f"{TYPES}Node")]
+        said = set(words(name))
+        similar = [one for one in names if (own := set(words(one))) < said and len(own) == len(said) - 1]
+        similar = similar or [one for one, _ in nearest(name, names)]
+        for rank, one in enumerate(similar[:_FEW]):
+            recognition.add(TYPES + one, 0.95 - 0.01 * rank, "similar name")
+        if similar:
+            closest = ", ".join(f"`{TYPES}{one}`" for one in similar[:_FEW])
+            recognition.notes.append(f"No node is called `{name}`; closest: {closest}.")
 
     def _no_drawing(self, recognition: Recognition) -> None:
         """Blender without a window: what begins drawing there, where this version has it."""

@@ -5,6 +5,7 @@ Each row was seen in Blender: a test makes it say them all.
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -133,6 +134,22 @@ NAMELESS_MESSAGES = (
         ("bmesh.types.BMVertSeq", "bmesh.types.BMVertSeq.new"),
         "There are fewer elements, `len(bm.verts)`, and they are counted from 0.",
     ),
+    NamelessMessage(
+        ("Key ", " is out of range"),
+        (f"{_T}GreasePencilDrawing.strokes", f"{_T}GreasePencilDrawing.add_strokes"),
+        "There are fewer strokes, or points in a stroke: `drawing.add_strokes([3])` adds a stroke of three points.",
+    ),
+    NamelessMessage(
+        ("spline cannot have points added",),
+        (f"{_T}SplinePoints.add", f"{_T}SplineBezierPoints.add"),
+        "The points of a Bézier spline are its `bezier_points`: `spline.bezier_points.add(count)`.",
+    ),
+    NamelessMessage(
+        ("not in edit mode, cannot add an editbone",),
+        (f"{_T}ArmatureEditBones.new", f"{_O}mode_set"),
+        "Edit bones are there in Edit Mode: make the armature's object active, then "
+        "`bpy.ops.object.mode_set(mode='EDIT')`.",
+    ),
     # Modifiers, transforms
     NamelessMessage(
         ("Modifier cannot be applied to a mesh with shape keys",),
@@ -207,6 +224,18 @@ NAMELESS_MESSAGES = (
         "Shaders of one's own are described, not made by calling the class: fill a `gpu.types.GPUShaderCreateInfo()` "
         "(`vertex_in`, `push_constant`, `fragment_out`, `vertex_source`, `fragment_source`), then "
         "`gpu.shader.create_from_info(info)`.",
+    ),
+    NamelessMessage(
+        ('bpy_struct[key]: key "Input_',),
+        (f"{_T}NodesModifier", f"{_T}NodeTreeInterfaceSocket.identifier"),
+        "Since 4.0 the inputs of a group are called `Socket_2` and so on, not `Input_2`: `item.identifier` of its "
+        "`interface.items_tree` tells it.",
+    ),
+    NamelessMessage(
+        ("'builtin_function_or_method' object is not subscriptable",),
+        (f"{_T}bpy_struct.items", f"{_T}NodeTreeInterface.items_tree"),
+        "What stands before the bracket is a function (`items`, `keys`, `get`): call it, or take the collection that "
+        "is meant, as `interface.items_tree`.",
     ),
     NamelessMessage(
         ('bpy_struct[key]: key "Socket_',),
@@ -284,6 +313,11 @@ NAMELESS_MESSAGES = (
         (f"{_T}bpy_struct.keyframe_insert",),
         'The path is a property of the very thing, as text: `obj.keyframe_insert("location")`; what belongs to its '
         "data is keyed there (`obj.data.keyframe_insert(…)`).",
+    ),
+    NamelessMessage(
+        ('Assign action "', "before calling this function"),
+        (f"{_T}Action.fcurve_ensure_for_datablock", f"{_T}AnimData.action"),
+        "The object must have the action: `obj.animation_data_create().action = action`.",
     ),
     NamelessMessage(
         ("keyframe_insert() path includes index",),
@@ -427,6 +461,12 @@ NAMELESS_MESSAGES = (
         "path begins where Blender was started.",
     ),
     NamelessMessage(
+        ("Image '", "could not be saved to ''"),
+        (f"{_T}Image.save", f"{_T}Image.filepath_raw", f"{_T}Image.file_format"),
+        "The image has no path: `image.filepath_raw = \"/folder/name.png\"`, `image.file_format = 'PNG'`, then "
+        "`image.save()`.",
+    ),
+    NamelessMessage(
         ("No such file or directory: '//",),
         ("bpy.path.abspath",),
         "Only Blender knows where a path that begins with `//` leads: `open(bpy.path.abspath(path))`.",
@@ -491,6 +531,13 @@ _ANYWHERE = (
 )
 
 
+_ONE_OF_SEVERAL = re.compile(r"item\.attr = val:\s*$")
+_NOT_ONE = (
+    "One value was given where several are wanted: a vector `(x, y, z)`, a colour `(r, g, b, a)`, as many as the "
+    "property has."
+)
+
+
 def recognise_nameless(query: str, reader: BaseReader, recognition: Recognition) -> None:
     """Adds what a message that names no symbol is about, with what helps."""
     for message in NAMELESS_MESSAGES:
@@ -500,3 +547,6 @@ def recognise_nameless(query: str, reader: BaseReader, recognition: Recognition)
                     recognition.add(path, _SURE - 0.03 * rank, "error message")
             recognition.notes.append(message.help)
     recognition.notes += [note for part, note in _ANYWHERE if part in query]
+    if _ONE_OF_SEVERAL.search(query):
+        recognition.notes.append(_NOT_ONE)
+        recognition.add("bpy.props.FloatVectorProperty", _SURE, "error message")

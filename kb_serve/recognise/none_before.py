@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
 from kb_build.records import FILLED_BY
-from kb_build.symbol_lines import empty_when_new
+from kb_build.symbol_lines import empty_when_new, fillers
 from kb_serve.reader import TYPES
 from kb_serve.recognise.absent import ANY, WEIGHTY, is_empty_when_new
 
@@ -77,8 +77,9 @@ class NoneBefore:
             recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
             if not gone:
                 recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
-            if (few or entry in told) and (call := self._flag(entry, FILLED_BY)):
-                recognition.notes.append(f"`{entry.path}` is None before `{call}`.")
+            if (few or entry in told) and (calls := self._fillers(entry)):
+                before = ", then ".join(f"`{call}`" for call in calls)
+                recognition.notes.append(f"`{entry.path}` is None before {before}.")
             elif entry in told and (setting := self._setting(entry)):
                 recognition.notes.append(f"`{entry.path}` is None on what is new: set it, `{setting}`.")
 
@@ -200,6 +201,10 @@ class NoneBefore:
             return []
         found = list(filter(None, map(self._removed.of_path, paths)))
         return sorted(found, key=lambda removed: not removed.successors) if len(found) <= _FEW else []
+
+    def _fillers(self, entry: SymbolEntry) -> list[str]:
+        symbol = self._reader.symbol(entry.path)
+        return fillers(symbol) if symbol else []
 
     def _flag(self, entry: SymbolEntry, prefix: str) -> str | None:
         """What follows the prefix in a symbol's flags; None where no flag begins with it."""

@@ -231,6 +231,26 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "('BEVEL', 'BOOLEAN', 'MULTIRES', 'SUBSURF')",
             "`SUBSURFACE` is not an item of this enum; closest: `SUBSURF`.",
         ),
+        (
+            "TypeError: bpy_struct: item.attr = val: enum \"POW\" not found in ('ADD', 'POWER', 'LOGARITHM')",
+            "`POW` is not an item of this enum; closest: `POWER`.",
+        ),
+        (
+            "TypeError: bpy_struct: item.attr = val: enum \"CUDA\" not found in ('CPU', 'GPU')",
+            "`CUDA` is a value of `bpy.types.CyclesDeviceSettings.type`.",
+        ),
+        (
+            "AttributeError: 'CameraDOFSettings' object has no attribute 'focus_dist'",
+            "CameraDOFSettings.focus_distance",
+        ),
+        (
+            "AttributeError: 'TextStrip' object has no attribute 'frame_start_final'",
+            "Strip.frame_final_start`",
+        ),
+        (
+            "AttributeError: 'NoneType' object has no attribute 'enabled'",
+            "`, then `bpy.ops.rigidbody.constraint_add()`",
+        ),
         ("AttributeError: 'tuple' object has no attribute 'x'", "`mathutils.Vector(value).x`"),
         ("AttributeError: 'str' object has no attribute 'location'", '`bpy.data.objects["…"]`'),
         ("AttributeError: type object 'Object' has no attribute 'mine'", "`bpy.types.Object` has no `mine`"),
@@ -283,6 +303,10 @@ def test_what_many_things_have_was_mostly_asked_of_what_is_not_there(
             "bpy.ops.export_scene.fbx",
         ),
         ("bpy.ops.object.add_cube()", "bpy.ops.mesh.primitive_cube_add"),
+        (
+            "RuntimeError: Error: Node type GeometryNodeMeshPrimitiveCube undefined",
+            "bpy.types.GeometryNodeMeshCube",
+        ),
         ("which node replaces CompositorNodeMixRGB", "bpy.types.ShaderNodeMix"),
         ("what happened to CompositorNodeComposite", "bpy.types.NodeGroupOutput"),
         (
@@ -346,6 +370,12 @@ def test_statements_that_fill_pointers_fill_them() -> None:
     assert len(scene.compositing_node_group.nodes) == 0
     assert scene.world.color is not None
     assert bpy.data.materials.new("new").node_tree is not None
+
+
+def test_a_key_is_no_socket_of_other_letters(kb: KnowledgeBase) -> None:
+    for name in ("position", "g"):
+        (note,) = kb.query(f"KeyError: 'bpy_prop_collection[key]: key \"{name}\" not found'").notes
+        assert note.startswith(f"The collection has no element `{name}`")
 
 
 @pytest.mark.parametrize("name", ["B", "Value", "Color"])

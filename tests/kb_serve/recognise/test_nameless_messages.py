@@ -97,6 +97,14 @@ film(); bpy.ops.render.render(write_still=True)
 bpy.ops.wm.open_mainfile(filepath="/none.blend")
 bpy.ops.wm.save_mainfile()
 bpy.ops.import_scene.gltf(filepath="/none.glb")
+bpy.data.actions.new("other").fcurve_ensure_for_datablock(ob, "location")
+drawing().strokes[3]
+bpy.data.curves.new("c", "CURVE").splines.new("BEZIER").points.add(1)
+bpy.data.armatures.new("a").edit_bones.new("b")
+bpy.data.images.new("i", 8, 8).save()
+nodes()["Input_2"]
+tree().interface.items["x"]
+ob.dimensions = 1
 """.splitlines()
 _RUN = """
 import json, os, sys, tempfile
@@ -160,6 +168,9 @@ def cycle():
     ob.parent = other
     other.constraints.new("COPY_LOCATION").target = ob
     bpy.context.view_layer.update()
+
+def drawing():
+    return bpy.data.grease_pencils.new("g").layers.new("l").frames.new(1).drawing
 
 def film():
     scene.render.engine = "CYCLES"
