@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -18,6 +19,9 @@ if TYPE_CHECKING:
 SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
+_PARAMETER = re.compile(r"(?P<function>[\w.]+)\((?P<name>\w+)\)")
+_VALUE = re.compile(r"(?P<owner>[\w.]+):(?P<value>.+)")
+_VALUE_OF_PARAMETER = re.compile(rf"{_PARAMETER.pattern}:(?P<value>.+)")
 _WITH = "only with "  # … what tells the setting that an item wants begins with
 _TELLS_WHAT = "Write "  # how what names something that is no Blender's begins
 _NOTHING = "Nothing takes its place."
@@ -29,7 +33,20 @@ _UNLISTED = (
 
 
 def _list(paths: Iterable[str]) -> str:
-    return ", ".join(f"`{path}`" for path in list(paths)[:_MOST_NAMED])
+    return ", ".join(f"`{as_code(path)}`" for path in list(paths)[:_MOST_NAMED])
+
+
+def as_code(path: str) -> str:
+    """A path as scripts write it: ``….engine = 'CYCLES'`` of ``….engine:CYCLES``, ``new(type='SMOKE')`` of
+    ``new(type):SMOKE``, ``add(radius=…)`` of ``add(radius)``.
+    """
+    if parameter := _VALUE_OF_PARAMETER.fullmatch(path):
+        return f"{parameter['function']}({parameter['name']}={parameter['value']!r})"
+    if parameter := _PARAMETER.fullmatch(path):
+        return f"{parameter['function']}({parameter['name']}=…)"
+    if item := _VALUE.fullmatch(path):
+        return f"{item['owner']} = {item['value']!r}"
+    return path
 
 
 class Notes:
@@ -58,7 +75,7 @@ class Notes:
         """When a symbol was removed, and what takes its place: by a source, or only perhaps."""
         return " ".join(
             (
-                f"`{symbol.path}` does not exist in Blender {self._version}: {self._span(symbol)}.",
+                f"`{as_code(symbol.path)}` does not exist in Blender {self._version}: {self._span(symbol)}.",
                 *self._instead(symbol),
             )
         )

@@ -62,7 +62,7 @@ ANSWERED = {
     "since when it is gone": {
         "obj.draw_type = 'WIRE'": "removed in 2.80 (last in 2.79). Use `bpy.types.Object.display_type`.",
         "scene.node_tree": "removed in 5.0 (last in 4.5). Use `bpy.types.Scene.compositing_node_group`.",
-        "primitive_cube_add(radius=2)": "Use `bpy.ops.mesh.primitive_cube_add(size)`.",
+        "primitive_cube_add(radius=2)": "Use `bpy.ops.mesh.primitive_cube_add(size=…)`.",
     },
     "the right name, said as a correction": {
         "RigdBodyObject.colision_shape": "does not exist; read as `RigidBodyObject`.",

@@ -686,17 +686,17 @@ SHADERS = "expected a string in ('FLAT_COLOR', 'IMAGE', 'SMOOTH_COLOR', 'UNIFORM
         (
             f'UILayout.label(): error with keyword argument "icon" - {ICONS.format("SEQUENCE_COLOR_03")}',
             "bpy.types.UILayout.label",
-            "(icon):STRIP_COLOR_03`",
+            "(icon='STRIP_COLOR_03')`",
         ),
         (
             f'UILayout.label(): error with keyword argument "icon" - {ICONS.format("HAIR")}',
             "bpy.types.UILayout.label",
-            "(icon):CURVES`, `bpy.types.UILayout.label(icon):STRANDS`",
+            "(icon='CURVES')`, `bpy.types.UILayout.label(icon='STRANDS')`",
         ),
         (
             f"TypeError: {SHADERS}'2D_UNIFORM_COLOR'",
             "gpu.shader.from_builtin",
-            "Use `gpu.shader.from_builtin(shader_name):UNIFORM_COLOR`",
+            "Use `gpu.shader.from_builtin(shader_name='UNIFORM_COLOR')`",
         ),
         (f"TypeError: {SHADERS}'MY_UNIFORM_COLOR'", "gpu.shader.from_builtin", "closest: `UNIFORM_COLOR`"),
     ],
