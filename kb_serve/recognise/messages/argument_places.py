@@ -1,4 +1,4 @@
-"""Explains messages of arguments that are given by place or by name where the other is wanted, or not at all."""
+"""Explains messages of more arguments by place than there are, and of those that lack or must be given by name."""
 
 from __future__ import annotations
 

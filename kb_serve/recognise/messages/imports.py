@@ -27,6 +27,6 @@ class Imports:
             self.tell_if_gone(f"{match['module']}.{match['name']}", recognition)
 
     def tell_if_gone(self, path: str, recognition: Recognition) -> None:
-        """A module, or a name in one, that cannot be imported."""
+        """Adds a module, or a name in one, that only other versions have."""
         if not self._reader.entry(path) and (removed := self._removed.of_path(path)):
             recognition.add_removed(removed)

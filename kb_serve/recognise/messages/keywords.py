@@ -49,11 +49,8 @@ class Keywords:
             return
         ids = [self._symbols.function(function) or self._symbols.taking(function, meant)] if function else []
         # Of the functions that share a name, a message with no more than it does not say which one was called.
-        shared = (
-            set(self._symbols.called_so(function))
-            if len(self._symbols.called_so(function)) > 1
-            else set[str]()
-        )
+        called = self._symbols.called_so(function)
+        shared = set(called) if len(called) > 1 else set[str]()
         by_name = {match.id for match in recognition.matches if match.why == "name"} & shared
         ids += [m.id for m in sorted(recognition.matches, key=lambda m: -m.sure) if m.id not in by_name]
         for symbol in filter(None, map(self._reader.symbol, filter(None, ids))):

@@ -1,4 +1,4 @@
-"""Finds the classes, members and functions that messages name in Blender's own spelling or as they were written."""
+"""Finds the classes, members and functions that messages name."""
 
 from __future__ import annotations
 

@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
+# Classes whose functions return something to Blender.
 _REGISTERED = (
     "Operator",
     "Panel",
