@@ -3,7 +3,13 @@
 from __future__ import annotations
 
 import re
+from itertools import islice
+from typing import TYPE_CHECKING
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+_MOST_MATCHES = 8
 _EXCEPTION = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?|\b(?:Error|Warning):")
 _REPORT = re.compile(r"Error:\s*Error:|^\s*(?:Error|Warning):\s")  # reported by an operator or C code
 _TRACEBACK = re.compile(r"Traceback \(most recent call last\):|File \"[^\"]*\", line \d+(?:, in \S+)?|\^{2,}")
@@ -91,6 +97,11 @@ _WORDING = re.compile(
     |required\ parameter\ "\w+"\ (?:not\ specified|to\ be\ a\ keyword\ argument!?)|Calling\ operator\ (?=")""",
     re.VERBOSE,
 )
+
+
+def first_matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str]]:
+    """The first matches: a log with more of them repeats itself."""
+    return islice(pattern.finditer(query), _MOST_MATCHES)
 
 
 def is_message(query: str) -> bool:

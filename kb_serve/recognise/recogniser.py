@@ -22,7 +22,7 @@ from kb_serve.recognise.message_patterns import (
     without_values,
     without_wording,
 )
-from kb_serve.recognise.messages import Messages
+from kb_serve.recognise.messages.messages import Messages
 from kb_serve.recognise.newer_nodes import (
     name_on_an_old_node,
     tell_of_the_newer_mix,

@@ -11,7 +11,7 @@ import pytest
 from places import REPO
 
 from kb_build.summaries.shipped import ShippedSummary
-from kb_serve.recognise.nameless_messages import NAMELESS_MESSAGES
+from kb_serve.recognise.messages.nameless_messages import NAMELESS_MESSAGES
 
 if TYPE_CHECKING:
     from pathlib import Path

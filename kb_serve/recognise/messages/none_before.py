@@ -10,11 +10,11 @@ from kb_build.index.analysis import terms
 from kb_build.records import FILLED_BY
 from kb_build.symbol_lines import empty_when_new, fillers
 from kb_serve.reader import TYPES
-from kb_serve.recognise.absent import ANY, WEIGHTY, is_empty_when_new
+from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
-    from kb_serve.recognise.absent import Absent
+    from kb_serve.recognise.messages.absent import Absent
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 

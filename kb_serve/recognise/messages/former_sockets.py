@@ -1,0 +1,91 @@
+"""Finds the sockets that nodes had by a name in other versions, where a message names no node."""
+
+from __future__ import annotations
+
+from collections import Counter
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, terms
+from kb_serve.reader import TYPES
+from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.removed_symbols import socket_node
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+
+_FEW = 3
+_MOST_LISTED = 8
+_USUAL_NODE = f"{TYPES}ShaderNodeBsdfPrincipled."  # whose sockets scripts set most
+
+
+class FormerSockets:
+    """Finds in one base what became of sockets."""
+
+    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup) -> None:
+        self._reader = reader
+        self._removed = removed
+
+    def explain(self, name: str, query: str, recognition: Recognition) -> bool:
+        """Adds the likeliest socket that a node had by that name; tells whether most still take it."""
+        around = set(terms(forms.prose_of(query))) - set(terms(f"{name} node"))
+        paths = [
+            path
+            for side in ("inputs", "outputs")
+            for path in self._reader.removed_by_key(key(f'{side}["{name}"]'))
+            if path.endswith(f'["{name}"]')  # keys tell small letters from capitals
+        ]
+        taken = {path: new for path in paths if (new := self._reader.still_works(path))}
+        if len(taken) * 2 > len(paths):
+            self._tell_still_taken(name, taken, recognition)
+            return True
+        fit = {path: len(around & set(terms(socket_node(path).removeprefix(TYPES)))) for path in paths}
+        if not any(fit.values()):
+            paths = self._lost_by_nobody_else(name, paths, recognition)
+        paths.sort(key=lambda path: (-fit[path], not path.startswith(_USUAL_NODE)))
+        for removed in islice(filter(None, map(self._removed.of_path, paths)), 1):
+            recognition.add_removed(removed)
+        return False
+
+    def _tell_still_taken(self, name: str, taken: dict[str, str], recognition: Recognition) -> None:
+        """A former name that most of the nodes which had it still take: where it fails."""
+        sockets_now = Counter(target.rpartition(".")[2] for target in taken.values())
+        socket = sockets_now.most_common(1)[0][0]
+        new = socket.partition('["')[2].rstrip('"]')
+        taking = {socket_node(path) for path in taken}
+        sockets = [entry for entry in self._reader.by_name(new) if entry.kind == "socket"]
+        having = {entry.owner: entry.path for entry in sockets if entry.owner not in taking}
+        weights = self._reader.weights(list(having))
+        lacking = sorted(having, key=lambda node: (-weights.get(node, 0.0), node))
+        listed = ", ".join(f"`{node}`" for node in lacking[:_MOST_LISTED])
+        others = f", and {len(lacking) - _MOST_LISTED} more" if len(lacking) > _MOST_LISTED else ""
+        fails = f" Nodes whose `{new}` was never called so refuse it: {listed}{others}." if lacking else ""
+        recognition.notes.append(
+            f"`{name}` is the former name of `{new}`, and still works on the {len(taken)} nodes that had it."
+            f"{fails} So does a group, whose sockets have the names that it gives them."
+        )
+        for node in lacking[:1]:
+            recognition.add(having[node], 0.9, "error message")
+
+    def _lost_by_nobody_else(self, name: str, paths: Sequence[str], recognition: Recognition) -> list[str]:
+        """Of the sockets of a name that nodes lost, where no node is named: that of the node which scripts use most,
+        or else all, if hardly any other node has such a socket; of many that were renamed alike, their name is noted.
+        """
+        if usual := [path for path in paths if path.startswith(_USUAL_NODE)]:
+            return usual
+        having = sum(entry.kind == "socket" for entry in self._reader.by_name(name))
+        if having * _FEW > len(paths):
+            return []
+        targets = [targets[0].target for path in paths if (targets := list(self._reader.successors(path)))]
+        names = Counter(target.rpartition('["')[2].rstrip('"]') for target in targets)
+        new, count = names.most_common(1)[0] if names else ("", 0)
+        if len(paths) < _FEW or not new or count * 2 < len(paths):
+            return list(paths)
+        recognition.notes.append(
+            f"The sockets `{name}` of {len(paths)} nodes are gone; most are called `{new}` now."
+        )
+        return []

@@ -1,0 +1,45 @@
+"""Recognises messages of data that was removed while a variable still held it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_serve.reader import TYPES
+from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.messages.guides import ON_FREED, add_guide
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.resolver import Resolver
+
+_FREED = (
+    "The variable's data was removed, freed, or moved by an undo or by adding another element: look it up again by "
+    "name."
+)
+_FREED_MESH = (
+    "`bm.free()`, a removal (`bm.verts.remove(v)`) or an operator deleted it; `v.is_valid` tells. Keep `bm` until the "
+    "work is done, and take elements anew: `bm.verts.ensure_lookup_table()`, then `bm.verts[index]`."
+)
+
+
+class FreedData:
+    """Finds in one base what removes data."""
+
+    def __init__(self, reader: BaseReader, resolver: Resolver) -> None:
+        self._reader = reader
+        self._resolver = resolver
+
+    def recognise(self, query: str, recognition: Recognition) -> None:
+        """Adds what removes such data, and how it is found again."""
+        for match in forms.first_matches(forms.FREED, query):
+            recognition.notes.append(_FREED_MESH if match["module"] else _FREED)
+            add_guide(ON_FREED, self._reader, recognition)
+            if match["module"]:
+                recognition.add("bmesh.types.BMesh.free", 0.84, "error message")
+                continue
+            for entry in self._reader.members(f"{TYPES}BlendData").values():
+                if entry.target == match["type"] and (
+                    remove := self._resolver.member(TYPES + entry.collection, "remove")
+                ):
+                    recognition.add(remove.path, 0.84, "error message")

@@ -1,0 +1,59 @@
+"""Recognises messages of values of another type than is wanted: what to give."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_serve.reader import TYPES
+from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.messages.absent import ANY, as_written
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.messages.absent import Absent
+    from kb_serve.recognise.recognition import Recognition
+
+_OBJECT = "Object"
+_SEQUENCES = frozenset({"tuple", "list"})
+
+
+class GivenValues:
+    """Finds in one base what to give instead."""
+
+    def __init__(self, reader: BaseReader, absent: Absent) -> None:
+        self._reader = reader
+        self._absent = absent
+
+    def recognise(self, query: str, recognition: Recognition) -> None:
+        """What to give in place of a value of another type."""
+        for match in forms.first_matches(forms.GIVEN, query):
+            wanted, given = match["wanted"] or match["of"], match["given"] or match["none"]
+            recognition.notes += self._what_to_give(wanted, given)
+
+    def _what_to_give(self, wanted: str, given: str) -> Iterator[str]:
+        """A sentence on what to give for a type that was wanted, as the message names both; none where nothing is
+        known.
+        """
+        cls = TYPES + wanted
+        if given in {"None", "NoneType"}:
+            why = self._absent.note(cls)
+            yield f"None was given for a `{cls}`" + (f": {why}." if why else ".")
+        elif given == "str" and (collection := self._absent.looked_up(cls)):
+            yield f'Give the thing itself, not its name: `{as_written(collection)}["…"]`.'
+        elif wanted == _OBJECT and self._reader.is_object_data(TYPES + given):
+            yield f"Give the object, not its data: `obj`, whose `.data` is the `{given}`."
+        elif given == _OBJECT and self._reader.is_object_data(cls):
+            yield "Give the data of the object: `obj.data`."
+        elif (wanted, given) == ("int", "float"):
+            yield "Give a whole number: `int(value)`, or `round(value)`."
+        elif wanted in {"int", "float"} and given in _SEQUENCES:
+            yield f"Give one number, not a {given} of them."
+        elif (
+            cls not in ANY
+            and (symbol := self._reader.symbol(cls))
+            and symbol.reached
+            and "[" not in symbol.reached
+        ):
+            yield f"A `{cls}` is reached as `{symbol.reached}`."

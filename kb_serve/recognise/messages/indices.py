@@ -1,0 +1,50 @@
+"""Explains messages of elements that a collection does not have at an index."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.records import EVALUATED
+from kb_build.symbol_lines import GET_EVALUATED
+from kb_serve.reader import COLLECTION, TYPES
+from kb_serve.recognise import message_patterns as forms
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
+
+_ADD = ("new", "append", "add", "link")  # functions of collections
+
+
+class Indices:
+    """Finds in one base what adds elements to collections."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def explain(self, query: str, recognition: Recognition) -> None:
+        """Adds how many elements there are, and what adds one."""
+        for match in forms.first_matches(forms.NO_INDEX, query):
+            recognition.notes.append(self._index(match["index"], int(match["size"]), query, recognition))
+            recognition.add(COLLECTION, 0.81, "error message")
+
+    def _index(self, index: str, size: int, query: str, recognition: Recognition) -> str:
+        """How many elements a collection has that lacks one, and, where the query names it, what adds one."""
+        held = f"only {size}, counted from 0" if size else "no elements"
+        note = f"The collection has {held}: there is no `[{index}]` yet."
+        found = {match.id for match in recognition.matches}
+        for symbol in filter(None, map(self._reader.symbol, found)):
+            if EVALUATED in symbol.flags and symbol.name in forms.SUBSCRIPTED.findall(query):
+                return (
+                    f"{note} Blender fills `.{symbol.name}` on evaluated objects only: `obj{GET_EVALUATED}`."
+                )
+        for name in forms.SUBSCRIPTED.findall(query):
+            entries = [entry for entry in self._reader.by_name(name) if entry.type == "collection"]
+            entries = [entry for entry in entries if entry.path in found] or entries
+            if len({(entry.collection, entry.target) for entry in entries}) == 1:
+                functions = self._reader.members(f"{TYPES}{entries[0].collection}")
+                made = self._reader.creations([f"{TYPES}{entries[0].target}"]).values()
+                calls = [f".{name}.{function}()" for function in _ADD if function in functions]
+                if calls := calls or [creation.call for creation in made]:
+                    return f"{note} `{calls[0]}` adds one."
+        return note

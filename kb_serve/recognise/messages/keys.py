@@ -1,0 +1,52 @@
+"""Explains messages of elements that a collection, or of custom properties that a thing, does not have by a name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_serve.reader import COLLECTION, STRUCT, TYPES
+from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.newer_nodes import tell_of_the_newer_node
+from kb_serve.recognise.subscripts import CustomProperties
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.messages.former_sockets import FormerSockets
+    from kb_serve.recognise.recognition import Recognition
+
+_OF_PROPERTIES = (f"{STRUCT}.get", f"{TYPES}ID.bl_system_properties_get")  # where they are read
+
+
+class Keys:
+    """Finds in one base what a key may have meant."""
+
+    def __init__(self, reader: BaseReader, sockets: FormerSockets) -> None:
+        self._reader = reader
+        self._sockets = sockets
+
+    def explain(self, query: str, recognition: Recognition) -> None:
+        """Adds notes on each key, and a socket that had it as its name in another version."""
+        for match in forms.first_matches(forms.NO_KEY, query):
+            self._key(match["on"], match["name"], query, recognition)
+
+    def _key(self, collection: str, name: str, query: str, recognition: Recognition) -> None:
+        """A collection without such an element; it may be a socket's name in another version."""
+        if collection == "bpy_prop_collection":
+            recognition.notes.append(
+                f'The collection has no element `{name}`; `.get("{name}")` returns None instead of an error, '
+                "and `.keys()` tells which there are."
+            )
+        if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
+            return
+        if collection != "bpy_prop_collection":
+            recognition.notes.append(
+                f'There is no custom property `{name}`: assigning makes it, and `.get("{name}")` returns None instead '
+                f"of an error. {CustomProperties(self._reader).on_registered(name)}".rstrip()
+            )
+            for rank, path in enumerate(_OF_PROPERTIES):
+                recognition.add(path, 0.9 - 0.01 * rank, "error message")
+            return
+        tell_of_the_newer_node(name, self._reader, recognition)
+        still_taken = self._sockets.explain(name, query, recognition)
+        if not still_taken and not recognition.removed:
+            recognition.add(f"{COLLECTION}.get", 0.9, "error message")

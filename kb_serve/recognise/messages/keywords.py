@@ -1,0 +1,97 @@
+"""Explains messages of arguments that a function or an operator does not take by that name."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.calls import unknown_keywords
+from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.removed_symbols import plain_path
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.messages.named_symbols import NamedSymbols
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+
+_FEW = 3
+_MOST_TAKING = 12  # operators with an argument of one name that are listed
+_NO_OPERATOR_NAMED = (
+    "The message does not name the operator that was called: ask for that to see its arguments."
+)
+_SHARED_NAME = "Several functions are called `{name}`: ask for the call as it was written."
+
+
+class Keywords:
+    """Finds in one base what took an argument, and what takes it."""
+
+    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup, symbols: NamedSymbols) -> None:
+        self._reader = reader
+        self._removed = removed
+        self._symbols = symbols
+
+    def explain(self, query: str, recognition: Recognition) -> None:
+        """Adds notes on each argument, and the function that it was given to."""
+        for match in forms.first_matches(forms.BAD_KEYWORD, query):
+            function = match["function"] or match["of"] or match["method"] or ""
+            several = re.findall(r"\w+", match["several"] or "")
+            for name in several or [match["name"] or match["unexpected"] or match["invalid"]]:
+                self._keyword(name, function, match["meant"] or "", recognition)
+
+    def _keyword(self, name: str, function: str, meant: str, recognition: Recognition) -> None:
+        """An argument that the function in the message, or else the surest match, does not take (any more).
+
+        ``meant`` is what Python says was meant, or empty.
+        """
+        if any(removed.path.endswith(f"({name})") for removed in recognition.removed):
+            return
+        ids = [self._symbols.function(function) or self._symbols.taking(function, meant)] if function else []
+        # Of the functions that share a name, a message with no more than it does not say which one was called.
+        called = self._symbols.called_so(function)
+        shared = set(called) if len(called) > 1 else set[str]()
+        by_name = {match.id for match in recognition.matches if match.why == "name"} & shared
+        ids += [m.id for m in sorted(recognition.matches, key=lambda m: -m.sure) if m.id not in by_name]
+        for symbol in filter(None, map(self._reader.symbol, filter(None, ids))):
+            if symbol.parameters:
+                if removed := self._removed.of_part(symbol.path, f"({name})"):
+                    recognition.add_removed(removed)
+                else:
+                    recognition.notes += unknown_keywords(symbol, [name])
+                recognition.add(symbol.path, 0.9, "error message")
+                return
+        if shared:
+            recognition.notes.append(_SHARED_NAME.format(name=function))
+            return
+        self._keyword_alone(name, recognition)
+
+    def _keyword_alone(self, name: str, recognition: Recognition) -> None:
+        """An argument that some operator does not take: those that do, and what others have instead."""
+        taking = self._reader.operators_taking(name)
+        if taking and len(taking) <= _MOST_TAKING:
+            listed = ", ".join(f"`{path}`" for path in taking)
+            recognition.notes.append(f"`{name}` is an argument of {listed}.")
+        recognition.notes.append(_NO_OPERATOR_NAMED)
+        once = [
+            path
+            for path in self._reader.removed_named(name)
+            if path.startswith("bpy.ops.") and path.endswith(f"({name})")
+        ]
+        uses = self._reader.use_counts([plain_path(path) for path in once])
+        once.sort(key=lambda path: -uses.get(plain_path(path), 0))
+        for removed in filter(None, map(self._removed.of_path, once[:_FEW])):
+            recognition.add_removed(removed)
+        recognition.is_open = len(recognition.removed) > 1
+        words = {
+            target.rpartition("(")[2].rstrip(")")
+            for old in recognition.removed
+            for target in old.targets
+            if target.endswith(")")
+        }
+        if not taking and not recognition.removed:
+            words = {near for near, _ in nearest(name, self._reader.operator_arguments, _FEW)}
+        for word in sorted(words - {name}):
+            if 0 < len(others := self._reader.operators_taking(word)) <= _MOST_TAKING:
+                listed = ", ".join(f"`{path}`" for path in others)
+                recognition.notes.append(f"`{word}` is the argument of {listed}.")

@@ -1,0 +1,82 @@
+"""Explains what a class or module lacks: an attribute that other versions may have, or that never was."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from kb_serve.reader import TYPES
+from kb_serve.recognise.recognition import MissingName
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.messages.named_symbols import NamedSymbols
+    from kb_serve.recognise.messages.unnamed_owners import UnnamedOwners
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.resolver import Resolver
+
+_FEW = 3
+_INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
+_NOT_IMPORTED = "`{module}` is a module of its own, to be imported first: `import {module}`."
+
+
+class LackingOwners:
+    """Finds in one base what has an attribute that its owner in a message lacks."""
+
+    def __init__(
+        self,
+        reader: BaseReader,
+        resolver: Resolver,
+        removed: RemovedSymbolLookup,
+        symbols: NamedSymbols,
+        owners: UnnamedOwners,
+    ) -> None:
+        self._reader = reader
+        self._resolver = resolver
+        self._removed = removed
+        self._symbols = symbols
+        self._owners = owners
+
+    def explain(self, written: str, name: str, recognition: Recognition) -> None:
+        """Adds what became of the attribute, or the owner, and what it leads to that has the attribute."""
+        owner = _INSTANCES.get(written) or self._symbols.class_path(written)
+        module = self._reader.entry(f"{owner}.{name}") if owner else None
+        if module and module.kind == "module":
+            recognition.add(module.path, 0.98, "error message")
+            recognition.notes.append(_NOT_IMPORTED.format(module=module.path))
+            return
+        removed = self._removed.of_member(owner, name) or self._removed.below(owner, name) if owner else None
+        if removed is None and not self._reader.entry(TYPES + written):
+            members = self._removed.spelled(f"{written}.{name}")
+            removed = next(members, None) or (None if owner else self._of_a_former_class(written, name))
+        if removed and owner and self._reader.entry(removed.path.rpartition(".")[0]) is None:
+            # Of a class that took another one's place: what it holds has the name rather than what replaced both.
+            removed = None if self._owners.within(owner, name) else removed
+        if removed:
+            recognition.add_removed(self._own_first(removed, owner))
+        elif owner and not self._resolver.member(owner, name):
+            recognition.missing.append(MissingName(name, owner, sure=True))
+            recognition.add(owner, 0.6, "error message")
+            self._within(owner, name, recognition)
+
+    def _own_first(self, removed: RemovedSymbol, owner: str) -> RemovedSymbol:
+        """A removed symbol of another class, with what the class that is asked has in its place before the rest."""
+        if removed.path.startswith(f"{owner}."):
+            return removed
+        own = {entry.path for entry in self._reader.lineage(owner)}
+        successors = sorted(removed.successors, key=lambda one: one.target.rpartition(".")[0] not in own)
+        return replace(removed, successors=tuple(successors))
+
+    def _of_a_former_class(self, written: str, name: str) -> RemovedSymbol | None:
+        """What a removed class lacked already, or else the class."""
+        cls = next(self._removed.spelled(written), None)
+        now = cls.targets[0] if cls and cls.targets else ""
+        member = None if not now or self._resolver.member(now, name) else self._removed.of_member(now, name)
+        return member or cls
+
+    def _within(self, owner: str, name: str, recognition: Recognition) -> None:
+        """A member that a class lacks, and that something has which it points to."""
+        for rank, (pointer, member) in enumerate(self._owners.within(owner, name)[:_FEW]):
+            recognition.add(member.path, 0.96 - 0.01 * rank, "error message")
+            recognition.notes.append(f"Its `.{pointer}` has it: `.{pointer}.{name}` (`{member.path}`).")

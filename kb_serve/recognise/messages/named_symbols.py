@@ -1,0 +1,57 @@
+"""Finds the classes, members and functions that messages name."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.recognise.resolver import Resolver
+
+
+class NamedSymbols:
+    """Finds in one base what a message names."""
+
+    def __init__(self, reader: BaseReader, resolver: Resolver) -> None:
+        self._reader = reader
+        self._resolver = resolver
+
+    def class_path(self, name: str) -> str:
+        """The path of a class or module that a message names; empty where there is none."""
+        for candidate in (TYPES + name, name):
+            if self._reader.entry(candidate):
+                return candidate
+        for _, identifier in self._reader.by_key(key(name)):
+            entry = self._reader.entry(identifier)
+            if entry and entry.kind in {"class", "module"}:
+                return identifier
+        return ""
+
+    def member(self, owner: str, name: str) -> SymbolEntry | None:
+        """What a class or module that a message names has of that name."""
+        cls = self.class_path(owner)
+        return (self._resolver.member(cls, name) or self._reader.entry(f"{cls}.{name}")) if cls else None
+
+    def function(self, written: str) -> str:
+        """The path of a function that a message names: ``Object.ray_cast``, ``from_pydata``."""
+        if "." in written:
+            entry = self.member(*written.rpartition(".")[::2])
+            return entry.path if entry else ""
+        entries = [entry for entry in self._reader.by_name(written) if entry.kind in {"function", "operator"}]
+        return entries[0].path if len(entries) == 1 else ""
+
+    def called_so(self, name: str) -> list[str]:
+        """The paths of the functions of a name."""
+        entries = self._reader.by_name(name) if name.isidentifier() else ()
+        return [entry.path for entry in entries if entry.kind == "function"]
+
+    def taking(self, function: str, argument: str) -> str:
+        """The path of the one function of that name that takes an argument; empty where several do, or none."""
+        symbols = filter(None, map(self._reader.symbol, self.called_so(function) if argument else ()))
+        taking = [
+            symbol.path for symbol in symbols if argument in {given.name for given in symbol.parameters}
+        ]
+        return taking[0] if len(taking) == 1 else ""

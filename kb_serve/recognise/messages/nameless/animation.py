@@ -1,0 +1,54 @@
+"""Messages of animation that name nothing of the API."""
+
+from __future__ import annotations
+
+from kb_serve.recognise.messages.nameless.message import NamelessMessage
+
+_T = "bpy.types."
+ANIMATION = (
+    NamelessMessage(
+        ("the track does not have any space to accommodate this new strip",),
+        (f"{_T}NlaStrips.new", f"{_T}NlaTracks.new"),
+        "The track has a strip in these frames: give another `start`, or add it to a new track "
+        "(`animation_data.nla_tracks.new()`).",
+    ),
+    NamelessMessage(
+        ("keyframe_insert() property", "not found"),
+        (f"{_T}bpy_struct.keyframe_insert",),
+        'The path is a property of the very thing, as text: `obj.keyframe_insert("location")`; what belongs to its '
+        "data is keyed there (`obj.data.keyframe_insert(…)`).",
+    ),
+    NamelessMessage(
+        ('Assign action "', "before calling this function"),
+        (f"{_T}Action.fcurve_ensure_for_datablock", f"{_T}AnimData.action"),
+        "The object must have the action: `obj.animation_data_create().action = action`.",
+    ),
+    NamelessMessage(
+        ("keyframe_insert() path includes index",),
+        (f"{_T}bpy_struct.keyframe_insert",),
+        'One number of several is keyed by its index: `obj.keyframe_insert("location", index=0)`.',
+    ),
+    NamelessMessage(
+        ("keyframe_insert()() takes at most 1 positional argument",),
+        (f"{_T}bpy_struct.keyframe_insert",),
+        'All but the path is given by name: `obj.keyframe_insert("location", frame=10)`.',
+    ),
+    NamelessMessage(
+        ("driver_add(): property", "not found"),
+        (f"{_T}bpy_struct.driver_add",),
+        'The path is a property of the very thing, as text: `obj.driver_add("location", 0)`; what belongs to its '
+        "data is driven there (`obj.data.driver_add(…)`).",
+    ),
+    NamelessMessage(
+        ("Dependency cycle detected",),
+        (
+            f"{_T}Object.constraints",
+            "animation/drivers/troubleshooting",
+            f"{_T}Object.parent",
+            f"{_T}AnimData.drivers",
+        ),
+        "Each of the things in the lines below it waits for the next, and the last for the first. The lines name what "
+        "links them ('Parent', a constraint, a driver): take one of these links away, or let it read something that "
+        "does not depend on what it moves.",
+    ),
+)

@@ -1,0 +1,48 @@
+"""Messages of properties in brackets that name nothing of the API."""
+
+from __future__ import annotations
+
+from kb_serve.recognise.messages.nameless.message import NamelessMessage
+
+_T = "bpy.types."
+_NO_CUSTOM_PROPERTIES = (
+    "Only data-blocks (objects, scenes, materials …), bones and their collections, nodes, strips, view layers, "
+    "property groups, the metadata of assets and geometry-nodes modifiers take custom properties in brackets. "
+    "Operators and the "
+    'preferences of add-ons do not: their properties are attributes (`self.name`, `hasattr(self, "name")`, '
+    "`setattr(self, name, value)`). Nor do other modifiers, constraints or sockets: store the value on their object or "
+    "node."
+)
+CUSTOM_PROPERTIES = (
+    NamelessMessage(
+        ("value to the existing '", "Group IDProperty"),
+        ("bpy.props.PointerProperty", f"{_T}PropertyGroup", f"{_T}ID.bl_system_properties_get"),
+        "The group of a `PointerProperty` cannot be put in another one's place: set its members as attributes "
+        "(`target.settings.size = source.settings.size`), or copy all that were set: "
+        '`target.bl_system_properties_get()["settings"].update(source.bl_system_properties_get()["settings"])`. '
+        "Custom properties of your own do take another type.",
+    ),
+    NamelessMessage(
+        ("value to the existing '", "IDProperty"),
+        (f"{_T}ID.bl_system_properties_get", "bpy.props"),
+        "What is stored of a property that `bpy.props` registered keeps its type: give a value of that type, best by "
+        "the attribute (`scene.count = 3`). Custom properties of your own do take another type.",
+        ("Group IDProperty", "existing 'Socket_"),
+    ),
+    NamelessMessage(
+        ("id properties not supported",),
+        (f"{_T}bpy_struct.keys", f"{_T}PropertyGroup"),
+        _NO_CUSTOM_PROPERTIES,
+    ),
+    NamelessMessage(
+        ("his type doesn't support IDProperties",),
+        (f"{_T}bpy_struct.keys", f"{_T}PropertyGroup"),
+        _NO_CUSTOM_PROPERTIES,
+    ),
+    NamelessMessage(
+        ("'_PropertyDeferred' object is not subscriptable",),
+        ("bpy.props._PropertyDeferred",),
+        "What `bpy.props` returns is no tuple since Blender 2.93: `deferred.function` instead of `deferred[0]`, and "
+        "`deferred.keywords`, a dictionary, instead of `deferred[1]`.",
+    ),
+)

@@ -1,0 +1,61 @@
+"""Messages of files and add-ons that name nothing of the API."""
+
+from __future__ import annotations
+
+from kb_serve.recognise.messages.nameless.message import NamelessMessage
+
+_T = "bpy.types."
+FILES = (
+    NamelessMessage(
+        ("Cannot read '", "No such file or directory"),
+        (f"{_T}BlendDataImages.load", "bpy.path.abspath"),
+        "There is no such file where Blender looks: `//` begins a path beside the saved .blend; any other relative "
+        "path begins where Blender was started.",
+    ),
+    NamelessMessage(
+        ("Image '", "could not be saved to ''"),
+        (f"{_T}Image.save", f"{_T}Image.filepath_raw", f"{_T}Image.file_format"),
+        "The image has no path: `image.filepath_raw = \"/folder/name.png\"`, `image.file_format = 'PNG'`, then "
+        "`image.save()`.",
+    ),
+    NamelessMessage(
+        ("No such file or directory: '//",),
+        ("bpy.path.abspath",),
+        "Only Blender knows where a path that begins with `//` leads: `open(bpy.path.abspath(path))`.",
+    ),
+    NamelessMessage(
+        ("failed to open blend file",),
+        (f"{_T}BlendDataLibraries.load", "bpy.path.abspath"),
+        "There is no such .blend where Blender looks: `//` begins a path beside the saved one.",
+    ),
+    NamelessMessage(
+        ("Cannot open file", "for writing: No such file or directory"),
+        ("bpy.ops.wm.save_as_mainfile",),
+        "The folder does not exist: make it first (`os.makedirs(folder, exist_ok=True)`).",
+    ),
+    NamelessMessage(
+        ('Cannot read file "', "No such file or directory"),
+        ("bpy.ops.wm.open_mainfile",),
+        "There is no such .blend where Blender looks: a relative path begins where Blender was started.",
+    ),
+    NamelessMessage(
+        ("Unable to save an unsaved file",),
+        ("bpy.ops.wm.save_as_mainfile", "bpy.ops.wm.save_mainfile"),
+        'A file that was never saved has no path: `bpy.ops.wm.save_as_mainfile(filepath="/folder/name.blend")`.',
+    ),
+    NamelessMessage(
+        ("Please select a file",),
+        ("bpy.ops.import_scene.gltf",),
+        "There is no file of that path.",
+    ),
+    NamelessMessage(
+        ("OBJ Import: Cannot open file",),
+        ("bpy.ops.wm.obj_import",),
+        "There is no such file where Blender looks.",
+    ),
+    NamelessMessage(
+        ("Add-on not loaded:", "No module named"),
+        ("bpy.ops.preferences.addon_enable", "bpy.utils.refresh_script_paths"),
+        "The add-on is not installed under that name; extensions are called `bl_ext.repository.name`.",
+    ),
+)

@@ -1,0 +1,68 @@
+"""Messages of meshes and other shapes that name nothing of the API."""
+
+from __future__ import annotations
+
+from kb_serve.recognise.messages.nameless.message import NamelessMessage
+
+_T = "bpy.types."
+_O = "bpy.ops.object."
+MESHES = (
+    NamelessMessage(
+        ("Tangent space can only be computed for tris/quads",),
+        (f"{_T}Mesh.calc_tangents", "bmesh.ops.triangulate"),
+        "A face has more than four corners: triangulate such faces first (`bmesh.ops.triangulate`).",
+    ),
+    NamelessMessage(
+        ("to_mesh(): Mesh '", "is in editmode"),
+        ("bmesh.types.BMesh.to_mesh", "bmesh.from_edit_mesh", "bmesh.update_edit_mesh"),
+        "Leave Edit Mode first (`bpy.ops.object.mode_set(mode='OBJECT')`), or change the mesh by "
+        "`bmesh.from_edit_mesh(mesh)` and `bmesh.update_edit_mesh(mesh)`.",
+    ),
+    NamelessMessage(
+        ("sequence length mismatch given",),
+        (f"{_T}bpy_prop_collection.foreach_set", f"{_T}bpy_prop_collection.foreach_get"),
+        "It wants as many numbers as elements × values of each (3 for `co`); of none, add elements first "
+        "(`mesh.vertices.add(count)`).",
+    ),
+    NamelessMessage(
+        ("internal error setting the array",),
+        (f"{_T}bpy_prop_collection.foreach_set",),
+        "The list is longer or shorter than elements × values of each (3 for `co`), or of another type.",
+    ),
+    NamelessMessage(
+        ("Vertex not in group",),
+        (f"{_T}VertexGroup.weight", f"{_T}MeshVertex.groups"),
+        "Ask only for vertices that are in the group: `any(one.group == group.index for one in vertex.groups)`.",
+    ),
+    NamelessMessage(
+        ("Curve sizes must be greater than zero",),
+        (f"{_T}Curves.add_curves",),
+        "Each size is the number of points in a curve, 1 or more: `curves.add_curves([3, 5])`.",
+    ),
+    NamelessMessage(
+        ("expected 'Mesh' type found 'Object' instead",),
+        ("bmesh.types.BMesh.from_mesh", "bmesh.types.BMesh.to_mesh", "bmesh.from_edit_mesh"),
+        "Give the data of the object: `bm.from_mesh(obj.data)`, `bm.to_mesh(obj.data)`.",
+    ),
+    NamelessMessage(
+        ("BMElemSeq[index]: index ", " out of range"),
+        ("bmesh.types.BMVertSeq", "bmesh.types.BMVertSeq.new"),
+        "There are fewer elements, `len(bm.verts)`, and they are counted from 0.",
+    ),
+    NamelessMessage(
+        ("Key ", " is out of range"),
+        (f"{_T}GreasePencilDrawing.strokes", f"{_T}GreasePencilDrawing.add_strokes"),
+        "There are fewer strokes, or points in a stroke: `drawing.add_strokes([3])` adds a stroke of three points.",
+    ),
+    NamelessMessage(
+        ("spline cannot have points added",),
+        (f"{_T}SplinePoints.add", f"{_T}SplineBezierPoints.add"),
+        "The points of a Bézier spline are its `bezier_points`: `spline.bezier_points.add(count)`.",
+    ),
+    NamelessMessage(
+        ("not in edit mode, cannot add an editbone",),
+        (f"{_T}ArmatureEditBones.new", f"{_O}mode_set"),
+        "Edit bones are there in Edit Mode: make the armature's object active, then "
+        "`bpy.ops.object.mode_set(mode='EDIT')`.",
+    ),
+)

@@ -1,0 +1,65 @@
+"""Messages of registration that name nothing of the API."""
+
+from __future__ import annotations
+
+from kb_serve.recognise.messages.nameless.message import NamelessMessage
+
+_T = "bpy.types."
+REGISTRATION = (
+    NamelessMessage(
+        ("register_class(...): already registered as a subclass",),
+        ("bpy.utils.unregister_class", "bpy.utils.register_class"),
+        "This very class is registered: `bpy.utils.unregister_class(cls)` first, as an add-on's `unregister()` does.",
+    ),
+    NamelessMessage(
+        ("Error: register_class(...):, missing bl_rna attribute from '",),
+        ("bpy.utils.register_class",),
+        "Only classes that derive from one of `bpy.types` (Operator, Panel, Menu, PropertyGroup …) can be registered.",
+    ),
+    NamelessMessage(
+        ("unregister_class(...):, missing bl_rna attribute from '",),
+        ("bpy.utils.unregister_class", "bpy.utils.register_class"),
+        "The class is not registered: it never was, its registration failed, or it was unregistered before.",
+    ),
+    NamelessMessage(
+        ("contain '_PT_' with prefix",),
+        (f"{_T}Panel.bl_idname",),
+        "The `bl_idname` of a panel, or its class's name where it has none, is like `MY_PT_panel`: capitals, `_PT_`, "
+        "a name.",
+    ),
+    NamelessMessage(
+        ("Registering panel class: '", "' has category '"),
+        (f"{_T}Panel.bl_region_type", f"{_T}Panel.bl_category"),
+        "Only panels of a sidebar have a category, the tab that they stand in: `bl_region_type = 'UI'`. Panels of "
+        "other regions have no `bl_category`.",
+    ),
+    NamelessMessage(
+        ("contain '_MT_' with prefix",),
+        (f"{_T}Menu.bl_idname",),
+        "The `bl_idname` of a menu, or its class's name where it has none, is like `MY_MT_menu`: capitals, `_MT_`, a "
+        "name.",
+    ),
+    NamelessMessage(
+        ("Registering operator class '", "invalid bl_idname '"),
+        (f"{_T}Operator.bl_idname",),
+        "An operator's `bl_idname` is two names with one dot between, in small letters: "
+        '`bl_idname = "object.my_tool"`.',
+    ),
+    NamelessMessage(
+        ("Function.result expected a set, not a NoneType",),
+        (f"{_T}Operator.execute",),
+        "The function ended without a result: `return {'FINISHED'}`, or `{'CANCELLED'}`, at each of its ends.",
+    ),
+    NamelessMessage(
+        ("'_RestrictContext' object has no attribute",),
+        ("bpy.app.timers.register", "bpy.app.handlers.load_post"),
+        "While add-ons are registered, `bpy.context` holds no scene and no objects: read them in an operator's or "
+        "panel's functions, in a `load_post` handler, or soon after: `bpy.app.timers.register(function)`.",
+    ),
+    NamelessMessage(
+        ("'_RestrictData' object has no attribute",),
+        ("bpy.app.timers.register", "bpy.app.handlers.load_post"),
+        "While add-ons are registered, `bpy.data` holds nothing: read it in an operator's or panel's functions, in a "
+        "`load_post` handler, or soon after: `bpy.app.timers.register(function)`.",
+    ),
+)

@@ -1,0 +1,33 @@
+"""Messages of vectors that name nothing of the API."""
+
+from __future__ import annotations
+
+from kb_serve.recognise.messages.nameless.message import NamelessMessage
+
+_NO_FACTOR = (
+    "A tuple or list is no factor: make it a vector first, `matrix @ Vector(value)`, `Vector(value) * 2`; two vectors "
+    "are multiplied number by number: `Vector(value) * v`."
+)
+VECTORS = (
+    NamelessMessage(
+        ("Vector ", "vectors must have the same dimensions for this operation"),
+        ("mathutils.Vector.to_3d", "mathutils.Vector.to_2d", "mathutils.Vector.resized"),
+        "One vector has more numbers than the other: `v.to_3d()` adds what lacks, `v.to_2d()` drops what is too much.",
+    ),
+    NamelessMessage(
+        ("Vector ", "invalid type for this operation"),
+        ("mathutils.Vector",),
+        "Vectors are added to vectors: `v + Vector(value)`, with a value of as many numbers; `Vector((n, n, n))` for "
+        "one number.",
+    ),
+    NamelessMessage(
+        ("multiplication: not supported between ", "'tuple'"),
+        ("mathutils.Vector", "mathutils.Matrix"),
+        _NO_FACTOR,
+    ),
+    NamelessMessage(
+        ("multiplication: not supported between ", "'list'"),
+        ("mathutils.Vector", "mathutils.Matrix"),
+        _NO_FACTOR,
+    ),
+)

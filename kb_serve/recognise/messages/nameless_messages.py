@@ -1,0 +1,82 @@
+"""Recognises Blender's messages that name nothing of the API.
+
+Each row of the tables was seen in Blender: a test makes it say them all.
+"""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_serve.recognise.messages.nameless.animation import ANIMATION
+from kb_serve.recognise.messages.nameless.custom_properties import CUSTOM_PROPERTIES
+from kb_serve.recognise.messages.nameless.files import FILES
+from kb_serve.recognise.messages.nameless.meshes import MESHES
+from kb_serve.recognise.messages.nameless.modes import MODES
+from kb_serve.recognise.messages.nameless.modifiers import MODIFIERS
+from kb_serve.recognise.messages.nameless.nodes import NODES
+from kb_serve.recognise.messages.nameless.objects import OBJECTS
+from kb_serve.recognise.messages.nameless.python import PYTHON
+from kb_serve.recognise.messages.nameless.registration import REGISTRATION
+from kb_serve.recognise.messages.nameless.rendering import RENDERING
+from kb_serve.recognise.messages.nameless.vectors import VECTORS
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
+
+_SURE = 0.97
+NAMELESS_MESSAGES = (
+    *OBJECTS,
+    *MESHES,
+    *MODIFIERS,
+    *CUSTOM_PROPERTIES,
+    *PYTHON,
+    *VECTORS,
+    *NODES,
+    *ANIMATION,
+    *RENDERING,
+    *REGISTRATION,
+    *FILES,
+    *MODES,
+)
+_ANYWHERE = (
+    (
+        " not found in ()",
+        "The enumeration has no values at present: they come from other data, such as the Menu Switch that a menu is "
+        "linked to.",
+    ),
+    (
+        "expected a set, not a str",
+        "An enumeration of flags takes a set of texts: `{'A'}`, `{'A', 'B'}`.",
+    ),
+    (
+        "sequences of dimension 0 should contain",
+        "The value has another number of items than the property: a colour with alpha has 4, one without 3.",
+    ),
+)
+_ONE_OF_SEVERAL = re.compile(r"item\.attr = val:\s*$")
+_NOT_ONE = (
+    "One value was given where several are wanted: a vector `(x, y, z)`, a colour `(r, g, b, a)`, as many as the "
+    "property has."
+)
+
+
+class NamelessMessages:
+    """Recognises them against one base, of which they lead to symbols and pages."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def recognise(self, query: str, recognition: Recognition) -> None:
+        """Adds what such a message is about, with what helps."""
+        for message in NAMELESS_MESSAGES:
+            if message.is_in(query) and self._reader.entry(message.paths[0]):
+                for rank, path in enumerate(message.paths):
+                    if "/" not in path or self._reader.is_page(path):
+                        recognition.add(path, _SURE - 0.03 * rank, "error message")
+                recognition.notes.append(message.help)
+        recognition.notes += [note for part, note in _ANYWHERE if part in query]
+        if _ONE_OF_SEVERAL.search(query):
+            recognition.notes.append(_NOT_ONE)
+            recognition.add("bpy.props.FloatVectorProperty", _SURE, "error message")

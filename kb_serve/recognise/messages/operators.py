@@ -1,0 +1,54 @@
+"""Recognises messages of operators: refused, called the old way, or none at all."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
+from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.messages.guides import ON_OPERATORS, add_guide
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
+
+_FEW = 3
+_READS_ONLY = (
+    "`draw()` and `poll()` of panels, menus, headers, lists and operators only read: nothing may be written there. "
+    "Write in an operator's `execute()` (a button calls it), in a handler of `bpy.app.handlers`, or later, by "
+    "`bpy.app.timers.register(function)`."
+)
+
+
+class Operators:
+    """Finds in one base the operators of messages."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def recognise(self, query: str, recognition: Recognition) -> None:
+        """Adds the operator, and how it is to be called."""
+        for match in forms.first_matches(forms.POLL, query):
+            if symbol := self._reader.symbol(match["path"]):
+                recognition.add(symbol.path, 0.98, "error message")
+                recognition.notes.append(context_for(symbol))
+                add_guide(ON_OPERATORS, self._reader, recognition)
+                recognition.add(OVERRIDE, 0.82, "error message")
+        for match in forms.first_matches(forms.WRONG_TYPE, query):
+            if match["operator"]:
+                module, _, name = match["operator"].partition("_OT_")
+                if entry := self._reader.entry(f"bpy.ops.{module.lower()}.{name}"):
+                    recognition.add(entry.path, 0.98, "error message")
+        if forms.NO_WRITING.search(query):
+            recognition.notes.append(_READS_ONLY)
+        if forms.POSITIONAL.search(query):
+            recognition.notes.append(NO_OVERRIDE)
+            recognition.add(OVERRIDE, 0.9, "error message")
+            add_guide(ON_OPERATORS, self._reader, recognition)
+        for match in forms.first_matches(forms.NOT_AN_OPERATOR, query):
+            names = self._reader.members("bpy.ops").keys() | self._reader.members("bmesh.ops").keys()
+            for name, alike in nearest(match["name"], names, _FEW):
+                if entry := self._reader.entry(f"bmesh.ops.{name}"):
+                    recognition.add(entry.path, max(0.82, 0.95 * alike), "similar name")
+            recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")

@@ -1,0 +1,54 @@
+"""Recognises messages of classes and properties that are registered."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_serve.reader import TYPES
+from kb_serve.recognise import message_patterns as forms
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
+
+# Classes whose functions return something to Blender.
+_REGISTERED = (
+    "Operator",
+    "Panel",
+    "Menu",
+    "UIList",
+    "Gizmo",
+    "GizmoGroup",
+    "Node",
+    "FileHandler",
+    "AssetShelf",
+)
+
+
+class Registration:
+    """Finds in one base what registration wants."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def recognise(self, query: str, recognition: Recognition) -> None:
+        """Adds the member of the class, or the property, that is refused."""
+        for match in forms.first_matches(forms.INCOMPATIBLE, query):
+            kind = match["class"].rpartition("_OT_")[1] and "Operator"
+            owners = [kind] if kind else _REGISTERED
+            found = (self._reader.entry(f"{TYPES}{owner}.{match['function']}") for owner in owners)
+            if entry := next(filter(None, found), None):
+                recognition.add(entry.path, 0.98, "error message")
+                recognition.notes.append(
+                    f"`{match['function']}` of `{match['class']}` must return what `{entry.path}` returns."
+                )
+        for match in forms.first_matches(forms.NO_PROPERTY, query):
+            recognition.add(f"bpy.props.{match['kind']}", 0.98, "error message")
+            recognition.notes.append(
+                "The cause is the error that Blender printed before this one, on stderr."
+            )
+        for match in forms.first_matches(forms.NO_PARENT, query):
+            recognition.add(f"{TYPES}Panel.bl_parent_id", 0.98, "error message")
+            recognition.notes.append(
+                f"Register the panel whose `bl_idname`, or else class name, is `{match['parent']}` first."
+            )

@@ -1,0 +1,128 @@
+"""Recognises messages of values that an enumeration lacks."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, words
+from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.corrections import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.enum_values import EnumValues
+    from kb_serve.recognise.messages.named_symbols import NamedSymbols
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+
+_LONG = 4  # letters of an item that a wrong one begins with
+_SHORT = 3  # … of a wrong one that an item begins with
+_FEW = 3
+_MOST_OWNERS = 8  # that are compared
+_NO_ITEM = "`{name}` is not an item of this enum; closest: {similar}."
+_LABELLED = "`{name}` is not an item of this enum; of that label: {items}."
+_OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
+
+
+def _closest(name: str, items: Sequence[str]) -> str:
+    """The items that a wrong one may mean: those that are most like it, those that it begins with, or the other way
+    round, or else those that it is made of and more.
+    """
+    similar = [item for item, _ in nearest(name, items)]
+    if not similar:
+        said = name.upper()
+        similar = [item for item in items if len(item) >= _LONG and said.startswith(item)]
+        similar = similar or [item for item in items if len(said) >= _SHORT and item.startswith(said)]
+    if not similar:
+        said = set(words(name))
+        similar = sorted((item for item in items if set(words(item)) <= said), key=len, reverse=True)[:1]
+    return ", ".join(f"`{item}`" for item in similar)
+
+
+class Values:
+    """Finds in one base the enumerations that lack a value, and what has it."""
+
+    def __init__(
+        self, reader: BaseReader, removed: RemovedSymbolLookup, enum_values: EnumValues, symbols: NamedSymbols
+    ) -> None:
+        self._reader = reader
+        self._removed = removed
+        self._enum_values = enum_values
+        self._symbols = symbols
+
+    def recognise(self, query: str, recognition: Recognition) -> None:
+        """Adds the owners of the enumeration, and what is closest to the value, or became of it."""
+        for match in forms.first_matches(forms.BAD_ENUM, query):
+            items = re.findall(r"'([^']+)'", match["items"])
+            function = forms.IN_FUNCTION.search(query)
+            called = self._symbols.function(function["method"]) if function else ""
+            owners = self._enum_values.taking(items, called)
+            if _OF_CLASSES in query:
+                owners = self._of_classes(owners) or owners
+            owners = owners[:_MOST_OWNERS]
+            for rank, owner in enumerate(owners[:2]):
+                recognition.add(owner.partition("(")[0], 0.95 - 0.02 * rank, "error message")
+            removed = self._lost_value(self._enum_values.as_likely_as_the_first(owners, items), match["name"])
+            if removed:
+                recognition.add_removed(removed)
+            elif owners and (elsewhere := self._of_another_version(owners[0], match["name"], items)):
+                recognition.notes.append(elsewhere)
+            elif owners and (condition := self._enum_values.condition(owners[0], match["name"])):
+                recognition.notes.append(condition)
+            elif similar := _closest(match["name"], items):
+                recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+            elif owners and (labelled := self._enum_values.labelled(owners[0], match["name"])):
+                listed = ", ".join(f"`{item}`" for item in labelled[:_FEW])
+                recognition.notes.append(_LABELLED.format(name=match["name"], items=listed))
+            elif (others := self._taking_only(match["name"])) and owners:
+                listed = ", ".join(f"`{other}`" for other in others)
+                recognition.notes.append(f"`{match['name']}` is a value of {listed}.")
+        for match in forms.first_matches(forms.BAD_TEXT, query):
+            once = [path for path in self._reader.removed_named(match["name"]) if "):" in path]
+            if once and (removed := self._removed.of_path(once[0])):
+                recognition.add_removed(removed)
+            elif similar := _closest(match["name"], re.findall(r"'([^']+)'", match["items"])):
+                recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+
+    def _taking_only(self, value: str) -> list[str]:
+        """The properties that take a value, where only a few do."""
+        owners = [
+            owner for owner, identifier, _ in self._reader.enum_owners(key(value)) if identifier == value
+        ]
+        return owners if len(owners) < _FEW and all("(" not in owner for owner in owners) else []
+
+    def _lost_value(self, owners: Iterable[str], value: str) -> RemovedSymbol | None:
+        """A value that the likeliest owners took in other versions; where several did, one of which the successor is
+        known.
+        """
+        found: list[RemovedSymbol] = []
+        for owner in owners:
+            path, _, parameter = owner.partition("(")
+            if removed := self._removed.of_part(path, f"({parameter}:{value}" if parameter else f":{value}"):
+                found.append(removed)
+        return min(found, key=lambda removed: not removed.targets, default=None)
+
+    def _of_another_version(self, owner: str, value: str, items: Iterable[str]) -> str:
+        """A sentence on a value that this version takes, where the items in the message are another version's."""
+        if not self._enum_values.has(owner, value):
+            return ""
+        for item in items:
+            removed = None if self._enum_values.has(owner, item) else self._removed.of_path(f"{owner}:{item}")
+            if removed and removed.gone:
+                version = self._reader.meta.get("minor", "")
+                near = _closest(value, [item])
+                there = f" There, write `{item}`." if near else ""
+                return (
+                    f"Blender {version} takes `{value}` for `{owner}`. The list in the message is another version's: "
+                    f"only Blender {removed.first} to {removed.last} have `{item}`.{there}"
+                )
+        return ""
+
+    def _of_classes(self, owners: Iterable[str]) -> list[str]:
+        """Those of some properties that classes set to be registered, the most important first."""
+        found = [owner for owner in owners if owner.rpartition(".")[2].startswith("bl_")]
+        weights = self._reader.weights(found)
+        return sorted(found, key=lambda owner: -weights.get(owner, 0.0))
