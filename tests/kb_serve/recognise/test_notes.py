@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_serve.reader import Successor
-from kb_serve.recognise.notes import Notes
+from kb_serve.recognise.notes import Notes, as_code
 from kb_serve.recognise.removed_symbols import RemovedSymbol
 
 if TYPE_CHECKING:
@@ -50,3 +50,20 @@ def test_a_removed_symbol_is_dated_and_replaced(reader: BaseReader, symbol: Remo
     assert note.startswith("`x` does not exist in Blender ")
     assert said in note
     assert ".." not in note
+
+
+@pytest.mark.parametrize(
+    ("path", "written"),
+    [
+        (
+            "bpy.types.RenderSettings.engine:BLENDER_EEVEE_NEXT",
+            "bpy.types.RenderSettings.engine = 'BLENDER_EEVEE_NEXT'",
+        ),
+        ("bpy.types.ObjectModifiers.new(type):SMOKE", "bpy.types.ObjectModifiers.new(type='SMOKE')"),
+        ("bpy.ops.mesh.primitive_cube_add(radius)", "bpy.ops.mesh.primitive_cube_add(radius=…)"),
+        ('bpy.types.ShaderNodeMix.inputs["A:B"]', 'bpy.types.ShaderNodeMix.inputs["A:B"]'),
+        ("bpy.types.Object.select", "bpy.types.Object.select"),
+    ],
+)
+def test_paths_of_values_and_arguments_are_written_as_in_scripts(path: str, written: str) -> None:
+    assert as_code(path) == written

@@ -10,6 +10,7 @@ import pytest
 
 from kb_build.versions.successors import load_successors
 from kb_serve.recognise.newer_nodes import INSTEAD
+from kb_serve.recognise.notes import as_code
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -84,7 +85,9 @@ CODE = [
 
 @pytest.mark.parametrize(("written", "gone", "version"), CODE)
 def test_a_name_of_another_version_is_told(kb: KnowledgeBase, written: str, gone: str, version: str) -> None:
-    notes = [note for note in kb.query(written).notes if f"`{gone}` does not exist in Blender" in note]
+    notes = [
+        note for note in kb.query(written).notes if f"`{as_code(gone)}` does not exist in Blender" in note
+    ]
     assert len(notes) == 1
     assert version in notes[0]
 
@@ -152,7 +155,7 @@ def test_an_assignment_means_the_setter(kb: KnowledgeBase) -> None:
 def test_an_item_of_an_argument_has_the_successor_of_the_property_with_these_items(
     kb: KnowledgeBase, written: str, instead: str
 ) -> None:
-    assert f"Use `{instead}`." in kb.query(written).notes[0]
+    assert f"Use `{as_code(instead)}`." in kb.query(written).notes[0]
 
 
 @pytest.mark.parametrize(
@@ -221,16 +224,16 @@ def test_the_newer_node_has_the_sockets_that_are_told(kb: KnowledgeBase) -> None
 )
 def test_shaders_have_no_dimension_in_their_names(kb: KnowledgeBase, written: str, instead: str) -> None:
     assert any(
-        f"Use `gpu.shader.from_builtin(shader_name):{instead}`" in note for note in kb.query(written).notes
+        f"Use `gpu.shader.from_builtin(shader_name={instead!r})`" in note for note in kb.query(written).notes
     )
 
 
 @pytest.mark.parametrize(
     ("written", "instead"),
     [
-        ("layout.label(icon='SEQUENCE_COLOR_01')", "(icon):STRIP_COLOR_01`"),
-        ("layout.operator('a.b', icon='OUTLINER_DATA_LAMP')", "(icon):OUTLINER_DATA_LIGHT`"),
-        ("layout.prop(ob, 'name', icon='LIGHTPROBE_CUBEMAP')", "(icon):LIGHTPROBE_SPHERE`"),
+        ("layout.label(icon='SEQUENCE_COLOR_01')", "(icon='STRIP_COLOR_01')`"),
+        ("layout.operator('a.b', icon='OUTLINER_DATA_LAMP')", "(icon='OUTLINER_DATA_LIGHT')`"),
+        ("layout.prop(ob, 'name', icon='LIGHTPROBE_CUBEMAP')", "(icon='LIGHTPROBE_SPHERE')`"),
     ],
 )
 def test_icons_have_successors_wherever_they_are_given(kb: KnowledgeBase, written: str, instead: str) -> None:

@@ -28,6 +28,7 @@ from whole import examples
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_SHORT
 from kb_build.symbol_lines import written as as_written
+from kb_serve.recognise.notes import as_code
 from kb_serve.recognise.removed_symbols import plain_path
 
 if TYPE_CHECKING:
@@ -457,7 +458,7 @@ MEMBERS = "path LIKE 'bpy.types.%.%' AND path NOT LIKE '%:%' AND path NOT LIKE '
 
 
 def says_gone(kb: KnowledgeBase, query: str, path: str) -> bool:
-    return any(f"`{path}` does not exist in Blender" in note for note in kb.query(query).notes)
+    return any(f"`{as_code(path)}` does not exist in Blender" in note for note in kb.query(query).notes)
 
 
 @pytest.mark.parametrize("prefix", [True, False])
