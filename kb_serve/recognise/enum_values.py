@@ -23,7 +23,7 @@ _CAPITALS = re.compile(r"(?<![\w.])(?=[0-9]*[A-Z])[A-Z0-9_]{3,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
 _MOST_TOLD = 5  # enumerations
-_OF_EVERYTHING = 300  # items of an enumeration from which on it has one for any word
+_ICON = "icon"
 _MOST_COMPARED = 20  # enumerations of which as many items are listed
 _FITTING = 0.5  # how well the words around a bare value must fit its property
 _FITTING_WORD = 1.0  # the same for one that people write in capitals, too: EEVEE, PNG
@@ -46,6 +46,11 @@ def _is_taken(item: EnumItem, mode: str) -> bool:
     if item.where.startswith(_NOT):
         return item.where.removeprefix(_NOT) != mode
     return item.where.removeprefix(_ONLY) in {"", mode}
+
+
+def _is_of_icons(owner: str) -> bool:
+    """Whether an enumeration is one of icons: there is one for any word."""
+    return _ICON in terms(owner.rpartition(".")[2].replace("(", " "))
 
 
 class EnumValues:
@@ -74,17 +79,12 @@ class EnumValues:
         if alone:  # nothing else tells which is meant
             weights = self._reader.weights([owner.partition("(")[0] for owner, _ in owners])
             owners.sort(key=lambda row: (-row[1], -weights.get(row[0].partition("(")[0], 0.0)))
-        told = (row for row in owners if alone or not self._is_of_everything(row[0], around))
+        told = (row for row in owners if alone or _ICON in around or not _is_of_icons(row[0]))
         for rank, (owner, share) in enumerate(islice(told, _MOST_TOLD)):
             least = _FITTING_WORD if self._is_word(owner, values) else _FITTING
             fits = alone or quoted or self._owner_fit(owner, around) >= least
             sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
             recognition.add(owner.partition("(")[0], sure, "enum item")
-
-    def _is_of_everything(self, owner: str, around: set[str]) -> bool:
-        """Whether an enumeration has an item for everything, as those of icons have, and no word is about it."""
-        name = owner.partition("(")[0].rpartition(".")[2]
-        return set(terms(name)).isdisjoint(around) and len(self._items(owner)) > _OF_EVERYTHING
 
     @staticmethod
     def values(query: str) -> list[str]:
