@@ -173,7 +173,7 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ),
         (
             'Converting py args to operator properties:: keyword "export_textures" unrecognized',
-            "`bpy.ops.wm.usd_export(export_textures_mode)`. NEW stands for True",
+            "`bpy.ops.wm.usd_export(export_textures_mode=…)`. NEW stands for True",
         ),
         (
             'Converting py args to operator properties:: keyword "export_texture" unrecognized',
