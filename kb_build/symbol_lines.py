@@ -477,7 +477,8 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
         notes.append("= []")
     values = [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]
     if values and not is_stand_in(symbol):
-        notes.append("|".join(values[:_SHOWN_VALUES]) + ("|…" if len(values) > _SHOWN_VALUES else ""))
+        # In brackets: a default stands before them.
+        notes.append(f"({'|'.join(values[:_SHOWN_VALUES])}{'|…' if len(values) > _SHOWN_VALUES else ''})")
     if is_locked(symbol):
         notes.append("read-only")
     if setting := freed_by(symbol):

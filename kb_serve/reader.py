@@ -50,6 +50,21 @@ class SymbolEntry(NamedTuple):
     label: str
     line: str
 
+    @property
+    def head(self) -> str:
+        """The line without the description: name, type, default, values, and whether it can be set."""
+        return self.line.partition(" — ")[0]
+
+    @property
+    def is_read_only(self) -> bool:
+        """Whether it cannot be assigned."""
+        return " read-only" in self.head
+
+    @property
+    def is_deprecated(self) -> bool:
+        """Whether Blender calls it deprecated."""
+        return " deprecated" in self.head
+
 
 class PageEntry(NamedTuple):
     """A page without its text; ``parent`` is a slug."""

@@ -197,8 +197,11 @@ class _Calls:
         for maker in self._kinds.get(f"{TYPES}{holder.collection}", ()):
             head, items = self._head(holder, maker), _kinds_of(maker)
             called = key(maker.name.removeprefix(_NEW_KIND) + holder.target)
-            for cls in self._descendants(base.path) if base else ():
-                choice = _choice(cls, base, items) if base and items else ""
+            descendants = list(self._descendants(base.path)) if base else []
+            labels = Counter(key(cls.label) for cls in descendants)
+            for cls in descendants:
+                alone = labels[key(cls.label)] == 1
+                choice = _choice(cls, base, items, alone=alone) if base and items else ""
                 if choice or (not items and key(cls.name) == called):
                     given = self._arguments(maker, cls, choice, block="")
                     yield cls.path, Creation(f"{head}({given})", maker.path, choice)
@@ -302,7 +305,9 @@ def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str], *, alone: bool 
     """
     name = key(cls.name.removesuffix(base.name).removeprefix(base.name))
     label = key(cls.label.removesuffix(base.label))
-    by_identifier = {key(identifier): identifier for identifier in items}
+    firsts = {identifier.partition("_")[0] for identifier in items}
+    shared = f"{firsts.pop()}_" if len(firsts) == 1 else ""  # FX of FX_BLUR
+    by_identifier = {key(identifier.removeprefix(shared)): identifier for identifier in items}
     for wanted in (key(cls.name), name, key(_between(cls.name, base.name))):
         if wanted in by_identifier:
             return by_identifier[wanted]
@@ -311,10 +316,12 @@ def _choice(cls: Symbol, base: Symbol, items: Mapping[str, str], *, alone: bool 
         is_called_so = text and key(text) in {label, key(cls.label)}
         if is_called_so and (alone or key(identifier) in key(cls.name)):
             return identifier
-    # The item may say more: Inverse Kinematics makes a Kinematic Constraint.
+    # The item may say more, or less: Inverse Kinematics makes a Kinematic Constraint, Speed a Speed Control Strip.
     own = set(terms(cls.label.removesuffix(base.label)))
-    fuller = [identifier for identifier, text in items.items() if own and own < set(terms(text))]
-    return fuller[0] if alone and len(fuller) == 1 else ""
+    said = {identifier: set(terms(text)) for identifier, text in items.items()}
+    fuller = [identifier for identifier, words in said.items() if own and own < words]
+    shorter = [identifier for identifier, words in said.items() if words and words < own]
+    return next((found[0] for found in (fuller, shorter) if alone and len(found) == 1), "")
 
 
 def _between(name: str, base: str) -> str:

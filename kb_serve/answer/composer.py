@@ -323,7 +323,7 @@ class AnswerComposer:
     def _instead_of_words(self, entry: SymbolEntry) -> str:
         """What is said of a symbol without a description: its call, or how many members it has."""
         if entry.kind != "class":
-            return entry.line.partition(" — ")[0] if "(" in entry.line else ""
+            return entry.head if "(" in entry.line else ""
         members = self._reader.members(entry.path)
         uses = [] if members else self._reader.uses(entry.path)
         if uses and uses[0].code.startswith("@"):

@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_serve.reader import BaseReader
 
-_READ_ONLY = "read-only"  # which a pointer to further settings may be
 _SETTINGS = 6
 _LINE_TOKENS = 50
 
@@ -47,7 +46,7 @@ def _block(given: str, cls: str, reader: BaseReader) -> AnswerBlock:
     settings = [
         entry
         for entry in reader.members(cls).values()
-        if entry.kind == "property" and (entry.target or _READ_ONLY not in entry.line.partition(" — ")[0])
+        if entry.kind == "property" and (entry.target or not entry.is_read_only)
     ]
     weights = reader.weights([entry.path for entry in settings])
     settings.sort(key=lambda entry: -weights.get(entry.path, 0.0))

@@ -194,7 +194,9 @@ class Topics:
         last = slug.removesuffix("/index").rpartition("/")[2]
         names = TopicNames(
             frozenset({key(title), key(last)}),
-            tuple(words for words in {frozenset(terms(title)), frozenset(terms(last))} if words),
+            tuple(
+                words for words in dict.fromkeys((frozenset(terms(title)), frozenset(terms(last)))) if words
+            ),
         )
         nearness: dict[str, float] = {}
         for below, depth in self._subtree(slug).items():

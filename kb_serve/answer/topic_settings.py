@@ -74,7 +74,7 @@ class TopicSettings:
         if parameter:
             return f"`{path.removeprefix(TYPES)}({parameter.removesuffix(')')}={value!r})`"
         entry = self._reader.entry(path)
-        if entry is None or "read-only" in entry.line.partition(" — ")[0]:
+        if entry is None or entry.is_read_only:
             return ""
         holder = self._reader.symbol(entry.owner)
         reached = holder.reached if holder and holder.reached else entry.owner.removeprefix(TYPES)

@@ -33,6 +33,7 @@ _MOST_TOKENS = 1_150  # of all steps
 _MAKERS = 3
 _FUNCTIONS = 3
 _LEAST_SHARE = 0.25  # of the heaviest class's weight
+_MODIFIER = f"{TYPES}Modifier"  # of objects
 _NOT_MADE = frozenset({NODE, *EMBEDDED_TREES})  # for themselves
 
 
@@ -70,14 +71,39 @@ class Steps:
         yield from self._reached.waiting
 
     def _main_classes(self) -> list[str]:
-        """Where classes have the topic's name, the others of its pages are other topics' matter, unless these alone can
-        be made.
+        """Where classes have the topic's name, best its whole title, the others of its pages are other topics' matter,
+        unless these alone can be made.
         """
         named = [path for path in self._names.classes if self._names.names(path)]
+        titled = [path for path in named if self._has_title(path)]
+        if not self._creations.keys().isdisjoint(titled) and self._are_heavy(titled, named):
+            named = titled
+        named = self._with_kinds(named)
         if self._creations and self._creations.keys().isdisjoint(named):
             named = []
         called = tuple(path.removeprefix(TYPES) for path in named if self._is_the_topic(path))
         return [path for path in named if not self._is_anothers(path, called)] or list(self._names.classes)
+
+    def _with_kinds(self, named: list[str]) -> list[str]:
+        """Some classes, and those of the topic that derive from one which is not made for itself."""
+        bases = {path for path in named if path not in self._creations}
+        return [
+            path
+            for path in self._names.classes
+            if path in named or not bases.isdisjoint(base.path for base in self._reader.lineage(path))
+        ]
+
+    def _has_title(self, path: str) -> bool:
+        entry = self._reader.entry(path)
+        return entry is not None and self._names.has_title(f"{entry.name} {entry.label} {entry.name.lower()}")
+
+    def _are_heavy(self, paths: list[str], beside: list[str]) -> bool:
+        """Whether the heaviest of some classes weighs enough beside that of others."""
+        heaviest, other = (max(map(self._names.classes.__getitem__, each)) for each in (paths, beside))
+        return heaviest >= _LEAST_SHARE * other
+
+    def _has_modifier(self, path: str) -> bool:
+        return self._names.has_modifier(path) and self._reader.descends(path, _MODIFIER)
 
     def _is_the_topic(self, path: str) -> bool:
         return path in self._creations and self._names.is_called(path)
@@ -94,7 +120,7 @@ class Steps:
     def _is_made(self) -> bool:
         """Whether the topic's main class is made, or held by a modifier that is."""
         return any(path in self._creations for path in self._classes[:1]) or any(
-            map(self._names.has_modifier, self._classes)
+            map(self._has_modifier, self._classes)
         )
 
     def _functions(self) -> Iterator[str]:
@@ -114,14 +140,16 @@ class Steps:
                 yield from self._make_one(creations, is_first=creations is groups[0])
 
     def _is_main(self, creations: Mapping[str, Creation]) -> bool:
-        """Whether the topic is about what one maker makes."""
-        return self._names.has_modifier(next(iter(creations))) or self._counts(*creations)
+        """Whether the topic is about what one maker makes: the kinds of its main class, too."""
+        first = next(iter(creations))
+        is_kind = first != self._classes[0] and self._reader.descends(first, self._classes[0])
+        return self._has_modifier(first) or is_kind or self._counts(*creations)
 
     def _groups(self) -> list[dict[str, Creation]]:
         """The classes that are made, by what makes them, each group with its heaviest class first."""
         groups: dict[str, dict[str, Creation]] = defaultdict(dict)
         # A modifier with the topic's name makes the settings that it holds.
-        for path in sorted(self._classes, key=lambda path: not self._names.has_modifier(path)):
+        for path in sorted(self._classes, key=lambda path: not self._has_modifier(path)):
             creation = self._creations.get(path)
             if creation and path not in _NOT_MADE and not is_of_interface(creation.call):
                 groups[creation.maker][path] = creation

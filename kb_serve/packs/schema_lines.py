@@ -118,7 +118,7 @@ class SchemaLines:
         if not members:
             return ""
         reached = f" (`{symbol.reached}`)" if symbol.reached else ""
-        return f"- `{short(symbol.path)}`{reached}: " + ", ".join(map(_member, members))
+        return f"- `{short(symbol.path)}`{reached}: " + ", ".join(member.head for member in members)
 
     def _heaviest(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
         kept = (
@@ -129,11 +129,5 @@ class SchemaLines:
 
 def _socket(name: str, entry: SymbolEntry) -> str:
     """``"Base Color"`` = (0.8, 0.8, 0.8, 1)."""
-    said = entry.line.partition(" — ")[0]
-    _, equals, default = said.partition(" = ")
+    _, equals, default = entry.head.partition(" = ")
     return name.partition("[")[2].removesuffix("]") + (f" = {default}" if equals else "")
-
-
-def _member(entry: SymbolEntry) -> str:
-    """A member as its owner's list has it, without what is said about it."""
-    return entry.line.partition(" — ")[0]

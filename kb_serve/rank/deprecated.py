@@ -8,7 +8,6 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
-_MARK = " deprecated"  # in the line of such a member
 # As RNA says it: “Replaced by '.duration'.”
 _REPLACED = re.compile(r"[Rr]eplaced by '?\.(\w+)")
 
@@ -16,7 +15,7 @@ _REPLACED = re.compile(r"[Rr]eplaced by '?\.(\w+)")
 def replacement(path: str, reader: BaseReader) -> str:
     """The member of the same owner that takes the place of a deprecated one; empty for others."""
     entry = reader.entry(path)
-    if entry is None or entry.kind != "property" or _MARK not in entry.line.partition(" — ")[0]:
+    if entry is None or entry.kind != "property" or not entry.is_deprecated:
         return ""
     symbol = reader.symbol(path)
     found = _REPLACED.search(symbol.deprecation.note) if symbol and symbol.deprecation else None

@@ -37,7 +37,7 @@ def line(kind: str = "property", **fields: object) -> str:
         ({"type": "int", "default": 5, "flags": ("compared",)}, "`x` int = 5"),
         ({"type": "int", "default": 5, "flags": ("readonly",)}, "`x` int read-only"),
         ({"type": "float", "array": (2,), "subtype": "MATRIX", "default": [0, 0]}, "`x` float[2]"),
-        ({"type": "enum", "default": "A", "enum_items": (EnumItem("B"),)}, "`x` enum B"),
+        ({"type": "enum", "default": "A", "enum_items": (EnumItem("B"),)}, "`x` enum (B)"),
         ({"type": "float", "default": 0}, "`x` float = 0 (RNA's)"),
         ({"type": "boolean", "default": False}, "`x` boolean = False (RNA's)"),
         ({"type": "float", "array": (3,), "default": [0, 1, 0.5]}, "`x` float[3] = (0, 1, 0.5) (RNA's)"),
@@ -53,7 +53,7 @@ def line(kind: str = "property", **fields: object) -> str:
                 "default": ["A"],
                 "enum_items": (EnumItem("A"), EnumItem("B")),
             },
-            "`x` set of enum items = {'A'} (RNA's) A|B",
+            "`x` set of enum items = {'A'} (RNA's) (A|B)",
         ),
         ({"type": "enum", "flags": ("enum-flag",), "default": ["A"]}, "`x` set of enum items"),
         ({"type": "int", "deprecation": Deprecation("Unused.")}, "`x` int deprecated"),
@@ -72,8 +72,8 @@ def test_a_line_says_type_default_and_use(fields: dict[str, object], expected: s
 
 def test_of_many_enum_items_the_first_are_shown() -> None:
     items = tuple(EnumItem(f"I{n}") for n in range(9))
-    assert line(type="enum", enum_items=items[:8]).endswith("I0|I1|I2|I3|I4|I5|I6|I7")
-    assert line(type="enum", enum_items=items).endswith("|I7|…")
+    assert line(type="enum", enum_items=items[:8]).endswith("(I0|I1|I2|I3|I4|I5|I6|I7)")
+    assert line(type="enum", enum_items=items).endswith("|I7|…)")
 
 
 def test_a_socket_is_listed_as_python_reaches_it() -> None:
@@ -117,7 +117,7 @@ def test_a_line_says_which_pointers_are_none_and_what_makes_them() -> None:
 
 def test_items_that_no_instance_takes_are_not_listed() -> None:
     items = (EnumItem("A"), EnumItem("B", where=NOT_TAKEN), EnumItem("C", where="only with m='X'"))
-    assert line(type="enum", enum_items=items) == "`x` enum A|C"
+    assert line(type="enum", enum_items=items) == "`x` enum (A|C)"
 
 
 @pytest.mark.parametrize(

@@ -68,6 +68,7 @@ class Instances:
             if (given := self._of(cls, depth + 1)) is not None:
                 steps += given.steps
                 rest = re.sub(rf"\b{name}\b(?!\s*=)", given.expression, rest)
+        steps += self._scene.makers.never_without(creation, self._scene.variables.there)
         return Ready(steps, f"{on.expression}.{holder}{maker}{rest}")
 
     def _object_taking(self, creation: Creation, depth: int) -> Ready | None:
@@ -85,7 +86,7 @@ class Instances:
             return Ready([f"`mesh = {self._scene.obj.mesh_object()}.data`, of a mesh object"], "mesh")
         creation = self._reader.creations([cls]).get(cls)
         if creation is None or creation.maker.startswith("bpy.ops."):
-            return self._reached(cls)
+            return self._reached(cls) or self._of_a_kind(cls, depth)
         ready = self._call(creation, depth) if depth < _DEEPEST else None
         if ready is None:
             return None
@@ -93,6 +94,17 @@ class Instances:
         self._scene.variables.add(cls, variable)
         made = f"`{variable} = {ready.expression}` → `{cls.removeprefix(TYPES)}`"
         return Ready([*ready.steps, made, *self._scene.obj.made_of(cls)], variable)
+
+    def _of_a_kind(self, cls: str, depth: int) -> Ready | None:
+        """An instance of a class below one that is not made for itself: a strip of colour for a Strip.
+
+        Of several the one that needs the least.
+        """
+        below = [entry.path for entry in self._reader.descendants(cls)] if depth < _DEEPEST else []
+        made = {path: one for path, one in self._reader.creations(below).items() if one.choice}
+        needed = {path: self._scene.makers.count_things(one) for path, one in made.items()}
+        least = min(made, key=lambda path: (needed[path], len(made[path].call), path), default="")
+        return self._of(least, depth) if least else None
 
     def _reached(self, cls: str) -> Ready | None:
         """The expression by which scripts mostly reach an instance, where all on its way is there or can be filled."""

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.render import is_machinery
-from kb_serve.answer.steps.members import call_of, can_be_set
+from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.pointer_fills import stays_empty
 from kb_serve.reader import TYPES
 
@@ -57,11 +57,11 @@ class NodeSteps:
         known = self._reader.creations(nodes)
         only = _WITH_OUTPUT.get(holder)
         creations = {node: known[node] for node in nodes if node in known and (not only or node in only)}
-        if not creations:
-            return
         tree, variable = f"{TYPES}{pointer.target}", self._scene.variables.of(holder)
+        is_given = not pointer.is_read_only  # there is none yet
+        if not creations or (is_given and not self._reader.creations([tree])):
+            return
         self._scene.shown.add(tree)
-        is_given = can_be_set(pointer)  # there is none yet
         if is_given:
             yield from self._trees.group(tree, f"{variable}.{pointer.name}")
         else:

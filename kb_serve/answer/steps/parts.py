@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_serve.answer.steps.members import call_of, can_be_set
+from kb_serve.answer.steps.members import call_of
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ def parts(cls: str, variable: str, names: TopicNames, reader: BaseReader) -> Ite
     for ancestor in reader.lineage(cls):
         for entry in reader.members(ancestor.path).values():
             target = f"{TYPES}{entry.target}"
-            if entry.type == "pointer" and not can_be_set(entry) and target not in names.classes:
+            if entry.type == "pointer" and entry.is_read_only and target not in names.classes:
                 for function in reader.heaviest(reader.members(target).values())[:_MOST_CALLS]:
                     if function.kind == "function" and function.name.startswith("new"):
                         choices = _choices(function, cls, reader)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_serve.answer.steps.members import can_be_set
 from kb_serve.answer.steps.variable_names import OBJ, OBJECT, TREE
 from kb_serve.reader import TYPES
 
@@ -41,7 +40,7 @@ class PlaceSteps:
             return
         else:
             pointers = self._reader.pointing_at(cls.removeprefix(TYPES))
-        yield from self._assigned(variable, [pointer for pointer in pointers if can_be_set(pointer)])
+        yield from self._assigned(variable, [pointer for pointer in pointers if not pointer.is_read_only])
 
     def _assigned(self, variable: str, pointers: list[SymbolEntry]) -> Iterator[str]:
         """The heaviest pointer to it whose owner is there, or can be made."""

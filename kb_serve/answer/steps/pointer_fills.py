@@ -52,6 +52,7 @@ class PointerFills:
     def reach(self, expression: str) -> Ready | None:
         """An expression, and what fills pointers on its way that are None on new things; None where one stays so."""
         steps: list[str] = []
+        before = set(self._filled), set(self._chosen)
         above, *names = expression.split(".")
         owner = class_called(above)
         for name in names:
@@ -60,6 +61,7 @@ class PointerFills:
             if pointer is None:
                 break  # of what a subclass has nothing is known here
             if stays_empty(pointer):
+                self._filled, self._chosen = before  # nothing is told
                 return None
             if calls := self._calls(pointer, above):
                 steps.append(_step(calls, f"{above}.{name}"))

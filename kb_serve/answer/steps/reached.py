@@ -52,13 +52,15 @@ class ReachedSettings:
                 continue
             left -= 1
             self._scene.shown.add(cls)
-            step = f"on `{expression}` (`{cls.removeprefix(TYPES)}`): {settings}"
+            told = f"(`{cls.removeprefix(TYPES)}`): {settings}"
             ready = self._scene.pointers.reach(held(expression))
             if ready is None:
-                self.waiting.append(f"set, once it is not None, {step}")
+                self.waiting.append(f"set, once it is not None, on `{expression}` {told}")
                 continue
             yield from ready.steps
-            yield f"set {step}"
+            # The steps' own object need not be the active one.
+            is_objects = expression.startswith("bpy.context.object")
+            yield f"set on `{ready.expression if is_objects else expression}` {told}"
 
     def _expression(self, cls: str) -> str:
         """How the one instance of a class is reached; empty where there is none, or it is the interface's."""

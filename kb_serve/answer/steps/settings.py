@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_serve.answer.steps.members import call_of, can_be_set, settings_of
+from kb_serve.answer.steps.members import call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE
 from kb_serve.answer.steps.parts import parts
 from kb_serve.answer.steps.pointer_fills import stays_empty
@@ -94,7 +94,7 @@ class SettingSteps:
         if entry.type != "pointer" or not self._belongs(target):
             return None
         # What is a thing's own cannot be replaced; another data-block can.
-        if can_be_set(entry) and not self._reader.descends(target, f"{TYPES}ID"):
+        if not entry.is_read_only and not self._reader.descends(target, f"{TYPES}ID"):
             return None
         pointer = self._reader.symbol(entry.path)
         return None if pointer is None or stays_empty(pointer) else pointer

@@ -16,7 +16,10 @@ _SHORTEST = 4  # of the keys that members are called as
 
 @dataclass(slots=True)
 class TopicNames:
-    """The classes and operators of a topic, each with a weight, the heaviest first."""
+    """The classes and operators of a topic, each with a weight, the heaviest first.
+
+    ``words``: those of its title, then those of its address.
+    """
 
     keys: frozenset[str]
     words: tuple[frozenset[str], ...]
@@ -26,6 +29,10 @@ class TopicNames:
     def names(self, name: str) -> bool:
         """Whether a name holds the topic's words."""
         return any(words <= set(terms(name)) for words in self.words)
+
+    def has_title(self, name: str) -> bool:
+        """Whether a name holds all words of the title."""
+        return all(words <= set(terms(name)) for words in self.words[:1])
 
     def is_called(self, path: str) -> bool:
         """Whether a class has the topic's words and no other."""

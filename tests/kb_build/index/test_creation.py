@@ -44,6 +44,12 @@ def calls(extract: Extract) -> dict[str, Creation]:
         ("Material", 'bpy.data.materials.new("Material")'),
         ("MeshUVLoopLayer", "mesh.uv_layers.new()"),
         ("ShaderNodeMath", 'tree.nodes.new("ShaderNodeMath")'),
+        ("ShaderFxWave", "obj.shader_effects.new(\"WaveDistortion\", 'FX_WAVE')"),
+        (
+            "SpeedControlStrip",
+            "scene.sequence_editor.strips.new_effect("
+            "\"SpeedControl Strip\", 'SPEED', channel, frame_start, input1=input1)",
+        ),
         ("Driver", 'obj.driver_add("location", 2).driver'),
         ("RigidBodyWorld", "bpy.ops.rigidbody.world_add()"),
         (
@@ -98,14 +104,17 @@ def test_blender_makes_a_strip_of_the_class_for_every_call(
 
 
 @pytest.mark.blender
-def test_blender_makes_a_modifier_of_the_class_for_every_call(calls: dict[str, Creation]) -> None:
+@pytest.mark.parametrize(("maker", "least"), [("ObjectModifiers.new", 40), ("ObjectShaderFx.new", 9)])
+def test_blender_makes_a_modifier_of_the_class_for_every_call(
+    calls: dict[str, Creation], maker: str, least: int
+) -> None:
     bpy = pytest.importorskip("bpy")
     objects = [bpy.data.objects.new("made", bpy.data.meshes.new("made"))]
     objects.append(bpy.data.objects.new("drawn", bpy.data.grease_pencils.new("drawn")))
     made = 0
     try:
         for path, creation in calls.items():
-            if creation.maker.endswith("ObjectModifiers.new"):
+            if creation.maker.endswith(maker):
                 for obj in objects:
                     try:
                         modifier = eval(creation.call, {"obj": obj})
@@ -114,10 +123,30 @@ def test_blender_makes_a_modifier_of_the_class_for_every_call(calls: dict[str, C
                     if modifier is not None:  # some are there once, or not at all for such an object
                         assert modifier.bl_rna.identifier == path.rpartition(".")[2]
                         made += 1
-        assert made > 40
+        assert made >= least
     finally:
         for obj in objects:
             bpy.data.objects.remove(obj)
+
+
+@pytest.mark.blender
+def test_blender_makes_a_strip_modifier_of_the_class_for_every_call(
+    calls: dict[str, Creation], tmp_path: Path
+) -> None:
+    modifiers = {
+        cls: creation.call.replace("scene.sequence_editor.active_strip", "strip")
+        for cls, creation in calls.items()
+        if creation.maker == "bpy.types.StripModifiers.new"
+    }
+    assert len(modifiers) >= 10
+    starting = [
+        "import bpy", "scene = bpy.context.scene", "bpy.context.workspace.sequencer_scene = scene",
+        "strip = scene.sequence_editor_create().strips.new_effect('a', 'COLOR', 1, 1, length=9)",
+    ]  # fmt: skip
+    made = [f"made = {call}" for call in modifiers.values()]
+    watched = dict.fromkeys(range(len(starting), len(starting) + len(made)), "type(made).__name__")
+    rows = run_statements(tmp_path, [*starting, *made], watched)[len(starting) :]
+    assert [f"bpy.types.{row[2][1:-1]}" for row in rows] == list(modifiers)
 
 
 @pytest.mark.blender

@@ -60,7 +60,7 @@ def test_of_two_with_the_same_words_the_one_in_the_order_of_the_question_comes_f
 def test_a_line_that_says_all_needs_no_look() -> None:
     assert may_have_more("function", "`new_effect(name, type)` — Add")
     assert not may_have_more("function", "`clear()` — Remove all")
-    assert may_have_more("property", "`type` enum A|B|…")
-    assert not may_have_more("property", "`type` enum A|B")
-    assert not may_have_more("property", "`type` enum A|B|… read-only — A kind")
+    assert may_have_more("property", "`type` enum (A|B|…)")
+    assert not may_have_more("property", "`type` enum (A|B)")
+    assert not may_have_more("property", "`type` enum (A|B|…) read-only — A kind")
     assert not may_have_more("class", "`Strip` — A strip")

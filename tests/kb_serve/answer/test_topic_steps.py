@@ -77,7 +77,7 @@ def test_what_is_none_until_something_makes_it_is_set_last(reader: BaseReader) -
 def test_a_pointer_that_is_none_is_filled_before_what_it_holds_is_set(reader: BaseReader) -> None:
     made, held = steps(reader, "force field", "FieldSettings")
     assert made.endswith("`bpy.ops.object.forcefield_toggle()` makes `obj.field`")
-    assert "set on `bpy.context.object.field`" in held
+    assert "set on `obj.field`" in held
 
 
 def test_a_node_goes_to_the_input_that_is_called_as_what_it_gives(reader: BaseReader) -> None:
@@ -98,3 +98,36 @@ def test_what_must_be_there_before_an_operator_is_made_before(kb: KnowledgeBase,
     assert said[1].startswith("2. `bpy.ops.rigidbody.constraint_add()` → `RigidBodyConstraint`")
     both = "made by `bpy.ops.rigidbody.world_add()`, then `bpy.ops.rigidbody.constraint_add()`"
     assert both in kb.query("bpy.types.RigidBodyConstraint").text.replace("; made by", "\nmade by")
+
+
+def test_what_a_thing_works_on_is_a_setting_of_it(reader: BaseReader) -> None:
+    found = " ".join(steps(reader, "boolean", "BooleanModifier"))
+    assert "`object` = None (Object)" in found
+    assert "`operation` = 'DIFFERENCE' (INTERSECT|UNION|DIFFERENCE)" in found
+
+
+def test_deprecated_settings_are_not_steps(reader: BaseReader) -> None:
+    assert "deprecated" not in " ".join(steps(reader, "adjustment", "AdjustmentStrip"))
+
+
+def test_classes_with_the_whole_title_come_before_others_with_its_address(reader: BaseReader) -> None:
+    found = " ".join(steps(reader, "text strip", "Text", "TextCurve", "TextStrip"))
+    assert "new_effect(\"Text Strip\", 'TEXT'" in found
+    assert "bpy.data.texts" not in found
+
+
+def test_what_would_end_blender_is_set_before(reader: BaseReader) -> None:
+    found = steps(reader, "white balance modifier", "WhiteBalanceModifier")
+    made = next(place for place, line in enumerate(found) if "strip.modifiers.new(" in line)
+    assert "`scene.sequence_editor_create()`" in found[0]
+    assert "`bpy.context.workspace.sequencer_scene = scene`" in found[made - 1]
+
+
+def test_an_effect_is_made_on_an_object_that_takes_it(reader: BaseReader) -> None:
+    found = steps(reader, "blur", "ShaderFxBlur")
+    assert "bpy.data.grease_pencils.new" in found[0]
+
+
+def test_the_kinds_of_a_class_stand_for_one_that_is_not_made(reader: BaseReader) -> None:
+    found = " ".join(steps(reader, "strip modifiers", "StripModifier", "PitchModifier", "MaskStripModifier"))
+    assert "`PITCH`" in found or "'PITCH'" in found
