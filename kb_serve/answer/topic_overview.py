@@ -25,6 +25,10 @@ ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 _EDITOR = f"{TYPES}Space"
 _SELDOM = ("grease_pencil/", "render/freestyle/")  # seldom meant by who does not say so
 _WHAT_IS = re.compile(r"(?:what(?:'s|\s(?:is|are))|explain)\s(?:an?\s|the\s)?", re.I)
+_MADE_FROM = re.compile(
+    r"(?:(?:make|get|create|build)\s+)?(?:an?\s+|the\s+)?(?P<made>\w.*?)\s+from\s+(?:an?\s+|the\s+)?(?P<source>\w.*)",
+    re.I,
+)
 _MAX_WORDS = 4
 _CALLED_SO = 4  # pages
 _KINDS = ("modifier", "constraint", "node")  # how titles of pages end
@@ -78,6 +82,15 @@ class Topics:
         if is_quoted_value(text, self._reader):
             return ""
         plain = _WHAT_IS.sub("", text.strip().strip("`'\"?!."))
+        if turned := _MADE_FROM.fullmatch(plain):
+            slug = self._called(f"{turned['source']} to {turned['made']}")
+            page = self._reader.page_entry(slug)
+            if page is not None and " to " in page.title:
+                return slug
+        return self._called(plain)
+
+    def _called(self, plain: str) -> str:
+        """The page of a topic that is called so, without more words."""
         if not key(plain) or len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
             return ""
         if plain != plain.lower() and self._is_class(plain):

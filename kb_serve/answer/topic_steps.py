@@ -182,7 +182,8 @@ class Steps:
     def _there(self) -> Iterator[str]:
         """The topic's settings that are reached without being made: ``RenderSettings``."""
         return self._reached.steps(
-            path for path in self._classes if path not in self._creations and self._counts(path)
+            (path for path in self._classes if path not in self._creations and self._counts(path)),
+            is_made=self._is_made(),
         )
 
     def _counts(self, *paths: str) -> bool:

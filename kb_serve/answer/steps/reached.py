@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.new_scene import NewScene
 
 _MOST = 2
+_UNSEEN = "(RNA's)"  # in the line of a setting of which no instance could be made
 _INTERFACE = (
     "tool_settings",
     "space_data",
@@ -42,8 +43,11 @@ class ReachedSettings:
         self._reader = scene.reader
         self.waiting: list[str] = []
 
-    def steps(self, classes: Iterable[str]) -> Iterator[str]:
-        """The steps that set the first of some classes which are there and have not been shown."""
+    def steps(self, classes: Iterable[str], *, is_made: bool) -> Iterator[str]:
+        """The steps that set the first of some classes which are there and have not been shown.
+
+        ``is_made``: whether the topic is about something that is made.
+        """
         left = _MOST
         for cls in classes:
             expression = self._expression(cls) if left and cls not in self._scene.shown else ""
@@ -55,7 +59,8 @@ class ReachedSettings:
             told = f"(`{cls.removeprefix(TYPES)}`): {settings}"
             ready = self._scene.pointers.reach(held(expression))
             if ready is None:
-                self.waiting.append(f"set, once it is not None, on `{expression}` {told}")
+                if not is_made or _UNSEEN not in settings:
+                    self.waiting.append(f"set, once it is not None, on `{expression}` {told}")
                 continue
             yield from ready.steps
             # The steps' own object need not be the active one.

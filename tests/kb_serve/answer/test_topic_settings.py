@@ -23,6 +23,8 @@ SWIRL = "physics/swirl"
 HELD = {
     BLUR: ("RenderSettings.use_motion_blur", "RenderSettings.motion_blur_shutter"),
     SCATTER: ("ShaderNodeVolumeScatter",),
+    "modifiers/mesh_to_volume": ("MeshToVolumeModifier",),
+    "modifiers/volume_to_mesh": ("VolumeToMeshModifier",),
     "physics/ocean": ("OceanModifier", "OceanModifier.damping", "OceanModifier.depth"),
 }
 PAGES = (
@@ -35,6 +37,11 @@ PAGES = (
         "physics/ocean", "manual", "5.1", "Ocean Modifier",
         (Section("o", "Ocean Modifier", 1, "Makes waves.\n\n**Damping**\n  Calms.\n\n**Depth**\n  Of the water."),),
     ),
+    *(
+        Page(f"modifiers/{title.lower().replace(' ', '_')}", "manual", "5.1", f"{title} Modifier",
+             (Section("m", f"{title} Modifier", 1, "Makes one of the other."),))
+        for title in ("Mesh to Volume", "Volume to Mesh")
+    ),
     Page(SWIRL, "manual", "5.1", "Turbulence", (Section("t", "Turbulence", 1, "A force that whirls."),)),
     Page("render/film", "manual", "5.1", "Film", (Section("f", "Film", 1, "It says nothing of settings."),)),
 )  # fmt: skip
@@ -44,6 +51,7 @@ def _symbols(reader: BaseReader) -> list[Symbol]:
     """A few classes of Blender with their members and what they are derived from."""
     owners = (
         "RenderSettings", "ShaderNodeVolumeScatter", "ShaderNode", "Node", "NodeInternal", "OceanModifier", "Modifier",
+        "MeshToVolumeModifier", "VolumeToMeshModifier",
         "FieldSettings", "Material", "NodeTree", "ShaderNodeTree", "bpy_struct", "BlendData", "BlendDataMaterials",
         "Object", "ObjectModifiers", "Nodes", "NodeLinks", "Context", "ID",
     )  # fmt: skip
@@ -107,3 +115,17 @@ def test_a_setting_is_told_once_and_its_class_with_it(topics: KnowledgeBase) -> 
 
 def test_a_page_that_sets_nothing_is_no_topic(topics: KnowledgeBase) -> None:
     assert topics.query("film").kind == "candidates"
+
+
+@pytest.mark.parametrize(
+    ("query", "slug"),
+    [
+        ("mesh to volume", "modifiers/mesh_to_volume"),
+        ("make volume from mesh", "modifiers/mesh_to_volume"),
+        ("a mesh from a volume", "modifiers/volume_to_mesh"),
+    ],
+)
+def test_what_is_made_from_another_thing_is_that_turned_into_it(
+    topics: KnowledgeBase, query: str, slug: str
+) -> None:
+    assert topics.query(query).hits[0].id == slug
