@@ -1,4 +1,4 @@
-"""What a question says it wants to do without: ``delete object without ops``, ``apply modifier, no operator``."""
+"""What a question is not about: what it does without (``delete object without ops``), how its script runs."""
 
 from __future__ import annotations
 
@@ -23,6 +23,16 @@ _NAMED = "bpy.ops."
 _CODE = "python"  # who says so writes code
 
 
+# How a script runs, which decides nothing about what it calls.
+_RUN = re.compile(
+    r"\s(?:in\s(?:the\s)?background(?:\smode)?|in\sheadless\smode|headless(?:ly)?"
+    r"|(?:without|with\sno)\s(?:an?\s|the\s|any\s)?(?:ui|gui|display|screen|window))(?=\W*$|,|\s(?:and|from|in|to|with)\b)",
+    re.I,
+)
+_BLENDER = re.compile(r"\bblender\b", re.I)  # of whose own start the question may be
+_LEAST_WORDS = 3
+
+
 class Wanted(NamedTuple):
     """A question without what it does not want; ``operators``: whether they will do."""
 
@@ -32,9 +42,18 @@ class Wanted(NamedTuple):
 
 def without_unwanted(query: str) -> Wanted:
     """A question, its blanks single, as it would be asked by who only knows what is wanted."""
-    found = None if is_message(query) or _WHY.match(query) else _UNWANTED.search(query)
-    if found is None:
+    if is_message(query) or _WHY.match(query):
         return Wanted(query)
-    text = " ".join((query[: found.start()] + query[found.end() :]).split())
-    are_unwanted = _OF_OPERATORS.search(found[0]) is not None and _NAMED not in text
-    return Wanted(f"{text} {_CODE}", operators=not are_unwanted)
+    asked = _without_run(query)
+    found = _UNWANTED.search(asked)
+    if found is not None:
+        asked = " ".join((asked[: found.start()] + asked[found.end() :]).split())
+    is_code = f" {_CODE}" if asked != query else ""
+    are_unwanted = found is not None and _OF_OPERATORS.search(found[0]) is not None and _NAMED not in asked
+    return Wanted(asked + is_code, operators=not are_unwanted)
+
+
+def _without_run(query: str) -> str:
+    """A question without how its script runs, if that is not all that it asks for."""
+    text = _RUN.sub("", query)
+    return query if len(text.split()) < _LEAST_WORDS or _BLENDER.search(text) else text

@@ -21,6 +21,9 @@ from kb_serve.recognise.unwanted import without_unwanted
         ("bevel without operators or context override", "bevel python", False),
         ("apply modifier without context override", "apply modifier python", True),
         ("bpy.ops.object.join without overriding", "bpy.ops.object.join python", True),
+        ("bake the cache of cloth in background mode", "bake the cache of cloth python", True),
+        ("bake a fluid headless, without operators", "bake a fluid python", False),
+        ("add a light without UI to the scene", "add a light to the scene python", True),
     ],
 )
 def test_what_is_not_wanted_is_left_out(query: str, text: str, operators: bool) -> None:
@@ -38,6 +41,9 @@ def test_what_is_not_wanted_is_left_out(query: str, text: str, operators: bool) 
         "why is there no operator for metaballs",
         "run with no context.active_object",
         "why has it no operator",
+        "run blender in background mode",
+        "render headless",
+        "set an image in the background of the view",
         "AttributeError: 'NoneType' object has no operator",
         "render without denoising",
         "cloth without self collision",
