@@ -23,14 +23,27 @@ if TYPE_CHECKING:
 
 ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
 _EDITOR = f"{TYPES}Space"
-_SELDOM = ("grease_pencil/", "render/freestyle/")  # seldom meant by who does not say so
+_SELDOM = (
+    "grease_pencil/",
+    "render/freestyle/",
+    "editors/texture_node/",
+)  # seldom meant by who does not say so
 _WHAT_IS = re.compile(r"(?:what(?:'s|\s(?:is|are))|explain)\s(?:an?\s|the\s)?", re.I)
 _MADE_FROM = re.compile(
     r"(?:(?:make|get|create|build)\s+)?(?:an?\s+|the\s+)?(?P<made>\w.*?)\s+from\s+(?:an?\s+|the\s+)?(?P<source>\w.*)",
     re.I,
 )
+# Who asks for one of these wants to know how it is made, whatever it is put on.
+_MAKING = re.compile(
+    r"(?:how\s(?:do\si|to|can\si)\s)?(?:add|create|make|put|insert|apply|use)\s(?:an?\s|the\s|new\s)*"
+    r"(?P<made>\w.*?\s(?:modifier|constraint|node|strip))"
+    r"(?:\s(?:to|on|onto|for|in|into)\s(?:an?\s|the\s|my\s|this\s)?(?:\w+\s?){1,3})?"
+    r"(?:\s(?:from|by|in|via|with|using|through)\s(?:an?\s|the\s)?(?:python|script|code|bpy|api))?",
+    re.I,
+)
 _MAX_WORDS = 4
 _CALLED_SO = 4  # pages
+_CHAPTER = 100  # pages and symbols of what is meant before a single page
 _KINDS = ("modifier", "constraint", "node")  # how titles of pages end
 _SHORT_FOR = _KINDS[:2]  # of these the name alone is used; nodes are mostly called as what else does the same
 _MOST_SETTINGS = 10
@@ -87,7 +100,10 @@ class Topics:
             page = self._reader.page_entry(slug)
             if page is not None and " to " in page.title:
                 return slug
-        return self._called(plain)
+        made = (
+            _MAKING.fullmatch(plain) if "bone" not in plain.lower() else None
+        )  # which has constraints of its own
+        return self._called(plain) or (self._called(made["made"]) if made else "")
 
     def _called(self, plain: str) -> str:
         """The page of a topic that is called so, without more words."""
@@ -101,13 +117,32 @@ class Topics:
         titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._children(slug)}
         for slugs in titled:
             if sizes := {slug: self._size(slug) for slug in slugs if self._is_topic(slug)}:
-                best = max(sizes, key=lambda slug: (not slug.startswith(_SELDOM), sizes[slug], slug))
-                is_seldom = best.startswith(_SELDOM) and not all(slug.startswith(_SELDOM) for slug in slugs)
-                is_one_of_many = len(slugs) > _CALLED_SO and not self._children(best)
-                return "" if is_seldom or is_one_of_many else best
+                return self._best(sizes, slugs, plain)
         # A page that explains nothing but settings, if no other may be meant.
         alone = next((slugs for slugs in titled if len(slugs) == 1), set[str]())
         return next((slug for slug in alone if self._sets_something(slug)), "")
+
+    def _best(self, sizes: dict[str, int], slugs: set[str], plain: str) -> str:
+        """The page that is meant of those called so: the one with the very title, or else the largest."""
+        seldom = [slug for slug in slugs if self._is_seldom(slug, plain)]
+        exact = [slug for slug in slugs if self._is_title(slug, plain)]
+        is_likely = not set(exact) & set(seldom) or len(seldom) == len(slugs)
+        if len(exact) == 1 and exact[0] in sizes and is_likely and max(sizes.values()) <= _CHAPTER:
+            return exact[0]
+        best = max(sizes, key=lambda slug: (slug not in seldom, sizes[slug], slug))
+        is_one_of_many = len(slugs) > _CALLED_SO and not self._children(best)
+        return "" if is_one_of_many or (best in seldom and len(seldom) < len(slugs)) else best
+
+    @staticmethod
+    def _is_seldom(slug: str, plain: str) -> bool:
+        """Whether a page is of what is seldom meant by who does not say so."""
+        chapter = next((chapter for chapter in _SELDOM if slug.startswith(chapter)), "")
+        return chapter != "" and key(chapter.rstrip("/").rpartition("/")[2]) not in key(plain)
+
+    def _is_title(self, slug: str, text: str) -> bool:
+        """Whether several words are a page's title, small words included: Track To is none of Tracking Constraints."""
+        page = self._reader.page_entry(slug)
+        return page is not None and key(page.title) == key(text) and len(text.split()) > 1
 
     def _is_class(self, text: str) -> bool:
         """Whether a text in capitals may mean a class: ``Camera``, ``Particle System``, unlike ``Rigid Body``."""
@@ -205,11 +240,11 @@ class Topics:
     def _names(self, slug: str, title: str) -> TopicNames:
         """The classes and operators of a topic: those that its pages explain, and those with its name."""
         last = slug.removesuffix("/index").rpartition("/")[2]
+        words = dict.fromkeys((frozenset(terms(title)), frozenset(terms(last))))
         names = TopicNames(
             frozenset({key(title), key(last)}),
-            tuple(
-                words for words in dict.fromkeys((frozenset(terms(title)), frozenset(terms(last)))) if words
-            ),
+            tuple(filter(None, words)),
+            frozenset() if self._children(slug) else frozenset(self._reader.symbols_of_page(slug)),
         )
         nearness: dict[str, float] = {}
         for below, depth in self._subtree(slug).items():

@@ -75,9 +75,10 @@ class Steps:
         unless these alone can be made.
         """
         named = [path for path in self._names.classes if self._names.names(path)]
-        titled = [path for path in named if self._has_title(path)]
-        if not self._creations.keys().isdisjoint(titled) and self._are_heavy(titled, named):
-            named = titled
+        titled = [path for path in self._names.classes if self._has_title(path)]
+        made = self._creations.keys() & titled
+        if made and (not self._names.explained.isdisjoint(made) or self._are_heavy(titled, named or titled)):
+            named = sorted(titled, key=lambda path: path not in self._names.explained)
         named = self._with_kinds(named)
         if self._creations and self._creations.keys().isdisjoint(named):
             named = []
@@ -87,11 +88,12 @@ class Steps:
     def _with_kinds(self, named: list[str]) -> list[str]:
         """Some classes, and those of the topic that derive from one which is not made for itself."""
         bases = {path for path in named if path not in self._creations}
-        return [
+        kinds = (
             path
             for path in self._names.classes
-            if path in named or not bases.isdisjoint(base.path for base in self._reader.lineage(path))
-        ]
+            if not bases.isdisjoint(base.path for base in self._reader.lineage(path))
+        )
+        return list(dict.fromkeys((*named, *kinds)))
 
     def _has_title(self, path: str) -> bool:
         entry = self._reader.entry(path)

@@ -99,5 +99,5 @@ def wrong(kb: KnowledgeBase, cases: Iterable[tuple[str, str]], within: int = 1) 
 def steps(reader: BaseReader, topic: str, *classes: str) -> list[str]:
     """The steps of a topic with some classes, the heaviest first."""
     weights = {f"{TYPES}{name}": 10.0 - place for place, name in enumerate(classes)}
-    names = TopicNames(frozenset({key(topic)}), (frozenset(topic.split()),), weights)
+    names = TopicNames(frozenset({key(topic)}), (frozenset(topic.split()),), classes=weights)
     return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]

@@ -18,11 +18,13 @@ _SHORTEST = 4  # of the keys that members are called as
 class TopicNames:
     """The classes and operators of a topic, each with a weight, the heaviest first.
 
-    ``words``: those of its title, then those of its address.
+    ``words``: those of its title, then those of its address. ``explained``: the symbols that its page explains,
+    if there are none below it.
     """
 
     keys: frozenset[str]
     words: tuple[frozenset[str], ...]
+    explained: frozenset[str] = frozenset()
     classes: dict[str, float] = field(default_factory=dict[str, float])
     operators: dict[str, float] = field(default_factory=dict[str, float])
 

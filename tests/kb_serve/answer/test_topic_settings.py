@@ -118,11 +118,31 @@ def test_a_page_that_sets_nothing_is_no_topic(topics: KnowledgeBase) -> None:
 
 
 @pytest.mark.parametrize(
+    "query",
+    [
+        "add an ocean modifier",
+        "how do I add an ocean modifier to a mesh from Python?",
+        "create the ocean modifier by script",
+        "add ocean modifier to the plane",
+    ],
+)
+def test_who_asks_to_add_a_modifier_is_told_how(topics: KnowledgeBase, query: str) -> None:
+    answer = topics.query(query)
+    assert answer.hits[0].id == "physics/ocean"
+    assert "obj.modifiers.new(\"Ocean\", 'OCEAN')" in answer.text
+
+
+def test_what_is_put_on_bones_is_not_told_for_objects(topics: KnowledgeBase) -> None:
+    assert topics.query("add an ocean modifier to a bone").kind == "candidates"
+
+
+@pytest.mark.parametrize(
     ("query", "slug"),
     [
         ("mesh to volume", "modifiers/mesh_to_volume"),
         ("make volume from mesh", "modifiers/mesh_to_volume"),
         ("a mesh from a volume", "modifiers/volume_to_mesh"),
+        ("volume to mesh modifier", "modifiers/volume_to_mesh"),
     ],
 )
 def test_what_is_made_from_another_thing_is_that_turned_into_it(

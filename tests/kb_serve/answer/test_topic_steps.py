@@ -35,7 +35,7 @@ def test_a_brush_that_paints_is_toggled_before_it_is_set(reader: BaseReader) -> 
 
 
 def test_an_operator_says_what_it_takes_and_what_must_be_set(reader: BaseReader) -> None:
-    names = TopicNames(frozenset({"fluid"}), (), {}, operators={"bpy.ops.fluid.bake_all": 1.0})
+    names = TopicNames(frozenset({"fluid"}), (), operators={"bpy.ops.fluid.bake_all": 1.0})
     (run,) = [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
     assert "Bake Entire Fluid Simulation (takes an active object; offered by Blender's panels only if" in run
     assert "`FluidDomainSettings.cache_type` is 'ALL' (a new one has `'REPLAY'`)" in run
