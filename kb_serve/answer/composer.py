@@ -46,7 +46,7 @@ _NOTES_TOKENS = 500
 _EXCERPT_TOKENS = 300  # of the best of several candidates
 _LEAST_SAID = 30
 _LINE_TOKENS = 60
-_NAMES_OF_A_PART, _PAGES_OF_A_PART = 3, 2
+_NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _NAMES = "further names"
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
@@ -192,6 +192,7 @@ class AnswerComposer:
             chosen = [place for place, is_page in enumerate(are_pages) if not is_page][:_NAMES_OF_A_PART]
             chosen += [place for place, is_page in enumerate(are_pages) if is_page][:_PAGES_OF_A_PART]
             lines = [f"- {self._line(hits[place], rows[place])}" for place in chosen]
+            lines = [*self._topics.first_steps(part.text, _STEPS_OF_A_PART), *lines]
             blocks.append(AnswerBlock("\n".join((f"**{number}. {part.text}**", *lines)), part.text))
             found.append([rows[place] for place in sorted(chosen)])
         # In turns, as each part is one of several answers.

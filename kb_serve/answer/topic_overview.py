@@ -221,6 +221,13 @@ class Topics:
         left = [entry for entry in settings if f"`{entry.name}`" not in told]
         yield from _list_of("Settings", [*self._settings.lines(left[:_MOST_SETTINGS])])
 
+    def first_steps(self, text: str, most: int) -> list[str]:
+        """The first steps of a topic; none for what is no topic."""
+        slug = self.find(text)
+        page = self._reader.page_entry(slug)
+        steps = [*Steps(self._reader, self._names(slug, page.title)).blocks()] if page else []
+        return steps[0].text.split("\n")[1 : most + 1] if steps else []
+
     def members(self, slug: str) -> frozenset[str]:
         """All classes and operators that belong to a topic."""
         page = self._reader.page_entry(slug)

@@ -149,3 +149,8 @@ def test_what_is_made_from_another_thing_is_that_turned_into_it(
     topics: KnowledgeBase, query: str, slug: str
 ) -> None:
     assert topics.query(query).hits[0].id == slug
+
+
+def test_a_part_of_a_question_is_told_how_as_well(topics: KnowledgeBase) -> None:
+    text = topics.query("add an ocean modifier to the plane and render an image").text
+    assert "obj.modifiers.new(\"Ocean\", 'OCEAN')" in text.partition("**2. render an image**")[0]
