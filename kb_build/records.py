@@ -46,7 +46,9 @@ ALSO = "also:"
 # How a flag begins that says what must not be None: Blender ends when the function is called.
 ENDS_WITHOUT = "ends-without:"
 # The flag of a socket that a node of a zone has once it is paired with the other one.
+UNBOUNDED = "unbounded:"  # min or max: an end of a number's range that is not kept
 WHEN_PAIRED = "when-paired"
+SHOWN_WHEN = "shown-when:"  # in which of a node's modes a socket is shown, where its modes cannot say it
 # The flag of a property, not called ``name``, by whose value collections find such an item.
 NAMES_ITEMS = "names-items"
 # The flag of a collection that has no elements on what is newly made.

@@ -26,6 +26,7 @@ from kb_build.records import (
     LOCKED_WITH,
     NEEDS,
     NOT_TAKEN,
+    SHOWN_WHEN,
     THEN,
     last_name,
 )
@@ -38,6 +39,8 @@ if TYPE_CHECKING:
 
 NODE_FAMILIES = ("ShaderNode", "GeometryNode", "CompositorNode", "FunctionNode", "TextureNode")
 _ACTIVE = "bpy.context.object"
+_REGISTERED = "nodes of a class that a script registers: built-in ones refuse it"
+_OF_OWN_NODES = frozenset({"bpy.types.NodeInputs", "bpy.types.NodeOutputs"})
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
 SET = "set of enum items"
 NEVER_BY_IDENTIFIER = "identifier-never"
@@ -240,7 +243,8 @@ def refusal_lines(symbol: Symbol) -> list[str]:
     fatal = [
         f"while `{needed}` is None, which ends Blender: set it" for needed in symbol.flagged(ENDS_WITHOUT)
     ]
-    return fatal + [
+    own = [f"taken only by {_REGISTERED}"] if _is_of_own_nodes(symbol) else []
+    return [*fatal, *own] + [
         _refusal_text(refusal)
         for refusal in symbol.refusals
         if refusal.is_explained and not (refusal.values and refusal.by)
@@ -306,8 +310,14 @@ def _mode_text(refusal: Refusal) -> str:
     return f"{refusal.mode.capitalize()} Mode"
 
 
+def _is_of_own_nodes(symbol: Symbol) -> bool:
+    return symbol.owner in _OF_OWN_NODES and symbol.kind == "function"
+
+
 def mode_needed(symbol: Symbol) -> str:
     """``Edit Mode``: where alone a function is taken, whatever it is given; empty for everywhere."""
+    if _is_of_own_nodes(symbol):
+        return _REGISTERED
     whole = (refusal for refusal in symbol.refusals if refusal.mode and not (refusal.values or refusal.by))
     return "".join(_mode_text(refusal) for refusal in islice(whole, 1))
 
@@ -487,10 +497,15 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
         notes.append(f"(if {switch})")
     if symbol.deprecation:
         notes.append("deprecated")
-    if symbol.modes:
-        notes.append("when " + " and ".join(symbol.modes))
+    if shown := shown_when(symbol):
+        notes.append(f"when {shown}")
     said = first_sentence(symbol.description) or (symbol.label if symbol.label != symbol.name else "")
     return " ".join([_head(symbol), *notes]) + (f" — {said}" if said else "")
+
+
+def shown_when(symbol: Symbol) -> str:
+    """In which modes of its node a socket is shown; empty for always."""
+    return " and ".join(symbol.modes) or "".join(symbol.flagged(SHOWN_WHEN))
 
 
 def term_lines(text: str) -> Iterator[tuple[int, str]]:

@@ -34,6 +34,8 @@ _NOT_RNA = frozenset(
 class Callee:
     """What a call can give. ``positional`` are the names that take a place, ``keyword_only`` those that do not.
 
+    ``place_only`` are those of the first that take no name.
+
     ``is_open`` is True where other keywords are taken or the signature does not tell, ``is_variadic`` where more may be
     given by place.
     """
@@ -45,6 +47,7 @@ class Callee:
     is_open: bool
     is_rna: bool
     is_variadic: bool = False
+    place_only: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, slots=True)
@@ -157,7 +160,8 @@ def callee_of(symbol: Symbol) -> Callee:
     positional = tuple(name for name in placed if name in names)
     is_variadic = is_open and (arguments is None or arguments.kwarg is None or arguments.vararg is not None)
     is_rna = _is_rna(symbol, parameters)
-    return Callee(symbol, parameters, positional, only, is_open, is_rna, is_variadic)
+    place_only = tuple(argument.arg for argument in arguments.posonlyargs) if arguments else ()
+    return Callee(symbol, parameters, positional, only, is_open, is_rna, is_variadic, place_only)
 
 
 def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:

@@ -28,6 +28,7 @@ _DETOURS = frozenset(
         "window_manager", "window", "screen", "workspace", "area", "region", "preferences", "space_data", "library",
         "original", "override_library", "asset_data", "asset", "rigidbody_world",
         "blend_data", "nla_tracks", "material_override", "preview", "id_root", "parent", "tool_settings",
+        "next_node", "prev_node",
     }
 )  # fmt: skip
 _DETOUR_COST = 6

@@ -31,6 +31,7 @@ from kb_build.records import (
     LOCKED_ON,
     LOCKED_WITH,
     NEEDS,
+    UNBOUNDED,
     Default,
     EnumItem,
     Link,
@@ -64,6 +65,8 @@ _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
 _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
+_LEFT_OUT = "Left out: "
+_NO_KEYWORDS = "no-keywords"  # as ``inside/keywords.py`` marks it
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
@@ -193,6 +196,22 @@ def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
             row["flags"] = [*row.get("flags", ()), ENDS_WITHOUT + without]
 
 
+def _add_left_out(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what an argument is where it is left out, in place of RNA's default. A factor has no unit."""
+    for parameter in (row or {}).get("parameters", ()):
+        if parameter["name"] == seen["argument"]:
+            for wrong in ("default", *(("unit",) if seen["argument"] == "scale" else ())):
+                parameter.pop(wrong, None)
+            said = parameter.get("description", "").rstrip(".")
+            parameter["description"] = f"{said}. {_LEFT_OUT}{seen['value']}".removeprefix(". ")
+
+
+def _add_limits(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds the ends of a number's range that its setter does not ask for."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), *(UNBOUNDED + end for end in seen["ends"])]
+
+
 def _add_locked(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     """Adds where Blender does not let it be assigned: on what, or in which modes, and what frees it."""
     if row is not None:
@@ -228,6 +247,8 @@ _ADDED = {
     "refusals": _add_refusals,
     "empty_collection": _add_empty,
     "evaluated": _add_evaluated,
+    "left_out": _add_left_out,
+    "limits": _add_limits,
     "locked": _add_locked,
 }
 
@@ -310,6 +331,8 @@ def call_text(name: str, parameters: Iterable[Parameter], *, marked: bool = Fals
             shown.append("*")
         if parameter.required:
             shown.append(parameter.name)
+        elif parameter.default is None and _LEFT_OUT in parameter.description:
+            shown.append(f"{parameter.name}=...")
         elif parameter.default is None and (untold := _UNTOLD.get(parameter.type.partition(" ")[0])):
             shown.append(f"{parameter.name}={untold}")
         elif isinstance(parameter.default, list) and parameter.type == "enum":
@@ -347,6 +370,12 @@ def _with_sets(call: str, parameters: Iterable[Parameter]) -> str:
     return call
 
 
+def _by_place(call: str) -> str:
+    """A call's text with the mark of arguments that are given by their places alone."""
+    head, _, given = call.rstrip(")").partition("(")
+    return call if not given or "/" in given or "*" in given else f"{head}({given}, /)"
+
+
 def read_docstring(row: Mapping[str, Any]) -> Docstring:
     """What the docstring of a line of the extract says; it is kept."""
     return parse_docstring(row.get("docstring", ""), _BOUND.sub("(", row.get("signature", ""), count=1))
@@ -362,6 +391,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
         call = _with_sets(parsed.signature, parameters)
         fields["description"] = parsed.description
         fields["type"] = parsed.type or row.get("type", "")
+        call = _by_place(call) if _NO_KEYWORDS in row.get("flags", ()) else call
         fields["signature"] = last_name(path) + call[call.index("(") :] if "(" in call else ""
         fields["parameters"] = _completed(parsed.parameters, parameters)
         fields["returns"] = parsed.returns

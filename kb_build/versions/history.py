@@ -200,6 +200,15 @@ class ApiHistory:
         """What the version has → since which one, where that is known."""
         return {path: first for path, first, surely in self.arrivals(version) if surely}
 
+    def came_back(self, version: str) -> frozenset[str]:
+        """What the version has since an older one again, and some before that had as well."""
+        masks = {path: mask for path, mask, _ in self.symbols()}
+        return frozenset(
+            path
+            for path, first, _ in self.arrivals(version)
+            if masks[path] & (1 << self.versions.index(first)) - 1
+        )
+
     def to_bytes(self) -> bytes:
         """The file's content. Equal histories give equal bytes (with one release of zlib)."""
         text = io.StringIO(newline="")

@@ -117,7 +117,8 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         for path, *_ in removed
         for position, row in enumerate(successors.of(path))
     ]
-    since = history.since(version)
+    again = history.came_back(version)  # of which "since" would be half the truth
+    since = {path: first for path, first in history.since(version).items() if path not in again}
     return RemovedSymbols(
         removed=tuple((*row, split_path(row[0])[2]) for row in removed),
         names=tuple(names),

@@ -1,8 +1,9 @@
-"""An argument without its name where Blender takes none.
+"""An argument without its name where Blender takes none, or with it where it takes no names.
 
 Functions of Blender's classes take by place only what they need; since 2.80 the rest is given by name. Operators take
 by place nothing but an execution context and whether to push an undo step; until 3.6 a dictionary before them set the
 context, since 4.0 that is ``with bpy.context.temp_override(...)``. The classes of mathutils take one sequence.
+Functions written in C often take no names: those of ``bmesh.utils``, and of vertices, edges and faces of a BMesh.
 
 ```python
 ob.shape_key_add("Smile")  # reported
@@ -13,6 +14,7 @@ bpy.ops.mesh.primitive_cube_add(
     4
 )  # reported: Blender takes the number for a truth value, and makes the usual cube
 bpy.ops.mesh.primitive_cube_add(size=4)
+vert.select_set(select=True)  # reported: vert.select_set(True)
 Vector(0, 0, 1)  # reported
 Vector((0, 0, 1))
 ```
@@ -171,6 +173,14 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     callee = call.callee
     path = callee.symbol.path
     arguments = call.node.args
+    named = next((keyword for keyword in call.node.keywords if keyword.arg in callee.place_only), None)
+    if named is not None and not path.startswith(_UNRELIABLE):
+        yield Finding(
+            RULE.id, "error", script.span(named),
+            f"`{path}` takes no names, only places: `{callee.symbol.signature}`.", path,
+            (), _by_place(script, call),
+        )  # fmt: skip
+        return
     starred = any(isinstance(argument, ast.Starred) for argument in arguments)
     if (
         starred
@@ -208,8 +218,21 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
     )  # fmt: skip
 
 
+def _by_place(script: Script, call: CallSite) -> Fix | None:
+    """The arguments without their names, where they stand in their places already."""
+    names = [keyword.arg for keyword in call.node.keywords]
+    if [*call.callee.positional[len(call.node.args) :]][: len(names)] != names:
+        return None
+    edits = tuple(Edit(script.span(keyword), ast.unparse(keyword.value)) for keyword in call.node.keywords)
+    return Fix("Leave out the names", edits, sure=True)
+
+
 def _naming(script: Script, argument: ast.expr, parameter: Parameter, *, sure: bool) -> Fix:
-    edit = Edit.before(script.span(argument), f"{parameter.name}=")
+    is_set = parameter.type == "enum" and isinstance(parameter.default, list)
+    if is_set and isinstance(argument, ast.Constant):  # one item of several that may be given
+        edit = Edit(script.span(argument), f"{parameter.name}={{{argument.value!r}}}")
+    else:
+        edit = Edit.before(script.span(argument), f"{parameter.name}=")
     return Fix(f"Write {parameter.name}=", (edit,), sure=sure)
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
 from kb_serve.recognise.products import CLASSES, WITH_AT
 from kb_serve.recognise.subscripts import NODES_MODIFIER, CustomProperties
 
@@ -41,6 +42,7 @@ _EVERY_POINT = (
     "Set `radius` and `opacity` of every point: the first `opacity` that is set in a drawing makes it 0 for all its "
     "other points, and strokes that are added after either was set begin with 0 of it."
 )
+_BAKES_FLUID = "bpy.ops.fluid.bake_"
 _SIZES = {f"{_TYPES}GreasePencilDrawing.add_strokes": "strokes", f"{_TYPES}Curves.add_curves": "curves"}
 _NO_SIZES = "An empty list crashes Blender 5.1: `if sizes: data.add_{}(sizes)`. Each size is at least 1."
 _INDICES = {
@@ -66,6 +68,8 @@ class Practice:
         """Sentences on a symbol, or on what the page with that slug explains."""
         if identifier.startswith(_HANDLERS) and identifier != _PERSISTENT and self._reader.entry(_PERSISTENT):
             yield _STAYING
+        if identifier.startswith(_BAKES_FLUID):
+            yield NO_FLUIDS
         if identifier in CLASSES:
             yield WITH_AT
         if identifier in _DRIVERS:

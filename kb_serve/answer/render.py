@@ -9,7 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN, WITHOUT_ACTIVE, WITHOUT_AREA
+from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN, UNBOUNDED, WITHOUT_ACTIVE, WITHOUT_AREA
 from kb_build.symbol_lines import (
     SET,
     alike_nodes,
@@ -28,6 +28,7 @@ from kb_build.symbol_lines import (
     passage_text,
     refusal_lines,
     said_taken,
+    shown_when,
     subscripts_text,
     taken_text,
     taken_where,
@@ -67,6 +68,9 @@ _UNITS = {
     "VELOCITY": "m/s", "ACCELERATION": "m/s²", "AREA": "m²", "VOLUME": "m³", "CAMERA": "mm", "POWER": "W",
     "TEMPERATURE": "K", "WAVELENGTH": "nm", "COLOR_TEMPERATURE": "K", "FREQUENCY": "Hz",
 }  # fmt: skip
+_NO_NUMBERS = frozenset(
+    {"string", "pointer", "collection", "boolean", "enum"}
+)  # RNA gives some of them units
 _SHOWN_FLAGS = (
     "readonly",
     "animatable",
@@ -97,6 +101,13 @@ _MACHINERY = {
 }
 
 
+def _not_kept(symbol: Symbol) -> str:
+    """Which end of a range Blender does not keep to, as tried."""
+    ends = symbol.flagged(UNBOUNDED)
+    sides = {"min": "below", "max": "above"}
+    return f", not enforced: a value {' or '.join(sides[end] for end in ends)} stays" if ends else ""
+
+
 def _range_text(low: float | None, high: float | None, kind: str) -> str:
     """The range of a number; ``kind`` is its type, as symbols have it: integers are written whole."""
     digits = ".0f" if kind.startswith("int") else "g"
@@ -117,10 +128,10 @@ def facts(symbol: Symbol) -> Iterator[str]:
         text = f"range: {_range_text(symbol.hard_min, symbol.hard_max, symbol.type)}"
         if (symbol.soft_min, symbol.soft_max) != (symbol.hard_min, symbol.hard_max):
             text += f" (slider {_range_text(symbol.soft_min, symbol.soft_max, symbol.type)})"
-        yield text
+        yield text + _not_kept(symbol)
     elif symbol.soft_min is not None or symbol.soft_max is not None:
         yield f"slider: {_range_text(symbol.soft_min, symbol.soft_max, symbol.type)}"
-    if symbol.unit:
+    if symbol.unit and symbol.type not in _NO_NUMBERS:
         yield f"unit: {_UNITS.get(symbol.unit, symbol.unit.lower())}"
     if symbol.subtype and symbol.subtype not in {"UNSIGNED"}:
         yield f"subtype: {symbol.subtype}"
@@ -128,8 +139,8 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield ", ".join(flags)
     if text := locked_text(symbol):
         yield text
-    if symbol.modes:
-        yield "shown when " + " and ".join(symbol.modes)
+    if shown := shown_when(symbol):
+        yield f"shown when {shown}"
 
 
 def _items(
@@ -411,7 +422,8 @@ class MarkdownRenderer:
         cls = TYPES + asked.removesuffix(f".{side}").removeprefix(TYPES)
         members = self.reader.members(cls).values() if side in {"inputs", "outputs"} else ()
         sockets = [entry for entry in members if entry.path.startswith(f"{cls}.{side}[")]
-        yield from _listed(f"{side.title()} of `{cls}`", sockets)
+        pairs = f", once it is paired (`{_PAIRS}`)" if any(entry.name == _PAIRS for entry in members) else ""
+        yield from _listed(f"{side.title()} of `{cls}`{pairs}", sockets)
 
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section ``anchor`` comes first."""

@@ -17,6 +17,8 @@ import bpy
 from . import (
     context,
     evaluated,
+    left_out,
+    limits,
     modules,
     new_things,
     nodes,
@@ -74,7 +76,13 @@ def start_refusals(_write, found):
     """Begins with what takes longest, and needs nothing of the other steps."""
     if can_work_apart():
         observer = found["observer"]
-        found["refusals"] = Beside("refusals", lambda write: refusals.find_all(write, observer))
+
+        def tried(write):
+            refusals.find_all(write, observer)
+            limits.find_all(write, observer)
+            left_out.find_all(write)
+
+        found["refusals"] = Beside("refusals", tried)
 
 
 def write_refusals(write, found):

@@ -12,6 +12,7 @@ import types
 import bpy
 
 from . import bmesh_operators
+from .keywords import flags_of, flags_of_method
 from .rna import ATTRIBUTE_TYPES, METHOD_TYPES
 from .wire import plain
 
@@ -157,7 +158,8 @@ def write_class(write, path, cls):
                 continue
             written.add(name)
             if isinstance(value, METHOD_TYPES + ATTRIBUTE_TYPES):
-                write_member(write, path, name, value)
+                is_method = isinstance(value, METHOD_TYPES)
+                write_member(write, path, name, value, flags_of_method(cls, name) if is_method else ())
             elif isinstance(value, type) and value.__module__ == cls.__module__:
                 write_class(write, f"{path}.{name}", value)
             elif isinstance(value, PLAIN):
@@ -287,6 +289,7 @@ class Walk:
             docstring=text,
             signature=signature(value),
             parameters=parameters,
+            flags=flags_of(value),
         )
 
     def data(self, path, owner, module, attribute, value):

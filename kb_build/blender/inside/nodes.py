@@ -6,6 +6,7 @@ gives another type or another name (``GeometryNodeSwitch.input_type``) carry wha
 """
 
 import itertools
+import math
 
 import bpy
 
@@ -13,6 +14,8 @@ from .instances import put, refused_items
 from .rna import read_items
 from .wire import limit, plain
 
+MOST_STATES = 1_000
+MOST_CONDITIONS = 3
 TREES = ("ShaderNodeTree", "GeometryNodeTree", "CompositorNodeTree", "TextureNodeTree")
 
 
@@ -84,6 +87,43 @@ def mode_enums(node):
                 yield prop.identifier, values
 
 
+def taken(node, name, values):
+    """The values that a node takes of one of its properties; RNA may list those of all nodes."""
+    before = getattr(node, name)
+    found = [value for value in values if put(node, name, value)]
+    put(node, name, before)
+    return found
+
+
+def covering(shown, states):
+    """The fewest groups of states, each all combinations of some values, that are those in which a socket is shown."""
+    boxes, left = [], set(shown)
+    while left:
+        box = [{value} for value in min(left)]
+        for place in range(len(box)):
+            for value in sorted({state[place] for state in states} - box[place]):
+                wider = [{value} if number == place else values for number, values in enumerate(box)]
+                inside = [state for state in itertools.product(*wider) if state in states]
+                if inside and shown.issuperset(inside):
+                    box[place].add(value)
+        boxes.append(box)
+        left -= set(itertools.product(*box))
+    within = [states & set(itertools.product(*box)) for box in boxes]
+    for number in reversed(range(len(boxes))):
+        if len(boxes) > 1 and within[number] <= set().union(*(within[:number] + within[number + 1 :])):
+            del boxes[number], within[number]
+    return boxes
+
+
+def said(box, enums, states):
+    """A group of states as modes, without the properties of which it has all values."""
+    return [
+        f"{name}={'|'.join(value for value in values if value in kept)}"
+        for place, ((name, values), kept) in enumerate(zip(enums, box, strict=True))
+        if kept != {state[place] for state in states}
+    ]
+
+
 def found(sockets, spelling):
     """The socket that a subscript gives, as its pointer; 0 for none."""
     try:
@@ -114,6 +154,8 @@ class Sockets:
         new = {key for key, (_, shown, _, _) in self.seen.items() if shown}
         self.modes = self.vary()
         self.vary_pairs()
+        # key → when it is shown, where that is more than one condition for each property
+        self.conditions = self.checked()
         self.hidden = self.rows.keys() - new
 
     def look(self, node, mode):
@@ -181,6 +223,41 @@ class Sockets:
             put(node, first, before[0])
             put(node, second, before[1])
 
+    def checked(self):
+        """Sets all modes together, and corrects what does not hold; returns the conditions that modes cannot say."""
+        node = self.nodes[0]
+        enums = [(name, taken(node, name, values)) for name, values in mode_enums(node) if self.decides(name)]
+        if len(enums) < 2 or math.prod(len(values) for _, values in enums) > MOST_STATES:
+            return {}
+        before = [(name, getattr(node, name)) for name, _ in enums]
+        seen, told = {}, {}
+        for state in itertools.product(*(values for _, values in enums)):
+            if all(put(node, name, value) for (name, _), value in zip(enums, state, strict=True)):
+                seen[state] = {
+                    (side, socket.identifier)
+                    for side, sockets in sides(node).items()
+                    for socket in sockets
+                    if available(socket)
+                }
+        for name, value in before:
+            put(node, name, value)
+        for key in self.rows:
+            shown = {state for state, keys in seen.items() if key in keys}
+            boxes = covering(shown, seen.keys())
+            if len(boxes) == 1:
+                self.modes[key] = said(boxes[0], enums, seen.keys())
+            elif boxes:
+                self.modes.pop(key, None)
+                texts = [" and ".join(said(box, enums, seen.keys())) for box in boxes]
+                told[key] = (
+                    ", or ".join(texts) if len(texts) <= MOST_CONDITIONS else "some of its modes say so"
+                )
+        return told
+
+    def decides(self, name):
+        """Whether a property of the node decides which sockets are shown."""
+        return any(mode.partition("=")[0] == name for modes in self.modes.values() for mode in modes)
+
     def subscripts(self, key):
         """(subscripts that always give a socket, the best first; whether its name does whenever it is shown)."""
         side, identifier = key
@@ -244,6 +321,7 @@ def write_node(write, owner, nodes, former, alone=None):
         flags += sockets.of_identifier(key)
         flags += [f"also-named:{name}" for name in sockets.names[key] if name not in {"", row["label"]}]
         flags += ["when-paired"] if alone is not None and key not in alone else []
+        flags += [f"shown-when:{sockets.conditions[key]}"] if key in sockets.conditions else []
         flags += [f"type-by:{name}" for name in sockets.deciding.get(key, ())]
         write(
             "symbol",

@@ -127,6 +127,8 @@ def parameter(prop):
         result["type"] = f"list of {row.get('target', 'items')}"
     if prop.type == "STRING" and not prop.is_never_none and not prop.is_output:
         result["type"] += " or None"
+    if prop.type == "ENUM" and prop.is_enum_flag:
+        result["default"] = row["default"]
     if row.get("array") == [1]:  # of any length: left out, it is none or all
         result.pop("default", None)
     if prop.is_required and not prop.is_output:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_serve.answer.render import is_machinery
 from kb_serve.answer.steps.members import call_of
+from kb_serve.answer.steps.node_links import NodeLinks
 from kb_serve.answer.steps.pointer_fills import stays_empty
 from kb_serve.reader import TYPES
 
@@ -34,6 +35,7 @@ class NodeSteps:
         self._reader = scene.reader
         self._calls = calls
         self._trees = trees
+        self._links = NodeLinks(scene)
 
     def made(self, creations: Mapping[str, Creation]) -> Iterator[str]:
         """Nodes, in the tree that takes the first of them."""
@@ -76,11 +78,24 @@ class NodeSteps:
             yield from self._calls.making(creations)
 
     def _joined(self, creations: Mapping[str, Creation], tree: str) -> Iterator[str]:
-        """How nodes are made, and the first of them joined to the tree's end."""
+        """How nodes are made, and the first of them joined to what is before and behind it in the tree."""
         main = next(iter(creations))
         yield from self._calls.making(creations)
-        if any(name.startswith("outputs[") for name in self._reader.members(main)):
-            yield from self._trees.joined(tree, main)
+        if partner := self._links.partner(main):
+            first, last = sorted((main, partner))  # Input before Output
+            yield from self._zone(first, last, tree)
+        else:
+            yield from self._links.of(tree, main)
+
+    def _zone(self, first: str, last: str, tree: str) -> Iterator[str]:
+        """How the two ends of a zone are made where they are not there, paired and linked."""
+        known = self._reader.creations([first, last])
+        for node in (first, last):
+            if node not in self._scene.shown and node in known:
+                yield from self._calls.making({node: known[node]})
+        begin, end = self._scene.variables.of(first), self._scene.variables.of(last)
+        yield f"`{begin}.pair_with_output({end})`"
+        yield from self._links.through_zone(tree, first, last)
 
     def _functions(self, creations: Mapping[str, Creation]) -> Iterator[str]:
         """The functions that nodes themselves have, as those at the ends of zones do."""
@@ -88,7 +103,9 @@ class NodeSteps:
         for node, creation in creations.items():
             entries = self._reader.members(node).values()
             functions = [entry for entry in entries if entry.kind == "function" and not is_machinery(entry)]
-            if not functions or functions[0].name in told or not self._trees.is_made_for(node):
+            # Of several zones one is enough.
+            is_told = not functions or functions[0].name in told or self._links.partner(node)
+            if is_told or not self._trees.is_made_for(node):
                 continue
             if node not in self._scene.shown:
                 yield from self._calls.making({node: creation})

@@ -1,10 +1,11 @@
-"""The trees that nodes are made in: where each kind comes from, and what ends it."""
+"""The trees that nodes are made in: where each kind comes from."""
 
 from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_serve.answer.steps.made_line import made_line
+from kb_serve.answer.steps.node_links import OF_WORLDS, SHADER_TREE
 from kb_serve.answer.steps.parts import parts
 from kb_serve.reader import TYPES
 
@@ -15,16 +16,9 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.places import PlaceSteps
     from kb_serve.answer.steps.topic_names import TopicNames
 
-# Trees that cannot be assigned: what has one of its own, and the node that ends a new one.
-_EMBEDDED = {f"{TYPES}ShaderNodeTree": (f"{TYPES}Material", "node_tree")}
-_ENDS = {f"{TYPES}ShaderNodeTree": "tree.get_output_node('ALL')"}
-_END_NODE = f"{TYPES}ShaderNodeOutputMaterial"  # what that gives
-_GROUP_END = "group_output"  # what ends the others
-# What these must give to be of use: a socket's name and type.
-_GROUP_OUTPUT = {
-    f"{TYPES}GeometryNodeTree": ("Geometry", "NodeSocketGeometry"),
-    f"{TYPES}CompositorNodeTree": ("Image", "NodeSocketColor"),
-}
+# Trees that cannot be assigned: what has one of its own.
+_EMBEDDED = {SHADER_TREE: (f"{TYPES}Material", "node_tree")}
+_WORLD = f"{TYPES}World"
 _USUAL_TREE = f"{TYPES}GeometryNodeTree"
 EMBEDDED_TREES = frozenset(_EMBEDDED)
 
@@ -44,14 +38,14 @@ class TreeSteps:
         self._scene = scene
         self._reader = scene.reader
         self._places = places
-        self._ended: set[str] = set()
 
     def taking(self, node: str) -> TreeReady:
         """The tree that takes a node."""
         name = node.removeprefix(TYPES)
         own = sorted(self._trees_of(node), key=lambda tree: not name.startswith(tree.removesuffix("Tree")))
         tree = f"{TYPES}{own[0]}" if own else ""
-        return TreeReady(tree, [] if tree in self._scene.shown else [*self._new(tree)])
+        holder = _WORLD if node in OF_WORLDS else ""
+        return TreeReady(tree, [] if tree in self._scene.shown else [*self._new(tree, holder)])
 
     def is_made_for(self, node: str) -> bool:
         """Whether a tree that is there takes a node."""
@@ -75,36 +69,19 @@ class TreeSteps:
             yield f"`{holder} = {variable}`"
         else:
             yield from self._places.of(tree)
-        yield from parts(tree, variable, self._names, self._reader)
+        if tree in self._names.classes:
+            yield from parts(tree, variable, self._names, self._reader)
 
-    def joined(self, tree: str, node: str) -> Iterator[str]:
-        """The steps that join a node to the end of a tree, which gets one where it has none."""
-        if tree not in self._ended and tree not in _ENDS:
-            self._ended.add(tree)
-            name, socket = _GROUP_OUTPUT.get(tree, ("", ""))
-            if name:
-                yield f"`tree.interface.new_socket(\"{name}\", in_out='OUTPUT', socket_type='{socket}')`"
-            yield (
-                f'`{_GROUP_END} = tree.nodes.new("NodeGroupOutput")`; also `NodeGroupInput`, for its inputs'
-            )
-        end = f"{_ENDS[tree]}.{self._input_for(node)}" if tree in _ENDS else f"{_GROUP_END}.inputs[0]"
-        yield f"`tree.links.new({self._scene.variables.of(node)}.outputs[0], {end})`"
-
-    def _input_for(self, node: str) -> str:
-        """The input of a material's end that is called as a node's first output (Displacement), or else the first."""
-        members = self._reader.members(node)
-        output = next((name for name in members if name.startswith("outputs[")), "")
-        called = output.replace("outputs", "inputs", 1)
-        return called if called in self._reader.members(_END_NODE) else "inputs[0]"
-
-    def _new(self, tree: str) -> Iterator[str]:
-        holder, name = _EMBEDDED.get(tree, ("", ""))
+    def _new(self, tree: str, holder: str) -> Iterator[str]:
+        usual, name = _EMBEDDED.get(tree, ("", ""))
+        holder = holder or usual
         made = self._reader.creations([holder]).get(holder)
         if made is None:
             yield from self.group(tree)
             return
         self._scene.shown.add(tree)
         yield made_line(holder, made.call, self._scene)
+        yield from self._places.of(holder)
         variable = self._scene.variables.of(holder)
         if pointer := self._reader.symbol(f"{holder}.{name}"):
             yield from self._scene.pointers.steps(pointer, variable)

@@ -17,6 +17,11 @@ _FREED = (
     "The variable's data was removed, freed, or moved by an undo or by adding another element: look it up again by "
     "name."
 )
+_PASSING = "DepsgraphObjectInstance"
+_PASSED = (
+    "Such an instance is there only until the loop goes on: take what is needed inside the loop "
+    "(`instance.matrix_world.copy()`, `instance.object.name`); `list(depsgraph.object_instances)` keeps none."
+)
 _FREED_MESH = (
     "`bm.free()`, a removal (`bm.verts.remove(v)`) or an operator deleted it; `v.is_valid` tells. Keep `bm` until the "
     "work is done, and take elements anew: `bm.verts.ensure_lookup_table()`, then `bm.verts[index]`."
@@ -33,6 +38,10 @@ class FreedData:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what removes such data, and how it is found again."""
         for match in forms.first_matches(forms.FREED, query):
+            if match["type"] == _PASSING:
+                recognition.notes.append(_PASSED)
+                recognition.add(f"{TYPES}Depsgraph.object_instances", 0.95, "error message")
+                continue
             recognition.notes.append(_FREED_MESH if match["module"] else _FREED)
             add_guide(ON_FREED, self._reader, recognition)
             if match["module"]:

@@ -17,7 +17,7 @@ _NO_DRAWING = (
     "without one: `bpy.ops.render.render(write_still=True)`."
 )
 _BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
-_NO_FLUIDS = (
+NO_FLUIDS = (
     "Mantaflow, which simulates fluids, is not set up wholly where Blender is a Python module (`import bpy` in another "
     "Python): every bake of a fluid ends the process there. Run the script with Blender itself: "
     "`blender --background scene.blend --python script.py`."
@@ -35,7 +35,7 @@ class WaysToRun:
         if forms.NO_DRAWING.search(query):
             self._no_drawing(recognition)
         if forms.NO_FLUIDS.search(query):
-            recognition.notes.append(_NO_FLUIDS)
+            recognition.notes.append(NO_FLUIDS)
             recognition.add(_BAKES_FLUIDS, 0.95, "error message")
 
     def _no_drawing(self, recognition: Recognition) -> None:

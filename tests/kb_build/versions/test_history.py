@@ -103,6 +103,7 @@ def test_versions_are_ordered_as_numbers() -> None:
 def test_a_symbol_that_came_back_counts_since_it_came_back() -> None:
     history = merge_versions(PATHS)
     assert history.since("4.10")["bpy.types.A.old"] == "4.10"
+    assert "bpy.types.A.old" in history.came_back("4.10")
     assert RemovedSpan("bpy.types.A.old", "4.2", "4.2", "4.3") in set(history.removed_from("4.3"))
 
 

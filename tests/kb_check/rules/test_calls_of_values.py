@@ -189,3 +189,25 @@ def test_what_must_be_first_is_refused_after_any_other(rule_checker: Checker, tm
     )
     found = rule_checker.check(typed.replace("assert ", ""), rules=["refused-call"])
     assert [(one.span.line, "after another" in one.message) for one in found] == [(7, True), (9, True)]
+
+
+def test_names_are_refused_where_only_places_are_taken_and_left_out_by_the_fix(rule_checker: Checker) -> None:
+    code = """\
+import bmesh
+bm = bmesh.new()
+vert = bm.verts.new((0, 0, 0))
+vert.select_set(select=True)
+vert.hide_set(False)
+bm.from_mesh(mesh=None)
+"""
+    (found,) = rule_checker.check(code, rules=["positional-argument"])
+    assert (found.span.line, "only places" in found.message) == (4, True)
+    assert found.fix is not None
+    assert [edit.text for edit in found.fix.edits] == ["True"]
+
+
+def test_one_item_of_several_becomes_a_set_by_the_fix(rule_checker: Checker) -> None:
+    code = "import bpy\nbpy.context.object.animation_data.drivers[0].keyframe_points.insert(3, 1.0, 'FAST')\n"
+    (found,) = rule_checker.check(code, rules=["positional-argument"])
+    assert found.fix is not None
+    assert [edit.text for edit in found.fix.edits] == ["options={'FAST'}"]

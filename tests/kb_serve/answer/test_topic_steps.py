@@ -82,7 +82,10 @@ def test_a_pointer_that_is_none_is_filled_before_what_it_holds_is_set(reader: Ba
 
 def test_a_node_goes_to_the_input_that_is_called_as_what_it_gives(reader: BaseReader) -> None:
     said = "\n".join(steps(reader, "displacement", "ShaderNodeDisplacement"))
-    assert """displacement.outputs[0], tree.get_output_node('ALL').inputs["Displacement"])""" in said
+    assert (
+        """displacement.outputs["Displacement"], tree.get_output_node('ALL').inputs["Displacement"])"""
+        in said
+    )
 
 
 def test_a_world_has_a_background_and_no_rigid_bodies(reader: BaseReader) -> None:

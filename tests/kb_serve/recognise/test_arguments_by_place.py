@@ -17,7 +17,7 @@ REFUSED = {
     "mesh.uv_layers.new('UV')": "`bpy.types.UVLoopLayers.new` takes `name` by name only: `name='UV'`.",
     "bpy.ops.object.mode_set('EDIT')": "takes its arguments by name only: `mode='EDIT'`.",
     "scene.frame_set(10.5)": "`frame` of `bpy.types.Scene.frame_set` is a whole number: `10.5` is refused.",
-    "blf.size(0, 20, 72)": "`blf.size` takes 2 arguments by place: `size(fontid, size)`.",
+    "blf.size(0, 20, 72)": "`blf.size` takes 2 arguments by place: `size(fontid, size, /)`.",
     "bmesh.ops.create_cube(bm, 2)": "`bmesh.ops.create_cube` takes `size` by name only: `size=2`.",
 }
 TAKEN = (
@@ -72,7 +72,7 @@ def test_nothing_is_told_of_what_is_taken(kb: KnowledgeBase, code: str) -> None:
         ("scene.frame_set(1, 2)", "takes `subframe` by name only, as `subframe=…`: `frame_set(frame, *, subframe=0)`."),
         ("scene.frame_set()", "`bpy.types.Scene.frame_set` needs `frame`: `frame_set(frame, *, subframe=0)`."),
         ("scene.frame_set(1, 2, 3, 4)", "`bpy.types.Scene.frame_set` takes 1 argument by place"),
-        ("blf.size(0, 20, 72)", "`blf.size` takes 2 arguments: `size(fontid, size)`."),
+        ("blf.size(0, 20, 72)", "`blf.size` takes 2 arguments: `size(fontid, size, /)`."),
     ],
 )  # fmt: skip
 def test_blenders_messages_are_told_in_the_same_way(kb: KnowledgeBase, code: str, told: str) -> None:

@@ -182,6 +182,10 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         ("ReferenceError: StructRNA of type Object has been removed", "data was removed, freed"),
         ("ReferenceError: BMesh data of type BMVert has been removed", "`v.is_valid` tells"),
         (
+            "ReferenceError: StructRNA of type DepsgraphObjectInstance has been removed",
+            "only until the loop goes on",
+        ),
+        (
             "AttributeError: Writing to ID classes in this context is not allowed: Scene, Scene data-block, error "
             "setting Scene.frame_end",
             "`draw()` and `poll()`",

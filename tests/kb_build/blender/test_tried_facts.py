@@ -1,0 +1,110 @@
+"""What was tried in Blender beyond RNA: modes of sockets, ends of ranges, names of arguments, what is left out."""
+
+from __future__ import annotations
+
+import itertools
+from typing import TYPE_CHECKING
+
+import pytest
+from statements_in_blender import run_statements
+
+from kb_build.symbol_lines import shown_when
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+    from pathlib import Path
+
+    from kb_build.blender.extract_reader import Extract
+    from kb_build.records import Symbol
+
+pytestmark = pytest.mark.blender
+
+NODES = "bpy.types."
+
+
+@pytest.fixture(scope="module")
+def symbols(extract: Extract) -> Mapping[str, Symbol]:
+    return {symbol.path: symbol for symbol in extract.symbols}
+
+
+@pytest.mark.parametrize(
+    ("socket", "when"),
+    [
+        ('ShaderNodeMapRange.inputs["Steps"]', "interpolation_type=STEPPED and data_type=FLOAT"),
+        (
+            'CompositorNodeRelativeToPixel.outputs["Vector Value"]',
+            "reference_dimension=PER_DIMENSION, or data_type=VECTOR",
+        ),
+        ('ShaderNodeMix.inputs["Factor"]', "data_type=FLOAT|RGBA, or factor_mode=UNIFORM"),
+        ('GeometryNodeMeshCube.inputs["Size"]', ""),
+    ],
+)
+def test_a_socket_says_in_which_of_all_modes_together_it_is_shown(
+    symbols: Mapping[str, Symbol], socket: str, when: str
+) -> None:
+    assert shown_when(symbols[NODES + socket]) == when
+
+
+def test_blender_shows_the_sockets_of_a_node_in_just_the_modes_that_are_told(
+    symbols: Mapping[str, Symbol], tmp_path: Path
+) -> None:
+    dimensions, features = (
+        ("1D", "2D", "3D", "4D"),
+        ("F1", "SMOOTH_F1", "DISTANCE_TO_EDGE", "N_SPHERE_RADIUS"),
+    )
+    states = list(itertools.product(dimensions, features))
+    starting = [
+        "import bpy",
+        "node = bpy.data.materials.new('m').node_tree.nodes.new('ShaderNodeTexVoronoi')",
+    ]
+    code = [f"node.voronoi_dimensions, node.feature = {a!r}, {b!r}" for a, b in states]
+    watched = dict.fromkeys(range(len(starting), len(starting) + len(code)), "node.outputs['W'].enabled")
+    rows = run_statements(tmp_path, [*starting, *code], watched)[len(starting) :]
+    modes = dict(mode.split("=") for mode in symbols[f'{NODES}ShaderNodeTexVoronoi.outputs["W"]'].modes)
+    told = [
+        a in modes["voronoi_dimensions"].split("|") and b in modes["feature"].split("|") for a, b in states
+    ]
+    assert [row[2] == "True" for row in rows] == told
+
+
+def test_a_range_that_is_not_kept_says_so(symbols: Mapping[str, Symbol], tmp_path: Path) -> None:
+    assert symbols["bpy.types.RigidBodyObject.mass"].flagged("unbounded:") == ("min",)
+    assert set(symbols["bpy.types.RigidBodyObject.angular_damping"].flagged("unbounded:")) == {"min", "max"}
+    assert not symbols["bpy.types.SubsurfModifier.levels"].flagged("unbounded:")
+    assert not symbols["bpy.types.ClothSettings.quality"].flagged("unbounded:")
+    code = ["import bpy", "bpy.ops.rigidbody.object_add()", "bpy.context.object.rigid_body.mass = -1"]
+    rows = run_statements(tmp_path, code, {2: "bpy.context.object.rigid_body.mass"})
+    assert rows[2][2] == "-1.0"
+
+
+def test_what_an_operator_takes_for_what_is_left_out_is_no_default(symbols: Mapping[str, Symbol]) -> None:
+    cube = symbols["bpy.ops.mesh.primitive_cube_add"]
+    given = {parameter.name: parameter for parameter in cube.parameters}
+    assert given["scale"].description.endswith("Left out: (1, 1, 1)")
+    assert given["location"].description.endswith("Left out: the 3D cursor's")
+    assert (given["scale"].default, given["scale"].unit, given["location"].default) == (None, "", None)
+    assert "location=..., rotation=(0, 0, 0), scale=..." in cube.signature
+
+
+@pytest.mark.parametrize(
+    ("function", "signature"),
+    [
+        ("bmesh.utils.edge_split", "edge_split(edge, vert, fac, /)"),
+        ("bmesh.types.BMVert.select_set", "select_set(select, /)"),
+        ("bpy.utils.register_class", "register_class(cls, /)"),
+        (
+            "bmesh.utils.face_split",
+            "face_split(face, vert_a, vert_b, *, coords=(), use_exist=True, source=None)",
+        ),
+    ],
+)
+def test_a_function_that_takes_no_names_shows_it(
+    symbols: Mapping[str, Symbol], function: str, signature: str
+) -> None:
+    assert symbols[function].signature == signature
+
+
+def test_several_items_at_once_are_a_set_though_none_is_the_default(symbols: Mapping[str, Symbol]) -> None:
+    insert = symbols["bpy.types.FCurveKeyframePoints.insert"]
+    assert next(one.default for one in insert.parameters if one.name == "options") == []
+    assert "options=set()" in insert.signature
