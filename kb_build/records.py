@@ -46,6 +46,7 @@ ALSO = "also:"
 # How a flag begins that says what must not be None: Blender ends when the function is called.
 ENDS_WITHOUT = "ends-without:"
 # The flag of a socket that a node of a zone has once it is paired with the other one.
+INVERTED = "inverted"  # a switch that some panel shows the other way round
 UNBOUNDED = "unbounded:"  # min or max: an end of a number's range that is not kept
 WHEN_PAIRED = "when-paired"
 SHOWN_WHEN = "shown-when:"  # in which of a node's modes a socket is shown, where its modes cannot say it

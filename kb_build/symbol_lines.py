@@ -88,7 +88,7 @@ def type_text(symbol: Symbol) -> str:
         return "bytes"
     if settings := symbol.type_settings:
         return f"{symbol.type}, or as {' and '.join(settings)} says"
-    return symbol.type + "".join(f"[{n}]" for n in symbol.array)
+    return symbol.type + "".join(f"[{n or ''}]" for n in symbol.array)  # of any length: none
 
 
 def first_sentence(text: str) -> str:

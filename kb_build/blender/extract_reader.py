@@ -28,6 +28,7 @@ from kb_build.records import (
     FREE_ON,
     FREED_BY,
     GIVEN,
+    INVERTED,
     LOCKED_ON,
     LOCKED_WITH,
     NEEDS,
@@ -207,9 +208,12 @@ def _add_left_out(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
 
 
 def _add_limits(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds the ends of a number's range that its setter does not ask for."""
+    """Adds the ends of a number's range that its setter does not ask for, and takes an array's length that varies."""
     if row is not None:
-        row["flags"] = [*row.get("flags", ()), *(UNBOUNDED + end for end in seen["ends"])]
+        if seen.get("varies"):
+            row["array"] = [0]
+            row.pop("default", None)
+        row["flags"] = [*row.get("flags", ()), *(UNBOUNDED + end for end in seen.get("ends", ()))]
 
 
 def _add_locked(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
@@ -231,6 +235,12 @@ def _add_empty(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
         row["flags"] = [*row.get("flags", ()), EMPTY]
 
 
+def _add_inverted(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that some panel shows a switch the other way round."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), INVERTED]
+
+
 def _add_evaluated(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
     """Adds that only evaluated objects have it filled."""
     if row is not None:
@@ -247,6 +257,7 @@ _ADDED = {
     "refusals": _add_refusals,
     "empty_collection": _add_empty,
     "evaluated": _add_evaluated,
+    "inverted": _add_inverted,
     "left_out": _add_left_out,
     "limits": _add_limits,
     "locked": _add_locked,

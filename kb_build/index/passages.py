@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
+from kb_build.records import INVERTED
 from kb_build.symbol_lines import passage_text, term_lines
 
 if TYPE_CHECKING:
@@ -128,7 +129,8 @@ class _Finder:
         for symbol in self._symbols.values():
             source = symbol.owner if symbol.kind == "socket" else symbol.path
             slug, _, address = self._links.get(source, "").partition("#")
-            if slug not in self._pages or symbol.kind not in _KINDS:
+            # Of a switch that is shown the other way round the manual says what the checkbox does.
+            if slug not in self._pages or symbol.kind not in _KINDS or INVERTED in symbol.flags:
                 continue
             place = self._place(slug)
             at = self._marked(symbol, place) or self._defined(symbol, place, address)

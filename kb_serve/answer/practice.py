@@ -43,6 +43,11 @@ _EVERY_POINT = (
     "other points, and strokes that are added after either was set begin with 0 of it."
 )
 _BAKES_FLUID = "bpy.ops.fluid.bake_"
+_TIMER = "bpy.app.timers.register"
+_NO_TIMERS = (
+    "Timers run between the events of a Blender with a window. Without one (`--background`, or `import bpy` in another "
+    "Python) none ever runs: call the function yourself there."
+)
 _SIZES = {f"{_TYPES}GreasePencilDrawing.add_strokes": "strokes", f"{_TYPES}Curves.add_curves": "curves"}
 _NO_SIZES = "An empty list crashes Blender 5.1: `if sizes: data.add_{}(sizes)`. Each size is at least 1."
 _INDICES = {
@@ -68,6 +73,8 @@ class Practice:
         """Sentences on a symbol, or on what the page with that slug explains."""
         if identifier.startswith(_HANDLERS) and identifier != _PERSISTENT and self._reader.entry(_PERSISTENT):
             yield _STAYING
+        if identifier == _TIMER:
+            yield _NO_TIMERS
         if identifier.startswith(_BAKES_FLUID):
             yield NO_FLUIDS
         if identifier in CLASSES:

@@ -8,6 +8,7 @@ A step that fails is a ``fault`` line with its traceback; the other steps still 
 import gc
 import json
 import os
+import re
 import sys
 import tempfile
 import traceback
@@ -34,6 +35,8 @@ from .instances import Observer
 from .neighbours import Neighbours
 from .wire import Writer
 
+INVERTED = re.compile(r"\.prop\(\w+, ['\"](\w+)['\"][^()\n]*invert_checkbox=True")
+
 
 def text(value):
     """Blender gives its build facts as bytes."""
@@ -56,6 +59,20 @@ def write_manual_links(write, _found):
         import rna_manual_reference as table
     for pattern, page in table.url_manual_mapping:
         write("manual", pattern=pattern, page=page)
+
+
+def write_inverted(write, found):
+    """The switches that some panel shows the other way round: what the manual says of them may be meant of that."""
+    names = set()
+    for folder in bpy.utils.script_paths(subdir=os.path.join("startup", "bl_ui")):
+        for file in sorted(os.listdir(folder)):
+            if file.endswith(".py"):
+                with open(os.path.join(folder, file), encoding="utf-8") as script:
+                    names.update(INVERTED.findall(script.read()))
+    for _, struct in sorted(found["structs"].items()):
+        for prop in rna.own(struct, "properties"):
+            if prop.type == "BOOLEAN" and prop.identifier in names:
+                write("inverted", path=rna.path_of(struct, prop.identifier))
 
 
 def write_templates(write, _found):
@@ -105,6 +122,7 @@ STEPS = (
     ("modules", lambda write, _found: modules.write_all(write)),
     ("enums", write_enum_sets),
     ("links", write_manual_links),
+    ("inverted", write_inverted),
     ("templates", write_templates),
     # Last, because they change the scene.
     ("context", lambda write, _found: context.write_all(write)),

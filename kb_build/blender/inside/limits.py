@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds numbers that may lie outside the range that RNA tells of them: their setters do not ask for it.
+"""Finds numbers that may lie outside the range that RNA tells of them: their setters do not ask for it. And arrays
+that are not as long as RNA tells: their length is the instance's.
 
 Of one instance of each class the ends of the range and what lies beyond are assigned and read again. What a maker
 makes is tried in a process of its own: what extreme values end there is left out.
@@ -10,8 +11,10 @@ import tempfile
 
 from .apart import apart
 from .new_things import MAKERS, scratch_scene
+from .rna import path_of
 from .wire import limit
 
+NUMBERS = frozenset({"INT", "FLOAT"})
 MOST = 1e6  # beyond it a number may take all memory
 PAST = 1  # how far beyond an end is tried
 
@@ -45,12 +48,32 @@ def kept_beyond(struct, prop):
     return found
 
 
+def has_other_length(struct, prop):
+    """Whether an array of an instance is not as long as RNA tells."""
+    if prop.array_dimensions[1]:
+        return False
+    try:
+        return len(getattr(struct, prop.identifier)) != prop.array_length
+    except Exception:
+        return False
+
+
 def look(struct, writable, seen, send):
     """Tries the numbers of an instance, those of each class once."""
     for prop in struct.bl_rna.properties:
+        if prop.type in NUMBERS and prop.is_array:
+            path = path_of(struct.bl_rna, prop.identifier)
+            if path not in seen and has_other_length(struct, prop):
+                seen.add(path)
+                send({"path": path, "ends": [], "varies": True})
+            continue
         path = writable.get(prop.identifier)
-        is_number = prop.type in {"INT", "FLOAT"} and not prop.is_array
-        if path is None or path in seen or not is_number or struct.is_property_readonly(prop.identifier):
+        if (
+            path is None
+            or path in seen
+            or prop.type not in NUMBERS
+            or struct.is_property_readonly(prop.identifier)
+        ):
             continue
         seen.add(path)
         if ends := kept_beyond(struct, prop):
@@ -79,10 +102,13 @@ def found_apart(make, observer):
 
 
 def find_all(write, observer):
-    """One ``limits`` record for each number whose range is not kept. Wants a system that can work apart."""
+    """One ``limits`` record for each number whose range is not kept, and each array of another length.
+
+    Wants a system that can work apart.
+    """
     found = {}
     for make in MAKERS:
         for row in found_apart(make, observer):
-            found.setdefault(row["path"], row["ends"])
-    for path, ends in sorted(found.items()):
-        write("limits", path=path, ends=ends)
+            found.setdefault(row["path"], row)
+    for _, row in sorted(found.items()):
+        write("limits", **row)

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.symbol_lines import shown_when
+from kb_build.records import INVERTED
+from kb_build.symbol_lines import shown_when, type_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -108,3 +109,24 @@ def test_several_items_at_once_are_a_set_though_none_is_the_default(symbols: Map
     insert = symbols["bpy.types.FCurveKeyframePoints.insert"]
     assert next(one.default for one in insert.parameters if one.name == "options") == []
     assert "options=set()" in insert.signature
+
+
+def test_an_array_that_is_as_long_as_its_instance_says_so_has_no_length(
+    symbols: Mapping[str, Symbol],
+) -> None:
+    grid, coefficients, color = (
+        symbols[f"{NODES}{name}"]
+        for name in (
+            "FluidDomainSettings.density_grid",
+            "FModifierGenerator.coefficients",
+            "Material.diffuse_color",
+        )
+    )
+    assert (type_text(grid), type_text(coefficients), type_text(color)) == ("float[]", "float[]", "float[4]")
+    assert grid.default is None
+
+
+def test_a_switch_that_a_panel_shows_the_other_way_round_is_marked(symbols: Mapping[str, Symbol]) -> None:
+    assert INVERTED in symbols[f"{NODES}Object.hide_render"].flags
+    assert INVERTED in symbols[f"{NODES}LayerCollection.exclude"].flags
+    assert INVERTED not in symbols[f"{NODES}Object.show_name"].flags

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from kb_build.index.passages import address_of, find_passages
-from kb_build.records import Link, Page, Section, Symbol
+from kb_build.records import INVERTED, Link, Page, Section, Symbol
 from kb_build.symbol_lines import passage_text, term_lines
 
 if TYPE_CHECKING:
@@ -59,6 +60,11 @@ def test_of_two_places_with_a_label_the_one_about_the_class_counts(cls: Symbol, 
 def test_where_two_places_fit_there_is_none() -> None:
     light = Symbol("bpy.types.Light", "class", "bpy.types", label="Light")
     assert passage(member(light, "angle", "Angle"), light) is None
+
+
+def test_what_a_panel_shows_the_other_way_round_has_none() -> None:
+    angle = member(SUN, "angle", "Angle")
+    assert passage(replace(angle, flags=(INVERTED,)), address=address_of(SUN.path)) is None
 
 
 def test_a_symbols_address_wins_over_its_label() -> None:
