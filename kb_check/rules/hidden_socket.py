@@ -26,6 +26,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.symbol_lines import shown_when
 from kb_check.findings import Finding
 from kb_check.hidden_links import hidden_link
 from kb_check.made_here import is_new, knows_all, named_words
@@ -84,15 +85,14 @@ def _hidden(script: Script, sockets: list[Symbol], row: Resolution) -> str:
         if (
             not (is_name or row.value == socket.identifier)
             or f'{side}["{row.value}"]' in socket.subscripts
-            or not socket.modes
+            or not shown_when(socket)
             or not needed.issubset(socket.flags)
         ):
             return ""
     first = sockets[0]
-    wanted = " and ".join(first.modes)
     return (
         f"A new `{first.owner}` shows no socket {row.value!r}, and finds only what it shows: it is there "
-        f"with {wanted}."
+        f"with {shown_when(first)}."
     )
 
 
