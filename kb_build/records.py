@@ -45,11 +45,15 @@ GIVEN = "given:"
 ALSO = "also:"
 # How a flag begins that says what must not be None: Blender ends when the function is called.
 ENDS_WITHOUT = "ends-without:"
-# The flag of a socket that a node of a zone has once it is paired with the other one.
-INVERTED = "inverted"  # a switch that some panel shows the other way round
-UNBOUNDED = "unbounded:"  # min or max: an end of a number's range that is not kept
+# The flag of a switch that some panel shows the other way round.
+INVERTED = "inverted"
+# How a flag begins that names an end of a number's range that is not kept: ``min`` or ``max``.
+UNBOUNDED = "unbounded:"
+# The flag of a socket that a node of a zone has once it is paired with the other one, and the method that does it.
 WHEN_PAIRED = "when-paired"
-SHOWN_WHEN = "shown-when:"  # in which of a node's modes a socket is shown, where its modes cannot say it
+PAIRS = "pair_with_output"
+# How a flag begins that says in which of a node's modes a socket is shown, where its modes cannot say it.
+SHOWN_WHEN = "shown-when:"
 # The flag of a property, not called ``name``, by whose value collections find such an item.
 NAMES_ITEMS = "names-items"
 # The flag of a collection that has no elements on what is newly made.

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.records import WHEN_PAIRED
+from kb_build.records import PAIRS, WHEN_PAIRED
 from kb_check.made_here import attributes, named_words, statement_of
 from kb_check.script import once_per_script
 
@@ -13,7 +13,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_check.script import Script
 
-_PAIRING = "pair_with_output"
 _PLAIN = (ast.Expr, ast.Assign, ast.AnnAssign)
 
 
@@ -22,9 +21,9 @@ def unpaired(script: Script, sockets: list[Symbol], node: ast.Subscript) -> str:
     if not all(WHEN_PAIRED in socket.flags for socket in sockets) or _names_zones(script):
         return ""
     is_place = isinstance(node.slice, ast.Constant) and isinstance(node.slice.value, int)
-    if is_place or (_PAIRING in named_words(script) and not _is_paired_later(script, node)):
+    if is_place or (PAIRS in named_words(script) and not _is_paired_later(script, node)):
         return ""  # another socket is in its place before
-    return f"`{sockets[0].path}` is there once `{_PAIRING}` has been called, which comes before."
+    return f"`{sockets[0].path}` is there once `{PAIRS}` has been called, which comes before."
 
 
 @once_per_script
@@ -45,5 +44,5 @@ def _is_paired_later(script: Script, node: ast.Subscript) -> bool:
 def _first_pairing(script: Script) -> int | None:
     """The place of the statement that pairs first; -1 where one of them is not to be seen, None for no pairing."""
     body = script.tree.body
-    places = [statement_of(body, call) for call in attributes(script).get(_PAIRING, ())]
+    places = [statement_of(body, call) for call in attributes(script).get(PAIRS, ())]
     return min((place if isinstance(body[place], _PLAIN) else -1 for place in places), default=None)

@@ -175,12 +175,9 @@ class _Calls:
         are_classes = bool(items) and all(TYPES + item in self._symbols for item in items)
         by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"} or are_classes)
         block = next((name for name in _BLOCKS if head.startswith(f"{name}.")), "")
-        descendants = list(self._descendants(base.path))
-        labels = Counter(key(cls.label) for cls in descendants)
-        for cls in descendants:
+        for cls, alone in self._kinds_below(base):
             if base.path == _NODE and not cls.trees:
                 continue  # RNA has the class, and every tree refuses it
-            alone = labels[key(cls.label)] == 1
             if choice := cls.name if by_name else _choice(cls, base, items, alone=alone):
                 given = self._arguments(maker, cls, choice, block=block)
                 yield cls.path, Creation(f"{head}({given})", maker.path, choice)
@@ -191,16 +188,20 @@ class _Calls:
             given = self._arguments(maker, base, first, block=block)
             yield base.path, Creation(f"{head}({given})", maker.path)
 
+    def _kinds_below(self, base: Symbol) -> Iterator[tuple[Symbol, bool]]:
+        """The classes below one, and whether each has its label alone."""
+        descendants = list(self._descendants(base.path))
+        labels = Counter(key(cls.label) for cls in descendants)
+        for cls in descendants:
+            yield cls, labels[key(cls.label)] == 1
+
     def _by_kind(self, holder: Symbol) -> Iterator[tuple[str, Creation]]:
         """What functions for one kind each make: ``strips.new_image`` an ImageStrip, ``new_effect`` those by type."""
         base = self._symbols.get(TYPES + holder.target)
         for maker in self._kinds.get(f"{TYPES}{holder.collection}", ()):
             head, items = self._head(holder, maker), _kinds_of(maker)
             called = key(maker.name.removeprefix(_NEW_KIND) + holder.target)
-            descendants = list(self._descendants(base.path)) if base else []
-            labels = Counter(key(cls.label) for cls in descendants)
-            for cls in descendants:
-                alone = labels[key(cls.label)] == 1
+            for cls, alone in self._kinds_below(base) if base else ():
                 choice = _choice(cls, base, items, alone=alone) if base and items else ""
                 if choice or (not items and key(cls.name) == called):
                     given = self._arguments(maker, cls, choice, block="")

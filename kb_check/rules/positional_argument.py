@@ -221,7 +221,7 @@ def _of_function(script: Script, call: CallSite) -> Iterator[Finding]:
 def _by_place(script: Script, call: CallSite) -> Fix | None:
     """The arguments without their names, where they stand in their places already."""
     names = [keyword.arg for keyword in call.node.keywords]
-    if [*call.callee.positional[len(call.node.args) :]][: len(names)] != names:
+    if list(call.callee.positional[len(call.node.args) :][: len(names)]) != names:
         return None
     edits = tuple(Edit(script.span(keyword), ast.unparse(keyword.value)) for keyword in call.node.keywords)
     return Fix("Leave out the names", edits, sure=True)

@@ -9,7 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN, UNBOUNDED, WITHOUT_ACTIVE, WITHOUT_AREA
+from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN, PAIRS, UNBOUNDED, WITHOUT_ACTIVE, WITHOUT_AREA
 from kb_build.symbol_lines import (
     SET,
     alike_nodes,
@@ -56,7 +56,6 @@ _NODE = f"{TYPES}Node"
 _PUT_TOGETHER = (
     "put together while Blender runs, and not known here: the error for any other value lists them"
 )
-_PAIRS = "pair_with_output"  # the method of a zone's first node, which has its sockets from the last one
 _NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
 _SHORT_PAGE = 80  # letters
 _LONGEST_DEFAULT = 60  # letters
@@ -99,6 +98,11 @@ _MACHINERY = {
     "output_template",
     "is_registered_node_type",
 }
+
+
+def _once_paired(members: Iterable[SymbolEntry]) -> str:
+    """When a node has its sockets, if it is the first of a zone, which has them from the last one."""
+    return f", once it is paired (`{PAIRS}`)" if any(entry.name == PAIRS for entry in members) else ""
 
 
 def _not_kept(symbol: Symbol) -> str:
@@ -361,8 +365,7 @@ class MarkdownRenderer:
         )
         if symbol.kind == "class":
             members = list(self.reader.members(symbol.path).values())
-            pairs = any(entry.name == _PAIRS for entry in members)
-            title = f"Inputs and outputs, once it is paired (`{_PAIRS}`)" if pairs else "Inputs and outputs"
+            title = f"Inputs and outputs{_once_paired(members)}"
             # A node is asked for what goes in and out; what follows the lists below may find no room.
             yield from _listed(title, [entry for entry in members if entry.kind == "socket"])
             yield from self._passage(symbol.path)
@@ -422,8 +425,7 @@ class MarkdownRenderer:
         cls = TYPES + asked.removesuffix(f".{side}").removeprefix(TYPES)
         members = self.reader.members(cls).values() if side in {"inputs", "outputs"} else ()
         sockets = [entry for entry in members if entry.path.startswith(f"{cls}.{side}[")]
-        pairs = f", once it is paired (`{_PAIRS}`)" if any(entry.name == _PAIRS for entry in members) else ""
-        yield from _listed(f"{side.title()} of `{cls}`{pairs}", sockets)
+        yield from _listed(f"{side.title()} of `{cls}`{_once_paired(members)}", sockets)
 
     def page(self, slug: str, anchor: str = "") -> Iterator[AnswerBlock]:
         """A page of the manual or a guide; the section ``anchor`` comes first."""

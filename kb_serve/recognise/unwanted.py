@@ -48,9 +48,9 @@ def without_unwanted(query: str) -> Wanted:
     found = _UNWANTED.search(asked)
     if found is not None:
         asked = " ".join((asked[: found.start()] + asked[found.end() :]).split())
-    is_code = f" {_CODE}" if asked != query else ""
+    code = f" {_CODE}" if asked != query else ""
     are_unwanted = found is not None and _OF_OPERATORS.search(found[0]) is not None and _NAMED not in asked
-    return Wanted(asked + is_code, operators=not are_unwanted)
+    return Wanted(asked + code, operators=not are_unwanted)
 
 
 def _without_run(query: str) -> str:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Does work in a process of its own, that Blender outlives."""
 
+import json
 import os
 import signal
 import tempfile
@@ -40,6 +41,26 @@ def apart(work):
         return work()
 
     return os.waitpid(forked(limited), 0)[1] == 0
+
+
+def sent_apart(work):
+    """(whether it came to its end, what it sent) of work in a process of its own.
+
+    ``work`` is given what it sends rows with; what was sent before Blender ended is there.
+    """
+    with tempfile.TemporaryFile("w+", encoding="utf-8") as file:
+
+        def send(row):
+            file.write(json.dumps(row) + "\n")
+            file.flush()
+
+        def sending():
+            work(send)
+            return True
+
+        ended = apart(sending)
+        file.seek(0)
+        return ended, [json.loads(line) for line in file]
 
 
 class Beside:

@@ -4,12 +4,9 @@
 RNA has zeros as defaults, which the operators tell from zeros that are given.
 """
 
-import json
-import tempfile
-
 import bpy
 
-from .apart import apart
+from .apart import sent_apart
 from .new_things import scratch_scene
 
 MODULES = ("curve", "mesh", "object", "surface")
@@ -50,24 +47,19 @@ def look(operator):
     return found
 
 
+def look_at_all(send):
+    """Looks at the operators of all modules that have some which add objects."""
+    for module in MODULES:
+        for name in sorted(dir(getattr(bpy.ops, module))):
+            try:
+                found = look(getattr(getattr(bpy.ops, module), name))
+            except Exception:
+                continue
+            for argument, value in found.items():
+                send({"path": f"bpy.ops.{module}.{name}", "argument": argument, "value": value})
+
+
 def find_all(write):
     """One ``left_out`` record for each such argument. Wants a system that can work apart."""
-    with tempfile.TemporaryFile("w+", encoding="utf-8") as file:
-
-        def work():
-            for module in MODULES:
-                for name in sorted(dir(getattr(bpy.ops, module))):
-                    try:
-                        found = look(getattr(getattr(bpy.ops, module), name))
-                    except Exception:
-                        continue
-                    for argument, value in found.items():
-                        row = {"path": f"bpy.ops.{module}.{name}", "argument": argument, "value": value}
-                        file.write(json.dumps(row) + "\n")
-                        file.flush()
-            return True
-
-        apart(work)
-        file.seek(0)
-        for line in file:
-            write("left_out", **json.loads(line))
+    for row in sent_apart(look_at_all)[1]:
+        write("left_out", **row)

@@ -6,10 +6,8 @@ Of one instance of each class the ends of the range and what lies beyond are ass
 makes is tried in a process of its own: what extreme values end there is left out.
 """
 
-import json
-import tempfile
-
-from .apart import apart
+from .apart import sent_apart
+from .instances import same
 from .new_things import MAKERS, scratch_scene
 from .rna import path_of
 from .wire import limit
@@ -28,21 +26,15 @@ def read_back(struct, name, value):
         return None
 
 
-def is_near(left, right):
-    """Whether two numbers are equal as far as single precision goes."""
-    return left is not None and abs(left - right) <= 1e-5 * max(1.0, abs(right))
-
-
 def kept_beyond(struct, prop):
     """The ends of a number's range beyond which a value stays: ``min``, ``max``."""
     name, before = prop.identifier, getattr(struct, prop.identifier)
     found = []
-    for side, end, beyond in (("min", prop.hard_min, -PAST), ("max", prop.hard_max, PAST)):
-        if (
-            limit(end) is not None
-            and abs(end) <= MOST
-            and is_near(read_back(struct, name, end + beyond), end + beyond)
-        ):
+    for side, end, step in (("min", prop.hard_min, -PAST), ("max", prop.hard_max, PAST)):
+        if limit(end) is None or abs(end) > MOST:
+            continue
+        kept = read_back(struct, name, end + step)
+        if same(kept, end + step) and not same(kept, end):
             found.append(side)
     read_back(struct, name, before)
     return found
@@ -82,23 +74,15 @@ def look(struct, writable, seen, send):
 
 def found_apart(make, observer):
     """What is found in what one maker makes, up to where Blender ends."""
-    with tempfile.TemporaryFile("w+", encoding="utf-8") as file:
 
-        def send(row):
-            file.write(json.dumps(row) + "\n")
-            file.flush()
+    def work(send):
+        scratch_scene()
+        seen = set()
+        for _, thing, *_ in make():
+            for struct in observer.parts(thing) if thing is not None else ():
+                look(struct, observer.layout(struct).writable, seen, send)
 
-        def work():
-            scratch_scene()
-            seen = set()
-            for _, thing, *_ in make():
-                for struct in observer.parts(thing) if thing is not None else ():
-                    look(struct, observer.layout(struct).writable, seen, send)
-            return True
-
-        apart(work)
-        file.seek(0)
-        return [json.loads(line) for line in file]
+    return sent_apart(work)[1]
 
 
 def find_all(write, observer):

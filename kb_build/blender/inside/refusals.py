@@ -7,15 +7,13 @@ edit mode; one that is taken is made again.
 """
 
 import itertools
-import json
 import re
-import tempfile
 from collections import defaultdict
 from contextlib import suppress
 
 import bpy
 
-from .apart import apart
+from .apart import apart, sent_apart
 from .new_things import (
     MAKERS,
     SEQUENCER_SCENE,
@@ -317,19 +315,7 @@ def try_all(make, observer, trial):
 
 def attempt(make, observer, skipped):
     """(whether it came to its end, what was sent) of trying what one maker makes, in a process of its own."""
-    with tempfile.TemporaryFile("w+", encoding="utf-8") as file:
-
-        def send(row):
-            file.write(json.dumps(row) + "\n")
-            file.flush()
-
-        def work():
-            try_all(make, observer, Trial(send, skipped))
-            return True
-
-        ended = apart(work)
-        file.seek(0)
-        return ended, [json.loads(line) for line in file]
+    return sent_apart(lambda send: try_all(make, observer, Trial(send, skipped)))
 
 
 def tried_apart(make, observer):

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.records import PAIRS
 from kb_build.symbol_lines import written
 from kb_serve.reader import TYPES
 
@@ -25,7 +26,6 @@ _END_NODE = f"{TYPES}ShaderNodeOutputMaterial"  # what that gives
 _GROUP_END = "group_output"
 _PRINCIPLED = 'tree.nodes["Principled BSDF"]'
 _BACKGROUND = 'tree.nodes["Background"].inputs["Color"]'
-_PAIRS = "pair_with_output"
 
 
 class _Group(NamedTuple):
@@ -62,7 +62,7 @@ class NodeLinks:
     def partner(self, node: str) -> str:
         """The class of the node at the other end of a zone; empty for other nodes."""
         first = node.replace("Output", "Input")
-        is_zone = f"{first}.{_PAIRS}" in {entry.path for entry in self._reader.members(first).values()}
+        is_zone = f"{first}.{PAIRS}" in {entry.path for entry in self._reader.members(first).values()}
         return (first if node != first else node.replace("Input", "Output")) if is_zone else ""
 
     def of(self, tree: str, node: str) -> Iterator[str]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.records import PAIRS
 from kb_serve.answer.render import is_machinery
 from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.node_links import NodeLinks
@@ -94,7 +95,7 @@ class NodeSteps:
             if node not in self._scene.shown and node in known:
                 yield from self._calls.making({node: known[node]})
         begin, end = self._scene.variables.of(first), self._scene.variables.of(last)
-        yield f"`{begin}.pair_with_output({end})`"
+        yield f"`{begin}.{PAIRS}({end})`"
         yield from self._links.through_zone(tree, first, last)
 
     def _functions(self, creations: Mapping[str, Creation]) -> Iterator[str]:
