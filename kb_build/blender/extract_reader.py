@@ -32,6 +32,7 @@ from kb_build.records import (
     LOCKED_ON,
     LOCKED_WITH,
     NEEDS,
+    STOPS,
     UNBOUNDED,
     Default,
     EnumItem,
@@ -208,12 +209,20 @@ def _add_left_out(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
 
 
 def _add_limits(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds the ends of a number's range that its setter does not ask for, and takes an array's length that varies."""
+    """Adds what Blender keeps otherwise than RNA tells: ends of ranges, items taken as others, lengths that vary."""
     if row is not None:
         if seen.get("varies"):
             row["array"] = [0]
             row.pop("default", None)
-        row["flags"] = [*row.get("flags", ()), *(UNBOUNDED + end for end in seen.get("ends", ()))]
+        row["flags"] = [
+            *row.get("flags", ()),
+            *(UNBOUNDED + end for end in seen.get("ends", ())),
+            *(f"{STOPS}{side}={value:g}" for side, value in seen.get("stops", {}).items()),
+        ]
+        for item in row.get("enum_items", ()):
+            if kept := seen.get("read_as", {}).get(item["identifier"]):
+                said = item.get("description", "").rstrip(".")
+                item["description"] = f"{said}. Reads back as {kept!r}".removeprefix(". ")
 
 
 def _add_locked(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:

@@ -9,7 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN, PAIRS, UNBOUNDED, WITHOUT_ACTIVE, WITHOUT_AREA
+from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN, PAIRS, STOPS, UNBOUNDED, WITHOUT_ACTIVE, WITHOUT_AREA
 from kb_build.symbol_lines import (
     SET,
     alike_nodes,
@@ -112,6 +112,21 @@ def _not_kept(symbol: Symbol) -> str:
     return f", not enforced: a value {' or '.join(sides[end] for end in ends)} stays" if ends else ""
 
 
+def _stops_text(symbol: Symbol) -> str:
+    """Where a number of a new thing stops before the end of its range, as tried."""
+    ends = dict(stop.split("=") for stop in symbol.flagged(STOPS))
+    match ends.get("min"), ends.get("max"):
+        case None, None:
+            return ""
+        case low, None:
+            kept = f"no less than {low}"
+        case None, high:
+            kept = f"no more than {high}"
+        case low, high:
+            kept = f"only {low}" if low == high else f"{low} … {high}"
+    return f"a new one keeps {kept} (what else is set decides)"
+
+
 def _range_text(low: float | None, high: float | None, kind: str) -> str:
     """The range of a number; ``kind`` is its type, as symbols have it: integers are written whole."""
     digits = ".0f" if kind.startswith("int") else "g"
@@ -135,6 +150,8 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield text + _not_kept(symbol)
     elif symbol.soft_min is not None or symbol.soft_max is not None:
         yield f"slider: {_range_text(symbol.soft_min, symbol.soft_max, symbol.type)}"
+    if text := _stops_text(symbol):
+        yield text
     if symbol.unit and symbol.type not in _NO_NUMBERS:
         yield f"unit: {_UNITS.get(symbol.unit, symbol.unit.lower())}"
     if symbol.subtype and symbol.subtype not in {"UNSIGNED"}:

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds numbers that may lie outside the range that RNA tells of them: their setters do not ask for it. And arrays
-that are not as long as RNA tells: their length is the instance's.
+"""Finds values that Blender keeps, or does not keep, otherwise than RNA tells.
 
-Of one instance of each class the ends of the range and what lies beyond are assigned and read again. What a maker
-makes is tried in a process of its own: what extreme values end there is left out.
+Numbers outside their range whose setters do not ask for it; numbers that stop before its end, as the rest of the
+instance has it; arrays that are not as long as RNA tells; and items of enumerations that are taken as others. Of one
+instance of each class such values are assigned and read again. What a maker makes is tried in a process of its own:
+what extreme values end there is left out.
 """
 
 from .apart import sent_apart
-from .instances import same
+from .instances import CHOSEN, refused_value_items, same
 from .new_things import MAKERS, scratch_scene
 from .rna import path_of
 from .wire import limit
@@ -15,6 +16,7 @@ from .wire import limit
 NUMBERS = frozenset({"INT", "FLOAT"})
 MOST = 1e6  # beyond it a number may take all memory
 PAST = 1  # how far beyond an end is tried
+FAR = 1000  # assigned where there is no end
 
 
 def read_back(struct, name, value):
@@ -40,6 +42,33 @@ def kept_beyond(struct, prop):
     return found
 
 
+def stops(struct, prop):
+    """side → where a number of an instance stops before the end of its range: two values beyond are read as that."""
+    name, before = prop.identifier, getattr(struct, prop.identifier)
+    found = {}
+    for side, end, far in (("min", prop.hard_min, -FAR), ("max", prop.hard_max, FAR)):
+        has_end = limit(end) is not None and abs(end) <= MOST
+        last = end if has_end else far
+        nearer = type(before)((last + before) / 2) if has_end else last / 2
+        kept = read_back(struct, name, last)
+        if kept is not None and not same(kept, last) and same(kept, read_back(struct, name, type(before)(nearer))):
+            found[side] = kept
+    read_back(struct, name, before)
+    return found
+
+
+def read_as(struct, prop):
+    """item → the other item that is read once it was assigned, of those that an enumeration takes."""
+    name, before = prop.identifier, getattr(struct, prop.identifier)
+    found = {}
+    for item in refused_value_items(struct, name):
+        kept = read_back(struct, name, item)
+        if kept and kept != item:
+            found[item] = kept
+    read_back(struct, name, before)
+    return found
+
+
 def has_other_length(struct, prop):
     """Whether an array of an instance is not as long as RNA tells."""
     if prop.array_dimensions[1]:
@@ -50,26 +79,32 @@ def has_other_length(struct, prop):
         return False
 
 
+def tried(struct, prop):
+    """What is told of a property of an instance that can be assigned; {} for nothing."""
+    if prop.type == "ENUM":
+        found = {} if prop.is_enum_flag else {"read_as": read_as(struct, prop)}
+    else:
+        found = {"ends": kept_beyond(struct, prop)}
+        if prop.identifier not in CHOSEN:
+            found["stops"] = stops(struct, prop)
+    return {name: told for name, told in found.items() if told}
+
+
 def look(struct, writable, seen, send):
-    """Tries the numbers of an instance, those of each class once."""
+    """Tries the properties of an instance, those of each class once."""
     for prop in struct.bl_rna.properties:
+        name = prop.identifier
         if prop.type in NUMBERS and prop.is_array:
-            path = path_of(struct.bl_rna, prop.identifier)
+            path = path_of(struct.bl_rna, name)
             if path not in seen and has_other_length(struct, prop):
                 seen.add(path)
-                send({"path": path, "ends": [], "varies": True})
-            continue
-        path = writable.get(prop.identifier)
-        if (
-            path is None
-            or path in seen
-            or prop.type not in NUMBERS
-            or struct.is_property_readonly(prop.identifier)
-        ):
-            continue
-        seen.add(path)
-        if ends := kept_beyond(struct, prop):
-            send({"path": path, "ends": ends})
+                send({"path": path, "varies": True})
+        elif name in writable and prop.type in {"ENUM", *NUMBERS} and not struct.is_property_readonly(name):
+            path = writable[name]
+            if path not in seen:
+                seen.add(path)
+                if found := tried(struct, prop):
+                    send({"path": path, **found})
 
 
 def found_apart(make, observer):
@@ -86,7 +121,7 @@ def found_apart(make, observer):
 
 
 def find_all(write, observer):
-    """One ``limits`` record for each number whose range is not kept, and each array of another length.
+    """One ``limits`` record for each property of which Blender keeps something else than RNA tells.
 
     Wants a system that can work apart.
     """

@@ -81,6 +81,39 @@ def test_a_range_that_is_not_kept_says_so(symbols: Mapping[str, Symbol], tmp_pat
     assert rows[2][2] == "-1.0"
 
 
+@pytest.mark.parametrize(
+    ("number", "ends"),
+    [
+        ("NlaStrip.blend_in", {"min=0", "max=1"}),
+        ("ParticleSettings.path_start", {"min=0", "max=1"}),
+        ("MultiresModifier.levels", {"max=0"}),
+        ("Scene.frame_current", {"min=0"}),
+        ("SubsurfModifier.levels", set()),
+        ("RigidBodyObject.mass", set()),
+        # Its usual number is this machine's.
+        ("RenderSettings.threads", set()),
+    ],
+)
+def test_a_number_that_stops_before_the_end_of_its_range_says_where(
+    symbols: Mapping[str, Symbol], number: str, ends: set[str]
+) -> None:
+    assert set(symbols[NODES + number].flagged("stops:")) == ends
+
+
+def test_an_item_that_is_taken_as_another_one_says_so(symbols: Mapping[str, Symbol], tmp_path: Path) -> None:
+    items = {
+        item.identifier: item.description for item in symbols[f"{NODES}Material.blend_method"].enum_items
+    }
+    told = {name for name, text in items.items() if text.endswith("Reads back as 'HASHED'")}
+    start = ["import bpy", "material = bpy.data.materials.new('m')"]
+    code = [f"material.blend_method = {name!r}" for name in items]
+    rows = run_statements(
+        tmp_path, [*start, *code], dict.fromkeys(range(2, 2 + len(code)), "material.blend_method")
+    )
+    kept = dict(zip(items, (row[2] for row in rows[2:]), strict=True))
+    assert told == {name for name, value in kept.items() if value != repr(name)} == {"OPAQUE", "CLIP"}
+
+
 def test_what_an_operator_takes_for_what_is_left_out_is_no_default(symbols: Mapping[str, Symbol]) -> None:
     cube = symbols["bpy.ops.mesh.primitive_cube_add"]
     given = {parameter.name: parameter for parameter in cube.parameters}
