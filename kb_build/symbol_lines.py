@@ -27,6 +27,7 @@ from kb_build.records import (
     NEEDS,
     NOT_TAKEN,
     SHOWN_WHEN,
+    STARTUP,
     THEN,
     last_name,
 )
@@ -394,7 +395,9 @@ def default_text(symbol: Symbol) -> str:
         )
         text += ", …" if len(rows) > _SHOWN_OTHERS else ""
     text += "".join(
-        f"; `{literal(new.value, symbol.type)}`{_whose(new, new.made)}" for new in usual[1:] if new.is_startup
+        f"; `{literal(new.value, symbol.type)}`{_whose(new, new.made)} ({_at_start(new)})"
+        for new in usual[1:]
+        if new.is_startup
     )
     if usual and symbol.default not in (None, value) and _is_listed(symbol):
         text += f"; RNA says `{literal(symbol.default, symbol.type)}`"
@@ -408,6 +411,11 @@ def _whose(new: NewValue, made: Sequence[str]) -> str:
     if new.when:
         return f" (new {_labels(made)} with {new.when})" if made else f" (with {new.when})"
     return f" (made by `{new.by}`)" if new.by else f" (new {_labels(made)})"
+
+
+def _at_start(new: NewValue) -> str:
+    """Which of the things that Blender starts with have a value."""
+    return _labels([label.removeprefix(STARTUP).removeprefix(FACTORY) for label in new.made])
 
 
 def _labels(labels: Sequence[str]) -> str:

@@ -9,7 +9,16 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import EVALUATED, NAMES_ITEMS, NOT_TAKEN, PAIRS, STOPS, UNBOUNDED, WITHOUT_ACTIVE, WITHOUT_AREA
+from kb_build.records import (
+    EVALUATED,
+    NAMES_ITEMS,
+    NOT_TAKEN,
+    PAIRS,
+    STOPS,
+    UNBOUNDED,
+    WITHOUT_ACTIVE,
+    WITHOUT_AREA,
+)
 from kb_build.symbol_lines import (
     SET,
     alike_nodes,

@@ -138,7 +138,7 @@ def test_items_that_no_instance_takes_are_not_listed() -> None:
         ({"default": 0, "new_values": (NewValue(0), NewValue(1, tuple("abcde")))},
          "`0` (new A), `1` (new a, b, c and 2 more)"),
         ({"default": 4, "new_values": (NewValue(4, by="bpy.data.as.new()"), NewValue(5, ("start-up a",)))},
-         "`4` (made by `bpy.data.as.new()`); `5` in the startup file"),
+         "`4` (made by `bpy.data.as.new()`); `5` in the startup file (a)"),
         ({"default": 0, "new_values": (NewValue(5, ("start-up a",)),)}, "`5` in the startup file; RNA says `0`"),
         ({"default": 5, "new_values": (NewValue(1, ("factory preferences",)),)},
          "`1` in the factory preferences; RNA says `5`"),

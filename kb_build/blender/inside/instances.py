@@ -53,7 +53,8 @@ KIND_UNASKED = {
 }  # fmt: skip
 # When these begin and end is up to whoever makes them.
 TIMED = frozenset({"Strip", "Sequence", "NlaStrip"})
-MACHINES_OWN = frozenset({"FILE_PATH", "DIR_PATH", "FILE_NAME"})
+# What the machine decides, and bytes, of which JSON has none.
+UNREAD = frozenset({"FILE_PATH", "DIR_PATH", "FILE_NAME", "BYTE_STRING"})
 # Setting these makes another thing of the instance, which is made by itself; some of the old ones are then freed.
 KINDS = frozenset({
     ("Light", "type"), ("Texture", "type"), ("FluidModifier", "fluid_type"),
@@ -182,7 +183,7 @@ class Layout:
                 not prop.is_readonly
                 and (name not in left_out or prop.type == "ENUM")
                 and not name.startswith("bl_")
-                and prop.subtype not in MACHINES_OWN
+                and prop.subtype not in UNREAD
                 and not (getattr(prop, "is_array", False) and not 0 < prop.array_length <= LONGEST_ARRAY)
             ):
                 self.fields.append(Field(rna, prop))

@@ -51,7 +51,11 @@ def stops(struct, prop):
         last = end if has_end else far
         nearer = type(before)((last + before) / 2) if has_end else last / 2
         kept = read_back(struct, name, last)
-        if kept is not None and not same(kept, last) and same(kept, read_back(struct, name, type(before)(nearer))):
+        if (
+            kept is not None
+            and not same(kept, last)
+            and same(kept, read_back(struct, name, type(before)(nearer)))
+        ):
             found[side] = kept
     read_back(struct, name, before)
     return found

@@ -25,6 +25,13 @@ def called(thing):
     return thing.bl_rna.name.lower()
 
 
+def present(thing, collection):
+    """The first of the elements that a new thing has from the beginning, if it has such."""
+    elements = getattr(thing, collection, None)
+    if isinstance(elements, bpy.types.bpy_prop_collection) and len(elements):
+        yield called(elements[0]), elements[0]
+
+
 def no_sequencer_scene():
     """Takes the sequencer's scene away, in a Blender that has one."""
     if hasattr(bpy.context.workspace, "sequencer_scene"):
@@ -114,6 +121,8 @@ def data_blocks():
         except (TypeError, RuntimeError):
             continue
         yield called(block), block, f"bpy.data.{name}.new()"
+        yield from present(block, "text_boxes")
+        yield from present(block, "points")
         if name == "cameras":
             yield "background image", block.background_images.new()
         if hasattr(collection, "create_gpencil_data"):
@@ -174,6 +183,7 @@ def modifiers():
             if modifier is None:
                 continue
             yield called(modifier), modifier
+            yield from present(modifier, "segments")
             if kind == "FLUID":
                 yield from fluids(modifier)
             elif kind == "DATA_TRANSFER":
@@ -399,7 +409,20 @@ def animation():
     if hasattr(data.action, "layers"):
         yield "action layer", data.action.layers[0]
         yield "action slot", data.action.slots[0]
-    yield "keying set", bpy.context.scene.keying_sets.new()
+    keying_set = bpy.context.scene.keying_sets.new()
+    yield "keying set", keying_set
+    yield "keying set path", keying_set.paths.add(obj, "location")
+
+
+def tracking():
+    """A clip of a camera with what tracks it, and an image of tiles."""
+    clip = movie_clip()
+    if clip is not None:
+        yield called(clip), clip
+        track = clip.tracking.objects[0].tracks.new(frame=1)
+        yield called(track), track
+        yield called(track.markers[0]), track.markers[0]
+    yield from present(bpy.data.images.new("new", 8, 8, tiled=True), "tiles")
 
 
 def armatures():
@@ -444,7 +467,9 @@ def mesh_parts():
     mesh = obj.data
     yield "uv layer", mesh.uv_layers.new(name="new")
     for kind in argument_choices(mesh.attributes, "type"):
-        yield f"{kind.lower()} attribute", mesh.attributes.new(f"new {kind}", kind, "POINT")
+        attribute = mesh.attributes.new(f"new {kind}", kind, "POINT")
+        yield f"{kind.lower()} attribute", attribute
+        yield from present(attribute, "data")
     yield "vertex group", obj.vertex_groups.new(name="new")
     yield "basis shape key", obj.shape_key_add(name="new")
     yield "shape key", obj.shape_key_add(name="new")
@@ -467,6 +492,9 @@ def drawings():
         yield called(layer), layer
         frame = layer.frames.new(1)
         yield called(frame), frame
+        if hasattr(block, "layer_groups"):
+            group = collection.new("new").layer_groups.new("new")
+            yield called(group), group
     layer = bpy.data.masks.new("new").layers.new()
     yield "mask layer", layer
     spline = layer.splines.new()
@@ -534,7 +562,7 @@ def node_trees():
 
 MAKERS = (
     data_blocks, added_by_operators, modifiers, constraints, particles, children, force_fields, rigid_bodies, strips,
-    animation, armatures, splines, mesh_parts, drawings, scenes, libraries, node_trees,
+    animation, tracking, armatures, splines, mesh_parts, drawings, scenes, libraries, node_trees,
 )  # fmt: skip
 
 
@@ -553,12 +581,24 @@ def look_at_start(observer):
     for block in (scene.world, *map(startup_block, (bpy.data.materials, bpy.data.lights, bpy.data.cameras))):
         if block is not None:
             observer.look(f"start-up {called(block)}", block, is_new=False)
-    observer.look("factory preferences", bpy.context.preferences, vary=False, is_new=False)
-    view = next(
-        (area for screen in bpy.data.screens for area in screen.areas if area.type == "VIEW_3D"), None
-    )
-    if view is not None:
-        observer.look("start-up 3d view", view.spaces.active, vary=False, is_new=False)
+    preferences = bpy.context.preferences
+    observer.look("factory preferences", preferences, vary=False, is_new=False)
+    if len(preferences.themes):
+        observer.look("factory theme", preferences.themes[0], vary=False, is_new=False)
+    for area, space in startup_spaces():
+        observer.look(f"start-up {called(space)}", space, vary=False, is_new=False)
+        observer.ask(area, "start-up area", "")
+
+
+def startup_spaces():
+    """(area, space) of the first editor of each type on the screens that Blender starts with, those in use first."""
+    found = {}
+    for screen in sorted(bpy.data.screens, key=lambda screen: screen != bpy.context.screen):
+        for area in screen.areas:
+            space = area.spaces.active
+            if space is not None:
+                found.setdefault(space.bl_rna.identifier, (area, space))
+    return found.values()
 
 
 def scratch_scene():

@@ -72,6 +72,13 @@ def enum_items(prop):
     return (rows, False) if rows else (read_items(prop.enum_items), True)
 
 
+def in_rows(values, columns):
+    """The values of a matrix as an instance has them; those of another array as they are: it has no ``columns``."""
+    if not columns:
+        return values
+    return [values[start : start + columns] for start in range(0, len(values), columns)]
+
+
 def default_of(prop):
     """The value a new property has, or None where RNA has no such notion (pointers, collections)."""
     kind = prop.type
@@ -80,7 +87,7 @@ def default_of(prop):
     if kind == "ENUM":
         return sorted(prop.default_flag) if prop.is_enum_flag else prop.default
     if kind in {"BOOLEAN", "INT", "FLOAT"} and prop.is_array:
-        return [plain(item) for item in prop.default_array]
+        return in_rows([plain(item) for item in prop.default_array], prop.array_dimensions[1])
     return plain(prop.default)
 
 

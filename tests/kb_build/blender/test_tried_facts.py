@@ -9,7 +9,7 @@ import pytest
 from statements_in_blender import run_statements
 
 from kb_build.records import INVERTED
-from kb_build.symbol_lines import shown_when, type_text
+from kb_build.symbol_lines import default_text, shown_when, type_text
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -98,6 +98,23 @@ def test_a_number_that_stops_before_the_end_of_its_range_says_where(
     symbols: Mapping[str, Symbol], number: str, ends: set[str]
 ) -> None:
     assert set(symbols[NODES + number].flagged("stops:")) == ends
+
+
+def test_what_has_elements_from_the_beginning_and_what_blender_starts_with_was_compared(
+    symbols: Mapping[str, Symbol],
+) -> None:
+    told = {
+        "GreasePencilLayerGroup.color_tag": "`'NONE'` (new grease pencil layer group); RNA says `'COLOR1'`",
+        "FloatColorAttributeValue.color": (
+            "`(1, 1, 1, 1)` (new float color attribute value); RNA says `(0, 0, 0, 0)`"
+        ),
+        "MovieTrackingCamera.sensor_width": "`35` (new movieclip); RNA says `0`",
+        "SpaceProperties.show_properties_render": "`True` in the startup file; RNA says `False`",
+        "ThemeGraphEditor.vertex_size": "`6` in the factory preferences; RNA says `0`",
+        # Which folder it is the machine decides.
+        "FileSelectParams.directory": "",
+    }
+    assert {name: default_text(symbols[NODES + name]) for name in told} == told
 
 
 def test_an_item_that_is_taken_as_another_one_says_so(symbols: Mapping[str, Symbol], tmp_path: Path) -> None:

@@ -179,10 +179,12 @@ def test_a_node_that_no_tree_takes_is_not_said_to_be_made(kb: KnowledgeBase) -> 
 
 
 def test_values_that_are_put_together_at_run_time_are_not_told_by_a_stand_in(kb: KnowledgeBase) -> None:
-    text = kb.query("bpy.types.SpaceNodeEditor.tree_type").text
-    assert "'DEFAULT'" not in text
+    text = kb.query("bpy.types.CyclesPreferences.compute_device_type").text
+    assert "'NONE'" not in text
     assert "put together while Blender runs" in text
-    assert "`tree_type` enum —" in kb.query("bpy.types.SpaceNodeEditor", max_tokens=ALL).text
+    assert "- `'ShaderNodeTree'` Shader Editor" in kb.query("bpy.types.SpaceNodeEditor.tree_type").text
+    told = kb.query("bpy.types.CyclesPreferences", max_tokens=ALL).text
+    assert "`compute_device_type` enum —" in told
 
 
 def test_a_way_to_a_thing_says_what_is_none_on_it(kb: KnowledgeBase) -> None:
