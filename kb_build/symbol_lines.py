@@ -273,7 +273,7 @@ def taken_where(symbol: Symbol, argument: str) -> dict[str, str]:
 def taken_text(where: str) -> str:
     """Where a value is taken, as it is said of it: ``taken only by a shader or geometry node tree``."""
     kind, _, labels = where.partition(" by ")
-    if kind in {"only", "not"} and labels:
+    if kind in {"only", "not"} or kind.endswith((" there only", " there not")):
         *names, last = labels.split(", ")
         more = "" if last != "…" else f", {last}"
         where = f"{kind} by {_things(names if more else [*names, last])}{more}"

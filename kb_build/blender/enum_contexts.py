@@ -11,7 +11,8 @@ from kb_build.records import NOT_TAKEN
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-_NAMED = 3
+_NAMED = 3  # modes
+_NAMED_THINGS = 6
 
 # What was made, and the mode that it was put into; "" for that of a new one.
 Context = tuple[str, str]
@@ -73,7 +74,9 @@ def _deciding(
 
 
 def where_taken(taken: set[Context], refused: set[Context]) -> str:
-    """In which contexts an item is taken: a mode that decides it, or what was made."""
+    """In which contexts an item is taken: where it is that decides it, a mode, or what was made."""
+    if where := _place_taken(taken, refused):
+        return where
     new_taken = {label for label, mode in taken if not mode}
     new_refused = {label for label, mode in refused if not mode}
     if not new_taken:
@@ -87,6 +90,27 @@ def where_taken(taken: set[Context], refused: set[Context]) -> str:
     return "only by " + _labels(new_taken) if fewer_take else "not by " + _labels(new_refused)
 
 
+def _place_taken(taken: set[Context], refused: set[Context]) -> str:
+    """Where alone what takes an item is, and what takes it there if not all does; empty where no place decides."""
+    present = {_placed(label)[1] for label, _ in taken}
+    absent = {_placed(label)[1] for label, _ in refused} - present
+    if not absent:
+        return ""
+    few_take = len(present) <= len(absent)
+    where = f"{'only' if few_take else 'not'} in {' or '.join(sorted(present if few_take else absent))}"
+    there = {(label, mode) for label, mode in refused if _placed(label)[1] in present}
+    if not there:
+        return where
+    by = where_taken(*({(_placed(label)[0], mode) for label, mode in found} for found in (taken, there)))
+    return f"{where}, and there {by}"
+
+
+def _placed(label: str) -> tuple[str, str]:
+    """What was made, and where that is: ``a GeometryNodeTree``; empty for anywhere."""
+    name, _, place = label.partition(" in ")
+    return name, place
+
+
 def _modes(modes: Iterable[str]) -> str:
     """``system='NONE'|'IMPERIAL'``; the modes of several properties are alternatives."""
     values: dict[str, list[str]] = defaultdict(list)
@@ -98,4 +122,4 @@ def _modes(modes: Iterable[str]) -> str:
 
 def _labels(labels: set[str]) -> str:
     shown = sorted(labels, key=lambda label: (len(label), label))
-    return ", ".join(shown[:_NAMED]) + (", …" if len(shown) > _NAMED else "")
+    return ", ".join(shown[:_NAMED_THINGS]) + (", …" if len(shown) > _NAMED_THINGS else "")

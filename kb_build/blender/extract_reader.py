@@ -2,20 +2,18 @@
 
 from __future__ import annotations
 
-import fnmatch
 import json
 import re
 from collections import defaultdict
 from dataclasses import dataclass, field, replace
-from functools import cache
 from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.enum_contexts import items_in_contexts
+from kb_build.blender.manual_links import manual_links
 from kb_build.blender.refused_calls import refusals
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
-from kb_build.known_prefixes import KnownPrefixes
 from kb_build.records import (
     ALSO,
     ANY,
@@ -59,7 +57,6 @@ _UNTOLD = {
     "enum": "...",
     **dict.fromkeys(("boolean[1]", "float[1]", "int[1]"), "..."),
 }
-_INDEXABLE = re.compile(r"[\[*?]")
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
@@ -474,41 +471,6 @@ def _subclass_lookups(classes: Iterable[Symbol], prototypes: list[Symbol]) -> It
             yield replace(prototype, path=f"{cls.path}.{prototype.name}", owner=cls.path)
 
 
-def manual_links(symbols: Iterable[Symbol], table: list[tuple[str, str]]) -> Iterator[Link]:
-    """Applies Blender's table (fnmatch pattern over lower-case ids → page) to every symbol; first match wins."""
-    # Nearly all patterns are a name with a star after it: only the others need regular expressions.
-    starred: dict[str, int] = {}
-    others: dict[str, list[int]] = defaultdict(list)
-    for rank, (pattern, _) in enumerate(table):
-        lowered = pattern.lower()
-        prefix = _INDEXABLE.split(lowered, maxsplit=1)[0]
-        if lowered == f"{prefix}*":
-            starred.setdefault(prefix, rank)
-        else:
-            others[prefix].append(rank)
-
-    @cache
-    def matcher(rank: int) -> re.Pattern[str]:
-        return re.compile(fnmatch.translate(table[rank][0].lower()))
-
-    known = KnownPrefixes((*starred, *others))
-    for symbol in symbols:
-        if not symbol.path.startswith("bpy.") or symbol.kind == "socket":
-            continue
-        path = symbol.path.lower()
-        prefixes = known.of(path)
-        first = min((starred[prefix] for prefix in prefixes if prefix in starred), default=len(table))
-        for prefix in prefixes:
-            for rank in others.get(prefix, ()):
-                if rank >= first:
-                    break
-                if matcher(rank).match(path):
-                    first = rank
-        if first < len(table):
-            page = table[first][1]
-            yield Link(symbol.path, page.removesuffix(".html").replace(".html#", "#"), "manual")
-
-
 def _structure(symbols: Iterable[Symbol]) -> Iterator[Link]:
     """Links from RNA: bases, owners of sockets, targets of pointers and collections."""
     for symbol in symbols:
@@ -575,7 +537,7 @@ def read_extract(path: Path) -> Extract:
         build=raw.header["build"],
         addons=tuple(raw.header.get("addons", ())),
         symbols=tuple(with_whole_calls([*symbols.values()], raw.by_class["own_name"])),
-        links=(*manual_links(symbols.values(), raw.manual), *_structure(symbols.values())),
+        links=(*manual_links([*symbols.values()], raw.manual), *_structure(symbols.values())),
         templates=tuple(_template(name, text, minor) for name, text in raw.templates),
         faults=tuple(raw.faults),
         still_works=tuple(raw.still_works),

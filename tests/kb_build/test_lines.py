@@ -206,6 +206,11 @@ def test_every_symbol_of_blender_has_a_line_of_its_own(extract: Extract) -> None
         ("only by shader node tree, geometry node tree", "taken only by a shader or geometry node tree"),
         ("only by mesh object, child of mesh object, …", "taken only by a mesh or child of mesh object, …"),
         ("only with domain_type='LIQUID'", "taken only with domain_type='LIQUID'"),
+        ("only in a GeometryNodeTree", "taken only in a GeometryNodeTree"),
+        (
+            "only in a GeometryNodeTree, and there only by float socket, integer socket",
+            "taken only in a GeometryNodeTree, and there only by a float or integer socket",
+        ),
         ("not with type='EMPTY'", "not taken with type='EMPTY'"),
         ("by FileOutput only with media_type='IMAGE'", "taken by FileOutput only with media_type='IMAGE'"),
         (NOT_TAKEN, f"taken {NOT_TAKEN}"),

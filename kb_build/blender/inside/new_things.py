@@ -621,6 +621,12 @@ def attempts(write, functions, skipped):
         yield function
 
 
+def place_of(thing):
+    """In which kind of tree a part of a node tree's interface is: that decides what it takes."""
+    is_of_tree = hasattr(thing, "socket_type") and isinstance(thing.id_data, bpy.types.NodeTree)
+    return f" in a {thing.id_data.bl_idname}" if is_of_tree else ""
+
+
 def write_all(write, observer, neighbours, skipped):
     """Makes everything but what the makers ``skipped`` make, for ``observer`` and ``neighbours`` to look at.
 
@@ -635,7 +641,7 @@ def write_all(write, observer, neighbours, skipped):
                         observer.ask(thing, label, "")
                         continue
                     observer.calls[label] = "".join(call)
-                    observer.look(label, thing)
+                    observer.look(label, thing, place=place_of(thing))
                     neighbours.look(thing)
         except Exception:
             write("fault", step="new things", traceback=traceback.format_exc())

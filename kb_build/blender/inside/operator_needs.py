@@ -103,7 +103,10 @@ def typed_object(kind):
     if kind == "ARMATURE":
         bpy.ops.object.armature_add()
         return bpy.context.object
-    return object_of(kind)
+    obj = object_of(kind)
+    if kind == "CURVE" and obj is not None:
+        obj.data.dimensions = "3D"  # as the Add menu makes them
+    return obj
 
 
 def modes(obj):

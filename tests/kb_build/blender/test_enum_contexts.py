@@ -52,6 +52,21 @@ def test_the_shorter_side_of_what_decides_is_told() -> None:
             "not with m='X'|'Y'",
         ),
         (
+            (context("AB", ("int in a G", "")), context("A", ("int in a S", ""), ("int in a T", ""))),
+            "only in a G",
+        ),
+        (
+            (context("AB", ("int in a G", ""), ("int in a S", "")), context("A", ("int in a T", ""))),
+            "not in a T",
+        ),
+        (
+            (
+                context("AB", ("int in a G", "")),
+                context("A", ("int in a S", ""), ("float in a S", ""), ("float in a G", "")),
+            ),
+            "only in a G, and there only by int",
+        ),
+        (
             (context("AB", ("mesh", ""), ("lamp", "m='X'")), context("A", ("lamp", ""), ("lamp", "m='Y'"))),
             "by lamp only with m='X'",
         ),

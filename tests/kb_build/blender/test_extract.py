@@ -11,7 +11,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.blender.extract_reader import call_text, manual_links, python_value, read_extract
+from kb_build.blender.extract_reader import call_text, python_value, read_extract
+from kb_build.blender.manual_links import manual_links
 from kb_build.errors import ExtractError
 from kb_build.records import EnumItem, NewValue, Parameter, Symbol
 
@@ -236,6 +237,20 @@ def test_the_table_is_applied_as_blender_itself_does(extract: Extract, base: Pat
         path = row.path.lower()
         page = next((page for pattern, page in compiled if pattern.match(path)), "")
         assert found.get(row.path, "") == page.replace(".html", ""), row.path
+
+
+def test_what_only_begins_with_the_letters_of_a_data_blocks_name_has_not_its_page(extract: Extract) -> None:
+    linked = {link.source.removeprefix("bpy.types.") for link in extract.links if link.kind == "manual"}
+    assert {
+        "Key",
+        "KeyMapItem",
+        "Curve",
+        "CurveProfile",
+        "CurveSplines",
+        "MeshVertex",
+        "ImageTexture",
+    } <= linked
+    assert linked.isdisjoint({"KeyingSet", "KeyMap", "CurveMapping", "CurveMapping.clip_max_x", "Lightgroup"})
 
 
 # Calls
