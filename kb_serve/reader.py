@@ -325,9 +325,9 @@ class BaseReader:
         return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
     def pointers_called(self, name: str, cls: str) -> list[str]:
-        """Paths of the pointer properties of this name whose value is a class, given by its name."""
+        """Paths of the pointers and collections of this name that lead to a class, given by its name."""
         sql = """SELECT path FROM symbols
-            WHERE name = ? AND kind = 'property' AND target = ? AND type = 'pointer' ORDER BY path"""
+            WHERE name = ? AND kind = 'property' AND target = ? AND type IN ('pointer', 'collection') ORDER BY path"""
         return [row[0] for row in self.rows(sql, name, cls)]
 
     def collections_of(self, cls: str) -> list[str]:

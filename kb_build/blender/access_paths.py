@@ -13,7 +13,7 @@ from kb_build.records import EVALUATED
 from kb_build.symbol_lines import of_evaluated
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from kb_build.records import Symbol
 
@@ -28,7 +28,7 @@ _DETOURS = frozenset(
         "window_manager", "window", "screen", "workspace", "area", "region", "preferences", "space_data", "library",
         "original", "override_library", "asset_data", "asset", "rigidbody_world",
         "blend_data", "nla_tracks", "material_override", "preview", "id_root", "parent", "tool_settings",
-        "next_node", "prev_node",
+        "next_node", "prev_node", "texture", "active_strip", "compositing_node_group",
     }
 )  # fmt: skip
 _DETOUR_COST = 6
@@ -41,11 +41,16 @@ _RARE = ((20, 0.0), (5, 0.5), (1, 1.5), (0, 4.0))
 _ACTIVE_GAIN = 1.1  # the active element is what scripts begin with; any other one is found by its name
 # What scripts come to through the active object; other data-blocks they take from ``bpy.data``.
 _OBJECT_DATA = ("Mesh", "Armature")
-# A driver is on a curve of its own kind, which RNA does not tell from others.
-_TOLD = {"Driver": 'bpy.context.object.animation_data.drivers.find("location", index=0).driver'}
+_TOLD_COST = 5  # of what Blender tells how to reach: the preferences of an add-on
+# What is reached as RNA does not tell, with what that costs: a driver is on a curve of its own kind, and interfaces
+# that scripts make are those of groups.
+_TOLD = {
+    "Driver": ('bpy.context.object.animation_data.drivers.find("location", index=0).driver', _TOLD_COST),
+    "NodeTreeInterface": ('bpy.data.node_groups["Geometry Nodes"].interface', 1),
+}
+_NEVER_ACTIVE = frozenset({"Nodes"})  # none is, of those that scripts make
 # Objects have them too, but only chains of bones are moved by them.
 _OF_BONES = ("KinematicConstraint", "SplineIKConstraint")
-_TOLD_COST = 5  # of what Blender tells how to reach: the preferences of an add-on
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,13 +150,16 @@ def _steps(cls: str, graph: _Graph) -> Iterable[_Step]:
         yield from graph.edges.get(ancestor, ())
 
 
-def _told(graph: _Graph) -> dict[str, str]:
-    """What is reached by a call; of the classes that this Blender has."""
-    return {cls: expression for cls, expression in _TOLD.items() if cls in graph.base}
+def _told(graph: _Graph) -> Iterator[tuple[str, str, int]]:
+    """(class, expression, cost) of what is told rather than found; of the classes that this Blender has."""
+    yield from ((cls, *told) for cls, told in _TOLD.items() if cls in graph.base)
+    yield from ((cls, expression, _TOLD_COST) for cls, expression in graph.told.items())
 
 
 def _active(step: _Step, graph: _Graph) -> _Step | None:
     """``active`` of a collection, where it leads to one of its elements."""
+    if step.container in _NEVER_ACTIVE:
+        return None
     found = (inner for inner in graph.edges.get(step.container, ()) if inner.name == "active")
     return next((inner for inner in found if inner.target == step.target and not inner.many), None)
 
@@ -182,11 +190,10 @@ def reached_expressions(
 
     for root, cls, cost in _ROOTS:
         offer(cost, cls, root)
-    for cls, expression in {**_told(graph), **graph.told}.items():
-        offer(_TOLD_COST, cls, expression)
+    for cls, expression, cost in _told(graph):
         # What RNA's own way leads to may be None: not each add-on has preferences.
-        for base in list(_lineage(cls, graph))[1:]:
-            offer(_TOLD_COST, base, expression)
+        for each in _lineage(cls, graph):
+            offer(cost, each, expression)
     while queue:
         cost, _, cls, expression = heapq.heappop(queue)
         if cls in expressions:

@@ -1,10 +1,12 @@
-"""Pointers to a class, or on the way to it, that are None on new things."""
+"""Pointers and collections on the way to a class that are None, or empty, on new things."""
 
 from __future__ import annotations
 
+import re
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from kb_build.records import EMPTY
 from kb_build.symbol_lines import empty_when_new, fillers
 
 if TYPE_CHECKING:
@@ -12,21 +14,32 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 _FEW = 8  # of all nodes and IDs each has its own pointers
-_FAR = 3  # dots of what leads through another pointer: ``bpy.context.scene.world``
+_WAY = re.compile(r"(?P<before>.+)\.(?P<name>\w+)(?P<key>\[[^\]]+\])?")
+_FIRST = (None, "[0]")  # of a collection whose elements have no names; who asks for a name has made it
+_FAR = 3  # dots of what leads through another pointer than those to what is always there: ``bpy.context.scene.world``
 
 
 def empty_pointer_to(reader: BaseReader, cls: Symbol) -> Symbol | None:
-    """The last pointer on the way to instances of ``cls`` that is None on a new thing; None where there is none."""
-    before, _, name = cls.reached.rpartition(".")
-    if not name.isidentifier():
+    """What on the way to instances of ``cls`` is None on a new thing, or the last collection, of which the first
+    element is taken, that is empty there; None where there is none.
+    """
+    way = _WAY.fullmatch(cls.reached)
+    if way is None:
+        return None
+    before, name, key = way.groups()
+    if key not in _FIRST and before.count(".") < _FAR:
         return None
     pointers = [
-        pointer for path in reader.pointers_called(name, cls.name) if (pointer := reader.symbol(path))
+        pointer
+        for base in reader.lineage(cls.path)
+        for path in reader.pointers_called(name, base.name)
+        if (pointer := reader.symbol(path))
     ]
     for pointer in pointers:
         owner = reader.symbol(pointer.owner)
         if owner and owner.reached == before:
-            return pointer if empty_when_new(pointer) else empty_pointer_to(reader, owner)
+            is_empty = key in _FIRST and (empty_when_new(pointer) or EMPTY in pointer.flags)
+            return pointer if is_empty else empty_pointer_to(reader, owner)
     if before.count(".") >= _FAR and len(pointers) == 1:
         owner = _below(reader, pointers[0].owner, before)
         return empty_pointer_to(reader, owner) if owner else None

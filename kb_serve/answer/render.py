@@ -584,7 +584,8 @@ class MarkdownRenderer:
             return ""
         if tree := self._assigned(pointer):
             return f"; `{pointer.name}` is {default_text(pointer)}: assign `{tree}`"
-        return f"; `{pointer.name}` is {default_text(pointer)}" if fillers(pointer) else ""
+        is_told = fillers(pointer) or pointer.type == "collection"
+        return f"; `{pointer.name}` is {default_text(pointer)}" if is_told else ""
 
     def _assigned(self, symbol: Symbol) -> str:
         """The call that makes the one kind of node tree that a pointer takes which is None on a new thing."""

@@ -592,7 +592,11 @@ class Observer:
 
         Then those that no new one has, of what Blender starts with.
         """
-        rows = sorted(self.values.get(path, ()), key=self.rank)
+        cls = path.split(".")[2]
+        rna = getattr(getattr(bpy.types, cls, None), "bl_rna", None)
+        rows = sorted(
+            self.values.get(path, ()), key=lambda row: self.rank(row, rna.name.lower() if rna else "")
+        )
         if len(rows) > MOST_VALUES:
             return []
         others = [
@@ -620,10 +624,12 @@ class Observer:
                 row["by"] = call
         return new + start
 
-    def rank(self, row):
-        """The most frequent values come first, before them those of data-blocks and of what they bring."""
+    def rank(self, row, own):
+        """That of the thing that is called as the class itself comes first, then those of data-blocks and of what they
+        bring, then the most frequent ones.
+        """
         _, labels = row
-        return not any(self.calls.get(label) for label in labels), -len(labels)
+        return own not in labels, not any(self.calls.get(label) for label in labels), -len(labels)
 
     def maker(self, labels):
         """The call that made everything with these labels; empty where it was not one call."""

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Finds what fills the pointers that are None on new things and take no assignment, by trying it on new ones.
 
-Tried are methods without arguments and ``use_…`` switches of each kind of data-block, the kinds of modifiers, and the
-operators that add things to the active object, its modifiers and its scene. Each is tried on things that were made for
-it alone; an operator that refuses is tried again after each one that did fill something.
+Tried are functions of ``bpy.data`` that take such a thing, methods without arguments and ``use_…`` switches of each
+kind of data-block, the kinds of modifiers, and the operators that add things to the active object, its modifiers and
+its scene. Each is tried on things that were made for it alone; an operator that refuses is tried again after each one
+that did fill something.
 """
 
 import functools
@@ -11,6 +12,7 @@ import traceback
 
 import bpy
 
+from .instances import variable
 from .new_things import attempts, block_makers, choices, mesh_object, operator_choices
 
 ADDING = frozenset({"add", "new", "create", "ensure", "mark", "toggle"})
@@ -78,16 +80,30 @@ def try_on_blocks(observer, make):
         observer.note_filled(block, trial.filled(), f".{name} = True" if is_switch else f".{name}()")
 
 
+def functions_of(collection, block):
+    """Names of the functions of a collection that may make something in one of its data-blocks, and need no more."""
+    for function in collection.bl_rna.functions:
+        needed = [item for item in function.parameters if item.is_required and not item.is_output]
+        takes_it = len(needed) == 1 and needed[0].type == "POINTER" and isinstance(block, bpy.types.ID)
+        if takes_it and needed[0].fixed_type == block.bl_rna and adds(function.identifier):
+            yield function.identifier
+
+
 def data_block_fillers(observer):
-    """Methods and switches of every kind of data-block."""
+    """Functions of ``bpy.data``, methods and switches of every kind of data-block."""
     tried = set()
-    for _, collection, given in block_makers():
+    for path, collection, given in block_makers():
         try:
             block = collection.new("new", **given)
         except (TypeError, RuntimeError):
             continue
         if block is not None and block.bl_rna.identifier not in tried:
             tried.add(block.bl_rna.identifier)
+            for name in functions_of(collection, block):
+                trial = Trial(observer, block)
+                getattr(collection, name)(block)
+                call = f"bpy.data.{path}.{name}({variable(block.bl_rna.identifier)})"
+                observer.note_filled(None, trial.filled(), call)
             try_on_blocks(observer, lambda c=collection, g=given: c.new("new", **g))
     try_on_blocks(observer, mesh_object)
     try_on_blocks(observer, lambda: bpy.data.scenes.new("new"))

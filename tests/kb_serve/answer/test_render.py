@@ -189,7 +189,24 @@ def test_values_that_are_put_together_at_run_time_are_not_told_by_a_stand_in(kb:
 
 def test_a_way_to_a_thing_says_what_is_none_on_it(kb: KnowledgeBase) -> None:
     told = "; `compositing_node_group` is `None` on a new Scene: assign `bpy.data.node_groups.new("
-    assert told in kb.query("bpy.types.NodeTreeInterface.new_socket").text
+    assert told in kb.query("bpy.types.CompositorNodeGlare").text
+    path = 'bpy.data.node_groups["Geometry Nodes"].interface.new_socket(…)'
+    assert f"reached as `{path}`\n" in kb.query("bpy.types.NodeTreeInterface.new_socket").text
+
+
+@pytest.mark.parametrize(
+    ("path", "told"),
+    [
+        ("CameraBackgroundImage.alpha", "; `background_images` is empty (new Camera)"),
+        ("MaterialGPencilStyle.fill_color", "; made by `bpy.data.materials.create_gpencil_data(material)`"),
+        ("ColorStrip.color", "; `sequence_editor` is `None` on a new Scene; made by"),
+        ("WoodTexture.noise_basis", "reached as `bpy.data.textures[0].noise_basis`"),
+    ],
+)
+def test_a_way_leads_through_what_new_things_have_or_says_that_they_lack_it(
+    kb: KnowledgeBase, path: str, told: str
+) -> None:
+    assert told in kb.query(f"bpy.types.{path}").text
     assert "`animation_data_create()`" not in kb.query("bpy.types.Object.location").text
     assert "made by `obj.animation_data_create()`" in kb.query("bpy.types.AnimData.action").text
 
