@@ -15,7 +15,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 7
+SCHEMA_VERSION = 8
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -117,8 +117,9 @@ CREATE TABLE similar_names (
     path TEXT NOT NULL, target TEXT NOT NULL, score REAL NOT NULL, PRIMARY KEY (path, target)
 ) WITHOUT ROWID;
 
--- Symbols that came after the oldest version known.
-CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL) WITHOUT ROWID;
+-- Symbols that came after the oldest version known: the first that is known to have them, and the last one known to
+-- lack them, empty where that is the one just before.
+CREATE TABLE since (path TEXT PRIMARY KEY, version TEXT NOT NULL, lacked TEXT NOT NULL) WITHOUT ROWID;
 
 -- Former names (sockets, node classes) that this Blender still takes, tried on an instance, and what they give.
 CREATE TABLE still_works (path TEXT PRIMARY KEY, taken_as TEXT NOT NULL) WITHOUT ROWID;

@@ -118,7 +118,7 @@ def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: Remo
     _insert(connection, "removed_names", sorted(removed_symbols.names), 2)
     _insert(connection, "successors", removed_symbols.successors, 6)
     _insert(connection, "similar_names", removed_symbols.similar_names, 3)
-    _insert(connection, "since", removed_symbols.since, 2)
+    _insert(connection, "since", removed_symbols.since, 3)
     if removed_symbols.versions:
         _insert(connection, "meta", [("history_versions", json.dumps(removed_symbols.versions))], 2)
 

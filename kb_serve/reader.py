@@ -383,9 +383,16 @@ class BaseReader:
         return self.rows("SELECT target, score FROM similar_names WHERE path = ? ORDER BY score DESC", path)
 
     def since(self, path: str) -> str:
-        """The version that introduced a symbol; empty for those older than the history."""
-        rows = self.rows("SELECT version FROM since WHERE path = ?", path)
-        return rows[0][0] if rows else ""
+        """The version that introduced a symbol; empty where that is not known, and for those older than the history."""
+        version, lacked = self.arrival(path)
+        return "" if lacked else version
+
+    def arrival(self, path: str) -> tuple[str, str]:
+        """(the first version known to have a symbol, the last one known to lack it unless it is the one just before);
+        both empty for those older than the history.
+        """
+        rows: list[tuple[str, str]] = self.rows("SELECT version, lacked FROM since WHERE path = ?", path)
+        return rows[0] if rows else ("", "")
 
     def uses(self, path: str) -> list[Use]:
         """The clearest uses of a symbol in Blender's own scripts and the guides, best first."""

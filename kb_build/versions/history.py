@@ -15,7 +15,7 @@ import zlib
 from collections import defaultdict
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.errors import StoreError
 from kb_build.versions.paths import split_path
@@ -73,6 +73,20 @@ class RemovedSpan:
     first: str
     last: str
     gone: str
+
+
+class Arrival(NamedTuple):
+    """Since when a version has a symbol.
+
+    ``first`` is the first version that is known to; ``lacked`` the last one before that is known to lack it, empty for
+    none, and ``is_sure`` whether that is the one just before; ``is_return``: an older one had it as well.
+    """
+
+    path: str
+    first: str
+    lacked: str
+    is_sure: bool
+    is_return: bool
 
 
 @dataclass(slots=True)
@@ -181,11 +195,8 @@ class ApiHistory:
                 if mask & own:
                     yield f"{path}:{item}", mask & own, hidden | own & unknown
 
-    def arrivals(self, version: str) -> Iterator[tuple[str, str, bool]]:
-        """(path, since, surely) of what the version has: the first version that is known to, without a gap.
-
-        ``surely``: whether the version before is known to lack it. Nothing for what the oldest version has.
-        """
+    def arrivals(self, version: str) -> Iterator[Arrival]:
+        """Since when the version has what it has, without a gap. Nothing for what the oldest version has."""
         number = self._number(version)
         if number is None:
             return
@@ -194,20 +205,11 @@ class ApiHistory:
             if mask >> number & 1 and mask & full != full:
                 first = _first_of_run(mask, ~(mask | unknown), number)
                 if first:
-                    yield path, self.versions[first], not (mask | unknown) >> first - 1 & 1
-
-    def since(self, version: str) -> dict[str, str]:
-        """What the version has → since which one, where that is known."""
-        return {path: first for path, first, surely in self.arrivals(version) if surely}
-
-    def came_back(self, version: str) -> frozenset[str]:
-        """What the version has since an older one again, and some before that had as well."""
-        masks = {path: mask for path, mask, _ in self.symbols()}
-        return frozenset(
-            path
-            for path, first, _ in self.arrivals(version)
-            if masks[path] & (1 << self.versions.index(first)) - 1
-        )
+                    before = (1 << first) - 1
+                    lacking = ~(mask | unknown) & before
+                    last = self.versions[lacking.bit_length() - 1] if lacking else ""
+                    is_sure = lacking.bit_length() == first
+                    yield Arrival(path, self.versions[first], last, is_sure, bool(mask & before))
 
     def to_bytes(self) -> bytes:
         """The file's content. Equal histories give equal bytes (with one release of zlib)."""

@@ -43,7 +43,7 @@ class RemovedSymbols:
     names: tuple[tuple[str, str], ...] = ()
     successors: tuple[tuple[str, int, str, str, str, str], ...] = ()
     similar_names: tuple[tuple[str, str, float], ...] = ()
-    since: tuple[tuple[str, str], ...] = ()
+    since: tuple[tuple[str, str, str], ...] = ()
     versions: tuple[str, ...] = ()
 
 
@@ -117,13 +117,16 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         for path, *_ in removed
         for position, row in enumerate(successors.of(path))
     ]
-    again = history.came_back(version)  # of which "since" would be half the truth
-    since = {path: first for path, first in history.since(version).items() if path not in again}
+    since = {
+        each.path: (each.first, "" if each.is_sure else each.lacked)
+        for each in history.arrivals(version)
+        if each.lacked and not each.is_return  # of what came back "since" would be half the truth
+    }
     return RemovedSymbols(
         removed=tuple((*row, split_path(row[0])[2]) for row in removed),
         names=tuple(names),
         successors=tuple(rows),
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
-        since=tuple((symbol.path, since[symbol.path]) for symbol in symbols if symbol.path in since),
+        since=tuple((symbol.path, *since[symbol.path]) for symbol in symbols if symbol.path in since),
         versions=history.versions,
     )

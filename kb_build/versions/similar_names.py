@@ -160,7 +160,7 @@ class SimilarNames:
         self._of_modules = [_is_of_module(symbol.path) for symbol in self._candidates]
         self._found_items: dict[tuple[str, str, int], list[tuple[str, float]]] = {}
         self._bit = 1 << order[minor_of(version)]
-        arrived = {path: order[first] for path, first, _ in history.arrivals(version)}
+        arrived = {each.path: order[each.first] for each in history.arrivals(version)}
         self._came = [arrived.get(symbol.path, 0) for symbol in self._candidates]
         self._kinds = [_candidate_kind(symbol) for symbol in self._candidates]
         self._names = FeatureIndex([_name_bag(symbol.path) for symbol in self._candidates], _COMMON)

@@ -32,7 +32,7 @@ class KeptVersion:
         # Without a base, what the history tells: of arguments, values and sockets it tells too little.
         if any(mark in path for mark in '([:"'):
             return False
-        since = target.since(path)
+        since, _ = target.arrival(path)
         return not since or version_of(since) <= self.version
 
 

@@ -541,8 +541,9 @@ class MarkdownRenderer:
             alike = (self.reader.symbol(path) for path in alike_nodes(symbol.name))
             taken = _names(node.name for node in alike if node and node.trees)
             yield "no node tree takes it: `nodes.new` refuses it" + (f"; it takes {taken}" if taken else "")
-        if version := self.reader.since(symbol.path):
-            yield f"since Blender {version}"
+        version, lacked = self.reader.arrival(symbol.path)
+        if version:
+            yield f"since Blender {version}" + (f" or a little before ({lacked} lacks it)" if lacked else "")
         if page := self.manual_page(symbol.path):
             yield f"manual: {page}"
 

@@ -65,7 +65,7 @@ REMOVED_SYMBOLS = RemovedSymbols(
         ("bpy.types.ClothSettings.older", 1, CLOTH.path, "", "5.0", "notes"),
         ("bpy.types.ClothSettings.older", 0, STEPS.path, "halve it", "5.0", "notes"),
     ),
-    (("bpy.types.ClothSettings.old", STEPS.path, 0.9),), ((STEPS.path, "5.0"),),
+    (("bpy.types.ClothSettings.old", STEPS.path, 0.9),), ((STEPS.path, "5.0", ""), (ADD.path, "4.2", "3.4")),
 )  # fmt: skip
 CONTENTS = Contents(
     symbols=SYMBOLS,
@@ -154,6 +154,7 @@ def test_links_meta_and_other_versions_read_back(small: BaseReader) -> None:
     ]  # fmt: skip
     assert small.similar_names("bpy.types.ClothSettings.old") == [(STEPS.path, 0.9)]
     assert (small.since(STEPS.path), small.since(CLOTH.path)) == ("5.0", "")
+    assert (small.arrival(ADD.path), small.since(ADD.path)) == (("4.2", "3.4"), "")
 
 
 def test_the_file_has_our_application_id_and_is_sound(path: Path) -> None:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import StoreError
-from kb_build.versions.history import ApiHistory, RemovedSpan
+from kb_build.versions.history import ApiHistory, Arrival, RemovedSpan
 from kb_build.versions.history_merge import merge_versions
 from kb_build.versions.paths import split_path
 
@@ -81,7 +81,7 @@ def test_the_committed_history_survives_a_round_trip(committed: ApiHistory) -> N
 
 def test_removed_and_new_symbols_of_5_1_have_versions(committed: ApiHistory) -> None:
     gone = {span.path: span for span in committed.removed_from("5.1.2")}
-    since = committed.since("5.1")
+    since = {each.path: each.first for each in committed.arrivals("5.1") if each.is_sure}
     path = "bpy.types.Action.fcurves"
     assert gone[path] == RemovedSpan(path, "2.79", "4.5", "5.0")
     assert since["bpy.types.Scene.compositing_node_group"] == "5.0"
@@ -102,9 +102,17 @@ def test_versions_are_ordered_as_numbers() -> None:
 
 def test_a_symbol_that_came_back_counts_since_it_came_back() -> None:
     history = merge_versions(PATHS)
-    assert history.since("4.10")["bpy.types.A.old"] == "4.10"
-    assert "bpy.types.A.old" in history.came_back("4.10")
+    found = {each.path: each for each in history.arrivals("4.10")}
+    assert found["bpy.types.A.old"] == Arrival("bpy.types.A.old", "4.10", "4.3", is_sure=True, is_return=True)
     assert RemovedSpan("bpy.types.A.old", "4.2", "4.2", "4.3") in set(history.removed_from("4.3"))
+
+
+def test_a_symbol_of_which_some_versions_are_unknown_has_the_last_that_lacks_it(
+    committed: ApiHistory,
+) -> None:
+    found = {each.path: each for each in committed.arrivals("5.1")}
+    path = "bpy.types.GreasePencilArrayModifier"
+    assert found[path] == Arrival(path, "4.2", "3.4", is_sure=False, is_return=False)
 
 
 def test_a_future_symbol_has_the_version_that_brings_it() -> None:
@@ -119,7 +127,7 @@ def test_an_unknown_version_gives_neither_yes_nor_no() -> None:
     assert history.exists("bpy", "4.3") is True
     assert history.exists("bpy.types.A.kind", "4.2") is False
     assert list(history.removed_from("2.79")) == []
-    assert history.since("2.79") == {}
+    assert list(history.arrivals("2.79")) == []
 
 
 @pytest.mark.parametrize(

@@ -66,9 +66,10 @@ def test_replacements_exist_in_this_version(extract: Extract, removed_symbols: R
 
 def test_since_names_new_symbols_of_this_version(extract: Extract, removed_symbols: RemovedSymbols) -> None:
     known = {symbol.path for symbol in extract.symbols}
-    since = dict(removed_symbols.since)
+    since = {path: (version, lacked) for path, version, lacked in removed_symbols.since}
     assert set(since) <= known
-    assert since["bpy.types.Scene.compositing_node_group"] == "5.0"
+    assert since["bpy.types.Scene.compositing_node_group"] == ("5.0", "")
+    assert since["bpy.types.GreasePencilArrayModifier"] == ("4.2", "3.4")
     assert "bpy.types.Object.location" not in since
 
 

@@ -242,11 +242,17 @@ def test_deprecation_is_shown_with_versions(renderer: MarkdownRenderer) -> None:
 
 
 def test_newer_symbols_show_their_version(renderer: MarkdownRenderer, reader: BaseReader) -> None:
-    ((path, version),) = reader.rows("SELECT path, version FROM since WHERE path LIKE 'bpy.types.%' LIMIT 1")
+    ((path, version),) = reader.rows(
+        "SELECT path, version FROM since WHERE path LIKE 'bpy.types.%' AND lacked = '' LIMIT 1"
+    )
     for named, expected in ((path, True), ("bpy.types.Object.location", False)):
         symbol = reader.symbol(named)
         assert symbol is not None
         assert (f"since Blender {version}" in shown(renderer, symbol)) is expected
+    told = "since Blender 4.2 or a little before (3.4 lacks it)"
+    symbol = reader.symbol("bpy.types.GreasePencilArrayModifier")
+    assert symbol is not None
+    assert told in shown(renderer, symbol)
 
 
 def test_arguments_tell_type_default_range_unit_and_choices(renderer: MarkdownRenderer) -> None:
