@@ -200,7 +200,8 @@ class Symbol:
     ``target`` is the class that a pointer, a collection or a socket leads to (an operator: its ``_OT_`` class),
     ``collection`` the class of the collection itself, which carries ``new`` and ``remove``; ``group`` of a class
     is ``data``, ``ui`` or ``operator``; ``modes`` name the enum values under which a node shows a socket;
-    ``trees`` the node trees that take a node; ``reached`` is an expression that leads to an instance.
+    ``trees`` the node trees that take a node; ``reached`` is an expression that leads to an instance,
+    ``lacks`` the property on that way which is None, or empty, on new things.
 
     ``default`` is RNA's, which a new instance need not have: ``new_values`` are what new ones had where some differed.
     The flag ``compared`` says that new ones were read. ``subscripts`` give a socket in every mode in which its node
@@ -241,6 +242,7 @@ class Symbol:
     collection: str = ""
     trees: tuple[str, ...] = ()
     reached: str = ""
+    lacks: str = ""
     new_values: tuple[NewValue, ...] = ()
     subscripts: tuple[str, ...] = ()
     refusals: tuple[Refusal, ...] = ()

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, short_path, topic_key
 from kb_build.index.creation import creation_calls
+from kb_build.index.empty_ways import EmptyWays
 from kb_build.records import to_json
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, pack
 from kb_build.symbol_lines import member_line, switches
@@ -57,13 +58,14 @@ def symbol_tables(
     usage = used()
     calls = creation_calls(symbols, usage.reached, usage.names)
     on = _switches(usage.conditions)
+    ways = EmptyWays(symbols, usage.reached)
     return SymbolTables(
         symbols=[
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
                 symbol.collection, symbol.base, symbol.group, symbol.label,
                 member_line(symbol, on.get(symbol.path, "")),
-                record or pack(to_json(_with_path(symbol, usage.reached))),
+                record or pack(to_json(_with_way(symbol, usage.reached, ways))),
             )
             for number, (symbol, record) in enumerate(zip(symbols, records, strict=True))
         ],
@@ -124,10 +126,10 @@ def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:
             yield key(item.identifier), f"{symbol.path}({parameter.name})", item.identifier, item.name
 
 
-def _with_path(symbol: Symbol, reached: Mapping[str, str]) -> Symbol:
-    """A class with the expression that leads to an instance."""
+def _with_way(symbol: Symbol, reached: Mapping[str, str], ways: EmptyWays) -> Symbol:
+    """A class with the expression that leads to an instance, and what that way lacks."""
     path = reached.get(symbol.path)
-    return replace(symbol, reached=path) if path else symbol
+    return replace(symbol, reached=path, lacks=ways.last_empty(symbol.name)) if path else symbol
 
 
 def _switches(conditions: Iterable[PanelCondition]) -> dict[str, str]:

@@ -324,12 +324,6 @@ class BaseReader:
             WHERE target = ? AND kind = 'property' AND type = 'collection' ORDER BY path"""
         return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
-    def pointers_called(self, name: str, cls: str) -> list[str]:
-        """Paths of the pointers and collections of this name that lead to a class, given by its name."""
-        sql = """SELECT path FROM symbols
-            WHERE name = ? AND kind = 'property' AND target = ? AND type IN ('pointer', 'collection') ORDER BY path"""
-        return [row[0] for row in self.rows(sql, name, cls)]
-
     def collections_of(self, cls: str) -> list[str]:
         """Paths of the properties whose collections are of a class of their own, given by its name."""
         sql = "SELECT path FROM symbols WHERE collection = ? AND kind = 'property' ORDER BY id"

@@ -47,7 +47,7 @@ from kb_build.symbol_lines import (
 )
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
-from kb_serve.answer.empty_pointers import calls_before, empty_pointer_to
+from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
@@ -580,7 +580,7 @@ class MarkdownRenderer:
 
     def _empty_before(self, cls: Symbol) -> str:
         """Where a pointer that leads to instances of a class is None on new things: that, and what fills it."""
-        pointer = empty_pointer_to(self.reader, cls)
+        pointer = self.reader.symbol(cls.lacks) if cls.lacks else None
         if pointer is None:
             return ""
         if tree := self._assigned(pointer):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_serve.answer.empty_pointers import calls_before
+from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.steps.made_line import made_line
 
 if TYPE_CHECKING:

@@ -1,0 +1,71 @@
+"""What on the way to instances of a class is None, or an empty collection, on new things."""
+
+from __future__ import annotations
+
+import re
+from collections import defaultdict
+from typing import TYPE_CHECKING
+
+from kb_build.records import EMPTY
+from kb_build.symbol_lines import empty_when_new
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+    from kb_build.records import Symbol
+
+_TYPES = "bpy.types."
+_WAY = re.compile(r"(?P<before>.+)\.(?P<name>\w+)(?P<key>\[[^\]]+\])?")
+_FIRST = (None, "[0]")  # of a collection whose elements have no names; who asks for a name has made it
+_FAR = 3  # dots of what leads through another pointer than those to what is always there: ``bpy.context.scene.world``
+
+
+class EmptyWays:
+    """The ways to classes; ``reached`` is the path of a class → the expression that leads to an instance."""
+
+    def __init__(self, symbols: Iterable[Symbol], reached: Mapping[str, str]) -> None:
+        self._reached = {path.removeprefix(_TYPES): expression for path, expression in reached.items()}
+        self._bases: dict[str, str] = {}
+        self._below: dict[str, list[str]] = defaultdict(list)
+        # (name, class that it leads to) → properties
+        self._leading: dict[tuple[str, str], list[Symbol]] = defaultdict(list)
+        for symbol in symbols:
+            if symbol.kind == "class" and symbol.base:
+                name, base = (path.removeprefix(_TYPES) for path in (symbol.path, symbol.base))
+                self._bases[name] = base
+                self._below[base].append(name)
+            elif symbol.kind == "property" and symbol.target:
+                self._leading[symbol.name, symbol.target].append(symbol)
+
+    def last_empty(self, cls: str) -> str:
+        """The path of the last pointer on the way to a class, given by its name, that is None on a new thing, or of the
+        collection whose first element is taken and that is empty there; empty for none.
+        """
+        way = _WAY.fullmatch(self._reached.get(cls, ""))
+        if way is None:
+            return ""
+        before, name, key = way.groups()
+        is_far = before.count(".") >= _FAR
+        if key not in _FIRST and not is_far:
+            return ""
+        steps = [step for base in self._lineage(cls) for step in self._leading.get((name, base), ())]
+        for step in steps:
+            owner = step.owner.removeprefix(_TYPES)
+            if self._reached.get(owner) == before:
+                is_empty = key in _FIRST and (empty_when_new(step) or EMPTY in step.flags)
+                return step.path if is_empty else self.last_empty(owner)
+        if is_far and len(steps) == 1:
+            below = self._descendants(steps[0].owner.removeprefix(_TYPES))
+            owner = next((each for each in below if self._reached.get(each) == before), "")
+            return self.last_empty(owner) if owner else ""
+        return ""
+
+    def _lineage(self, cls: str) -> Iterator[str]:
+        while cls:
+            yield cls
+            cls = self._bases.get(cls, "")
+
+    def _descendants(self, cls: str) -> Iterator[str]:
+        for each in self._below.get(cls, ()):
+            yield each
+            yield from self._descendants(each)
