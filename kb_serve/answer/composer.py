@@ -132,7 +132,8 @@ class AnswerComposer:
 
     def _make_draft(self, text: str, limit: int) -> _Draft:
         ranking = self._ranker.rank(text, limit)
-        topic = "" if self._reader.entry(text) else self._topics.find(text)
+        is_name = (" " not in text or "[" in text) and self._reader.entry(text)
+        topic = "" if is_name else self._topics.find(text)
         if topic:
             return self._overview(topic, ranking, limit)
         names = [match for match in ranking.recognition.matches if match.sure >= SURE]

@@ -101,6 +101,7 @@ class EnumValues:
             for owner, identifier, name in self._reader.enum_owners(key(value)):
                 if value == identifier or (value == name and not self._is_class(value)):
                     held[owner].add(value)
+        self._reader.entry.load(owner.partition("(")[0] for owner in held)
         for owner in sorted(
             held, key=lambda o: (-len(held[o]), -self._owner_fit(o, around or set()), len(o), o)
         ):

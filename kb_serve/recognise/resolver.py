@@ -145,7 +145,9 @@ class Resolver:
                     is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
                     yield value, 0, _COLLECTION_FIT + (_USUAL if is_usual else 0.0)
         if chain.steps and first:
-            for entry in self._reader.by_name(first)[:_MAX_BRANCHES]:
+            named = self._reader.by_name(first)[:_MAX_BRANCHES]
+            self._reader.entry.load(entry.owner for entry in named)
+            for entry in named:
                 owner = self._reader.entry(entry.owner)
                 if owner and owner.kind == "class" and entry.owner not in seen:
                     seen.add(entry.owner)
@@ -178,9 +180,11 @@ class Resolver:
         names = chain.dotted.split(".")
         names[:1] = ROOTS.get(names[0], names[0]).split(".")
         extra = len(names) - len(chain.dotted.split("."))
-        for length in range(min(len(names), _MOST_NAMES), 0, -1):
-            path = ".".join(names[:length])
-            for package in ("", TYPES, *_IMPORTED):
+        paths = [".".join(names[:length]) for length in range(min(len(names), _MOST_NAMES), 0, -1)]
+        packages = ("", TYPES, *_IMPORTED)
+        self._reader.entry.load(package + path for path in paths for package in packages)
+        for length, path in zip(range(len(paths), 0, -1), paths, strict=True):
+            for package in packages:
                 entry = self._reader.entry(package + path)
                 if entry and not (length == 1 and entry.kind not in {"module", "class"}):
                     return self._value_of(entry), max(0, length - 1 - extra), 1.0

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from itertools import chain
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
@@ -139,12 +140,13 @@ class Spellings:
             if length < len(words)
         ]
         self._reader.by_key.load(map(key, parts))
-        for part in parts:
-            entries = (
-                self._reader.entry(identifier)
-                for form, identifier in self._reader.by_key(key(part))
-                if form == FORM_LABEL
-            )
+        labelled = {
+            part: [path for form, path in self._reader.by_key(key(part)) if form == FORM_LABEL]
+            for part in parts
+        }
+        self._reader.entry.load(chain.from_iterable(labelled.values()))
+        for part, paths in labelled.items():
+            entries = map(self._reader.entry, paths)
             classes = [
                 one for one in entries if one and one.kind == "class" and one.label.lower() == part.lower()
             ]

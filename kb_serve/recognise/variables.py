@@ -186,7 +186,8 @@ class Variables:
         for entry in self._reader.members(f"{TYPES}BlendData").values():
             if entry.type == "collection" and (fit := variable_fit(name, entry.target)) > 0:
                 yield TYPES + entry.target, fit
-        for _, identifier in self._reader.by_key(key(name)):
-            entry = self._reader.entry(identifier)
+        spelled = [identifier for _, identifier in self._reader.by_key(key(name))]
+        self._reader.entry.load(spelled)
+        for entry in map(self._reader.entry, spelled):
             if entry and entry.kind == "class":
                 yield entry.path, 0.9
