@@ -29,6 +29,7 @@ from . import (
     pointer_fillers,
     refusals,
     rna,
+    startup,
 )
 from .apart import Beside, can_work_apart
 from .instances import Observer
@@ -113,7 +114,7 @@ STEPS = (
     ("classes", write_rna),
     ("operators", lambda write, _found: operators.write_all(write)),
     ("names", lambda _write, found: own_names.look_at_start(found["observer"])),
-    ("start", lambda _write, found: new_things.look_at_start(found["observer"])),
+    ("start", lambda _write, found: startup.look_at_start(found["observer"])),
     (
         "nodes",
         lambda write, found: nodes.write_all(write, found["structs"], found["observer"], found["former"]),

@@ -188,8 +188,13 @@ class Layout:
             ):
                 self.fields.append(Field(rna, prop))
         self.choices = list(computed_choices(rna))
-        self.enums = [field for field in self.fields if field.is_enum]
-        self.modes = [field for field in self.fields if field.is_mode]
+        self.keep(self.fields)
+
+    def keep(self, fields):
+        """Has these fields be read, and no others."""
+        self.fields = fields
+        self.enums = [field for field in fields if field.is_enum]
+        self.modes = [field for field in fields if field.is_mode]
 
 
 class Contexts:
@@ -290,12 +295,20 @@ class Observer:
 
     def layout(self, struct):
         """The layout of the instance's class."""
-        rna = struct.bl_rna
+        return self.layout_of(struct.bl_rna)
+
+    def layout_of(self, rna):
+        """The layout of a class."""
         known = self._layouts.get(rna.identifier)
         if known is None:
             known = self._layouts[rna.identifier] = Layout(rna)
             self.fields.update((field.path, field) for field in known.fields)
         return known
+
+    def leave_out(self, cls, name):
+        """Has a property of a class never be read."""
+        layout = self.layout_of(getattr(bpy.types, cls).bl_rna)
+        layout.keep([field for field in layout.fields if field.name != name])
 
     def belonging(self, struct):
         """The structs behind an instance's pointers, without other data-blocks."""

@@ -571,36 +571,6 @@ def startup_block(blocks):
     return next((block for block in blocks if block.name == block.bl_rna.name), blocks[0] if blocks else None)
 
 
-def look_at_start(observer):
-    """Reads what Blender starts with: the scene, and the data in it."""
-    scene = bpy.context.scene
-    if scene is None:
-        return
-    observer.look("start-up scene", scene, is_new=False)
-    observer.look("start-up view layer", bpy.context.view_layer, is_new=False)
-    for block in (scene.world, *map(startup_block, (bpy.data.materials, bpy.data.lights, bpy.data.cameras))):
-        if block is not None:
-            observer.look(f"start-up {called(block)}", block, is_new=False)
-    preferences = bpy.context.preferences
-    observer.look("factory preferences", preferences, vary=False, is_new=False)
-    if len(preferences.themes):
-        observer.look("factory theme", preferences.themes[0], vary=False, is_new=False)
-    for area, space in startup_spaces():
-        observer.look(f"start-up {called(space)}", space, vary=False, is_new=False)
-        observer.ask(area, "start-up area", "")
-
-
-def startup_spaces():
-    """(area, space) of the first editor of each type on the screens that Blender starts with, those in use first."""
-    found = {}
-    for screen in sorted(bpy.data.screens, key=lambda screen: screen != bpy.context.screen):
-        for area in screen.areas:
-            space = area.spaces.active
-            if space is not None:
-                found.setdefault(space.bl_rna.identifier, (area, space))
-    return found.values()
-
-
 def scratch_scene():
     """An empty scene to make things in, the one of the window where there is a window."""
     if bpy.context.mode != "OBJECT":
