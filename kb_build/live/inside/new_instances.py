@@ -110,6 +110,15 @@ def plain_things():
     yield "uv layer", obj.data.uv_layers.new(name="x")
     yield "vertex group", obj.vertex_groups.new(name="x")
     yield "basis shape key", obj.shape_key_add(name="x")
+    for kind in ("FLOAT", "INT", "FLOAT_COLOR", "FLOAT_VECTOR", "BOOLEAN"):
+        value = obj.data.attributes.new(kind, kind, "POINT").data[0]
+        yield value.bl_rna.name.lower(), value
+    yield "textbox", data.curves.new("x", "FONT").text_boxes[0]
+    yield "latticepoint", data.lattices.new("x").points[0]
+    yield "keying set path", data.scenes.new("x").keying_sets.new().paths.add(obj, "location")
+    theme = bpy.context.preferences.themes[0]
+    for part in (theme.view_3d, theme.user_interface, theme.graph_editor):
+        yield "factory theme", part
     yield "driver", obj.driver_add("location", 0).driver
     yield "nla track", obj.animation_data.nla_tracks.new()
 
