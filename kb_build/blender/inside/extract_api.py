@@ -15,25 +15,11 @@ import traceback
 
 import bpy
 
-from . import (
-    context,
-    evaluated,
-    left_out,
-    limits,
-    modules,
-    new_things,
-    nodes,
-    operator_needs,
-    operators,
-    own_names,
-    pointer_fillers,
-    refusals,
-    rna,
-    startup,
-)
+from . import context, left_out, modules, nodes, operator_needs, operators, refusals, rna
 from .apart import Beside, can_work_apart
-from .instances import Observer
-from .neighbours import Neighbours
+from .instances import evaluated, limits, new_things, own_names, pointer_fillers, startup
+from .instances.neighbours import Neighbours
+from .instances.observer import Observer
 from .wire import Writer
 
 INVERTED = re.compile(r"\.prop\(\w+, ['\"](\w+)['\"][^()\n]*invert_checkbox=True")

@@ -7,7 +7,7 @@ RNA has zeros as defaults, which the operators tell from zeros that are given.
 import bpy
 
 from .apart import sent_apart
-from .new_things import scratch_scene
+from .instances.making import scratch_scene
 
 MODULES = ("curve", "mesh", "object", "surface")
 CURSOR = (1.0, 2.0, 3.0)

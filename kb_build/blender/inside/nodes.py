@@ -10,7 +10,7 @@ import math
 
 import bpy
 
-from .instances import put, refused_items
+from .instances.assigning import put, refused_items
 from .rna import read_items
 from .wire import limit, plain
 

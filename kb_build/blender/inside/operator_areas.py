@@ -13,7 +13,7 @@ from contextlib import suppress
 import bpy
 
 from .apart import apart, can_work_apart
-from .new_things import SEQUENCER_SCENE, activate, choices, no_sequencer_scene
+from .instances.making import SEQUENCER_SCENE, activate, choices, no_sequencer_scene
 
 # Of area types; those that run in more run in any.
 MOST_AREAS = 8

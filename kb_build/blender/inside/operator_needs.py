@@ -11,7 +11,7 @@ import traceback
 import bpy
 
 from . import operator_areas
-from .new_things import (
+from .instances.making import (
     SEQUENCER_SCENE,
     activate,
     add_object,

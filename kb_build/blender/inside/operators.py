@@ -3,7 +3,7 @@
 
 import bpy
 
-from .instances import refused_items
+from .instances.assigning import refused_items
 from .rna import parameter
 
 REFUSED = "\x01"

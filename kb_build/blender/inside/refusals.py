@@ -14,20 +14,19 @@ from contextlib import suppress
 import bpy
 
 from .apart import apart, sent_apart
-from .new_things import (
-    MAKERS,
+from .instances.making import (
     SEQUENCER_SCENE,
     activate,
-    added_by_operators,
     called,
     choices,
     no_sequencer_scene,
     object_of,
     scratch_scene,
 )
+from .instances.new_things import MAKERS, added_by_operators
+from .instances.pointer_fillers import ADDING
 from .nodes import TREES
 from .nodes import make as make_in
-from .pointer_fillers import ADDING
 
 NAMED = ADDING | {"insert"}
 # A name and a number that no message of Blender's has of itself.

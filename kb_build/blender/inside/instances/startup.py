@@ -3,10 +3,10 @@
 
 import bpy
 
-from .apart import can_work_apart, sent_apart
-from .instances import refused_value_items
-from .new_things import called, startup_block
-from .wire import plain
+from ..apart import can_work_apart, sent_apart
+from ..wire import plain
+from .assigning import refused_value_items
+from .making import called, startup_block
 
 # Properties that one Blender crashes on; of one that crashes on more, the editors are left out.
 MOST_CRASHES = 8

@@ -6,7 +6,7 @@ import traceback
 
 import bpy
 
-from .new_things import MODIFIED, activate, attempts, choices, mesh_object, object_of, startup_block
+from .making import MODIFIED, activate, attempts, choices, mesh_object, object_of, startup_block
 
 _NUMBER = re.compile(r"\.\d{3}$")  # what tells it from another one of the same name
 # What whoever makes a thing for the extract calls it; no name of Blender's own has it in it.

@@ -7,8 +7,9 @@ owner, into each of theirs. Where a neighbour's setting decides, its other setti
 
 import bpy
 
-from .instances import UNVARIED, put, refused_value_items
-from .rna import declaring_class
+from ..rna import declaring_class
+from .assigning import put, refused_value_items
+from .observer import UNVARIED
 
 
 def can_be_varied(struct):

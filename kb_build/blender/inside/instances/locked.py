@@ -5,8 +5,8 @@ Each instance is asked (``bpy_struct.is_property_readonly``) when it is new and 
 its own that is turned over makes the difference.
 """
 
-from .new_things import by_operator
-from .rna import ancestry
+from ..rna import ancestry
+from .making import by_operator
 
 SWITCHES = "use_"
 

@@ -12,8 +12,8 @@ import traceback
 
 import bpy
 
-from .instances import variable
-from .new_things import attempts, block_makers, choices, mesh_object, operator_choices
+from .making import attempts, block_makers, choices, mesh_object, operator_choices
+from .pointers import variable
 
 ADDING = frozenset({"add", "new", "create", "ensure", "mark", "toggle"})
 # Operators of other modules work in a mode, in an editor, or on files.

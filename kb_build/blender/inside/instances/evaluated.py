@@ -9,9 +9,10 @@ import traceback
 
 import bpy
 
-from .instances import AROUND, DEPTH, NOT_ASKED, UNREADABLE
-from .new_things import attempts, choices, mesh_object, scratch_scene
-from .rna import path_of
+from ..rna import path_of
+from .layouts import NOT_ASKED
+from .making import attempts, choices, mesh_object, scratch_scene
+from .observer import AROUND, DEPTH, UNREADABLE
 
 FRAMES = 4
 # More elements than these are all alike.

@@ -6,19 +6,18 @@ empty, where the items depend on the instance. So whatever is made (see ``new_th
 that belong to it, and read again in each of its modes.
 """
 
-import functools
-import re
-
 import bpy
 
+from ..rna import ancestry, declaring_class
+from ..wire import plain
+from .assigning import put, refused_items, refused_value_items, same
+from .layouts import Layout
 from .locked import Locked
-from .new_things import by_operator
+from .making import by_operator
 from .own_names import OwnNames
-from .rna import ancestry, declaring_class, default_of, path_of, read_items
-from .wire import plain
+from .pointers import Pointers, variable
 
 DEPTH = 3
-LONGEST_ARRAY = 32
 # How many instances of one class are put into every mode.
 VARIED = 3
 # Values more various than this describe the instances, not what is new in them.
@@ -29,172 +28,6 @@ UNREADABLE = frozenset({"UvSculpt"})
 UNVARIED = frozenset({"BrushGpencilSettings"})
 # Pointers to what is around an instance.
 AROUND = frozenset({"parent"})
-# Blender 4.5 crashes when an unpaired node is asked for its pair.
-NOT_ASKED = frozenset({"rna_type", "paired_output"})
-# Names and places that whoever makes the thing chooses, and what depends on the machine.
-CHOSEN = frozenset({
-    "co", "co_ui", "handle_left", "handle_right", "matrix", "matrix_local", "matrix_world", "matrix_basis",
-    "matrix_parent_inverse", "view_matrix", "texspace_location", "texspace_size", "head", "tail", "data_path",
-    "name_display", "action_slot_handle", "last_slot_identifier", "target_id_type", "generated_width",
-    "generated_height", "child_number", "frame_number", "rotation_estimate", "scale_estimate", "empty_image_offset",
-    "material_slot", "threads",
-})  # fmt: skip
-CHOSEN_OF = frozenset({
-    ("FieldSettings", "seed"), ("TimelineMarker", "frame"), ("ColorRampElement", "position"),
-    ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("Driver", "expression"), ("Object", "dimensions"),
-    ("EditBone", "length"), ("NodeTreeInterfaceSocket", "socket_type"),
-})  # fmt: skip
-# Kinds that the makers of new things go through: (class, name) → the label of what was made without saying which.
-KIND_UNASKED = {
-    ("Light", "type"): "", ("Texture", "type"): "", ("Spline", "type"): "", ("ActionSlot", "target_id_type"): "",
-    ("MetaElement", "type"): "ball meta element", ("FieldSettings", "type"): "force field of a mesh object",
-    ("RigidBodyObject", "type"): "active rigid body", ("RigidBodyConstraint", "type"): "rigid body constraint",
-    ("ParticleSettings", "type"): "particle system's settings",
-}  # fmt: skip
-# When these begin and end is up to whoever makes them.
-TIMED = frozenset({"Strip", "Sequence", "NlaStrip"})
-# What the machine decides, and bytes, of which JSON has none.
-UNREAD = frozenset({"FILE_PATH", "DIR_PATH", "FILE_NAME", "BYTE_STRING"})
-# Setting these makes another thing of the instance, which is made by itself; some of the old ones are then freed.
-KINDS = frozenset({
-    ("Light", "type"), ("Texture", "type"), ("FluidModifier", "fluid_type"),
-    ("NodeTreeInterfaceSocket", "socket_type"), ("ActionSlot", "target_id_type"), ("Spline", "type"),
-})  # fmt: skip
-
-
-def refused_items(refusal):
-    """The items that Blender names where it refuses a value."""
-    return quoted(str(refusal).partition("not found in")[2])
-
-
-@functools.cache
-def quoted(text):
-    """What stands in quotes in a text: Blender often names the same items."""
-    return tuple(re.findall(r"'([^']*)'", text))
-
-
-def refused_value_items(owner, name, flag=False):
-    """An enum's items as Blender names them when it refuses a value that cannot be one of them."""
-    try:
-        setattr(owner, name, {"\x01"} if flag else "\x01")
-    except (TypeError, ValueError) as refusal:
-        return refused_items(refusal)
-    except (AttributeError, RuntimeError):
-        pass
-    return ()
-
-
-def put(struct, name, value):
-    """Gives a setting a value. Returns whether it has it now."""
-    try:
-        setattr(struct, name, value)
-        return getattr(struct, name) == value
-    except Exception:
-        return False
-
-
-def same(left, right):
-    """Whether two values are equal, floats as far as single precision goes."""
-    if isinstance(left, list) and isinstance(right, list):
-        return len(left) == len(right) and all(same(*pair) for pair in zip(left, right, strict=True))
-    if isinstance(left, (int, float)) and isinstance(right, (int, float)):
-        return left == right or abs(left - right) <= 2e-6 * max(abs(left), abs(right))
-    return left == right
-
-
-def is_data_block(rna):
-    """Whether the class of a pointer's target is an ID, of which scripts make one and assign it."""
-    return "ID" in ancestry(rna)
-
-
-def variable(cls):
-    """A name that scripts give to an instance of a class: ``scene``, ``node_tree``."""
-    name = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "_", cls).lower()
-    return "obj" if name == "object" else name
-
-
-class Field:
-    """A property of a class whose value can be compared."""
-
-    def __init__(self, rna, prop):
-        self.name = prop.identifier
-        self.path = path_of(rna, prop.identifier)
-        self.default = default_of(prop)
-        self.is_enum = prop.type == "ENUM"
-        self.is_flag = self.is_enum and prop.is_enum_flag
-        self.is_many = self.is_flag or getattr(prop, "is_array", False)
-        cls = self.path.split(".")[-2]
-        self.unasked = KIND_UNASKED.get((cls, self.name), "")
-        self.is_chosen = (
-            self.name in CHOSEN
-            or (cls, self.name) in KIND_UNASKED
-            or (cls, self.name) in CHOSEN_OF
-            or (
-                cls in TIMED
-                and not self.name.startswith("select")
-                and any(word in self.name for word in ("frame", "handle", "content", "channel", "duration"))
-            )
-        )
-        self.static = (
-            [row["identifier"] for row in read_items(prop.enum_items_static)] if self.is_enum else []
-        )
-        self.is_mode = self.is_enum and not self.is_flag and (cls, self.name) not in KINDS
-
-
-def computed_choices(rna):
-    """(path, name, argument, other required arguments) of functions with a choice of which RNA lists one at most."""
-    for function in rna.functions:
-        given = [item for item in function.parameters if not item.is_output]
-        names = [item.identifier for item in given if item.is_required and item.type == "STRING"]
-        needs_more = any(item.is_required and item.type != "STRING" for item in given)
-        for item in given if not needs_more else ():
-            if item.type == "ENUM" and not item.is_required and len(item.enum_items) < 2:
-                path = f"bpy.types.{rna.identifier}.{function.identifier}"
-                yield path, function.identifier, item.identifier, names
-
-
-class Layout:
-    """What there is to read in the instances of a class; ``pointers`` and ``collections``: name → path where it is
-    declared. ``unassigned`` are the pointers to what a script cannot make by itself and assign, ``writable`` all that
-    RNA lets be assigned.
-    """
-
-    def __init__(self, rna):
-        named = rna.name_property.identifier if rna.name_property else "name"
-        left_out = {named, "name"}
-        self.fields = []
-        self.pointers = {}
-        self.unassigned = {}
-        self.collections = {}
-        self.writable = {}
-        for prop in rna.properties:
-            name = prop.identifier
-            if not (prop.is_readonly or prop.is_registered or prop.type == "COLLECTION"):
-                self.writable[name] = path_of(rna, name)
-            if prop.type == "POINTER":
-                if name not in NOT_ASKED:
-                    self.pointers[name] = path_of(rna, name)
-                    if prop.is_readonly or not is_data_block(prop.fixed_type):
-                        self.unassigned[name] = self.pointers[name]
-            elif prop.type == "COLLECTION":
-                if name not in NOT_ASKED:
-                    self.collections[name] = path_of(rna, name)
-            elif (
-                not prop.is_readonly
-                and (name not in left_out or prop.type == "ENUM")
-                and not name.startswith("bl_")
-                and prop.subtype not in UNREAD
-                and not (getattr(prop, "is_array", False) and not 0 < prop.array_length <= LONGEST_ARRAY)
-            ):
-                self.fields.append(Field(rna, prop))
-        self.choices = list(computed_choices(rna))
-        self.keep(self.fields)
-
-    def keep(self, fields):
-        """Has these fields be read, and no others."""
-        self.fields = fields
-        self.enums = [field for field in fields if field.is_enum]
-        self.modes = [field for field in fields if field.is_mode]
 
 
 class Contexts:
@@ -218,50 +51,6 @@ class Contexts:
                     seen.setdefault(other, set()).add(value)
         states = {other: sorted(values) for other, values in seen.items()}
         return {"items": list(items), "made": [list(pair) for pair in self.made], "states": states}
-
-
-class Pointers:
-    """Which pointers of new instances are None, and what was seen to fill them."""
-
-    def __init__(self):
-        # path → {label of what was made: whether it leads to something}
-        self.filled = {}
-        # path → calls, in the order in which they were tried
-        self.fillers = {}
-
-    def add(self, path, label, is_filled):
-        """Adds what one instance has; a label stands for what leads to something if one of its instances does."""
-        known = self.filled.setdefault(path, {})
-        known[label] = known.get(label, False) or is_filled
-
-    def add_filler(self, path, call):
-        """Adds a call that was seen to fill a pointer."""
-        self.fillers.setdefault(path, []).append(call)
-
-    def filler(self, path):
-        """Of the calls that fill a pointer the one that has most words of its name in it; the first of several."""
-        words = path.rpartition(".")[2].split("_")
-        calls = self.fillers.get(path, ())
-        return max(calls, key=lambda call: sum(word in call.lower() for word in words), default="")
-
-    def write(self, write):
-        """One ``new_pointer`` record for each pointer of which a new instance was seen.
-
-        ``empty`` are the labels of those that have None, [] if most do; ``filled`` then those that do not.
-        """
-        for path in sorted(self.filled):
-            labels = {True: [], False: []}
-            for label, is_filled in self.filled[path].items():
-                labels[is_filled].append(label)
-            are_usual = len(labels[False]) > len(labels[True])
-            write(
-                "new_pointer",
-                path=path,
-                is_empty=bool(labels[False]),
-                empty=[] if are_usual else labels[False],
-                filled=labels[True] if are_usual else [],
-                filler=self.filler(path) if labels[False] else "",
-            )
 
 
 class Observer:

@@ -7,11 +7,13 @@ instance of each class such values are assigned and read again. What a maker mak
 what extreme values end there is left out.
 """
 
-from .apart import sent_apart
-from .instances import CHOSEN, refused_value_items, same
-from .new_things import MAKERS, scratch_scene
-from .rna import path_of
-from .wire import limit
+from ..apart import sent_apart
+from ..rna import path_of
+from ..wire import limit
+from .assigning import refused_value_items, same
+from .layouts import CHOSEN
+from .making import scratch_scene
+from .new_things import MAKERS
 
 NUMBERS = frozenset({"INT", "FLOAT"})
 MOST = 1e6  # beyond it a number may take all memory
