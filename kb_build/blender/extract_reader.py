@@ -8,31 +8,13 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from kb_build.blender.call_texts import by_place, call_text, with_sets
 from kb_build.blender.docstrings import parse_docstring
-from kb_build.blender.enum_contexts import items_in_contexts
 from kb_build.blender.manual_links import manual_links
-from kb_build.blender.refused_calls import refusals
+from kb_build.blender.tried_facts import ADDED, add_items
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
 from kb_build.records import (
-    ALSO,
-    ANY,
-    AREAS,
-    EMPTY,
-    ENDS_WITHOUT,
-    EVALUATED,
-    FILLED_BY,
-    FILLED_ON,
-    FREE_ON,
-    FREED_BY,
-    GIVEN,
-    INVERTED,
-    LOCKED_ON,
-    LOCKED_WITH,
-    NEEDS,
-    STOPS,
-    UNBOUNDED,
-    Default,
     EnumItem,
     Link,
     Page,
@@ -50,13 +32,6 @@ if TYPE_CHECKING:
     from kb_build.blender.docstrings import Docstring
 
 _TYPES = "bpy.types."
-# Defaults that are not told, by type: empty ones, and those that are no value to give, as of arrays of any length.
-_UNTOLD = {
-    "string": "''",
-    "list": "[]",
-    "enum": "...",
-    **dict.fromkeys(("boolean[1]", "float[1]", "int[1]"), "..."),
-}
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
@@ -64,7 +39,6 @@ _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
 _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
-_LEFT_OUT = "Left out: "
 _NO_KEYWORDS = "no-keywords"  # as ``inside/keywords.py`` marks it
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
@@ -119,157 +93,6 @@ class _Raw:
     by_class: dict[str, dict[str, str]] = field(default_factory=lambda: defaultdict(dict))
 
 
-def _add_items(
-    row: dict[str, Any] | None, asked: dict[str, Any], neighbours: Mapping[str, Any] | None
-) -> None:
-    """Adds the items that instances listed, with where each is taken."""
-    if row is not None:
-        listed, texts = row.get("enum_items", ()), asked.get("texts", {})
-        row["enum_items"] = items_in_contexts(listed, asked["contexts"], texts, neighbours)
-
-
-def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds what new instances have where it is not RNA's default, and that they were compared.
-
-    What whoever makes a thing chooses, or Blender computes, has no default.
-    """
-    if row is not None and seen.get("chosen"):
-        row.pop("default", None)
-    elif row is not None:
-        row["flags"] = [*row.get("flags", ()), "compared"]
-        row["new_values"] = [*seen.get("values", ()), *seen.get("modes", ())]
-
-
-def _add_choices(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
-    """Adds the choices of a parameter for which RNA has a stand-in."""
-    for parameter in row.get("parameters", ()) if row is not None and asked["items"] else ():
-        if parameter["name"] == asked["parameter"]:
-            parameter["enum_items"] = asked["items"]
-
-
-def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds whether a pointer of new instances is None, and what fills it."""
-    if row is None:
-        return
-    flags = ["compared"]
-    if seen.get("is_empty"):
-        row["new_values"] = [{"value": None, "made": seen.get("empty", [])}]
-        flags += [f"{FILLED_ON}{label}" for label in seen.get("filled", ())]
-        if seen.get("filler"):
-            flags.append(FILLED_BY + seen["filler"])
-    row["flags"] = [*row.get("flags", ()), *flags]
-
-
-def _add_needs(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds what an operator's poll wants."""
-    if row is not None:
-        row["flags"] = [*row.get("flags", ()), NEEDS + seen.get("needs", "")]
-
-
-def _add_areas(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds in which areas an operator runs, and what it takes of the context instead."""
-    if row is not None:
-        row["flags"] = [
-            *row.get("flags", ()),
-            *(AREAS + area for area in seen.get("areas", ())),
-            *([GIVEN + seen["given"]] if seen.get("given") else ()),
-            *([ALSO + seen["also"]] if seen.get("also") else ()),
-        ]
-
-
-def _add_argument_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
-    """Adds the items that a function's argument takes; a default that is none of them is no value to give."""
-    for parameter in (row or {}).get("parameters", ()):
-        if parameter["name"] == asked["argument"]:
-            items = items_in_contexts(parameter.get("enum_items", ()), asked["contexts"], {})
-            parameter["enum_items"] = items
-            if parameter.get("default") not in {item["identifier"] for item in items}:
-                parameter.pop("default", None)
-
-
-def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds what a function refused, and without what it ends Blender."""
-    if row is not None:
-        row["refusals"] = refusals(seen["outcomes"])
-        if without := seen.get("ends_without"):
-            row["flags"] = [*row.get("flags", ()), ENDS_WITHOUT + without]
-
-
-def _add_left_out(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds what an argument is where it is left out, in place of RNA's default. A factor has no unit."""
-    for parameter in (row or {}).get("parameters", ()):
-        if parameter["name"] == seen["argument"]:
-            for wrong in ("default", *(("unit",) if seen["argument"] == "scale" else ())):
-                parameter.pop(wrong, None)
-            said = parameter.get("description", "").rstrip(".")
-            parameter["description"] = f"{said}. {_LEFT_OUT}{seen['value']}".removeprefix(". ")
-
-
-def _add_limits(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds what Blender keeps otherwise than RNA tells: ends of ranges, items taken as others, lengths that vary."""
-    if row is not None:
-        if seen.get("varies"):
-            row["array"] = [0]
-            row.pop("default", None)
-        row["flags"] = [
-            *row.get("flags", ()),
-            *(UNBOUNDED + end for end in seen.get("ends", ())),
-            *(f"{STOPS}{side}={value:g}" for side, value in seen.get("stops", {}).items()),
-        ]
-        for item in row.get("enum_items", ()):
-            if kept := seen.get("read_as", {}).get(item["identifier"]):
-                said = item.get("description", "").rstrip(".")
-                item["description"] = f"{said}. Reads back as {kept!r}".removeprefix(". ")
-
-
-def _add_locked(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
-    """Adds where Blender does not let it be assigned: on what, or in which modes, and what frees it."""
-    if row is not None:
-        row["flags"] = [
-            *row.get("flags", ()),
-            *([LOCKED_ON + ANY] if seen.get("is_always") else ()),
-            *(LOCKED_ON + label for label in seen.get("on", ())),
-            *(FREE_ON + label for label in seen.get("free_on", ())),
-            *(LOCKED_WITH + mode for mode in seen.get("modes", ())),
-            *([FREED_BY + seen["freed_by"]] if seen.get("freed_by") else ()),
-        ]
-
-
-def _add_empty(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
-    """Adds that a collection of new instances has no elements."""
-    if row is not None:
-        row["flags"] = [*row.get("flags", ()), EMPTY]
-
-
-def _add_inverted(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
-    """Adds that some panel shows a switch the other way round."""
-    if row is not None:
-        row["flags"] = [*row.get("flags", ()), INVERTED]
-
-
-def _add_evaluated(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
-    """Adds that only evaluated objects have it filled."""
-    if row is not None:
-        row["flags"] = [*row.get("flags", ()), EVALUATED]
-
-
-_ADDED = {
-    "argument_items": _add_argument_items,
-    "choices": _add_choices,
-    "new_values": _add_values,
-    "new_pointer": _add_pointer,
-    "operator_needs": _add_needs,
-    "operator_areas": _add_areas,
-    "refusals": _add_refusals,
-    "empty_collection": _add_empty,
-    "evaluated": _add_evaluated,
-    "inverted": _add_inverted,
-    "left_out": _add_left_out,
-    "limits": _add_limits,
-    "locked": _add_locked,
-}
-
-
 def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
     """Adds one line of the extract."""
     match record:
@@ -282,11 +105,11 @@ def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
         case "manual":
             raw.manual.append((row["pattern"], row["page"]))
         case "enum_items":
-            _add_items(raw.symbols.get(row["path"]), row, raw.neighbours.get(row["path"]))
+            add_items(raw.symbols.get(row["path"]), row, raw.neighbours.get(row["path"]))
         case "enum_neighbours":
             raw.neighbours[row["path"]] = row
-        case _ if record in _ADDED:
-            _ADDED[record](raw.symbols.get(row["path"]), row)
+        case _ if record in ADDED:
+            ADDED[record](raw.symbols.get(row["path"]), row)
         case "own_name" | "stands_in":
             raw.by_class[record][row["path"].removeprefix(_TYPES)] = row["name"]
         case "still_works":
@@ -330,36 +153,6 @@ def _substitute(rows: Iterable[dict[str, Any]]) -> None:
         row["docstring"] = _SUBSTITUTED.sub(lambda m: texts.get(m[1], m[0]), row["docstring"])
 
 
-def python_value(value: Default) -> str:
-    """A default as Python source."""
-    if isinstance(value, list):
-        return f"({', '.join(map(python_value, value))}{',' if len(value) == 1 else ''})"
-    return repr(value)
-
-
-def call_text(name: str, parameters: Iterable[Parameter], *, marked: bool = False) -> str:
-    """``modifier_add(type='SUBSURF')``: a call with every argument's default; ``...`` for what is no value to give.
-
-    ``marked`` puts the ``*`` before those that can be given by name only: RNA's functions take by place what they need.
-    """
-    shown: list[str] = []
-    for parameter in parameters:
-        if marked and not parameter.required and "*" not in shown:
-            shown.append("*")
-        if parameter.required:
-            shown.append(parameter.name)
-        elif parameter.default is None and _LEFT_OUT in parameter.description:
-            shown.append(f"{parameter.name}=...")
-        elif parameter.default is None and (untold := _UNTOLD.get(parameter.type.partition(" ")[0])):
-            shown.append(f"{parameter.name}={untold}")
-        elif isinstance(parameter.default, list) and parameter.type == "enum":
-            chosen = ", ".join(map(repr, parameter.default))  # a list in order, which a set would lose
-            shown.append(f"{parameter.name}={{{chosen}}}" if chosen else f"{parameter.name}=set()")
-        else:
-            shown.append(f"{parameter.name}={python_value(parameter.default)}")
-    return f"{name}({', '.join(shown)})"
-
-
 def _completed(parameters: Iterable[Parameter], known: Iterable[Parameter]) -> tuple[Parameter, ...]:
     """The parameters of a docstring with what Blender said of them when it was asked, where the docstring is mute."""
     by_name = {parameter.name: parameter for parameter in known}
@@ -379,20 +172,6 @@ def _completed(parameters: Iterable[Parameter], known: Iterable[Parameter]) -> t
     return tuple(completed)
 
 
-def _with_sets(call: str, parameters: Iterable[Parameter]) -> str:
-    """bmesh writes an empty set as ``{}``, which Python would take for a dictionary."""
-    for parameter in parameters:
-        if parameter.type.startswith("set["):
-            call = call.replace(f"{parameter.name}={{}}", f"{parameter.name}=set()")
-    return call
-
-
-def _by_place(call: str) -> str:
-    """A call's text with the mark of arguments that are given by their places alone."""
-    head, _, given = call.rstrip(")").partition("(")
-    return call if not given or "/" in given or "*" in given else f"{head}({given}, /)"
-
-
 def read_docstring(row: Mapping[str, Any]) -> Docstring:
     """What the docstring of a line of the extract says; it is kept."""
     return parse_docstring(row.get("docstring", ""), _BOUND.sub("(", row.get("signature", ""), count=1))
@@ -405,10 +184,10 @@ def _symbol(row: dict[str, Any]) -> Symbol:
     fields.pop("docstring", None)
     path, kind, parameters = row["path"], row["kind"], fields.get("parameters", ())
     if parsed is not None:
-        call = _with_sets(parsed.signature, parameters)
+        call = with_sets(parsed.signature, parameters)
         fields["description"] = parsed.description
         fields["type"] = parsed.type or row.get("type", "")
-        call = _by_place(call) if _NO_KEYWORDS in row.get("flags", ()) else call
+        call = by_place(call) if _NO_KEYWORDS in row.get("flags", ()) else call
         fields["signature"] = last_name(path) + call[call.index("(") :] if "(" in call else ""
         fields["parameters"] = _completed(parsed.parameters, parameters)
         fields["returns"] = parsed.returns

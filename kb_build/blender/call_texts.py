@@ -1,0 +1,63 @@
+"""Calls as text, by their arguments."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from kb_build.records import Default, Parameter
+
+# Defaults that are not told, by type: empty ones, and those that are no value to give, as of arrays of any length.
+_UNTOLD = {
+    "string": "''",
+    "list": "[]",
+    "enum": "...",
+    **dict.fromkeys(("boolean[1]", "float[1]", "int[1]"), "..."),
+}
+LEFT_OUT = "Left out: "
+
+
+def python_value(value: Default) -> str:
+    """A default as Python source."""
+    if isinstance(value, list):
+        return f"({', '.join(map(python_value, value))}{',' if len(value) == 1 else ''})"
+    return repr(value)
+
+
+def call_text(name: str, parameters: Iterable[Parameter], *, marked: bool = False) -> str:
+    """``modifier_add(type='SUBSURF')``: a call with every argument's default; ``...`` for what is no value to give.
+
+    ``marked`` puts the ``*`` before those that can be given by name only: RNA's functions take by place what they need.
+    """
+    shown: list[str] = []
+    for parameter in parameters:
+        if marked and not parameter.required and "*" not in shown:
+            shown.append("*")
+        if parameter.required:
+            shown.append(parameter.name)
+        elif parameter.default is None and LEFT_OUT in parameter.description:
+            shown.append(f"{parameter.name}=...")
+        elif parameter.default is None and (untold := _UNTOLD.get(parameter.type.partition(" ")[0])):
+            shown.append(f"{parameter.name}={untold}")
+        elif isinstance(parameter.default, list) and parameter.type == "enum":
+            chosen = ", ".join(map(repr, parameter.default))  # a list in order, which a set would lose
+            shown.append(f"{parameter.name}={{{chosen}}}" if chosen else f"{parameter.name}=set()")
+        else:
+            shown.append(f"{parameter.name}={python_value(parameter.default)}")
+    return f"{name}({', '.join(shown)})"
+
+
+def with_sets(call: str, parameters: Iterable[Parameter]) -> str:
+    """bmesh writes an empty set as ``{}``, which Python would take for a dictionary."""
+    for parameter in parameters:
+        if parameter.type.startswith("set["):
+            call = call.replace(f"{parameter.name}={{}}", f"{parameter.name}=set()")
+    return call
+
+
+def by_place(call: str) -> str:
+    """A call's text with the mark of arguments that are given by their places alone."""
+    head, _, given = call.rstrip(")").partition("(")
+    return call if not given or "/" in given or "*" in given else f"{head}({given}, /)"

@@ -1,0 +1,183 @@
+"""What was tried in Blender beyond RNA, as additions to the rows of symbols."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from kb_build.blender.call_texts import LEFT_OUT
+from kb_build.blender.enum_contexts import items_in_contexts
+from kb_build.blender.refused_calls import refusals
+from kb_build.records import (
+    ALSO,
+    ANY,
+    AREAS,
+    EMPTY,
+    ENDS_WITHOUT,
+    EVALUATED,
+    FILLED_BY,
+    FILLED_ON,
+    FREE_ON,
+    FREED_BY,
+    GIVEN,
+    INVERTED,
+    LOCKED_ON,
+    LOCKED_WITH,
+    NEEDS,
+    STOPS,
+    UNBOUNDED,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+
+def add_items(
+    row: dict[str, Any] | None, asked: dict[str, Any], neighbours: Mapping[str, Any] | None
+) -> None:
+    """Adds the items that instances listed, with where each is taken."""
+    if row is not None:
+        listed, texts = row.get("enum_items", ()), asked.get("texts", {})
+        row["enum_items"] = items_in_contexts(listed, asked["contexts"], texts, neighbours)
+
+
+def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what new instances have where it is not RNA's default, and that they were compared.
+
+    What whoever makes a thing chooses, or Blender computes, has no default.
+    """
+    if row is not None and seen.get("chosen"):
+        row.pop("default", None)
+    elif row is not None:
+        row["flags"] = [*row.get("flags", ()), "compared"]
+        row["new_values"] = [*seen.get("values", ()), *seen.get("modes", ())]
+
+
+def _add_choices(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
+    """Adds the choices of a parameter for which RNA has a stand-in."""
+    for parameter in row.get("parameters", ()) if row is not None and asked["items"] else ():
+        if parameter["name"] == asked["parameter"]:
+            parameter["enum_items"] = asked["items"]
+
+
+def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds whether a pointer of new instances is None, and what fills it."""
+    if row is None:
+        return
+    flags = ["compared"]
+    if seen.get("is_empty"):
+        row["new_values"] = [{"value": None, "made": seen.get("empty", [])}]
+        flags += [f"{FILLED_ON}{label}" for label in seen.get("filled", ())]
+        if seen.get("filler"):
+            flags.append(FILLED_BY + seen["filler"])
+    row["flags"] = [*row.get("flags", ()), *flags]
+
+
+def _add_needs(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what an operator's poll wants."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), NEEDS + seen.get("needs", "")]
+
+
+def _add_areas(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds in which areas an operator runs, and what it takes of the context instead."""
+    if row is not None:
+        row["flags"] = [
+            *row.get("flags", ()),
+            *(AREAS + area for area in seen.get("areas", ())),
+            *([GIVEN + seen["given"]] if seen.get("given") else ()),
+            *([ALSO + seen["also"]] if seen.get("also") else ()),
+        ]
+
+
+def _add_argument_items(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
+    """Adds the items that a function's argument takes; a default that is none of them is no value to give."""
+    for parameter in (row or {}).get("parameters", ()):
+        if parameter["name"] == asked["argument"]:
+            items = items_in_contexts(parameter.get("enum_items", ()), asked["contexts"], {})
+            parameter["enum_items"] = items
+            if parameter.get("default") not in {item["identifier"] for item in items}:
+                parameter.pop("default", None)
+
+
+def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what a function refused, and without what it ends Blender."""
+    if row is not None:
+        row["refusals"] = refusals(seen["outcomes"])
+        if without := seen.get("ends_without"):
+            row["flags"] = [*row.get("flags", ()), ENDS_WITHOUT + without]
+
+
+def _add_left_out(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what an argument is where it is left out, in place of RNA's default. A factor has no unit."""
+    for parameter in (row or {}).get("parameters", ()):
+        if parameter["name"] == seen["argument"]:
+            for wrong in ("default", *(("unit",) if seen["argument"] == "scale" else ())):
+                parameter.pop(wrong, None)
+            said = parameter.get("description", "").rstrip(".")
+            parameter["description"] = f"{said}. {LEFT_OUT}{seen['value']}".removeprefix(". ")
+
+
+def _add_limits(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what Blender keeps otherwise than RNA tells: ends of ranges, items taken as others, lengths that vary."""
+    if row is not None:
+        if seen.get("varies"):
+            row["array"] = [0]
+            row.pop("default", None)
+        row["flags"] = [
+            *row.get("flags", ()),
+            *(UNBOUNDED + end for end in seen.get("ends", ())),
+            *(f"{STOPS}{side}={value:g}" for side, value in seen.get("stops", {}).items()),
+        ]
+        for item in row.get("enum_items", ()):
+            if kept := seen.get("read_as", {}).get(item["identifier"]):
+                said = item.get("description", "").rstrip(".")
+                item["description"] = f"{said}. Reads back as {kept!r}".removeprefix(". ")
+
+
+def _add_locked(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds where Blender does not let it be assigned: on what, or in which modes, and what frees it."""
+    if row is not None:
+        row["flags"] = [
+            *row.get("flags", ()),
+            *([LOCKED_ON + ANY] if seen.get("is_always") else ()),
+            *(LOCKED_ON + label for label in seen.get("on", ())),
+            *(FREE_ON + label for label in seen.get("free_on", ())),
+            *(LOCKED_WITH + mode for mode in seen.get("modes", ())),
+            *([FREED_BY + seen["freed_by"]] if seen.get("freed_by") else ()),
+        ]
+
+
+def _add_empty(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that a collection of new instances has no elements."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), EMPTY]
+
+
+def _add_inverted(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that some panel shows a switch the other way round."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), INVERTED]
+
+
+def _add_evaluated(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that only evaluated objects have it filled."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), EVALUATED]
+
+
+# Kind of record → what adds it to the row of its symbol, which may be missing.
+ADDED = {
+    "argument_items": _add_argument_items,
+    "choices": _add_choices,
+    "new_values": _add_values,
+    "new_pointer": _add_pointer,
+    "operator_needs": _add_needs,
+    "operator_areas": _add_areas,
+    "refusals": _add_refusals,
+    "empty_collection": _add_empty,
+    "evaluated": _add_evaluated,
+    "inverted": _add_inverted,
+    "left_out": _add_left_out,
+    "limits": _add_limits,
+    "locked": _add_locked,
+}
