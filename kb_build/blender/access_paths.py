@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import heapq
 import json
+import math
 from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
@@ -170,7 +171,7 @@ def reached_expressions(
     names: Mapping[str, str] | None = None,
     places: Mapping[str, str] | None = None,
 ) -> dict[str, str]:
-    """class name → an expression that gives an instance, for every class that pointers lead to.
+    """class name → an expression that gives an instance, for every class that pointers lead to, or that is a collection.
 
     ``ClothSettings`` → ``bpy.context.object.modifiers["Cloth"].settings``: the names in brackets are those that
     Blender itself gives (``names``, by class), to be replaced by the scene's own; where it gives none, there is an
@@ -179,6 +180,7 @@ def reached_expressions(
     """
     graph = _graph(symbols, uses or {}, names or {})
     expressions: dict[str, str] = {}
+    containers: dict[str, tuple[float, str]] = {}
     queue: list[tuple[float, int, str, str]] = []
     order = 0
 
@@ -202,6 +204,8 @@ def reached_expressions(
         for step in _steps(cls, graph):
             here = f"{of_evaluated(expression) if step.evaluated else expression}.{step.name}"
             reached = cost + step.cost + (1 if step.many else 0)
+            if step.container and reached < containers.get(step.container, (math.inf,))[0]:
+                containers[step.container] = reached, here
             offer(reached, step.target, here, many=step.many)
             active = _active(step, graph) if step.many else None
             if active is not None:
@@ -212,6 +216,8 @@ def reached_expressions(
                 if cls in graph.trees.get(child, (cls,)):
                     by_chance = 0 if step.many and child in graph.names else _KIND_BY_CHANCE
                     offer(reached + 1 + by_chance, child, here, many=step.many)
+    # Last, because no way leads through them.
+    expressions |= {cls: here for cls, (_, here) in containers.items() if cls not in expressions}
     for cls in _OF_BONES:
         if cls in expressions and "PoseBone" in expressions:
             expressions[cls] = f"{expressions['PoseBone']}.constraints{_key(cls, graph)}"

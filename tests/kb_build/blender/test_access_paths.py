@@ -88,6 +88,14 @@ def test_of_two_ways_the_one_is_taken_that_scripts_take() -> None:
     assert reached_expressions(symbols, used)["Layer"] == "bpy.context.object.data.layers[0]"
 
 
+def test_a_collection_is_reached_and_no_way_leads_through_it() -> None:
+    objects = replace(prop("BlendData.objects", "Object", "collection"), collection="BlendDataObjects")
+    symbols = [cls("BlendDataObjects"), objects, *SMALL, prop("BlendDataObjects.far", "Far")]
+    found = reached_expressions(symbols)
+    assert found["BlendDataObjects"] == "bpy.data.objects"
+    assert "Far" not in found
+
+
 def test_an_unreachable_class_has_no_expression() -> None:
     assert "Far" not in reached_expressions(SMALL)  # a context member that only an editor has
 
