@@ -142,7 +142,8 @@ class AnswerComposer:
         rows = self._listed(ranking, limit)
         hits = self._hits(rows)
         known = self._practice.of(hits[0].id) if hits and not ranking.notes else ()
-        notes = tuple(dict.fromkeys((*ranking.notes, *known, *self._source_notes(ranking, hits))))
+        told = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
+        notes = tuple(dict.fromkeys(filter(None, told)))
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
             told = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all

@@ -42,12 +42,15 @@ class RankedId(NamedTuple):
 
 @dataclass(slots=True)
 class Ranking:
-    """The ids for a query, best first. ``named`` tells whether the query names the first."""
+    """The ids for a query, best first. ``named`` tells whether the query names the first, ``alike`` what else of its
+    name may be meant.
+    """
 
     ranked: list[RankedId]
     recognition: Recognition
     named: bool
     notes: list[str] = field(default_factory=list)
+    alike: str = ""
 
     def listed(self, limit: int, is_page: Callable[[str], bool]) -> list[RankedId]:
         """The first ``limit`` ids, without what the search found far below its best.
@@ -106,7 +109,8 @@ class QueryRanker:
         ranked[:1] = [self._at_its_section(row, prose) for row in ranked[:1]]
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         named = named and not recognition.is_open
-        return Ranking(ranked, recognition, named, self._notes.on(recognition))
+        alike = self._notes.alike(recognition) if named else ""
+        return Ranking(ranked, recognition, named, self._notes.on(recognition), alike)
 
     def _replaced(self, ranked: list[RankedId]) -> list[RankedId]:
         """The same ids, each deprecated one that was found behind what takes its place."""
