@@ -26,25 +26,27 @@ _GIVEN = "given:"  # the flag of an operator that runs only where a context over
 
 
 def labelled(owner: str, name: str, reader: BaseReader) -> list[str]:
-    """The members whose label is a name, else those whose label ends with it: ``TextCurve.text`` is ``body``, the Body
-    Text. Those that count most come first; none where too many are called so. Where a class has none, the few that are
-    cases of it may: ``Light.power`` is ``PointLight.energy``.
+    """The members whose label is a name, those first that count most, else the one whose label ends with it:
+    ``TextCurve.text`` is ``body``, the Body Text. Where a class has none, the few that are cases of it may:
+    ``Light.power`` is ``PointLight.energy``.
     """
     found = _called(reader.lineage(owner), name, reader)
     if not found and len(cases := list(reader.descendants(owner))) <= _MOST_CASES:
         found = _called(cases, name, reader)
-    return [entry.path for entry in reader.heaviest(found)[:_FEW]]
+    return [entry.path for entry in found[:_FEW]]
 
 
 def _called(classes: Iterable[SymbolEntry], name: str, reader: BaseReader) -> list[SymbolEntry]:
-    """The members of classes that are labelled so."""
+    """The members of classes that are labelled so, those first that count most; of those whose label only ends so one,
+    as it is a guess.
+    """
     entries = [
         entry for cls in classes for entry in reader.members(cls.path).values() if entry.kind == "property"
     ]
     said = words(name)
     same = [entry for entry in entries if key(entry.label) == key(name)]
     ending = [entry for entry in entries if _ends_with(entry, said)]
-    return same or (ending if len(ending) <= _MANY else [])
+    return reader.heaviest(same) or (reader.heaviest(ending)[:1] if len(ending) <= _MANY else [])
 
 
 def _ends_with(entry: SymbolEntry, said: list[str]) -> bool:
