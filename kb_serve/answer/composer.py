@@ -46,6 +46,7 @@ _NOTES_TOKENS = 500
 _EXCERPT_TOKENS = 300  # of the best of several candidates
 _LEAST_SAID = 30
 _LINE_TOKENS = 60
+_KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _NAMES = "further names"
 _SETTINGS = 2  # of a topic that are hits before its classes
@@ -141,7 +142,7 @@ class AnswerComposer:
             return self._answer_each(parts, ranking, limit)
         rows = self._listed(ranking, limit)
         hits = self._hits(rows)
-        known = self._practice.of(hits[0].id) if hits and not ranking.notes else ()
+        known = () if ranking.notes else self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF])
         told = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
         notes = tuple(dict.fromkeys(filter(None, told)))
         if not hits:
@@ -156,6 +157,13 @@ class AnswerComposer:
             blocks = (*asked, *sockets, *whole, *self._others(hits[1:], rows[1:]))
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
         return _draft("candidates", hits, notes, self._found(hits, rows, asked_words(text)))
+
+    def _known(self, hits: Sequence[Hit]) -> Iterator[str]:
+        """What one has to know of the first hits, up to the first name: code needs that, behind pages that tell how."""
+        for hit in hits:
+            yield from self._practice.of(hit.id)
+            if not _is_page(hit):
+                return
 
     def _found(
         self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str]

@@ -45,6 +45,7 @@ _CANDIDATES = 400
 _DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
 _WORDS_OF_A_NAME = 2  # of an operator's name that a query hardly says by chance
+_NEAREST = 100  # units by their texts, among which such an operator is looked for
 _MEMBERS = 3  # of a class that are told with it
 _NEAR = 0.35  # share of the best member's score below which another one is not told
 _INDEX = DOCUMENT_KINDS.index("index")
@@ -213,7 +214,7 @@ class Searcher:
         whole = sum(asked.values()) or 1.0
         said = frozenset(asked)
         called = np.zeros(len(numbers), np.float32)
-        for place in np.flatnonzero(are_operators).tolist():
+        for place in are_operators[:_NEAREST].nonzero()[0].tolist():
             name = self._name_of(int(numbers[place]))
             if len(name) >= _WORDS_OF_A_NAME and name <= said:
                 called[place] = sum(asked[part] for part in name) / whole

@@ -185,7 +185,7 @@ def test_words_around_a_query_count_less_than_its_own(searcher: Searcher) -> Non
         ("colors for the corners of a mesh by script", "bpy.types.AttributeGroupMesh.new"),
         ("position of a simulated object in a script", "bpy.types.ID.evaluated_get"),
         ("range of a custom property", "bpy.types.bpy_struct.id_properties_ui"),
-        ("export the selection to usd", "bpy.ops.wm.usd_export"),
+        ("export the selection to USD", "bpy.ops.wm.usd_export"),
     ],
 )
 def test_a_plain_wish_finds_what_does_it(kb: KnowledgeBase, question: str, path: str) -> None:
