@@ -11,7 +11,8 @@ from kb_build.records import NOT_TAKEN
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-_NAMED = 3
+_NAMED = 3  # settings
+_NAMED_THINGS = 16  # a condition that is cut off tells nobody whether it holds
 
 # What was made, and the mode that it was put into; "" for that of a new one.
 Context = tuple[str, str]
@@ -98,4 +99,4 @@ def _modes(modes: Iterable[str]) -> str:
 
 def _labels(labels: set[str]) -> str:
     shown = sorted(labels, key=lambda label: (len(label), label))
-    return ", ".join(shown[:_NAMED]) + (", …" if len(shown) > _NAMED else "")
+    return ", ".join(shown[:_NAMED_THINGS]) + (", …" if len(shown) > _NAMED_THINGS else "")

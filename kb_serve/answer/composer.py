@@ -307,7 +307,7 @@ class AnswerComposer:
             name = path[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
             if entry.kind == "operator" and text == entry.label:  # which its name says already
                 text = ""
-            text = text.removeprefix(f"`{name}`").strip(", ") or self._instead_of_words(entry)
+            text = text.removeprefix(f"`{name}`").strip(", ·") or self._instead_of_words(entry)
             nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
             return clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS) + nearest
         page = self._reader.page_entry(hit.id)
