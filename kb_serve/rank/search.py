@@ -205,19 +205,21 @@ class Searcher:
         )
         return numbers, evidence
 
-    def _operators(self, numbers: NDArray[np.intp], concepts: Sequence[Concept]) -> tuple[Scores, Scores]:
+    def _operators(
+        self, numbers: NDArray[np.intp], concepts: Sequence[Concept]
+    ) -> tuple[Scores, Scores | None]:
         """Of units, which are operators; and of these the share of the query that their names are, of some words, which
-        the query says whole.
+        the query says whole. None if it says none.
         """
         are_operators = self.index.operators[numbers]
         asked = {concept.stem: concept.idf for concept in concepts}
-        whole = sum(asked.values()) or 1.0
         said = frozenset(asked)
-        called = np.zeros(len(numbers), np.float32)
+        called: Scores | None = None
         for place in are_operators[:_NEAREST].nonzero()[0].tolist():
             name = self._name_of(int(numbers[place]))
             if len(name) >= _WORDS_OF_A_NAME and name <= said:
-                called[place] = sum(asked[part] for part in name) / whole
+                called = np.zeros(len(numbers), np.float32) if called is None else called
+                called[place] = sum(asked[part] for part in name) / sum(asked.values())
         return are_operators, called
 
     def _name_of(self, number: int) -> frozenset[str]:

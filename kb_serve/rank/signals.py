@@ -49,7 +49,7 @@ class Evidence:
     ``texts``: BM25F of the unit and of the topic around it. ``asked``: how nearly the query is a phrase that the unit
     or its topic is asked for by, 0…1. ``counts``, ``areas``, ``chapters`` and ``kinds`` are as in the index;
     ``operators`` is 1 for those; ``called``: which share of the query, by rarity, an operator's name is that the query
-    says whole. ``words`` are the query's; it is an error's message if ``failed``.
+    says whole; None if it says none. ``words`` are the query's; it is an error's message if ``failed``.
     """
 
     words: frozenset[str]
@@ -61,7 +61,7 @@ class Evidence:
     chapters: NDArray[np.int32]
     kinds: NDArray[np.uint8]
     operators: Scores
-    called: Scores
+    called: Scores | None
 
     def of_kind(self, kind: DocumentKind) -> Scores:
         """1 for the units of a kind, 0 for the others."""
