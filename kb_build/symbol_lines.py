@@ -276,7 +276,8 @@ def taken_text(where: str) -> str:
     if kind in {"only", "not"} or kind.endswith((" there only", " there not")):
         *names, last = labels.split(", ")
         more = "" if last != "…" else f", {last}"
-        where = f"{kind} by {_things(names if more else [*names, last])}{more}"
+        names = names if more else [*names, last]
+        where = f"{kind} by {_things(names, len(names))}{more}"
     return said_taken(where)
 
 
@@ -298,7 +299,8 @@ def _things(labels: Sequence[str], most: int = _SHOWN_VALUES) -> str:
     alike = takewhile(lambda column: len(set(column)) == 1, zip(*(end[:-1] for end in ends), strict=False))
     if (common := sum(1 for _ in alike)) and len(shown) > 1:
         shown[:-1] = [" ".join(label.split()[:-common]) for label in shown[:-1]]
-    more = ", …" if len(shown) < len(labels) else ""
+    left = len(labels) - len(shown)
+    more = f" and {left} more" if left else ""
     return with_article(" or ".join(filter(None, (", ".join(shown[:-1]), shown[-1])))) + more
 
 
@@ -390,10 +392,8 @@ def default_text(symbol: Symbol) -> str:
         text += _whose(usual[0], usual[0].made or (symbol.owner.rpartition(".")[2],))
     others = [new for new in usual[1:] if not new.is_startup]
     for rows in (others, modal):
-        text += "".join(
-            f", `{literal(new.value, symbol.type)}`{_whose(new, new.made)}" for new in rows[:_SHOWN_OTHERS]
-        )
-        text += ", …" if len(rows) > _SHOWN_OTHERS else ""
+        text += "".join(_other_value(new, symbol) for new in rows[:_SHOWN_OTHERS])
+        text += f" and {len(rows) - _SHOWN_OTHERS} more" if len(rows) > _SHOWN_OTHERS else ""
     text += "".join(
         f"; `{literal(new.value, symbol.type)}`{_whose(new, new.made)} ({_at_start(new)})"
         for new in usual[1:]
@@ -404,12 +404,18 @@ def default_text(symbol: Symbol) -> str:
     return text
 
 
+def _other_value(new: NewValue, symbol: Symbol) -> str:
+    """A further value: of what it is, or with which setting and, where only some things then have it, of which."""
+    value = f"`{literal(new.value, symbol.type)}`"
+    if new.when:
+        return f"; with `{new.when}`: {value}" + (f" ({_labels(new.made)})" if new.made else "")
+    return f", {value}{_whose(new, new.made)}"
+
+
 def _whose(new: NewValue, made: Sequence[str]) -> str:
-    """What has a value: how it was made, or where it is, or its mode."""
+    """What has a value: how it was made, or where it is."""
     if new.is_startup:
         return " in the factory preferences" if made[0].startswith(FACTORY) else " in the startup file"
-    if new.when:
-        return f" (new {_labels(made)} with {new.when})" if made else f" (with {new.when})"
     return f" (made by `{new.by}`)" if new.by else f" (new {_labels(made)})"
 
 
@@ -452,8 +458,7 @@ def subscripts_text(socket: Symbol, most: int | None = None) -> str:
     side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
     shown = [f"`{text}`" for text in socket.subscripts[:most]]
     if "name-when-shown" in socket.flags:
-        by_name = f'`{side}["{socket.label}"]` while it is shown'
-        shown = [*shown, by_name] if "hidden-by-default" in socket.flags else [by_name, *shown]
+        shown.append(f'`{side}["{socket.label}"]` while it is shown')  # behind what always works
     identifier = socket.identifier
     if identifier not in ("", socket.label):
         shown.append(f"identifier `{identifier}`")
@@ -508,7 +513,9 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
     if shown := shown_when(symbol):
         notes.append(f"when {shown}")
     said = first_sentence(symbol.description) or (symbol.label if symbol.label != symbol.name else "")
-    return " ".join([_head(symbol), *notes]) + (f" — {said}" if said else "")
+    # Of a socket the ways to it stand first, the last of which would run into the type.
+    head = _head(symbol) + (" ·" if symbol.kind == "socket" and notes else "")
+    return " ".join([head, *notes]) + (f" — {said}" if said else "")
 
 
 def shown_when(symbol: Symbol) -> str:

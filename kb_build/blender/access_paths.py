@@ -42,6 +42,7 @@ _RARE = ((20, 0.0), (5, 0.5), (1, 1.5), (0, 4.0))
 _ACTIVE_GAIN = 1.1  # the active element is what scripts begin with; any other one is found by its name
 # What scripts come to through the active object; other data-blocks they take from ``bpy.data``.
 _OBJECT_DATA = ("Mesh", "Armature")
+_NOWHERE = (math.inf, "")  # what costs more than every way
 _TOLD_COST = 5  # of what Blender tells how to reach: the preferences of an add-on
 # What is reached as RNA does not tell, with what that costs: a driver is on a curve of its own kind, and interfaces
 # that scripts make are those of groups.
@@ -165,13 +166,24 @@ def _active(step: _Step, graph: _Graph) -> _Step | None:
     return next((inner for inner in found if inner.target == step.target and not inner.many), None)
 
 
+def _place(expressions: dict[str, str], graph: _Graph, places: Mapping[str, str]) -> None:
+    """Corrects the ways to what is looked for elsewhere than where RNA's shortest way leads."""
+    for cls in _OF_BONES:
+        if cls in expressions and "PoseBone" in expressions:
+            expressions[cls] = f"{expressions['PoseBone']}.constraints{_key(cls, graph)}"
+    # A shader's nodes live in a material, where there are others like it; some in the tree of another data-block.
+    for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
+        holder = places.get(cls, "Material")
+        expressions[cls] = f"{expressions.get(holder, holder.lower())}.node_tree.nodes{_key(cls, graph)}"
+
+
 def reached_expressions(
     symbols: Iterable[Symbol],
     uses: Mapping[str, int] | None = None,
     names: Mapping[str, str] | None = None,
     places: Mapping[str, str] | None = None,
 ) -> dict[str, str]:
-    """class name → an expression that gives an instance, for every class that pointers lead to, or that is a collection.
+    """class name → an expression that gives an instance, for every class that pointers lead to, and every collection's.
 
     ``ClothSettings`` → ``bpy.context.object.modifiers["Cloth"].settings``: the names in brackets are those that
     Blender itself gives (``names``, by class), to be replaced by the scene's own; where it gives none, there is an
@@ -204,8 +216,8 @@ def reached_expressions(
         for step in _steps(cls, graph):
             here = f"{of_evaluated(expression) if step.evaluated else expression}.{step.name}"
             reached = cost + step.cost + (1 if step.many else 0)
-            if step.container and reached < containers.get(step.container, (math.inf,))[0]:
-                containers[step.container] = reached, here
+            if step.container:
+                containers[step.container] = min((reached, here), containers.get(step.container, _NOWHERE))
             offer(reached, step.target, here, many=step.many)
             active = _active(step, graph) if step.many else None
             if active is not None:
@@ -217,12 +229,6 @@ def reached_expressions(
                     by_chance = 0 if step.many and child in graph.names else _KIND_BY_CHANCE
                     offer(reached + 1 + by_chance, child, here, many=step.many)
     # Last, because no way leads through them.
-    expressions |= {cls: here for cls, (_, here) in containers.items() if cls not in expressions}
-    for cls in _OF_BONES:
-        if cls in expressions and "PoseBone" in expressions:
-            expressions[cls] = f"{expressions['PoseBone']}.constraints{_key(cls, graph)}"
-    # A shader's nodes live in a material, where there are others like it; some in the tree of another data-block.
-    for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
-        holder = (places or {}).get(cls, "Material")
-        expressions[cls] = f"{expressions.get(holder, holder.lower())}.node_tree.nodes{_key(cls, graph)}"
+    expressions = {cls: here for cls, (_, here) in containers.items()} | expressions
+    _place(expressions, graph, places or {})
     return expressions

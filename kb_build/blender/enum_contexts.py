@@ -11,8 +11,8 @@ from kb_build.records import NOT_TAKEN
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
 
-_NAMED = 3  # modes
-_NAMED_THINGS = 6
+_NAMED = 3  # settings
+_NAMED_THINGS = 16  # a condition that is cut off tells nobody whether it holds
 
 # What was made, and the mode that it was put into; "" for that of a new one.
 Context = tuple[str, str]

@@ -37,7 +37,10 @@ _SIZE = "8"  # pixels
 _NEW_SOCKET = f"{TYPES}NodeTreeInterface.new_socket"
 
 # Class → the method that makes it, and a call.
-_METHODS = {"Driver": (f"{TYPES}bpy_struct.driver_add", 'obj.driver_add("location", 2).driver')}
+_METHODS = {
+    "Driver": (f"{TYPES}bpy_struct.driver_add", 'obj.driver_add("location", 2).driver'),
+    "ShapeKey": (f"{TYPES}Object.shape_key_add", 'obj.shape_key_add(name="Key")'),
+}
 
 
 class Creation(NamedTuple):
@@ -128,8 +131,10 @@ class _Calls:
                     calls[cls] = creation
         calls.update(self._of_interfaces())
         for name, (maker, call) in _METHODS.items():
-            if {maker, f"{TYPES}{name}"} <= self._symbols.keys():
-                calls.setdefault(f"{TYPES}{name}", Creation(call, maker))
+            cls = f"{TYPES}{name}"
+            is_better = cls not in calls or calls[cls].maker.startswith("bpy.ops.")
+            if is_better and {maker, cls} <= self._symbols.keys():
+                calls[cls] = Creation(call, maker)
         yield from calls.items()
 
     def _holds_alone(self, holder: Symbol, cls: str, known: Creation) -> bool:

@@ -46,6 +46,7 @@ _NOTES_TOKENS = 500
 _EXCERPT_TOKENS = 300  # of the best of several candidates
 _LEAST_SAID = 30
 _LINE_TOKENS = 60
+_KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _NAMES = "further names"
 _SETTINGS = 2  # of a topic that are hits before its classes
@@ -142,8 +143,9 @@ class AnswerComposer:
             return self._answer_each(parts, ranking, limit)
         rows = self._listed(ranking, limit)
         hits = self._hits(rows)
-        known = self._practice.of(hits[0].id) if hits and not ranking.notes else ()
-        notes = tuple(dict.fromkeys((*ranking.notes, *known, *self._source_notes(ranking, hits))))
+        known = () if ranking.notes else self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF])
+        told = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
+        notes = tuple(dict.fromkeys(filter(None, told)))
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
             told = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
@@ -156,6 +158,13 @@ class AnswerComposer:
             blocks = (*asked, *sockets, *whole, *self._others(hits[1:], rows[1:]))
             return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
         return _draft("candidates", hits, notes, self._found(hits, rows, asked_words(text)))
+
+    def _known(self, hits: Sequence[Hit]) -> Iterator[str]:
+        """What one has to know of the first hits, up to the first name: code needs that, behind pages that tell how."""
+        for hit in hits:
+            yield from self._practice.of(hit.id)
+            if not _is_page(hit):
+                return
 
     def _found(
         self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str]
@@ -299,7 +308,7 @@ class AnswerComposer:
             name = path[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
             if entry.kind == "operator" and text == entry.label:  # which its name says already
                 text = ""
-            text = text.removeprefix(f"`{name}`").strip(", ") or self._instead_of_words(entry)
+            text = text.removeprefix(f"`{name}`").strip(", ·") or self._instead_of_words(entry)
             nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
             return clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS) + nearest
         page = self._reader.page_entry(hit.id)

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 _MOST_SWITCHED = 8
+_NOT = "not "  # what such a test begins with
 _ON, _OFF = "it on", "it off"
 
 
@@ -28,7 +29,10 @@ def panel_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
     clauses = [list(rows) for _, rows in groupby(reader.panel_tests(symbol.path), lambda row: row.clause)]
     owners = {entry.path for entry in reader.lineage(symbol.owner)}
     if greyed := [rows for rows in clauses if not rows[0].hides]:
-        yield f"greyed out in Blender's panels unless {_joined(greyed, owners, reader)}"
+        if all(map(_is_denied, greyed[0])) and len(greyed) == 1:
+            yield f"greyed out in Blender's panels when {_denied(greyed[0], owners, reader)}"
+        else:
+            yield f"greyed out in Blender's panels unless {_joined(greyed, owners, reader)}"
     if hidden := [rows for rows in clauses if rows[0].hides]:
         offers = "offered by" if symbol.kind == "operator" else "shown in"
         yield f"{offers} Blender's panels only if {_joined(hidden, owners, reader)}"
@@ -45,6 +49,19 @@ def _joined(clauses: Sequence[Sequence[PanelCondition]], owners: set[str], reade
         either = " or ".join(_told(row, owners) for row in rows) + _when_new(rows, reader)
         told.append(f"({either})" if len(rows) > 1 and len(clauses) > 1 else either)
     return " and ".join(told)
+
+
+def _is_denied(row: PanelCondition) -> bool:
+    """Whether a test says what a setting must not be."""
+    return row.test == TEST_OFF or row.test.startswith(_NOT)
+
+
+def _denied(rows: Sequence[PanelCondition], owners: set[str], reader: BaseReader) -> str:
+    """When a clause of such tests does not hold: what is said once is understood better than "unless … is not"."""
+    opposite = [
+        row._replace(test=TEST_ON if row.test == TEST_OFF else row.test.removeprefix(_NOT)) for row in rows
+    ]
+    return " and ".join(_told(row, owners) for row in opposite) + _when_new(rows, reader)
 
 
 def _told(row: PanelCondition, owners: set[str]) -> str:

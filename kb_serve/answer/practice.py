@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
@@ -36,14 +37,45 @@ _TAGGED = (
     "`driver.expression = driver.expression`, too."
 )
 _TOGGLES_ATTRIBUTE = "bpy.ops.object.geometry_nodes_input_attribute_toggle"
-_POINT = "_bpy_internal.grease_pencil.stroke.GreasePencilStrokePoint"
+_STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
+_POINT = f"{_STROKE}Point"
 _STROKE_POINTS = frozenset((_POINT, f"{_POINT}.opacity", f"{_POINT}.radius"))
 _EVERY_POINT = (
     "Set `radius` and `opacity` of every point: the first `opacity` that is set in a drawing makes it 0 for all its "
     "other points, and strokes that are added after either was set begin with 0 of it."
 )
+_REACHED = (
+    "`drawing.strokes[0]` is one, with `drawing = layer.frames[0].drawing`; `drawing.add_strokes([4])` makes a new "
+    "one, of four points."
+)
+_STYLE = f"{_TYPES}MaterialGPencilStyle"
+_FILLS = frozenset(
+    (
+        *(f"{_STROKE}.{name}" for name in ("fill_color", "fill_id", "fill_opacity")),
+        *(f"{_STYLE}{name}" for name in ("", ".fill_color", ".fill_style", ".is_fill_visible", ".show_fill")),
+    )
+)
+_FILLED = (
+    "A fill is drawn where the stroke has a `fill_id` other than 0 (`drawing.strokes[0].fill_id = 1`), whatever the "
+    "material's `show_fill` is: in the material's `grease_pencil.fill_color`, with the stroke's `fill_color` over it. "
+    "It is black where no light falls, unless `layer.use_lights = False`."
+)
+_RIGID_BODY = f"{_TYPES}RigidBodyObject"
+_PLACES = frozenset((f"{_TYPES}Object.location", f"{_TYPES}Object.rotation_euler", _RIGID_BODY))
+_MOVED = (
+    "A rigid body's simulation moves `ob.matrix_world`, not `ob.location` or `ob.rotation_euler`: call "
+    "`scene.frame_set(frame)` for every frame from the first, then read `ob.matrix_world.translation`."
+)
+_RANGES = f"{_TYPES}bpy_struct.id_properties_ui"
+_RANGED = (
+    '`ob["x"] = 1.0` makes the property, `ob.id_properties_ui("x").update(min=0.0, max=2.0, description="…")` gives it '
+    "limits, which the panel keeps and scripts need not. Choices are named numbers: after "
+    '`ob["mode"] = 0` call `….update(items=[("A", "First", ""), ("B", "Second", "")])`.'
+)
 _BAKES_FLUID = "bpy.ops.fluid.bake_"
-_TIMER = "bpy.app.timers.register"
+_BAKES_FLUIDS = f"{_BAKES_FLUID}all"
+_TIMERS = "bpy.app.timers"
+_TIMER = f"{_TIMERS}.register"
 _NO_TIMERS = (
     "Timers run between the events of a Blender with a window. Without one (`--background`, or `import bpy` in another "
     "Python) none ever runs: call the function yourself there."
@@ -73,24 +105,49 @@ class Practice:
         """Sentences on a symbol, or on what the page with that slug explains."""
         if identifier.startswith(_HANDLERS) and identifier != _PERSISTENT and self._reader.entry(_PERSISTENT):
             yield _STAYING
-        if identifier == _TIMER:
+        if identifier in {_TIMER, _TIMERS}:
             yield _NO_TIMERS
-        if identifier.startswith(_BAKES_FLUID):
+        if identifier.startswith(_BAKES_FLUID) or self._explains(identifier, _BAKES_FLUIDS):
             yield NO_FLUIDS
+        if identifier in _PLACES or identifier.rpartition("/")[0] in self._chapters_of_rigid_bodies:
+            yield _MOVED
+        if identifier == _RANGES or self._explains(identifier, _RANGES):
+            yield _RANGED
         if identifier in CLASSES:
             yield WITH_AT
         if identifier in _DRIVERS:
             yield _TAGGED
-        if identifier in _STROKE_POINTS:
-            yield _EVERY_POINT
+        yield from self._on_strokes(identifier)
         if thing := _SIZES.get(identifier):
             yield _NO_SIZES.format(thing)
         if done := _INDICES.get(identifier):
             yield _ALL.format(done)
         if identifier == _TOGGLES_ATTRIBUTE and (text := self._custom.on_attributes()):
             yield text
-        if identifier == NODES_MODIFIER or identifier in self._explaining(NODES_MODIFIER):
+        if identifier == NODES_MODIFIER or self._explains(identifier, NODES_MODIFIER):
             yield self._custom.on_inputs()
 
-    def _explaining(self, path: str) -> set[str]:
-        return {target.partition("#")[0] for target in self._reader.manual_links(path)}
+    def _on_strokes(self, identifier: str) -> Iterator[str]:
+        if identifier == _STROKE or identifier.startswith(f"{_STROKE}."):
+            yield _REACHED
+        if identifier in _FILLS or self._explains(identifier, _STYLE):
+            yield _FILLED
+        if identifier in _STROKE_POINTS:
+            yield _EVERY_POINT
+
+    def _explains(self, slug: str, path: str) -> bool:
+        """Whether a page is one that explains a symbol."""
+        return slug in self._pages[path]
+
+    @cached_property
+    def _pages(self) -> dict[str, frozenset[str]]:
+        """Symbol → the pages that explain it, of those that something is known of."""
+        return {
+            path: frozenset(target.partition("#")[0] for target in self._reader.manual_links(path))
+            for path in (_BAKES_FLUIDS, _RANGES, _RIGID_BODY, _STYLE, NODES_MODIFIER)
+        }
+
+    @cached_property
+    def _chapters_of_rigid_bodies(self) -> frozenset[str]:
+        """The folders of the pages that explain rigid bodies."""
+        return frozenset(slug.rpartition("/")[0] for slug in self._pages[_RIGID_BODY]) - {""}

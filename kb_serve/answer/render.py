@@ -26,6 +26,7 @@ from kb_build.symbol_lines import (
     empty_when_new,
     fillers,
     first_sentence,
+    is_locked,
     is_stand_in,
     literal,
     locked_text,
@@ -83,11 +84,11 @@ _SHOWN_FLAGS = (
     "readonly",
     "animatable",
     "enum-flag",
-    "never-none",
     "static",
     "classmethod",
     "hidden-by-default",
 )
+_NEVER_NONE = "never-none"
 # What the manual says of a setting may be true of one engine only.
 ENGINES = {"render/eevee/": "EEVEE", "render/cycles/": "Cycles", "render/workbench/": "Workbench"}
 _NONE_IN_CONTEXT = {
@@ -144,6 +145,20 @@ def _range_text(low: float | None, high: float | None, kind: str) -> str:
     return f"{left} … {right}"
 
 
+def _range_facts(symbol: Symbol) -> Iterator[str]:
+    """What a number may be: its range as RNA has it, and as tried."""
+    if symbol.hard_min is not None or symbol.hard_max is not None:
+        text = f"range: {_range_text(symbol.hard_min, symbol.hard_max, symbol.type)}"
+        if (symbol.soft_min, symbol.soft_max) not in {(symbol.hard_min, symbol.hard_max), (None, None)}:
+            text += f" (usual: {_range_text(symbol.soft_min, symbol.soft_max, symbol.type)})"
+        yield text + _not_kept(symbol)
+    elif symbol.soft_min is not None or symbol.soft_max is not None:
+        usual = f"usual: {_range_text(symbol.soft_min, symbol.soft_max, symbol.type)}"
+        yield usual if symbol.flagged(STOPS) else f"{usual}, no limit"
+    if text := _stops_text(symbol):
+        yield text
+
+
 def facts(symbol: Symbol) -> Iterator[str]:
     """The one-line facts of a property or socket."""
     if symbol.type:
@@ -152,21 +167,15 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield text
     if text := default_text(symbol):
         yield f"default: {text}"
-    if symbol.hard_min is not None or symbol.hard_max is not None:
-        text = f"range: {_range_text(symbol.hard_min, symbol.hard_max, symbol.type)}"
-        if (symbol.soft_min, symbol.soft_max) != (symbol.hard_min, symbol.hard_max):
-            text += f" (slider {_range_text(symbol.soft_min, symbol.soft_max, symbol.type)})"
-        yield text + _not_kept(symbol)
-    elif symbol.soft_min is not None or symbol.soft_max is not None:
-        yield f"slider: {_range_text(symbol.soft_min, symbol.soft_max, symbol.type)}"
-    if text := _stops_text(symbol):
-        yield text
+    yield from _range_facts(symbol)
     if symbol.unit and symbol.type not in _NO_NUMBERS:
         yield f"unit: {_UNITS.get(symbol.unit, symbol.unit.lower())}"
     if symbol.subtype and symbol.subtype not in {"UNSIGNED"}:
         yield f"subtype: {symbol.subtype}"
     if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS]:
         yield ", ".join(flags)
+    if _NEVER_NONE in symbol.flags and symbol.type == "pointer" and not is_locked(symbol):
+        yield "cannot be set to `None`"
     if text := locked_text(symbol):
         yield text
     if shown := shown_when(symbol):

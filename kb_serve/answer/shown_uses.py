@@ -47,4 +47,5 @@ def _editors_note(code: str, reader: BaseReader) -> str:
         return ""
     names = " and ".join(f"`context.{name}`" for name in found)
     where = " and the ".join(dict.fromkeys(found.values()))
-    return f"Only the {where} has {names}: elsewhere it raises AttributeError."
+    it = "it raises" if len(found) == 1 else "they raise"
+    return f"{names} {'is' if len(found) == 1 else 'are'} there in the {where} alone: elsewhere {it} AttributeError."

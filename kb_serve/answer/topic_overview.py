@@ -45,6 +45,7 @@ _MAX_WORDS = 4
 _CALLED_SO = 4  # pages
 _CHAPTER = 100  # pages and symbols of what is meant before a single page
 _KINDS = ("modifier", "constraint", "node")  # how titles of pages end
+_PARTS_OF_A_WINDOW = ("panel", "panels")
 _SHORT_FOR = _KINDS[:2]  # of these the name alone is used; nodes are mostly called as what else does the same
 _MOST_SETTINGS = 10
 _OVERVIEW_TOKENS = 1_200
@@ -246,7 +247,8 @@ class Topics:
 
     def _names(self, slug: str, title: str) -> TopicNames:
         """The classes and operators of a topic: those that its pages explain, and those with its name."""
-        last = slug.removesuffix("/index").rpartition("/")[2]
+        last = _without_place(slug.removesuffix("/index").rpartition("/")[2].replace("_", " "))
+        title = _without_place(title)
         words = dict.fromkeys((frozenset(terms(title)), frozenset(terms(last))))
         names = TopicNames(
             frozenset({key(title), key(last)}),
@@ -263,7 +265,9 @@ class Topics:
         for path, words in self._classes.items():
             if is_operated and path not in nearness and _OWN_NAMES.search(path):
                 continue
-            if any(wanted <= words for wanted in names.words):
+            if any(wanted <= words for wanted in names.words) and not self._is_elsewhere(
+                path, words, names, slug
+            ):
                 nearness[path] = _NAMED * nearness.get(path, _ASIDE if _OWN_NAMES.search(path) else _FAR)
         for module in names.keys:
             for path in self._reader.operators_of(module):
@@ -277,6 +281,16 @@ class Topics:
                 names.classes[path] = near * weights[path]
         names.operators = dict(sorted(names.operators.items(), key=lambda row: -row[1]))
         return names
+
+    def _is_elsewhere(self, path: str, words: frozenset[str], names: TopicNames, slug: str) -> bool:
+        """Whether a class has the words of a page's address and others, the page explains other classes, and those of
+        another part of the manual alone explain this one: the baking of textures is none of physics.
+        """
+        is_own = names.is_called(path) or any(wanted <= words for wanted in names.words[:1])
+        if is_own or names.explained.isdisjoint(self._classes):
+            return False
+        parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
+        return bool(parts) and slug.partition("/")[0] not in parts
 
     @cached_property
     def _classes(self) -> dict[str, frozenset[str]]:
@@ -309,6 +323,12 @@ def _plain_title(page: PageEntry) -> str:
     """A page's title without the kind of what it explains."""
     name, _, last = page.title.rpartition(" ")
     return name if last.lower() in _KINDS else page.title
+
+
+def _without_place(title: str) -> str:
+    """A title without the part of Blender's window at its end, in which what it names is: Shape Keys of a panel."""
+    name, _, last = title.rpartition(" ")
+    return name if name and last.lower() in _PARTS_OF_A_WINDOW else title
 
 
 def _line(entry: SymbolEntry) -> str:

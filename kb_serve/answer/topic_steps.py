@@ -17,6 +17,7 @@ from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.new_scene import NewScene
 from kb_serve.answer.steps.nodes import NODE, NodeSteps
 from kb_serve.answer.steps.operators import POINT_CACHE, runs
+from kb_serve.answer.steps.own_properties import made_by_subscript
 from kb_serve.answer.steps.places import PlaceSteps
 from kb_serve.answer.steps.reached import ReachedSettings, is_of_interface
 from kb_serve.answer.steps.settings import SettingSteps
@@ -65,6 +66,7 @@ class Steps:
     def _steps(self) -> Iterator[str]:
         """All steps in their order; what is told depends on what has been told before."""
         yield from self._functions()
+        yield from made_by_subscript(self._names, self._reader)
         for part in (self._make, self._there) if self._is_made() else (self._there, self._make):
             yield from part()
         yield from runs(self._names, self._reader, is_cached=POINT_CACHE in self._scene.shown)

@@ -25,6 +25,10 @@ _FAR = 0.5  # share of the best hit's score below which another one is far from 
 _ALWAYS = 5  # hits for a description that are listed however far they are
 _NAMES = 4  # so many of those listed are symbols, if the search finds some that are not
 _TOO_FAR = 0.25  # share of the best hit's score below which a symbol does not help either
+SCRIPT_WORDS = frozenset({"bpy", "programmatically", "python", "script", "scripts"})  # of who writes a script
+_HARDLY_WORSE = 0.85  # share of the best page's score from which on a name comes before it
+_NEAR = 8  # of the best ids
+_MARKS = ".,:;?!()'\""
 _OPERATORS = "bpy.ops"
 _LEAST_HITS = 20  # of the search, so that it also finds alternatives to a named class, and names beside pages
 
@@ -42,12 +46,15 @@ class RankedId(NamedTuple):
 
 @dataclass(slots=True)
 class Ranking:
-    """The ids for a query, best first. ``named`` tells whether the query names the first."""
+    """The ids for a query, best first. ``named`` tells whether the query names the first, ``alike`` what else of its
+    name may be meant.
+    """
 
     ranked: list[RankedId]
     recognition: Recognition
     named: bool
     notes: list[str] = field(default_factory=list)
+    alike: str = ""
 
     def listed(self, limit: int, is_page: Callable[[str], bool]) -> list[RankedId]:
         """The first ``limit`` ids, without what the search found far below its best.
@@ -101,12 +108,15 @@ class QueryRanker:
         prose = prose_of(query)
         hits = self.searcher.search(prose, max(limit, _LEAST_HITS), failed=is_message(query), about=about)
         ranked = self._replaced(self._merged(recognition, hits))
+        if not SCRIPT_WORDS.isdisjoint(word.strip(_MARKS) for word in query.lower().split()):
+            ranked = self._name_first(ranked)
         if not operators:
             ranked.sort(key=self._far_from_functions)
         ranked[:1] = [self._at_its_section(row, prose) for row in ranked[:1]]
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         named = named and not recognition.is_open
-        return Ranking(ranked, recognition, named, self._notes.on(recognition))
+        alike = self._notes.alike(recognition) if named else ""
+        return Ranking(ranked, recognition, named, self._notes.on(recognition), alike)
 
     def _replaced(self, ranked: list[RankedId]) -> list[RankedId]:
         """The same ids, each deprecated one that was found behind what takes its place."""
@@ -118,6 +128,23 @@ class QueryRanker:
                 rows.setdefault(other, row._replace(id=other))
             rows.setdefault(row.id, row)
         return list(rows.values())
+
+    def _name_first(self, ranked: list[RankedId]) -> list[RankedId]:
+        """The same ids; where a page of the manual is the best, after the first name that is hardly worse: who writes a
+        script reads what to call first, and then what the window has for it.
+        """
+        if not ranked or ranked[0].why != "found" or not self._is_of_manual(ranked[0].id):
+            return ranked
+        least = _HARDLY_WORSE * ranked[0].score
+        near = (row for row in ranked[1:_NEAR] if row.score >= least and not self._reader.is_page(row.id))
+        if (first := next(near, None)) is None:
+            return ranked
+        rest = (row for row in ranked if row is not first)
+        return [first._replace(score=ranked[0].score), *rest]
+
+    def _is_of_manual(self, slug: str) -> bool:
+        page = self._reader.page_entry(slug) if self._reader.is_page(slug) else None
+        return page is not None and page.source == "manual"
 
     def _far_from_functions(self, row: RankedId) -> int:
         """Where an id stands for who wants no operators: what a script can use instead, what explains it, the rest."""

@@ -44,6 +44,8 @@ _MAX_WORDS = 40
 _CANDIDATES = 400
 _DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
+_WORDS_OF_A_NAME = 2  # of an operator's name that a query hardly says by chance
+_NEAREST = 100  # units by their texts, among which such an operator is looked for
 _MEMBERS = 3  # of a class that are told with it
 _NEAR = 0.35  # share of the best member's score below which another one is not told
 _INDEX = DOCUMENT_KINDS.index("index")
@@ -76,6 +78,7 @@ class Searcher:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
         self.index = InvertedIndex(reader)
+        self._names: dict[int, frozenset[str]] = {}  # of operators, of which there are some thousands at most
 
     # The query
 
@@ -198,8 +201,33 @@ class Searcher:
             self.index.areas[numbers],
             units.chapters[numbers],
             units.kinds[numbers],
+            *self._operators(numbers, concepts),
         )
         return numbers, evidence
+
+    def _operators(
+        self, numbers: NDArray[np.intp], concepts: Sequence[Concept]
+    ) -> tuple[Scores, Scores | None]:
+        """Of units, which are operators; and of these the share of the query that their names are, of some words, which
+        the query says whole. None if it says none.
+        """
+        are_operators = self.index.operators[numbers]
+        asked = {concept.stem: concept.idf for concept in concepts}
+        said = frozenset(asked)
+        called: Scores | None = None
+        for place in are_operators[:_NEAREST].nonzero()[0].tolist():
+            name = self._name_of(int(numbers[place]))
+            if len(name) >= _WORDS_OF_A_NAME and name <= said:
+                called = np.zeros(len(numbers), np.float32) if called is None else called
+                called[place] = sum(asked[part] for part in name) / sum(asked.values())
+        return are_operators, called
+
+    def _name_of(self, number: int) -> frozenset[str]:
+        """The stems of a unit's own name."""
+        if (known := self._names.get(number)) is None:
+            name = self.index.levels[0].refs[number].rpartition(".")[2]
+            known = self._names[number] = frozenset(map(stem, words(name)))
+        return known
 
     def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
         """How nearly the query is, word by word, what units or their topics are asked for, 0…1."""

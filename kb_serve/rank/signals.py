@@ -47,8 +47,9 @@ class Evidence:
     """What is known of the units that speak of a query, as arrays in one order.
 
     ``texts``: BM25F of the unit and of the topic around it. ``asked``: how nearly the query is a phrase that the unit
-    or its topic is asked for by, 0…1. ``counts``, ``areas``, ``chapters`` and ``kinds`` are as in the index. ``words``
-    are the query's; it is an error's message if ``failed``.
+    or its topic is asked for by, 0…1. ``counts``, ``areas``, ``chapters`` and ``kinds`` are as in the index;
+    ``operators`` is 1 for those; ``called``: which share of the query, by rarity, an operator's name is that the query
+    says whole; None if it says none. ``words`` are the query's; it is an error's message if ``failed``.
     """
 
     words: frozenset[str]
@@ -59,6 +60,8 @@ class Evidence:
     areas: NDArray[np.uint8]
     chapters: NDArray[np.int32]
     kinds: NDArray[np.uint8]
+    operators: Scores
+    called: Scores | None
 
     def of_kind(self, kind: DocumentKind) -> Scores:
         """1 for the units of a kind, 0 for the others."""
@@ -83,6 +86,18 @@ def counts(evidence: Evidence) -> Scores | None:
 def code(evidence: Evidence) -> Scores | None:
     """Whether the unit is about code, where the query asks for code."""
     return None if evidence.words.isdisjoint(CODE_WORDS) else _of_code(evidence)
+
+
+def operator(evidence: Evidence) -> Scores | None:
+    """Whether the unit is an operator, where the query asks for code: that runs one too, if it must."""
+    return None if evidence.words.isdisjoint(CODE_WORDS) else evidence.operators
+
+
+def called(evidence: Evidence) -> Scores | None:
+    """How much of the query is an operator's name: who wants to export USD wants ``usd_export``. In a message such
+    words are by chance.
+    """
+    return None if evidence.failed else evidence.called
 
 
 def code_of_an_error(evidence: Evidence) -> Scores | None:
@@ -128,6 +143,8 @@ SIGNALS: dict[str, Signal] = {
     "asked": asked,
     "counts": counts,
     "code": code,
+    "operator": operator,
+    "called": called,
     "code of an error": code_of_an_error,
     "unasked node": unasked_node,
     "unasked area": unasked_area,

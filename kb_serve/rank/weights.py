@@ -8,6 +8,8 @@ WEIGHTS: dict[str, float] = {
     "asked": 0.85,
     "counts": 0.1,
     "code": 0.5,
+    "operator": 0.1,
+    "called": 1.0,
     "code of an error": 0.25,
     "unasked node": -0.4,
     "unasked area": -0.25,

@@ -27,6 +27,7 @@ _ICON = "icon"
 _MOST_COMPARED = 20  # enumerations of which as many items are listed
 _FITTING = 0.5  # how well the words around a bare value must fit its property
 _FITTING_WORD = 1.0  # the same for one that people write in capitals, too: EEVEE, PNG
+_SHARE = 0.6  # … in a question of many words, of which one fits some property by chance
 _ONLY, _NOT = "only ", "not "  # … what tells where an item is taken begins with
 
 
@@ -81,7 +82,7 @@ class EnumValues:
             owners.sort(key=lambda row: (-row[1], -weights.get(row[0].partition("(")[0], 0.0)))
         told = (row for row in owners if alone or _ICON in around or not _is_of_icons(row[0]))
         for rank, (owner, share) in enumerate(islice(told, _MOST_TOLD)):
-            least = _FITTING_WORD if self._is_word(owner, values) else _FITTING
+            least = max(_FITTING_WORD, _SHARE * len(around)) if self._is_word(owner, values) else _FITTING
             fits = alone or quoted or self._owner_fit(owner, around) >= least
             sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
             recognition.add(owner.partition("(")[0], sure, "enum item")

@@ -165,6 +165,11 @@ class Expressions:
         for rank, resolved in enumerate(likely):
             sure = 0.78 if bare and chain.steps else 0.97
             recognition.add(resolved.symbols[-1], sure - 0.04 * rank - later, "expression")
+        if not later and not bare and len(chain.root) > 1:
+            usual = usual_classes(chain.root)
+            others = [resolved.symbols[-1] for resolved in likely[1:] if resolved.symbols[0] in usual]
+            told = dict.fromkeys((*likely[0].alike, *others))
+            recognition.alike = [path for path in told if path != likely[0].symbols[-1]]
         if readings[0].keyed:
             name = next(step.text for step in reversed(chain.steps) if step.kind == "key")
             recognition.notes.append(self._custom.note(readings[0].keyed, name))
@@ -207,7 +212,9 @@ class Expressions:
         if resolved.fit < 1.0 and is_guess(chain.root):
             return
         sure = self._is_sure(chain, resolved)
-        recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure))
+        behind = chain.steps[len(chain.steps) - resolved.steps_left + 1 :]
+        called = bool(behind) and behind[0].kind == "call"
+        recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure, called))
         for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'

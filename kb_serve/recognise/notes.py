@@ -6,7 +6,7 @@ import re
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import STRUCT
+from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.enum_values import EnumValues
 
 if TYPE_CHECKING:
@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
+_MOST_ALIKE = 4
 _PARAMETER = re.compile(r"(?P<function>[\w.]+)\((?P<name>\w+)\)")
 _VALUE = re.compile(r"(?P<owner>[\w.]+):(?P<value>.+)")
 _VALUE_OF_PARAMETER = re.compile(rf"{_PARAMETER.pattern}:(?P<value>.+)")
@@ -70,6 +71,15 @@ class Notes:
         notes += map(self.removed, recognition.removed)
         notes += self._missing(recognition)
         return list(dict.fromkeys((*notes, *recognition.notes)))
+
+    @staticmethod
+    def alike(recognition: Recognition) -> str:
+        """What else of the same name a query may mean whose variable may stand for several things; "" if nothing."""
+        if not (paths := recognition.alike) or recognition.removed or recognition.missing:
+            return ""
+        named, more = paths[:_MOST_ALIKE], len(paths) - _MOST_ALIKE
+        names = ", ".join(f"`{path.removeprefix(TYPES)}`" for path in named)
+        return f"The variable may also stand for what has {names}{f' or {more} more' if more > 0 else ''}."
 
     def removed(self, symbol: RemovedSymbol) -> str:
         """When a symbol was removed, and what takes its place: by a source, or only perhaps."""

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _LIKELY_FIT = 0.6  # from this fit of a variable's name on, its class is believed if it had the name once
+_BETTER = 0.05  # by this a removed class must fit a name more than one of today
 _NAMED_AFTER = 0.8  # … it is named after a class
 _SHORTEST = 4  # letters of a name that tells a class by its end
 _MOST_NAMES = 6
@@ -193,7 +194,10 @@ class OldCode:
             if path.startswith(TYPES) and not self._reader.entry(path.rpartition(".")[0])
         ]
         fit, path = max(owners, default=(0.0, ""))
-        removed = self._removed.of_path(path) if fit >= _NAMED_AFTER else None
+        # A class of today that has the member and fits as well is meant.
+        today = [reading.symbols[0].rpartition(".")[2] for reading in readings if reading.complete]
+        best = max((variable_fit(chain.root, cls) for cls in today), default=0.0)
+        removed = self._removed.of_path(path) if fit >= max(_NAMED_AFTER, best + _BETTER) else None
         return OldName(removed, chain.steps[1:]) if removed else None
 
     def _of_any_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:

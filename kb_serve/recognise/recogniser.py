@@ -34,6 +34,7 @@ from kb_serve.recognise.products import WITH_AT, Products
 from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
 from kb_serve.recognise.resolver import Resolver
+from kb_serve.recognise.said_otherwise import labelled, operators_on
 from kb_serve.recognise.spellings import Spellings
 from kb_serve.recognise.subscripts import NODES_MODIFIER, asks_for_inputs
 
@@ -43,6 +44,7 @@ _FEW = 3
 _SURE = 0.9
 _MANY = 12
 _DESCRIBED = 0.85  # … what plain words describe
+_OTHERWISE = 0.96  # what does or is labelled what a class is asked for by another name
 _OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
 _OWNER_OF_REMOVED = 0.85  # … one whose removed member has no known successor
 # Of names that resemble a removed one: how sure those are from a score on; half of these are its successors, of the
@@ -178,6 +180,9 @@ class Recogniser:
                 continue
             for place, path in enumerate(self._operators_of_its_words(missing)):
                 recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
+            otherwise = self._said_otherwise(missing)
+            for place, path in enumerate(otherwise):
+                recognition.add(path, _OTHERWISE - 0.01 * place, SIMILAR)
             names = self._reader.member_names(missing.owner) if missing.owner else []
             similar = nearest(missing.name, names)
             if missing.assigned:  # an assignment means ``select_set``, not ``select_get``
@@ -187,8 +192,18 @@ class Recogniser:
             for place, (name, alike) in enumerate(similar):
                 if member := self._resolver.member(missing.owner, name):
                     recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
-            if missing.owner and not similar and not self._elsewhere(missing, recognition):
+            if not missing.owner or similar or otherwise:
+                continue
+            if not self._elsewhere(missing, recognition):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
+
+    def _said_otherwise(self, missing: MissingName) -> list[str]:
+        """What the class has that lacks a name: what its buttons call so, else the operators that do it."""
+        owner = self._reader.entry(missing.owner) if missing.name.isidentifier() else None
+        if owner is None or owner.kind != "class" or not words(missing.name):
+            return []
+        found = labelled(owner.path, missing.name, self._reader)
+        return found or (operators_on(owner.path, missing.name, self._reader) if missing.called else [])
 
     def _operators_of_its_words(self, missing: MissingName) -> list[str]:
         """The operators of other modules that have all words of an operator's name: ``export_scene.fbx`` for

@@ -23,13 +23,15 @@ class RecognisedName:
 class MissingName:
     """A name that does not exist on the class (or in the module) ``owner``; ``owner`` may be empty.
 
-    ``assigned`` tells whether the query assigns to it, ``sure`` whether the owner is certain.
+    ``assigned`` tells whether the query assigns to it, ``called`` whether it calls it, ``sure`` whether the owner is
+    certain.
     """
 
     name: str
     owner: str = ""
     assigned: bool = False
     sure: bool = False
+    called: bool = False
 
 
 @dataclass(slots=True)
@@ -37,7 +39,8 @@ class Recognition:
     """What was recognised: ``matches``, and what was wrong with the names in the query.
 
     ``arguments``: function or operator → those of its arguments that are named beside it.
-    ``notes`` are further sentences for the caller. ``is_open`` tells that the query does not say which of several
+    ``notes`` are further sentences for the caller. ``alike`` are the members of the surest one's name that other things
+    have for which the query's variable may stand. ``is_open`` tells that the query does not say which of several
     operators it is about.
     """
 
@@ -47,6 +50,7 @@ class Recognition:
     removed: list[RemovedSymbol] = field(default_factory=list)
     arguments: dict[str, list[str]] = field(default_factory=dict[str, "list[str]"])
     notes: list[str] = field(default_factory=list)
+    alike: list[str] = field(default_factory=list)
     is_open: bool = False
 
     def add(self, identifier: str, sure: float, why: str) -> None:

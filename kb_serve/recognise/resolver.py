@@ -66,7 +66,8 @@ class ResolvedChain:
     ``symbols`` are the ids of the resolved steps, in order; ``missing`` is the first name that the class ``owner``
     does not have (empty if the whole chain resolved); ``fit`` tells how well a variable's name suits the class
     that was assumed for it, 0 to 1; ``keyed`` is the class whose custom property the chain reaches,
-    ``cls`` the class of what a complete one gives, where that is known.
+    ``cls`` the class of what a complete one gives, where that is known, and ``alike`` are the members of the last
+    step's name that other cases of its class have, those that count most first.
     """
 
     symbols: tuple[str, ...]
@@ -76,6 +77,7 @@ class ResolvedChain:
     steps_left: int = 0
     keyed: str = ""
     cls: str = ""
+    alike: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -259,16 +261,18 @@ class Resolver:
         """Resolves step after step; a base class is tried as each of its descendants."""
         symbols = [value.symbol]
         values = [value]
+        alike: tuple[str, ...] = ()
         for number, step in enumerate(steps):
             branches = (after for before in values for after in self._step(before, step))
             following = list(islice(branches, _MAX_BRANCHES))
             if not following:
                 missing, owner = self._unresolved(values[0], step)
                 return ResolvedChain(tuple(symbols), missing, owner, steps_left=len(steps) - number)
+            alike = tuple(after.symbol for after in following[1:]) if len(values) == 1 else ()
             values = following
             if step.kind == "attr" or values[0].symbol != symbols[-1]:
                 symbols.append(values[0].symbol)
-        return ResolvedChain(tuple(symbols), keyed=values[0].keyed, cls=values[0].cls)
+        return ResolvedChain(tuple(symbols), keyed=values[0].keyed, cls=values[0].cls, alike=alike)
 
     @staticmethod
     def _unresolved(value: ChainValue, step: ChainStep) -> tuple[str, str]:
@@ -313,9 +317,20 @@ class Resolver:
         if not value.cls and hasattr(list, name) and self._is_list(value.symbol):
             yield value
         if value.cls.startswith(TYPES):
-            for entry in self._reader.by_name(name):
-                if entry.kind != "socket" and self._reader.descends(entry.owner, value.cls):
-                    yield self._value_of(entry, entry.owner)
+            below = [
+                entry
+                for entry in self._reader.by_name(name)
+                if entry.kind != "socket" and self._reader.descends(entry.owner, value.cls)
+            ]
+            for entry in self._heaviest(below):
+                yield self._value_of(entry, entry.owner)
+
+    def _heaviest(self, members: Sequence[SymbolEntry]) -> Sequence[SymbolEntry]:
+        """Members of one name, those first that count most, and whose classes do."""
+        if len(members) < 2:
+            return members
+        weights = self._reader.weights({path for entry in members for path in (entry.path, entry.owner)})
+        return sorted(members, key=lambda e: -weights.get(e.path, 0.0) - weights.get(e.owner, 0.0))
 
     def _is_list(self, path: str) -> bool:
         entry = self._reader.entry(path)

@@ -84,6 +84,9 @@ class Spellings:
             recognition.add(slug, 1.0, "exact")
             return
         called = _MEMBER.sub(".", _called(text))
+        if inherited := self._inherited(called):
+            recognition.add(inherited, 1.0, "exact")
+            return
         if " " in text:
             self._labelled(text, recognition)
             self._labels_within(text.split(), recognition)
@@ -94,6 +97,14 @@ class Spellings:
         if not in_plain_words and (recognition.best is None or recognition.best.sure < 1):
             for removed in self._removed.spelled(called):
                 recognition.add_removed(removed)
+
+    def _inherited(self, text: str) -> str:
+        """The member that a class inherits which is spelled as its own: ``GreasePencilLayer.hide``; "" for others."""
+        cls, _, name = text.removeprefix(TYPES).rpartition(".")
+        if not cls or "." in cls or not self._reader.entry(TYPES + cls):
+            return ""
+        member = self._reader.member_of(TYPES + cls, name)
+        return member.path if member and member.owner != TYPES + cls else ""
 
     def _spelled(self, text: str, rows: Sequence[tuple[int, str]], recognition: Recognition) -> None:
         """Adds the symbols and pages with the query's key; the fuller the spelling, the surer."""

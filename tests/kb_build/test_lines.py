@@ -78,7 +78,7 @@ def test_of_many_enum_items_the_first_are_shown() -> None:
 
 def test_a_socket_is_listed_as_python_reaches_it() -> None:
     symbol = Symbol(f'{OWNER}.inputs["B c"]', "socket", OWNER, type="value", default=0.5)
-    assert member_line(symbol) == '`inputs["B c"]` value = 0.5'
+    assert member_line(symbol) == '`inputs["B c"]` · value = 0.5'
 
 
 def test_a_socket_whose_name_another_has_is_listed_by_its_place() -> None:
@@ -97,7 +97,8 @@ def test_a_socket_that_a_new_node_shows_is_reached_by_its_name() -> None:
     assert new_subscript(symbol) == 'inputs["A"]'
     assert new_subscript(replace(symbol, flags=(*flags, "hidden-by-default"))) == "inputs[2]"
     assert new_subscript(replace(symbol, flags=(), subscripts=())) == ""
-    assert member_line(symbol) == '`inputs["A"]` while it is shown, `inputs[2]`, identifier `A_Float`'
+    # What always works stands first, in every line.
+    assert member_line(symbol) == '`inputs[2]`, `inputs["A"]` while it is shown, identifier `A_Float`'
 
 
 def test_a_line_shows_what_a_new_one_has_and_what_a_mode_changes() -> None:
@@ -142,8 +143,8 @@ def test_items_that_no_instance_takes_are_not_listed() -> None:
         ({"default": 0, "new_values": (NewValue(5, ("start-up a",)),)}, "`5` in the startup file; RNA says `0`"),
         ({"default": 5, "new_values": (NewValue(1, ("factory preferences",)),)},
          "`1` in the factory preferences; RNA says `5`"),
-        ({"default": 0, "new_values": (NewValue(1, (), "m='X'"),)}, "`0`, `1` (with m='X')"),
-        ({"default": 0, "new_values": (NewValue(1, ("a",), "m='X'"),)}, "`0`, `1` (new a with m='X')"),
+        ({"default": 0, "new_values": (NewValue(1, (), "m='X'"),)}, "`0`; with `m='X'`: `1`"),
+        ({"default": 0, "new_values": (NewValue(1, ("a",), "m='X'"),)}, "`0`; with `m='X'`: `1` (a)"),
         ({"default": "NONE", "enum_items": (EnumItem("None"),), "new_values": (NewValue("None"),)},
          "`'None'` (new A)"),
         ({"default": None}, ""),
@@ -205,6 +206,10 @@ def test_every_symbol_of_blender_has_a_line_of_its_own(extract: Extract) -> None
         ("not by texture node tree", "not taken by a texture node tree"),
         ("only by shader node tree, geometry node tree", "taken only by a shader or geometry node tree"),
         ("only by mesh object, child of mesh object, …", "taken only by a mesh or child of mesh object, …"),
+        (
+            "only by a b, c b, d b, e b, f b, g b, h b, i b, j b, k b",
+            "taken only by an a, c, d, e, f, g, h, i, j or k b",  # a condition is not cut off
+        ),
         ("only with domain_type='LIQUID'", "taken only with domain_type='LIQUID'"),
         ("only in a GeometryNodeTree", "taken only in a GeometryNodeTree"),
         (

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.steps.made_line import made_line
+from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -15,6 +16,12 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.trees import TreeSteps
     from kb_serve.reader import Creation
 
+# What a maker must have made before what it makes is of use.
+_FIRST = {
+    f"{TYPES}Object.shape_key_add": (
+        '`obj.shape_key_add(name="Basis")` — the first is the shape that the others are relative to',
+    )
+}
 _CHOICES = 12  # types that one maker is shown with
 
 
@@ -38,6 +45,7 @@ class CreationCalls:
         if ready.expression.startswith("tree."):
             steps = [*self._trees.any_for(creation.call), *steps]
         steps += self._before(main, creation.call)
+        steps += _FIRST.get(creation.maker, ())
         self._scene.variables.add(main, self._scene.variables.of(main))
         made = made_line(main, ready.expression, self._scene)
         on = ready.expression.partition(".")[0]

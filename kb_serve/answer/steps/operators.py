@@ -19,6 +19,7 @@ POINT_CACHE = f"{TYPES}PointCache"  # what operators bake
 _MOST = 4
 _ARGUMENTS = 3  # of an operator's call
 _USED_ELSEWHERE = 3  # weight of an operator that has not the topic's module
+_PATH = "data_path"
 _MAKE_OR_REMOVE = frozenset(
     {
         "add",
@@ -48,6 +49,7 @@ def runs(names: TopicNames, reader: BaseReader, *, is_cached: bool) -> Iterator[
         path
         for path in names.operators
         if _runs(path)
+        and not _wants_a_path(reader.symbol(path))
         and weights.get(path, 0) >= (1 if path.split(".")[2] in names.keys else _USED_ELSEWHERE)
     ]
     if is_cached:
@@ -71,6 +73,12 @@ def _asked(operator: Symbol, reader: BaseReader) -> Iterator[str]:
 
 def _runs(path: str) -> bool:
     return _MAKE_OR_REMOVE.isdisjoint(path.rpartition(".")[2].split("_"))
+
+
+def _wants_a_path(operator: Symbol | None) -> bool:
+    """Whether an operator works on what a path in a string names, and on nothing where none is given."""
+    parameters = operator.parameters if operator else ()
+    return any(parameter.name == _PATH and not parameter.default for parameter in parameters)
 
 
 def _bakes(reader: BaseReader) -> Iterator[str]:

@@ -12,7 +12,7 @@ from kb_serve.answer.steps.pointer_fills import stays_empty
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
     from kb_build.records import Symbol
     from kb_serve.answer.steps.new_scene import NewScene
@@ -47,8 +47,7 @@ class SettingSteps:
         if items := [self._held(entry, variable) for entry in self._main(collections)]:
             yield f"in `{variable}`: " + ", ".join(items)
         yield from parts(cls, variable, self._names, self._reader)
-        functions = (entry for entry in entries if entry.kind == "function")
-        if calls := [f"`{variable}.{call_of(entry)}`" for entry in self._main(functions)]:
+        if calls := [f"`{variable}.{call_of(entry)}`" for entry in self._calls(entries)]:
             yield "call " + ", ".join(calls)
         yield from self._below(cls, variable)
 
@@ -61,6 +60,20 @@ class SettingSteps:
 
     def _main(self, entries: Iterator[SymbolEntry]) -> list[SymbolEntry]:
         return self._reader.heaviest(entries, _LEAST)[:_MEMBERS]
+
+    def _calls(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
+        """The functions that do something to a thing. One that only answers with a value is asked once all is done, and
+        may have no answer before (``convex_sweep_test``): it counts where scripts call it.
+        """
+        functions = [entry for entry in entries if entry.kind == "function"]
+        uses = self._reader.use_counts([entry.path for entry in functions])
+        return self._main(entry for entry in functions if uses.get(entry.path) or not self._answers(entry))
+
+    def _answers(self, function: SymbolEntry) -> bool:
+        """Whether a function gives values that are no things."""
+        symbol = self._reader.symbol(function.path)
+        given = [result.type for result in symbol.returns] if symbol else []
+        return bool(given) and not any(self._reader.entry(f"{TYPES}{kind}") for kind in given)
 
     def _held(self, entry: SymbolEntry, variable: str) -> str:
         """A collection of a thing, and the call that adds to it."""

@@ -47,6 +47,8 @@ def lines(reader: BaseReader, path: str) -> list[str]:
         ("CameraDOFSettings.use_dof",
          [f"{SWITCHES}`aperture_blades`, `aperture_fstop`, `aperture_ratio`, `aperture_rotation`, "
           "`focus_distance`, `focus_object`, `focus_subtarget`"]),
+        ("Material.max_vertex_displacement",
+         ["greyed out in Blender's panels when `displacement_method` is 'BUMP' (a new one has `'BUMP'`)"]),
         # Drawn in C, or by a template; without conditions; no setting.
         ("BevelModifier.width", []), ("ImageFormatSettings.color_depth", []), ("RenderSettings.fps", []),
         ("Object.users_collection", []),

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import importlib
+import math
 import subprocess
 import sys
+import warnings
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -13,6 +15,7 @@ from kb_serve.answer.practice import Practice
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
+    from pathlib import Path
 
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
@@ -175,6 +178,110 @@ def test_no_indices_mean_all(reader: BaseReader, path: str) -> None:
         drawing.remove_strokes(indices=[])
         curves.remove_curves(indices=[])
         assert (len(drawing.strokes), len(curves.curves)) == (0, 0)
+
+
+STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
+
+
+@pytest.mark.parametrize("path", [STROKE, f"{STROKE}.points", f"{STROKE}.cyclic"])
+def test_a_stroke_is_reached_from_a_drawing(reader: BaseReader, path: str) -> None:
+    assert "`drawing.strokes[0]` is one" in said(reader, path)
+    layer = bpy.data.grease_pencils.new("g").layers.new("L")
+    layer.frames.new(1)
+    drawing = layer.frames[0].drawing
+    drawing.add_strokes([4])
+    assert len(drawing.strokes[0].points) == 4
+    assert type(drawing.strokes[0]).__name__ == STROKE.rpartition(".")[2]
+
+
+@pytest.mark.parametrize(
+    "path", [f"{STROKE}.fill_id", f"{STROKE}.fill_color", f"{TYPES}MaterialGPencilStyle.show_fill"]
+)
+def test_it_is_told_what_fills_a_stroke(reader: BaseReader, path: str) -> None:
+    assert "A fill is drawn where the stroke has a `fill_id` other than 0" in said(reader, path)
+
+
+def middle_of_a_square(
+    folder: Path, *, fill_id: int, show_fill: bool, color: tuple[float, ...] = ()
+) -> list[float]:
+    """The pixel in the middle of a rendered square of one stroke."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    data = bpy.data.grease_pencils.new("g")
+    material = bpy.data.materials.new("m")
+    bpy.data.materials.create_gpencil_data(material)
+    material.grease_pencil.fill_color = (1.0, 0.0, 0.0, 1.0)
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        material.grease_pencil.show_fill = show_fill
+    data.materials.append(material)
+    layer = data.layers.new("L")
+    layer.use_lights = False
+    drawing = layer.frames.new(scene.frame_current).drawing
+    drawing.add_strokes([4])
+    stroke = drawing.strokes[0]
+    for point, place in zip(stroke.points, ((-1, 0, -1), (1, 0, -1), (1, 0, 1), (-1, 0, 1)), strict=True):
+        point.position, point.radius, point.opacity = place, 0.02, 1.0
+    stroke.fill_id = fill_id
+    if color:
+        stroke.fill_color = color
+    camera = bpy.data.objects.new("c", bpy.data.cameras.new("c"))
+    camera.location, camera.rotation_euler = (0.0, -6.0, 0.0), (math.pi / 2, 0.0, 0.0)
+    scene.camera = camera
+    for obj in (bpy.data.objects.new("g", data), camera):
+        scene.collection.objects.link(obj)
+    scene.render.engine = "BLENDER_WORKBENCH"
+    scene.render.resolution_x = scene.render.resolution_y = 32
+    scene.render.film_transparent, scene.view_settings.view_transform = True, "Standard"
+    scene.render.filepath = str(folder / "square.png")
+    bpy.ops.render.render(write_still=True)
+    start = 4 * (16 * 32 + 16)
+    return [
+        round(value, 1) for value in bpy.data.images.load(scene.render.filepath).pixels[start : start + 4]
+    ]
+
+
+def test_a_fill_is_rendered_by_its_id_alone(tmp_path: Path) -> None:
+    assert middle_of_a_square(tmp_path, fill_id=0, show_fill=True)[3] == 0.0
+    assert middle_of_a_square(tmp_path, fill_id=1, show_fill=False) == [1.0, 0.0, 0.0, 1.0]
+    assert middle_of_a_square(tmp_path, fill_id=1, show_fill=True, color=(0.0, 1.0, 0.0, 1.0)) == [
+        0.0,
+        1.0,
+        0.0,
+        1.0,
+    ]
+
+
+# Physics
+
+
+@pytest.mark.parametrize("path", [f"{TYPES}RigidBodyObject", f"{TYPES}Object.location"])
+def test_physics_moves_the_matrix_alone(reader: BaseReader, path: str) -> None:
+    if path.endswith("location"):
+        assert "moves `ob.matrix_world`, not `ob.location`" in said(reader, path)
+    scene = bpy.context.scene
+    bpy.ops.mesh.primitive_cube_add(location=(0, 0, 5))
+    obj = bpy.context.object
+    bpy.ops.rigidbody.object_add(type="ACTIVE")
+    for frame in range(1, 15):
+        scene.frame_set(frame)
+    assert obj.location.z == 5.0
+    assert obj.matrix_world.translation.z < 4.5
+
+
+# Custom properties
+
+
+def test_a_custom_property_gets_limits_and_choices_as_told(reader: BaseReader) -> None:
+    assert ".update(min=0.0, max=2.0" in said(reader, f"{TYPES}bpy_struct.id_properties_ui")
+    obj = new_object("o")
+    obj["x"], obj["mode"] = 1.0, 0
+    obj.id_properties_ui("x").update(min=0.0, max=2.0, description="…")
+    assert obj.id_properties_ui("x").as_dict()["max"] == 2.0
+    obj["x"] = 5.0
+    assert obj["x"] == 5.0
+    obj.id_properties_ui("mode").update(items=[("A", "First", ""), ("B", "Second", "")])
+    assert [item[0] for item in obj.id_properties_ui("mode").as_dict()["items"]] == ["A", "B"]
 
 
 # Geometry nodes

@@ -35,7 +35,7 @@ def test_a_property_in_one_look(kb: KnowledgeBase) -> None:
     text = kb.query("bpy.types.ClothSettings.quality").text
     for part in (
         "## `bpy.types.ClothSettings.quality`", "**Quality**", "type: `int`", "default: `5`",
-        "range: 1 … ∞ (slider 1 … 80)",
+        "range: 1 … ∞ (usual: 1 … 80)",
         'reached as `bpy.context.object.modifiers["Cloth"].settings.quality`', "manual: https://docs.blender.org/",
     ):  # fmt: skip
         assert part in text
@@ -45,18 +45,23 @@ def test_a_property_in_one_look(kb: KnowledgeBase) -> None:
     ("symbol", "expected"),
     [
         (Symbol("a", "property", type="float", unit="MASS", hard_min=0.0),
-         ["type: `float`", "range: 0 … ∞ (slider −∞ … ∞)", "unit: kg"]),
+         ["type: `float`", "range: 0 … ∞", "unit: kg"]),
         (Symbol("a", "property", type="float", unit="ROTATION", hard_min=0, hard_max=1, soft_min=0, soft_max=1),
          ["type: `float`", "range: 0 … 1", "unit: radians"]),
         (Symbol("a", "property", type="int[2]", hard_min=-16777216, hard_max=16777216, soft_min=0, soft_max=1048576),
-         ["type: `int[2]`", "range: -16777216 … 16777216 (slider 0 … 1048576)"]),
-        (Symbol("a", "property", type="float", soft_min=0.5), ["type: `float`", "slider: 0.5 … ∞"]),
+         ["type: `int[2]`", "range: -16777216 … 16777216 (usual: 0 … 1048576)"]),
+        (Symbol("a", "property", type="float", soft_min=0.5), ["type: `float`", "usual: 0.5 … ∞, no limit"]),
         (Symbol("a", "property", type="float", array=(3,), default=[1, 2, 3], subtype="XYZ"),
          ["type: `float[3]`", "default: `(1, 2, 3)`", "subtype: XYZ"]),
         (Symbol("a", "property", type="boolean", default=False, flags=("readonly", "library-editable")),
          ["type: `boolean`", "default: `False`", "readonly"]),
         (Symbol("a", "socket", type="value", modes=("m=A", "n=B")), ["type: `value`", "shown when m=A and n=B"]),
         (Symbol("a", "property", type="float", unit="UNHEARD_OF"), ["type: `float`", "unit: unheard_of"]),
+        (Symbol("a", "property", type="string", flags=("never-none",)), ["type: `string`"]),
+        (Symbol("a", "property", type="pointer", target="A", flags=("never-none",)),
+         ["type: `pointer → A`", "cannot be set to `None`"]),
+        (Symbol("a", "property", type="pointer", target="A", flags=("never-none", "readonly")),
+         ["type: `pointer → A`", "readonly"]),
         (Symbol("a", "property"), []),
     ],
 )  # fmt: skip
@@ -167,7 +172,7 @@ def test_a_base_class_names_its_subclasses(kb: KnowledgeBase) -> None:
 def test_a_node_shows_its_sockets_and_its_trees(kb: KnowledgeBase) -> None:
     text = kb.query("bpy.types.ShaderNodeBsdfPrincipled", max_tokens=ALL).text
     assert "**Inputs and outputs**" in text
-    assert '- `inputs["Specular IOR Level"]` value = 0.5' in text
+    assert '- `inputs["Specular IOR Level"]` · value = 0.5' in text
     assert "node of: ShaderNodeTree" in text
 
 
@@ -294,7 +299,8 @@ def test_values_that_were_asked_stand_instead_of_a_stand_in(renderer: MarkdownRe
 def test_a_socket_tells_of_those_that_have_its_name_in_other_modes(kb: KnowledgeBase) -> None:
     text = kb.query('FunctionNodeRandomValue.inputs["Min"]').text
     assert "**Others called Min**" in text
-    assert "`inputs[2]`, identifier `Min_001` value = 0 when data_type=FLOAT" in text
+    line = '`inputs[2]`, `inputs["Min"]` while it is shown, identifier `Min_001` · value = 0 when data_type=FLOAT'
+    assert line in text
     assert "outputs" not in text.partition("**Others")[2].partition("**In")[0]
 
 

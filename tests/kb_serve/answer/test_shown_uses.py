@@ -21,7 +21,7 @@ def test_a_use_in_a_panel_of_one_editor_says_so(reader: BaseReader) -> None:
     text = use_text(FLUID, reached, reader)
     assert "context.fluid" in text
     assert text.endswith(
-        "Only the Properties editor has `context.fluid`: elsewhere it raises AttributeError."
+        "`context.fluid` is there in the Properties editor alone: elsewhere it raises AttributeError."
         f" `{reached}` leads to it in a script."
     )
 

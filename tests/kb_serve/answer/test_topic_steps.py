@@ -9,6 +9,8 @@ from asking import steps
 
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.topic_steps import Steps
+from kb_serve.reader import STRUCT
+from measurements.steps import do_steps
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
@@ -134,3 +136,34 @@ def test_an_effect_is_made_on_an_object_that_takes_it(reader: BaseReader) -> Non
 def test_the_kinds_of_a_class_stand_for_one_that_is_not_made(reader: BaseReader) -> None:
     found = " ".join(steps(reader, "strip modifiers", "StripModifier", "PitchModifier", "MaskStripModifier"))
     assert "`PITCH`" in found or "'PITCH'" in found
+
+
+def test_shape_keys_begin_with_the_one_that_others_are_relative_to(reader: BaseReader) -> None:
+    told = steps(reader, "shape keys", "ShapeKey")
+    assert told[0].startswith('1. `obj.shape_key_add(name="Basis")`')
+    assert told[1] == '2. `key = obj.shape_key_add(name="Key")` → `ShapeKey`'
+    assert told[2].startswith("3. set on `key`: `value`")
+    (done,) = do_steps({"shape keys": told})
+    assert not done.failed
+
+
+def test_a_function_that_only_answers_is_no_step_unless_scripts_call_it(reader: BaseReader) -> None:
+    told = "\n".join(steps(reader, "rigid body", "RigidBodyWorld", "RigidBodyObject", "RigidBodyConstraint"))
+    assert "rigidbody.object_add()" in told
+    assert "convex_sweep_test" not in told  # has no answer before the simulation was stepped
+    assert "normals_vertex_get" not in "\n".join(steps(reader, "shape keys", "ShapeKey"))
+    assert "object_data.view_frame(" in "\n".join(steps(reader, "camera", "Camera"))
+    assert "group.add(" in "\n".join(steps(reader, "vertex groups", "VertexGroup"))
+
+
+def test_custom_properties_are_made_by_subscript(reader: BaseReader) -> None:
+    names = TopicNames(frozenset({"customproperties"}), (frozenset({"custom"}),), frozenset({STRUCT}))
+    names.classes[STRUCT] = 1.0
+    names.operators |= {"bpy.ops.wm.properties_edit": 9.0, "bpy.ops.wm.properties_edit_value": 8.0}
+    told = [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+    assert told[0].startswith('1. `obj["strength"] = 1.0`')
+    assert not any(
+        "properties_edit" in line for line in told
+    )  # they work on what a path names, and on nothing else
+    (done,) = do_steps({"custom properties": told})
+    assert (done.done, list(done.failed)) == (len(told), [])

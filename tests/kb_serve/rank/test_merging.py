@@ -136,3 +136,29 @@ def test_what_takes_the_place_of_a_deprecated_property_comes_before_it(ranker: Q
     old, new = "bpy.types.Strip.frame_final_duration", "bpy.types.Strip.duration"
     assert ids.index(new) + 1 == ids.index(old)
     assert ranker.rank(old).ranked[0].id == old  # whoever names it wants it
+
+
+@pytest.mark.parametrize(
+    ("query", "score", "is_first"),
+    [
+        ("self collisions of cloth with python", 0.9, True),
+        ("self collisions of cloth, from a script", 0.9, True),
+        ("self collisions of cloth with python", 0.6, False),  # clearly worse
+        ("self collisions of cloth", 0.9, False),  # in the window, perhaps
+    ],
+)
+def test_who_writes_a_script_gets_a_name_before_a_page_that_is_hardly_better(
+    ranker: QueryRanker, monkeypatch: pytest.MonkeyPatch, query: str, score: float, *, is_first: bool
+) -> None:
+    page = SearchHit("physics/cloth/settings/collisions", "self-collisions", 1.0)
+    name = SearchHit("bpy.types.ClothCollisionSettings.use_self_collision", "", score)
+    found = [page, name]
+
+    def search(*_args: object, **_options: object) -> list[SearchHit]:
+        return found
+
+    monkeypatch.setattr(ranker.searcher, "search", search)
+    ranked = ranker.rank(query).ranked
+    assert (ranked[0].id == name.ref) is is_first
+    assert {row.id for row in ranked[:2]} == {page.ref, name.ref}
+    assert [row.score for row in ranked] == sorted((row.score for row in ranked), reverse=True)

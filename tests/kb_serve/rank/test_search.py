@@ -176,12 +176,16 @@ def test_words_around_a_query_count_less_than_its_own(searcher: Searcher) -> Non
     ("question", "path"),
     [
         ("how do I make a glass material", "bpy.types.ShaderNodeBsdfGlass"),
-        ("bake cloth cache", "bpy.ops.ptcache.bake"),
+        ("bake cloth cache", "bpy.ops.ptcache.bake_all"),
         ("bake rigid body simulation to keyframes", "bpy.ops.rigidbody.bake_to_keyframes"),
         ("how do I make an armature with two bones", "bpy.types.ArmatureEditBones.new"),
         ("export only selected objects to gltf", "bpy.ops.export_scene.gltf"),
         ("curve to mesh with a round bevel", "bpy.types.Curve.bevel_depth"),
         ("set world background to hdri", "bpy.types.ShaderNodeTexEnvironment"),
+        ("colors for the corners of a mesh by script", "bpy.types.AttributeGroupMesh.new"),
+        ("position of a simulated object in a script", "bpy.types.ID.evaluated_get"),
+        ("range of a custom property", "bpy.types.bpy_struct.id_properties_ui"),
+        ("export the selection to USD", "bpy.ops.wm.usd_export"),
     ],
 )
 def test_a_plain_wish_finds_what_does_it(kb: KnowledgeBase, question: str, path: str) -> None:

@@ -28,8 +28,10 @@ def evidence(
     asked: tuple[float, ...] = (),
     counts: tuple[float, ...] = (),
     areas: tuple[int, ...] = (),
+    operators: tuple[float, ...] = (),
+    called: tuple[float, ...] = (),
 ) -> Evidence:
-    count = len(kinds) or len(asked) or len(counts) or len(areas)
+    count = len(kinds) or len(asked) or len(counts) or len(areas) or len(operators) or len(called)
     return Evidence(
         frozenset(words.split()),
         failed,
@@ -39,6 +41,8 @@ def evidence(
         np.array(areas or [NO_AREA] * count, np.uint8),
         np.arange(count, dtype=np.int32),
         np.array([DOCUMENT_KINDS.index(kind) for kind in kinds or ["data"] * count], np.uint8),
+        np.array(operators or [0] * count, np.float32),
+        np.array(called or [0] * count, np.float32),
     )
 
 
@@ -72,6 +76,35 @@ def test_code_and_nodes_are_data_alike_where_the_query_says_nothing_of_either() 
 def test_a_unit_gains_by_a_phrase_that_is_near() -> None:
     far, near = scores_of(evidence(asked=(0.2, 0.8))).tolist()
     assert near > far
+
+
+def test_an_operator_gains_where_code_is_asked_for() -> None:
+    other, operator = scores_of(evidence("export usd python", operators=(0.0, 1.0))).tolist()
+    assert operator > other
+    assert len(set(scores_of(evidence("export usd", operators=(0.0, 1.0))).tolist())) == 1
+
+
+def test_an_operator_gains_by_a_name_that_the_query_says_but_not_in_a_message() -> None:
+    other, called = scores_of(evidence(called=(0.0, 0.8))).tolist()
+    assert called > other
+    assert len(set(scores_of(evidence(called=(0.0, 0.8), failed=True)).tolist())) == 1
+
+
+def test_a_name_is_said_only_as_a_whole_and_of_several_words(reader: BaseReader) -> None:
+    searcher = Searcher(reader)
+    for text, said, not_said in (
+        ("export a selection to usd", "bpy.ops.wm.usd_export", "bpy.ops.wm.usd_import"),
+        ("bake the smoke", "", "bpy.ops.object.bake"),
+    ):
+        found = searcher.find(text)
+        assert found is not None
+        numbers, seen = found
+        shares = [0.0] * len(numbers) if seen.called is None else seen.called.tolist()
+        refs = [searcher.index.levels[0].refs[number] for number in numbers.tolist()]
+        named = {ref for ref, share in zip(refs, shares, strict=True) if share}
+        assert not said or said in named
+        assert not_said not in named
+        assert {ref for ref, is_one in zip(refs, seen.operators, strict=True) if is_one} >= named
 
 
 def test_a_unit_gains_by_what_it_counts_but_not_where_a_message_may_be_about_the_rarest() -> None:

@@ -74,3 +74,46 @@ def test_a_letter_is_read_as_scripts_use_it(kb: KnowledgeBase, query: str, first
 @pytest.mark.parametrize("query", ["p.co", "m.foo_bar", "v.nothing_such", "cl.foo_bar"])
 def test_a_guess_from_one_or_two_letters_denies_nothing(kb: KnowledgeBase, query: str) -> None:
     assert not [note for note in kb.query(query).notes if "has no" in note]
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("text.align_x", "bpy.types.TextCurve.align_x"), ("text.lines", "bpy.types.Text.lines"),
+        ("text.font", "bpy.types.TextCurve.font"),
+        ("layer.frames.new(1)", "bpy.types.GreasePencilFrames.new"),
+        ("layer.use_pass_z", "bpy.types.ViewLayer.use_pass_z"),
+        ("stroke.points", "_bpy_internal.grease_pencil.stroke.GreasePencilStroke.points"),
+        ("frame.drawing", "bpy.types.GreasePencilFrame.drawing"),
+    ],
+)  # fmt: skip
+def test_of_several_classes_the_one_of_today_that_has_the_member_is_meant(
+    kb: KnowledgeBase, query: str, first: str
+) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id == first
+    assert not [note for note in answer.notes if "does not exist" in note or "has no" in note]
+
+
+@pytest.mark.parametrize(
+    ("query", "first", "other"),
+    [
+        ("mod.thickness", "SolidifyModifier.thickness", "WireframeModifier.thickness"),
+        ("mod.levels = 2", "SubsurfModifier.levels", "MultiresModifier.levels"),
+        ("node.operation", "ShaderNodeMath.operation", "ShaderNodeVectorMath.operation"),
+    ],
+)
+def test_of_many_cases_the_most_used_opens_and_others_are_named(
+    kb: KnowledgeBase, query: str, first: str, other: str
+) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id == f"bpy.types.{first}"
+    (note,) = [note for note in answer.notes if note.startswith("The variable may also stand for")]
+    assert f"`{other}`" in note
+
+
+@pytest.mark.parametrize("query", ["ob.location", "scene.camera", "GreasePencilLayer.hide"])
+def test_what_is_sure_names_no_others(kb: KnowledgeBase, query: str) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id.startswith("bpy.types.")
+    assert not [note for note in answer.notes if "may also stand" in note]
