@@ -8,7 +8,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from kb_build.blender.call_texts import by_place, call_text, with_sets
+from kb_build.blender.call_texts import by_place, by_place_up_to, call_text, with_sets
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.manual_links import manual_links
 from kb_build.blender.tried_facts import ADDED, add_items
@@ -39,7 +39,7 @@ _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
 _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
-_NO_KEYWORDS = "no-keywords"  # as ``inside/keywords.py`` marks it
+_NO_KEYWORDS, _BY_PLACE = "no-keywords", "by-place:"  # as ``inside/keywords.py`` marks it
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
@@ -187,7 +187,10 @@ def _symbol(row: dict[str, Any]) -> Symbol:
         call = with_sets(parsed.signature, parameters)
         fields["description"] = parsed.description
         fields["type"] = parsed.type or row.get("type", "")
-        call = by_place(call) if _NO_KEYWORDS in row.get("flags", ()) else call
+        flags = row.get("flags", ())
+        call = by_place(call) if _NO_KEYWORDS in flags else call
+        if most := next((flag.removeprefix(_BY_PLACE) for flag in flags if flag.startswith(_BY_PLACE)), ""):
+            call = by_place_up_to(call, int(most))
         fields["signature"] = last_name(path) + call[call.index("(") :] if "(" in call else ""
         fields["parameters"] = _completed(parsed.parameters, parameters)
         fields["returns"] = parsed.returns

@@ -1,53 +1,100 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Finds functions written in C that take no argument by its name, though their documentation names them.
+"""Finds how functions written in C take their arguments, where their documentation does not say it.
 
-They refuse a call with any keyword before they look at what is given.
+Some take none by its name, though it names them: they refuse a call with any keyword before they look at what is given.
+Others take only the first few by their places, and likewise refuse more.
 """
 
 import functools
+import inspect
+import re
 import types
 
 import bmesh
+import bpy
 import mathutils
+from mathutils import bvhtree, kdtree
 
 NO_KEYWORDS = "no-keywords"
+BY_PLACE = "by-place:"  # and how many arguments are taken so
 REFUSED = "takes no keyword arguments"
+TAKES = re.compile(r"takes at most (\d+) arguments?")
+TAKES_BY_PLACE = re.compile(r"takes (?:at most|exactly) (\d+) positional|takes (no|0) positional")
+NO_TEXT = "argument 1 must be str"
 NO_NAME = {"no argument's name": None}
+MANY = (object(),) * 30
+CALL = re.compile(r"\w\(([^)\n]+)\)")
 
 
 @functools.cache
 def instances():
     """Class → an instance, of the classes whose methods can only be asked on one."""
     mesh = bmesh.new()
+    weights = mesh.verts.layers.float.new("new")
     corners = [mesh.verts.new(place) for place in ((0, 0, 0), (1, 0, 0), (0, 1, 0))]
     face = mesh.faces.new(corners)
     loop = face.loops[0]
     made = [mesh, corners[0], mesh.edges[:][0], face, loop, mesh.verts, mesh.edges, mesh.faces, face.loops]
+    made += [mesh.select_history, mesh.verts.layers, mesh.verts.layers.float, weights]
     made += [
-        mesh.select_history,
-        mesh.verts.layers,
-        mesh.verts.layers.float,
         mathutils.Vector(),
         mathutils.Euler(),
+        mathutils.Matrix(),
+        mathutils.Quaternion(),
+        mathutils.Color(),
     ]
-    made += [mathutils.Matrix(), mathutils.Quaternion(), mathutils.Color()]
-    return {type(one): one for one in made}
+    made += [bvhtree.BVHTree.FromPolygons([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [(0, 1, 2)]), kdtree.KDTree(1)]
+    found = {type(one): one for one in made}
+    found[bpy.types.bpy_struct] = bpy.context.preferences
+    found[bpy.types.bpy_prop_collection] = found[bpy.types.bpy_prop] = bpy.data.objects
+    found[bpy.types.Context], found[bpy.types.BlendData] = bpy.context, bpy.data
+    found[bpy.types.BlendDataLibraries] = bpy.data.libraries
+    return found
 
 
-def flags_of(function):
-    """The flag of a function that takes no keywords; none for others, and for what cannot be asked."""
-    if not isinstance(function, types.BuiltinFunctionType):
-        return []
+def callable_of(value):
+    """What can be called of a function or a method written in C; None for others, and without an instance."""
+    if isinstance(value, types.BuiltinFunctionType):
+        return value
+    if isinstance(value, (types.MethodDescriptorType, types.ClassMethodDescriptorType)):
+        owner = value.__objclass__
+        is_of_class = isinstance(value, types.ClassMethodDescriptorType)
+        return getattr(owner if is_of_class else instances().get(owner), value.__name__, None)
+    return None
+
+
+def refusal(function, *given, **named):
+    """What Blender says of a call; empty where it says nothing."""
     try:
-        function(**NO_NAME)
-    except TypeError as refusal:
-        return [NO_KEYWORDS] if REFUSED in str(refusal) else []
+        function(*given, **named)
+    except TypeError as error:
+        return str(error)
     except Exception:
+        return ""
+    return ""
+
+
+def lacks_marks(function):
+    """Whether the documentation of a function names arguments, and does not say which are given by place or name."""
+    call = CALL.search(inspect.getdoc(function) or "")
+    return call is not None and "*" not in call[1] and "/" not in call[1]
+
+
+def flags_of(value):
+    """The flag of a function, or of a class's method, that tells how it takes arguments; none for what is no other
+    than its documentation says, and for what cannot be asked.
+    """
+    function = callable_of(value)
+    if function is None:
         return []
-    return []
-
-
-def flags_of_method(cls, name):
-    """The same of a class's method."""
-    instance = instances().get(cls)
-    return flags_of(getattr(instance, name, None)) if instance is not None else []
+    if REFUSED in refusal(function, **NO_NAME):
+        return [NO_KEYWORDS]
+    takes = TAKES.search(refusal(function, *MANY)) if lacks_marks(function) else None
+    if takes is None:
+        return []
+    given = MANY[: int(takes[1])]
+    said = refusal(function, *given)
+    if NO_TEXT in said:  # which is looked at before the others are counted
+        said = refusal(function, "no name", *given[1:])
+    by_place = TAKES_BY_PLACE.search(said)
+    return [f"{BY_PLACE}{by_place[1] or 0}"] if by_place else []

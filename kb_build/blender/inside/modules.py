@@ -12,7 +12,7 @@ import types
 import bpy
 
 from . import bmesh_operators
-from .keywords import flags_of, flags_of_method
+from .keywords import flags_of
 from .rna import ATTRIBUTE_TYPES, METHOD_TYPES
 from .wire import plain
 
@@ -95,7 +95,7 @@ def write_member(write, owner, name, value, flags=()):
     """A method or attribute of a class."""
     attribute = isinstance(value, ATTRIBUTE_TYPES)
     function = getattr(value, "__func__", value)
-    flags = list(flags)
+    flags = [*flags, *flags_of(value)]
     if isinstance(value, (classmethod, types.ClassMethodDescriptorType)):
         flags.append("classmethod")
     elif isinstance(value, staticmethod):
@@ -158,8 +158,7 @@ def write_class(write, path, cls):
                 continue
             written.add(name)
             if isinstance(value, METHOD_TYPES + ATTRIBUTE_TYPES):
-                is_method = isinstance(value, METHOD_TYPES)
-                write_member(write, path, name, value, flags_of_method(cls, name) if is_method else ())
+                write_member(write, path, name, value)
             elif isinstance(value, type) and value.__module__ == cls.__module__:
                 write_class(write, f"{path}.{name}", value)
             elif isinstance(value, PLAIN):
