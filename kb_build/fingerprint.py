@@ -69,7 +69,7 @@ def _versions(packages: Iterable[str]) -> str:
 @cache
 def extractor_digest() -> str:
     """Digest of the code that runs inside Blender, and of the history whose names it tries."""
-    code = _code((_PACKAGE / "blender" / "inside").glob("*.py"))
+    code = _code((_PACKAGE / "blender" / "inside").rglob("*.py"))
     return _digest([code, *(path.read_bytes() for path in sorted((_DATA / "history").glob("*")))])
 
 

@@ -26,6 +26,9 @@ _VALUE_OF_PARAMETER = re.compile(rf"{_PARAMETER.pattern}:(?P<value>.+)")
 _WITH = "only with "  # … what tells the setting that an item wants begins with
 _TELLS_WHAT = "Write "  # how what names something that is no Blender's begins
 _NOTHING = "Nothing takes its place."
+_INTERFACE = re.compile(
+    r"[A-Z0-9_]+_[A-Z]{2,3}_"
+)  # of whose classes the history has those alone that scripts use
 _UNLISTED = (
     "_",
     "aud",
@@ -142,7 +145,7 @@ class Notes:
         What a class inherited in other versions is not: one without a base may have lost it.
         """
         versions = self._reader.history_versions
-        if not versions or owner.startswith(_UNLISTED):
+        if not versions or owner.startswith(_UNLISTED) or _INTERFACE.match(name):
             return ""
         entry = self._reader.entry(owner)
         if entry is not None and entry.base in {"", STRUCT}:

@@ -67,6 +67,8 @@ class Field:
         self.static = (
             [row["identifier"] for row in read_items(prop.enum_items_static)] if self.is_enum else []
         )
+        # Blender makes its items from what there is.
+        self.is_unlisted = self.is_enum and len(self.static) < 2
         self.is_mode = self.is_enum and not self.is_flag and (cls, self.name) not in KINDS
 
 

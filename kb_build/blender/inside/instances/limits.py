@@ -16,8 +16,9 @@ from .making import scratch_scene
 from .new_things import MAKERS
 
 NUMBERS = frozenset({"INT", "FLOAT"})
-MOST = 1e6  # beyond it a number may take all memory
+MOST = 2e6  # beyond it a number may take all memory
 PAST = 1  # how far beyond an end is tried
+NEAR = 0.01  # … as a share of the end, and of one: what turns round at a limit of its own takes no more
 FAR = 1000  # assigned where there is no end
 
 
@@ -37,11 +38,17 @@ def kept_beyond(struct, prop):
     for side, end, step in (("min", prop.hard_min, -PAST), ("max", prop.hard_max, PAST)):
         if limit(end) is None or abs(end) > MOST:
             continue
-        kept = read_back(struct, name, end + step)
-        if same(kept, end + step) and not same(kept, end):
+        near = NEAR * step * max(abs(end), PAST) if prop.type == "FLOAT" else step
+        if any(is_kept(struct, name, end + by, end) for by in (step, near)):
             found.append(side)
     read_back(struct, name, before)
     return found
+
+
+def is_kept(struct, name, value, end):
+    """Whether a value beyond an end of the range stays."""
+    kept = read_back(struct, name, value)
+    return same(kept, value) and not same(kept, end)
 
 
 def stops(struct, prop):
@@ -64,13 +71,18 @@ def stops(struct, prop):
 
 
 def read_as(struct, prop):
-    """item → the other item that is read once it was assigned, of those that an enumeration takes."""
+    """item → the other item that is read once it was assigned, whatever there was before; of those that an
+    enumeration takes.
+    """
     name, before = prop.identifier, getattr(struct, prop.identifier)
+    kept = {item: read_back(struct, name, item) for item in refused_value_items(struct, name)}
     found = {}
-    for item in refused_value_items(struct, name):
-        kept = read_back(struct, name, item)
-        if kept and kept != item:
-            found[item] = kept
+    for item, other in kept.items():
+        start = next((each for each in kept if each == kept[each] != other), None)
+        if other and other != item and start:
+            read_back(struct, name, start)
+            if read_back(struct, name, item) == other:
+                found[item] = other
     read_back(struct, name, before)
     return found
 
@@ -96,8 +108,9 @@ def tried(struct, prop):
     return {name: told for name, told in found.items() if told}
 
 
-def look(struct, writable, seen, send):
+def look(observer, struct, seen, send):
     """Tries the properties of an instance, those of each class once."""
+    writable, before = observer.layout(struct).writable, observer.read(struct)
     for prop in struct.bl_rna.properties:
         name = prop.identifier
         if prop.type in NUMBERS and prop.is_array:
@@ -111,6 +124,7 @@ def look(struct, writable, seen, send):
                 seen.add(path)
                 if found := tried(struct, prop):
                     send({"path": path, **found})
+                    observer.restored(struct, before)  # some setters change other properties
 
 
 def found_apart(make, observer):
@@ -121,7 +135,7 @@ def found_apart(make, observer):
         seen = set()
         for _, thing, *_ in make():
             for struct in observer.parts(thing) if thing is not None else ():
-                look(struct, observer.layout(struct).writable, seen, send)
+                look(observer, struct, seen, send)
 
     return sent_apart(work)[1]
 

@@ -26,6 +26,7 @@ MOST_VALUES = 24
 UNREADABLE = frozenset({"UvSculpt"})
 # Its modes crash Blender 3.4.
 UNVARIED = frozenset({"BrushGpencilSettings"})
+AT_START = ("start-up ", "factory ")
 # Pointers to what is around an instance.
 AROUND = frozenset({"parent"})
 
@@ -51,6 +52,11 @@ class Contexts:
                     seen.setdefault(other, set()).add(value)
         states = {other: sorted(values) for other, values in seen.items()}
         return {"items": list(items), "made": [list(pair) for pair in self.made], "states": states}
+
+
+def made_new(labels):
+    """Of things those that a script has made, if there are some: who reads of these needs no others."""
+    return [label for label in labels if not label.startswith(AT_START)] or labels
 
 
 class Observer:
@@ -160,7 +166,9 @@ class Observer:
                     self.add(seen.setdefault(field.path, []), plain(value), label)
             for field in self.unset(struct, before):
                 self.add(seen.setdefault(field.path, []), "", label)
-            self.ask(struct, label + place, "")
+            # What a mode would let it take is not known without all modes.
+            enums = [field for field in self.layout(struct).enums if vary or field.is_unlisted]
+            self.ask(struct, label + place, "", enums)
             self.ask_choices(struct, label + place)
         for struct, before in parts if vary else ():
             name = struct.bl_rna.identifier
@@ -410,7 +418,7 @@ class Observer:
         start = [
             {"value": value, "made": made}
             for value, labels, is_usual in others
-            if not is_usual and (made := [label for label in labels if label not in usual])
+            if not is_usual and (made := made_new([label for label in labels if label not in usual]))
         ]
         default = self.fields[path].default
         if not start and all(same(value, default) for value, _ in rows):

@@ -6,7 +6,7 @@ import bpy
 from ..apart import can_work_apart, sent_apart
 from ..wire import plain
 from .assigning import refused_value_items
-from .making import called, startup_block
+from .making import called, choices, startup_block
 
 # Properties that one Blender crashes on; of one that crashes on more, the editors are left out.
 MOST_CRASHES = 8
@@ -22,27 +22,50 @@ def startup_areas():
     return list(found.values())
 
 
-def crashes_on(observer, spaces):
+def new_editors():
+    """(label, area, space) of an editor of each type, in an area that is made it and then what it was again."""
+    area = next(iter(startup_areas()), None)
+    if area is None:
+        return
+    kind = area.type
+    for new in choices("Area", "type"):
+        try:
+            area.type = new
+        except (TypeError, RuntimeError):
+            continue
+        space = area.spaces.active
+        if space is not None and area.type == new:
+            yield called(space), area, space
+    area.type = kind
+
+
+def old_editors():
+    """The same of the editors that Blender starts with."""
+    for area in startup_areas():
+        yield f"start-up {called(area.spaces.active)}", area, area.spaces.active
+
+
+def crashes_on(observer, editors):
     """(class, name) of the property of these that Blender crashes on when it is read or asked; None for none."""
 
     def work(send):
-        for space in spaces:
+        for _, _, space in editors():
             for struct in observer.nearest(space):
                 for field in observer.layout(struct).fields:
                     send([struct.bl_rna.identifier, field.name])
                     if not field.is_chosen:
                         plain(getattr(struct, field.name, None))
-                    if field.is_enum:
+                    if field.is_unlisted:
                         refused_value_items(struct, field.name, field.is_flag)
 
     has_ended, sent = sent_apart(work)
     return None if has_ended else tuple(sent[-1])
 
 
-def can_read(observer, spaces):
+def can_read(observer, editors):
     """Whether all that is left of these can be read: what Blender, without its window, crashes on is left out."""
     for _ in range(MOST_CRASHES if can_work_apart() else 0):
-        found = crashes_on(observer, spaces)
+        found = crashes_on(observer, editors)
         if found is None:
             return True
         observer.leave_out(*found)
@@ -63,9 +86,8 @@ def look_at_start(observer):
     observer.look("factory preferences", preferences, vary=False, is_new=False)
     if len(preferences.themes):
         observer.look("factory theme", preferences.themes[0], vary=False, is_new=False)
-    areas = startup_areas()
-    if can_read(observer, [area.spaces.active for area in areas]):
-        for area in areas:
-            space = area.spaces.active
-            observer.look(f"start-up {called(space)}", space, vary=False, is_new=False)
-            observer.ask(area, "start-up area", "")
+    for editors in (new_editors, old_editors):
+        if can_read(observer, editors):
+            for label, area, space in editors():
+                observer.look(label, space, vary=False, is_new=False)
+                observer.ask(area, "start-up area", "")
