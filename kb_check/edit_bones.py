@@ -83,7 +83,7 @@ class Bones:
 
     def pass_by(self, statement: ast.stmt) -> None:
         """Goes on to what is known behind a statement."""
-        for name in _bound(statement):
+        for name in bound_in(statement):
             self.gone.discard(name)
             self._held.discard(name)
             self._things.pop(name, None)
@@ -170,7 +170,7 @@ class Bones:
                 case _:
                     pass
         match statement:
-            case ast.Assign(targets=[ast.Name(id=name)]) if name not in _shared(self.script):
+            case ast.Assign(targets=[ast.Name(id=name)]) if name not in names_of_others(self.script):
                 if self._is_edited and not self._is_split and _is_edit_bone(self.script, statement.value):
                     self._held.add(name)
                 if thing := self._thing(statement.value):
@@ -246,7 +246,7 @@ def _is_edit_bone(script: Script, node: ast.expr) -> bool:
     return isinstance(kind, Instance) and kind.sure and kind.cls == EDIT_BONE
 
 
-def _bound(statement: ast.stmt) -> Iterator[str]:
+def bound_in(statement: ast.stmt) -> Iterator[str]:
     """The names that a statement may bind or unbind, blocks and all."""
     for node in walk(statement):
         if not isinstance(node, (ast.arg, ast.Global, ast.Nonlocal)):
@@ -254,6 +254,6 @@ def _bound(statement: ast.stmt) -> Iterator[str]:
 
 
 @once_per_script
-def _shared(script: Script) -> frozenset[str]:
+def names_of_others(script: Script) -> frozenset[str]:
     """The names that a function binds for others."""
     return frozenset(name for node in script.all(ast.Global, ast.Nonlocal) for name in node.names)

@@ -39,6 +39,7 @@ from kb_check.made_here import (
     is_named_before,
     knows_all,
 )
+from kb_check.removed import OUTSIDE_MAIN
 from kb_check.repeated_calls import follows
 from kb_check.rule import Rule
 from kb_check.script import once_for_each, once_per_script
@@ -55,10 +56,6 @@ _OBJECT = "bpy.types.Object"
 _LIGHT = "bpy.types.Light"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
-# What makes data that belong to an object alone, and what removes them.
-_OUTSIDE_MAIN = {
-    f"{_OBJECT}.to_mesh": "to_mesh_clear", f"{_OBJECT}.to_curve": "to_curve_clear",
-}  # fmt: skip
 _NOT_AFTER = {"any": "a second time", "other": "after another"}
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
@@ -159,8 +156,8 @@ def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
         case _:
             return
     maker = next(iter(makers)) if len(makers) == 1 else ""
-    clear = _OUTSIDE_MAIN.get(maker, "")
-    if not clear or script.api.member(_OBJECT, clear) is None or is_tried(script, call.node):
+    clearing = OUTSIDE_MAIN.get(maker, "")
+    if not clearing or script.api.symbols.symbol(clearing) is None or is_tried(script, call.node):
         return
     match made:
         case [ast.Call(func=ast.Attribute(value=owner))]:
@@ -168,12 +165,13 @@ def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
         case _:
             owner = None
     is_fixed = isinstance(owner, ast.Name) and len(bindings(script).get(owner.id, ())) == 1
+    clear = last_name(clearing)
     edit = Edit(script.span(call.node), f"{ast.unparse(owner)}.{clear}()") if owner and is_fixed else None
     yield Finding(
         RULE.id, "error", script.span(call.node),
         f"What `{maker}` returns belongs to its object and is not in `bpy.data`: `{path}` refuses it. "
-        f"`{_OBJECT}.{clear}` removes it.",
-        path, (f"{_OBJECT}.{clear}",), Fix(f"Write {clear}", (edit,)) if edit else None,
+        f"`{clearing}` removes it.",
+        path, (clearing,), Fix(f"Write {clear}", (edit,)) if edit else None,
     )  # fmt: skip
 
 
