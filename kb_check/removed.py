@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.flow.facts import T
 from kb_build.flow.types import Collection, Instance
 from kb_check.calls import calls_by_node
-from kb_check.edit_bones import bound_in, names_of_others
+from kb_check.edit_bones import bound_in, names_in, names_of_others
 from kb_check.made_here import callee_path
 
 if TYPE_CHECKING:
@@ -56,7 +56,11 @@ class Removed:
         for name in bound_in(statement):
             self.gone.pop(name, None)
             self._held.pop(name, None)
-            self._held = {held: place for held, place in self._held.items() if name not in _names_in(place)}
+            self._held = {
+                held: place
+                for held, place in self._held.items()
+                if name not in names_in(ast.parse(place, mode="eval"))
+            }
         match statement:
             case ast.Expr(value=ast.Call() as call):
                 self._remove(call)
@@ -127,7 +131,3 @@ def removes_argument(symbol: Symbol, *, is_rna: bool) -> bool:
     required = [parameter for parameter in symbol.parameters if parameter.required]
     is_removing = is_rna and (symbol.name == "remove" or symbol.name.endswith("_remove"))
     return is_removing and len(required) == 1 and required[0].plain_type[:1].isupper()
-
-
-def _names_in(place: str) -> set[str]:
-    return {node.id for node in ast.walk(ast.parse(place, mode="eval")) if isinstance(node, ast.Name)}

@@ -140,7 +140,9 @@ WRONG = {
         _CUBE + "bpy.context.object.data.face_maps",
     ],
     "unknown-operator": ["bpy.ops.import_mesh.stl(filepath='/x.stl')"],
-    "not-in-edit-mode": [_ARMATURE + "armature.edit_bones.new('x')"],
+    "not-in-edit-mode": [
+        _ARMATURE + "def bone():\n    armature.edit_bones.new('x')\nbone()",
+    ],
 }
 RIGHT = [
     "bpy.ops.wm.read_factory_settings(app_template='Video_Editing')\n"
@@ -214,7 +216,8 @@ RIGHT = [
     _FLUID + "if fluid.domain_settings:\n    fluid.domain_settings.domain_type = 'LIQUID'",
     _FLUID + "settings = fluid.domain_settings\nif settings:\n    settings.domain_type = 'LIQUID'",
     _FLUID + "same = fluid\nsame.fluid_type = 'DOMAIN'\nfluid.domain_settings.domain_type = 'LIQUID'",
-    _FLUID + "fluid.fluid_type = 'FLOW'\nfluid.fluid_type = 'DOMAIN'\nfluid.domain_settings.domain_type = 'LIQUID'",
+    _FLUID
+    + "fluid.fluid_type = 'FLOW'\nfluid.fluid_type = 'DOMAIN'\nfluid.domain_settings.domain_type = 'LIQUID'",
     _FLUID + "bpy.context.object.modifiers['Fluid'].fluid_type = 'DOMAIN'\n"
     "fluid.domain_settings.domain_type = 'LIQUID'",
     _PAINT + "bpy.ops.dpaint.type_toggle(type='CANVAS')\nbpy.ops.dpaint.type_toggle(type='BRUSH')\n"
