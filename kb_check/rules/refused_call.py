@@ -32,6 +32,7 @@ from kb_build.records import ENDS_WITHOUT, last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.literals import number
 from kb_check.made_here import (
     OBJECTS_NEW,
     bindings,
@@ -56,7 +57,7 @@ _OBJECT = "bpy.types.Object"
 _LIGHT = "bpy.types.Light"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
-_NOT_AFTER = {"any": "a second time", "other": "after another"}
+_NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
 
@@ -75,7 +76,9 @@ def _check(script: Script) -> Iterator[Finding]:
         for refusal in refusals:
             key = (ast.unparse(owner), *_key(refusal, call))
             before = earlier.setdefault(key, call) if refusal.again else call
-            if not _is_of(refusal, call) or (not refusal.given and not refusal.by and _gives_more(call)):
+            if not _is_of(script, refusal, call) or (
+                not refusal.given and not refusal.by and _gives_more(call)
+            ):
                 continue
             if refusal.given and not unknown.isdisjoint(call.node.keywords):  # one of those may stand for it
                 continue
@@ -200,8 +203,10 @@ def _uncalled(script: Script, node: ast.Call) -> Fix | None:
     return Fix("Read it", (Edit(behind, ""),), sure=True) if script.text(behind) == "()" else None
 
 
-def _is_of(refusal: Refusal, call: CallSite) -> bool:
-    """Whether a call has one of the values that are refused, if only some are."""
+def _is_of(script: Script, refusal: Refusal, call: CallSite) -> bool:
+    """Whether a call has one of the values that are refused, if only some are, or surely the same as another one."""
+    if refusal.again == "same" and not _is_written_out(script, call):
+        return False
     if not refusal.values:
         return True
     given = call.argument(refusal.argument)
@@ -215,8 +220,17 @@ def _gives_more(call: CallSite) -> bool:
 
 def _key(refusal: Refusal, call: CallSite) -> tuple[str, str]:
     """The function, and the value that is refused the second time, if only some are, and only after itself."""
+    if refusal.again == "same":
+        return call.callee.symbol.path, ", ".join(map(ast.unparse, (*call.node.args, *call.node.keywords)))
     given = call.argument(refusal.argument) if refusal.again != "other" else None
     return call.callee.symbol.path, ast.unparse(given) if given else ""
+
+
+def _is_written_out(script: Script, call: CallSite) -> bool:
+    """Whether all that a call is given are literals: the same texts are then the same values."""
+    return all(
+        isinstance(given, ast.Constant) or number(script, given) is not None for _, given in call.arguments()
+    )
 
 
 def _refusing(script: Script, owner: ast.expr, refusal: Refusal) -> str:
