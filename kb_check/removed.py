@@ -44,28 +44,28 @@ class Removal(NamedTuple):
 class Removed:
     """What is known before a statement. ``gone``: the names that hold what was removed.
 
-    ``_held`` are names with the place that their thing belongs to, as it is written: ``nodes``, ``ev.to_mesh``.
+    ``_held`` are names with the place that their thing belongs to, as it is written: ``nodes``, ``ev.to_mesh``;
+    ``_holding`` is the same by place, and ``_places`` has the places by the names that they are written with.
     """
 
     script: Script
     gone: dict[str, Removal] = field(default_factory=dict[str, Removal])
     _held: dict[str, str] = field(default_factory=dict[str, str])
+    _holding: dict[str, set[str]] = field(default_factory=dict[str, set[str]])
+    _places: dict[str, set[str]] = field(default_factory=dict[str, set[str]])
 
     def pass_by(self, statement: ast.stmt) -> None:
         """Goes on to what is known behind a statement."""
         for name in bound_in(statement):
             self.gone.pop(name, None)
             self._held.pop(name, None)
-            self._held = {
-                held: place
-                for held, place in self._held.items()
-                if name not in names_in(ast.parse(place, mode="eval"))
-            }
+            for place in self._places.pop(name, ()):
+                self._forget(place)
         match statement:
             case ast.Expr(value=ast.Call() as call):
                 self._remove(call)
             case ast.Assign(targets=[ast.Name(id=name)], value=value) if place := self._place(value):
-                self._held[name] = place
+                self._hold(name, place, value)
             case _:
                 pass
 
@@ -91,10 +91,20 @@ class Removed:
             self.gone[thing.id] = removal
 
     def _lose_held(self, place: str, removal: Removal) -> None:
-        shared = names_of_others(self.script)
-        self.gone |= {
-            name: removal for name, held in self._held.items() if held == place and name not in shared
-        }
+        for name in self._forget(place):
+            if name not in names_of_others(self.script):
+                self.gone[name] = removal
+
+    def _hold(self, name: str, place: str, value: ast.expr) -> None:
+        self._held[name] = place
+        self._holding.setdefault(place, set()).add(name)
+        for read in names_in(value):
+            self._places.setdefault(read, set()).add(place)
+
+    def _forget(self, place: str) -> list[str]:
+        """Forgets what belongs to a place; the names that held it."""
+        names = sorted(self._holding.pop(place, ()))
+        return [name for name in names if self._held.get(name) == place and self._held.pop(name)]
 
     def _place(self, value: ast.expr) -> str:
         """What a thing belongs to that a name is to hold, as it is written; empty where that is not known."""

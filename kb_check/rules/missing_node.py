@@ -50,6 +50,7 @@ _AT_FIRST = {
     f"{T}Light": ("Emission", "Light Output"),
 }
 _SINCE = 2, 80
+_MOST_CLEARED = 8  # trees that are followed at once: each statement is looked at for all of them
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -94,6 +95,8 @@ def _after_clearing(script: Script, body: list[ast.stmt]) -> Iterator[Finding]:
                 callee_path(script, call) == _CLEAR
             ):
                 cleared[ast.unparse(nodes)] = set()
+                if len(cleared) > _MOST_CLEARED:
+                    del cleared[next(iter(cleared))]
             case _:
                 pass
 
