@@ -46,6 +46,9 @@ if TYPE_CHECKING:
 LENGTHS = {"mathutils.Color": 3, "mathutils.Euler": 3, "mathutils.Quaternion": 4}
 _AXIS = 3  # numbers that a quaternion is made of besides its own four
 _BMESH_VECTOR = re.compile(r"tuple\[(float(?:, float)+)\] \| Sequence\[float\]")
+_BMESH_TYPES = "bmesh.types."
+# What the methods of bmesh's classes take: ``bpy.types.Mesh``, ``Sequence[bmesh.types.BMVert]``.
+_BMESH_CLASS = re.compile(r"(?P<many>Sequence\[)?(?P<cls>(bpy|bmesh)\.types\.\w+)(?(many)\])( \| None)?")
 _OBJECTS_DATA = f"{T}Object.data"
 _ID = f"{T}ID"
 _MADE_OF = f"{T}BlendDataObjects.new(object_data)"
@@ -136,7 +139,7 @@ def _scalar_misfit(  # noqa: PLR0911 - one return a type
     if isinstance(kind, Instance) and not kind.sure:
         return None  # a parameter that is called ``mat`` may hold the name of a material
     if not taker.kind:
-        return _documented_misfit(taker, kind)
+        return _documented_misfit(taker, kind) or _class_misfit(script, taker, node, kind)
     given = describe(kind)
     if not given:
         return None
@@ -253,6 +256,33 @@ def _documented_misfit(taker: Taker, kind: Type) -> Misfit | None:
         return None
     takes = _BMESH_WORDS.get(taker.documented, "") if strict is _OF_BMESH else ""
     return Misfit(takes or ("a str" if "str" in fits else "a number"), describe(kind))
+
+
+def _class_misfit(script: Script, taker: Taker, node: ast.expr, kind: Type) -> Misfit | None:
+    """A value that a method of bmesh's refuses, which takes instances of one class, or a sequence of them."""
+    is_of_bmesh = taker.is_parameter and taker.path.startswith(_BMESH_TYPES)
+    found = _BMESH_CLASS.fullmatch(taker.documented) if is_of_bmesh else None
+    if found is None:
+        return None
+    cls, takes = found["cls"], f"an instance of `{found['cls']}`"
+    if not found["many"]:
+        return Misfit(takes, describe(kind)) if _is_no_instance(script, kind, cls) else None
+    takes = f"a sequence of instances of `{cls}`"
+    if isinstance(kind, Plain) or (isinstance(kind, Instance) and script.api.descends(kind.cls, cls)):
+        return Misfit(takes, describe(kind))
+    for part in items(script, node) or ():
+        of = script.type_of(part)
+        if of is not None and _is_no_instance(script, of, cls):
+            return Misfit(takes, f"an item that is {_shown(script, part, describe(of))}")
+    return None
+
+
+def _is_no_instance(script: Script, kind: Type, cls: str) -> bool:
+    """Whether a value surely is none of a class's instances."""
+    if isinstance(kind, Instance):
+        known = kind.sure and script.api.is_class(kind.cls) and script.api.is_class(cls)
+        return known and not _is_related(script, kind.cls, cls)
+    return isinstance(kind, (Plain, Tuple, Sequence, Mapping))
 
 
 def _parts(documented: str) -> list[str]:

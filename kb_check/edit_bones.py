@@ -14,7 +14,7 @@ from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance
 from kb_check.calls import calls_by_node
 from kb_check.literals import bound_names
-from kb_check.made_here import callee_path, named_words
+from kb_check.made_here import callee_path, computes_names, named_words, places
 from kb_check.mode_keeping import keeps_mode, sets_active
 from kb_check.modes import MODE_SET, literal_argument
 from kb_check.script import once_per_script
@@ -26,6 +26,8 @@ if TYPE_CHECKING:
 
 EDIT_BONE = f"{T}EditBone"
 _NEW = {f"{T}BlendDataArmatures.new": "armature", f"{T}ArmatureEditBones.new": "edit_bone"}
+# What changes the edit bones of an armature.
+CHANGING = frozenset({f"{T}ArmatureEditBones.new", f"{T}ArmatureEditBones.remove"})
 _NEW_OBJECT = f"{T}BlendDataObjects.new"
 _UPDATING = "update_from_editmode"  # makes bones of edit bones before Edit Mode is left
 _ADD = "bpy.ops.object.armature_add"
@@ -43,6 +45,12 @@ _ACTIVE = frozenset(
 # What is run only by chance, later, or for other values of the names.
 _NOT_SURELY = (
     ast.Lambda, ast.IfExp, ast.BoolOp, ast.ListComp, ast.SetComp, ast.DictComp, ast.GeneratorExp,
+)  # fmt: skip
+
+
+# Statements with others within them.
+BLOCKS = (
+    ast.If, ast.For, ast.AsyncFor, ast.While, ast.With, ast.AsyncWith, ast.Try, ast.TryStar, ast.Match,
 )  # fmt: skip
 
 
@@ -70,6 +78,26 @@ class Bones:
     _active: ast.Call | None = None
     _without_bones: set[ast.Call] = field(default_factory=set[ast.Call])
     _unmade: set[tuple[ast.Call, str]] = field(default_factory=set[tuple[ast.Call, str]])
+    _known: set[ast.Call] = field(default_factory=set[ast.Call])
+    _outside: set[ast.Call] = field(default_factory=set[ast.Call])
+
+    def edited_outside(self, statement: ast.stmt) -> Iterator[ast.Call | ast.Subscript]:
+        """What a statement asks of the edit bones of an armature that surely is not in Edit Mode."""
+        if not self._outside or not keeps_mode(self.script, statement):
+            return
+        bound = set(bound_in(statement)) if isinstance(statement, BLOCKS) else set[str]()
+        for node in run_in(statement):
+            match node:
+                case ast.Call(func=ast.Attribute(value=bones)) if callee_path(self.script, node) in CHANGING:
+                    pass
+                case ast.Subscript(value=bones, slice=ast.Constant()):
+                    pass
+                case _:
+                    continue
+            thing = self._thing(bones)
+            is_outside = thing and thing.kind == "edit_bones" and thing.made_by in self._outside
+            if is_outside and bound.isdisjoint(names_in(bones)):
+                yield node
 
     def is_unmade(self, node: ast.Subscript) -> bool:
         """Whether a bone is asked for by the name of one that is, until Edit Mode is left, an edit bone only."""
@@ -83,7 +111,7 @@ class Bones:
 
     def pass_by(self, statement: ast.stmt) -> None:
         """Goes on to what is known behind a statement."""
-        for name in _bound(statement):
+        for name in bound_in(statement):
             self.gone.discard(name)
             self._held.discard(name)
             self._things.pop(name, None)
@@ -107,7 +135,10 @@ class Bones:
     def _change_mode(self, mode: str) -> None:
         if mode == "EDIT":
             self._is_edited = True
+            self._outside.clear()
             return
+        if self._is_edited and not self._is_split:
+            self._outside |= self._known
         self.gone |= self._held
         self._without_bones.clear()
         self._forget_edit()
@@ -125,7 +156,11 @@ class Bones:
         self._forget_edit()
         self._active = call
         self._without_bones = {call}
-        self._is_edited = literal_argument(calls_by_node(self.script)[call], "enter_editmode") is True
+        enters = calls_by_node(self.script)[call].argument("enter_editmode")
+        self._is_edited = isinstance(enters, ast.Constant) and enters.value is True
+        self._known.add(call)
+        if enters is None or (isinstance(enters, ast.Constant) and enters.value is False):
+            self._outside.add(call)
         return True
 
     def _selects(self, statement: ast.stmt) -> bool:
@@ -148,6 +183,7 @@ class Bones:
     def _keep(self, statement: ast.stmt) -> None:
         if not keeps_mode(self.script, statement):
             self._forget_edit()
+            self._outside.clear()
             self._active = None
             self._without_bones.clear()
         stores = (
@@ -167,10 +203,12 @@ class Bones:
                     self._add_bone(self._thing(bones), self._argument(node, "name"))
                 case ast.Call() if self._made(node) == "armature":
                     self._without_bones.add(node)
+                    self._known.add(node)
+                    self._outside.add(node)
                 case _:
                     pass
         match statement:
-            case ast.Assign(targets=[ast.Name(id=name)]) if name not in _shared(self.script):
+            case ast.Assign(targets=[ast.Name(id=name)]) if name not in names_of_others(self.script):
                 if self._is_edited and not self._is_split and _is_edit_bone(self.script, statement.value):
                     self._held.add(name)
                 if thing := self._thing(statement.value):
@@ -229,6 +267,21 @@ def surely_run(statement: ast.stmt) -> Iterator[ast.AST]:
             waiting += children(node)
 
 
+def run_in(statement: ast.stmt) -> Iterator[ast.AST]:
+    """The parts of a statement, blocks and all, that may run with it: not those of what it defines."""
+    waiting: list[ast.AST] = [statement]
+    while waiting:
+        node = waiting.pop()
+        if not isinstance(node, (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)):
+            yield node
+            waiting += children(node)
+
+
+def names_in(node: ast.AST) -> set[str]:
+    """The names that an expression reads."""
+    return {part.id for part in walk(node) if isinstance(part, ast.Name)}
+
+
 def _operator(script: Script, statement: ast.stmt) -> ast.Call | None:
     """The operator that a statement calls, if it is a plain call."""
     match statement:
@@ -246,7 +299,7 @@ def _is_edit_bone(script: Script, node: ast.expr) -> bool:
     return isinstance(kind, Instance) and kind.sure and kind.cls == EDIT_BONE
 
 
-def _bound(statement: ast.stmt) -> Iterator[str]:
+def bound_in(statement: ast.stmt) -> Iterator[str]:
     """The names that a statement may bind or unbind, blocks and all."""
     for node in walk(statement):
         if not isinstance(node, (ast.arg, ast.Global, ast.Nonlocal)):
@@ -254,6 +307,25 @@ def _bound(statement: ast.stmt) -> Iterator[str]:
 
 
 @once_per_script
-def _shared(script: Script) -> frozenset[str]:
+def names_of_others(script: Script) -> frozenset[str]:
     """The names that a function binds for others."""
     return frozenset(name for node in script.all(ast.Global, ast.Nonlocal) for name in node.names)
+
+
+@once_per_script
+def names_edit_bones(script: Script) -> bool:
+    """Whether a script that shows what it does has anything to do with edit bones."""
+    return not computes_names(script) and any(node.attr == "edit_bones" for node in script.all(ast.Attribute))
+
+
+@once_per_script
+def edited_outside(script: Script) -> dict[ast.Call | ast.Subscript, None]:
+    """What a script asks of the edit bones of armatures that surely are not in Edit Mode, in order."""
+    found: dict[ast.Call | ast.Subscript, None] = {}
+    if names_edit_bones(script):
+        for body in {id(body): body for body, _ in places(script).values()}.values():
+            bones = Bones(script)
+            for statement in body:
+                found |= dict.fromkeys(bones.edited_outside(statement))
+                bones.pass_by(statement)
+    return found

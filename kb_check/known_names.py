@@ -7,9 +7,11 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
-from kb_serve.reader import STRUCT
+from kb_check.likely_names import by_first_word, by_label, of_same_sense, without_opposites
+from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.corrections import is_misspelling, nearest
 from kb_serve.recognise.notes import Notes
+from kb_serve.recognise.operator_words import OPERATORS, OperatorWords
 from kb_serve.recognise.removed_symbols import RemovedSymbolLookup, for_reading
 
 if TYPE_CHECKING:
@@ -20,6 +22,8 @@ if TYPE_CHECKING:
 
 _MOST_NAMED = 3
 _FEW_MEMBERS = 8
+# Methods of all structures, which are plurals of what properties are called.
+_PLURALS = frozenset({"items", "keys", "values"})
 _PART = frozenset("([:")  # in the path of a parameter, a socket, an item
 
 
@@ -46,6 +50,7 @@ class KnownNames:
         self.reader = reader
         self._lookup = RemovedSymbolLookup(reader)
         self._notes = Notes(reader)
+        self._operators = OperatorWords(reader)
         self._members: dict[tuple[str, str], RemovedSymbol | None] = {}
 
     @property
@@ -112,7 +117,13 @@ class KnownNames:
         part = f"({name})"
         if removed := self._lookup.of_part(function, part) or self._of_former(function, part):
             return self._removed(removed)
-        return self._no_part(function, name, names, f"`{function}` takes no `{name}`", "It takes")
+        names = list(names)
+        similar = self._alike(name, names)
+        if not any(is_misspelling(name, found) for found in similar):
+            symbol = self.reader.symbol(function)
+            labels = {one.name: one.label for one in symbol.parameters if one.name in names} if symbol else {}
+            similar = _likely(name, similar, labels)
+        return self._no_part(function, name, names, f"`{function}` takes no `{name}`", "It takes", similar)
 
     def changed_parameters(self, function: str) -> tuple[Lacking, ...]:
         """The parameters that a function had once, but for those that only got another name."""
@@ -129,7 +140,11 @@ class KnownNames:
         part = f"{mark}{argument}:{value}"
         if removed := self._lookup.of_part(whole, part) or self._of_former(whole, part):
             return self._removed(removed)
-        return self._no_part(owner, value, values, f"{value!r} is not a value of `{owner}`", "It takes")
+        values = list(values)
+        similar = of_same_sense(value, values) or self._alike(value, without_opposites(value, values))
+        return self._no_part(
+            owner, value, values, f"{value!r} is not a value of `{owner}`", "It takes", similar
+        )
 
     def socket(self, node: str, name: str, names: Iterable[str]) -> Lacking:
         """A socket that a node lacks; ``names`` are those that it has."""
@@ -155,17 +170,36 @@ class KnownNames:
 
     def _never(self, owner: str, name: str) -> Lacking:
         machinery = self.reader.members(STRUCT) if owner != STRUCT else {}
-        found = [found for found, _ in nearest(name, self.reader.member_names(owner), _MOST_NAMED)]
+        names = [
+            found
+            for found in self.reader.member_names(owner)
+            if found not in machinery or found not in _PLURALS
+        ]
+        found = self._alike(name, names)
         misspelt = [found for found in found if is_misspelling(name, found, self._vocabulary)]
         similar = [found for found in found if found not in machinery or found in misspelt]
+        operators = [] if misspelt else self._operators.having(owner, name)
+        if operators:
+            similar = [path.removeprefix(OPERATORS) for path in operators]
+        elif not misspelt and owner.startswith(TYPES):
+            similar = _likely(name, similar, self._labels(owner))
         span = "" if self._lookup.paths_below(owner, name) else self._notes.never(owner, name)
         message = f"`{owner}` has no `{name}` in Blender {self.version}{span}."
         return Lacking(
             f"{owner}.{name}",
             message + (_closest(similar) or self._of_kinds(owner, name) or self._own(owner)),
-            tuple(f"{owner}.{found}" for found in similar),
+            tuple(operators) or tuple(f"{owner}.{found}" for found in similar),
             f"{owner}.{misspelt[0]}" if len(misspelt) == 1 else "",
         )
+
+    def _labels(self, owner: str) -> dict[str, str]:
+        """The names of a class's members, but for those of all structures, with what menus call them."""
+        lineage = [ancestor.path for ancestor in self.reader.lineage(owner) if ancestor.path != STRUCT]
+        return {
+            name: member.label
+            for cls in reversed(lineage)
+            for name, member in self.reader.members(cls).items()
+        }
 
     def _of_kinds(self, owner: str, name: str) -> str:
         """What a name is a misspelling of that classes below a class have, as kinds of modifiers do."""
@@ -184,9 +218,18 @@ class KnownNames:
         own = [member for member in self.reader.members(owner) if not member.startswith("bl_rna_")]
         return f" It has {_listed(own)}." if 0 < len(own) <= _FEW_MEMBERS else ""
 
-    def _no_part(self, owner: str, name: str, names: Iterable[str], message: str, they: str) -> Lacking:
+    def _no_part(  # noqa: PLR0913, PLR0917 - the parts of a sentence
+        self,
+        owner: str,
+        name: str,
+        names: Iterable[str],
+        message: str,
+        they: str,
+        similar: list[str] | None = None,
+    ) -> Lacking:
+        """``similar`` are those that may be meant, by spelling where they are not given."""
         names = list(names)
-        similar = [found for found, _ in nearest(name, names, _MOST_NAMED)]
+        similar = self._alike(name, names) if similar is None else similar
         misspelt = [found for found in similar if is_misspelling(name, found)]
         told = _closest(similar) or (f" {they} {_listed(names)}." if names else "")
         return Lacking(
@@ -194,10 +237,21 @@ class KnownNames:
             misspelt[0] if len(misspelt) == 1 else "",
         )  # fmt: skip
 
+    @staticmethod
+    def _alike(name: str, names: Iterable[str]) -> list[str]:
+        return [found for found, _ in nearest(name, names, _MOST_NAMED)]
+
     @cached_property
     def _vocabulary(self) -> set[str]:
         rows = self.reader.rows("SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function')")
         return {word for (name,) in rows for word in words(name) if len(word) > 2}
+
+
+def _likely(name: str, similar: list[str], labels: dict[str, str]) -> list[str]:
+    """The names that may be meant: those that menus call so, those that are spelt alike, those that begin alike."""
+    exact, partly = by_label(name, labels)
+    found = [*exact, *similar, *partly][:_MOST_NAMED] or by_first_word(name, labels)
+    return list(dict.fromkeys(found))
 
 
 def _closest(names: list[str]) -> str:

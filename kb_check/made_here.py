@@ -14,7 +14,7 @@ from kb_check.computing import RUNNING, STORING, computing
 from kb_check.script import once_for_each, once_per_script
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from kb_check.script import Script
 
@@ -73,9 +73,14 @@ def stage(script: Script, place: ast.expr) -> int:
 @once_per_script
 def first_named(script: Script) -> dict[str, int]:
     """Each word of the script that may name a setting → the number of the statement of the module that has it first."""
+    return first_named_but(script, frozenset())
+
+
+def first_named_but(script: Script, nodes: Collection[ast.AST]) -> dict[str, int]:
+    """The same without what some nodes name themselves."""
     found: dict[str, int] = {}
     for number, statement in enumerate(script.tree.body):
-        for word in words_of(walk(statement)):
+        for word in words_of(node for node in walk(statement) if node not in nodes):
             found.setdefault(word, number)
     return found
 

@@ -11,6 +11,7 @@ shin.tail = (0, 0, 1)
 rig.pose.bones["shin"]  # reported: there is none before Edit Mode is left
 bpy.ops.object.mode_set(mode="OBJECT")
 shin.roll = 0.5  # reported: edit bones are gone now; armature.bones["shin"], rig.pose.bones["shin"]
+armature.edit_bones.new("foot")  # reported: `mode_set(mode="EDIT")` comes before
 ```
 
 Blender frees all edit bones when it leaves Edit Mode: what is set is lost, what is read may be anything, and often
@@ -26,9 +27,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_check.edit_bones import EDIT_BONE, Bones, surely_run
+from kb_check.edit_bones import EDIT_BONE, Bones, edited_outside, names_edit_bones, surely_run
 from kb_check.findings import Finding
-from kb_check.made_here import computes_names, places
+from kb_check.made_here import places
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
 
@@ -42,7 +43,15 @@ _KEPT = frozenset({"id_data", "bl_rna", "rna_type", "as_pointer"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    if computes_names(script) or all(node.attr != "edit_bones" for node in script.all(ast.Attribute)):
+    for node in edited_outside(script):
+        if not is_tried(script, node):
+            yield Finding(
+                RULE.id, "error", script.span(node.func if isinstance(node, ast.Call) else node),
+                "An armature has edit bones only in Edit Mode, in which it surely is not here: "
+                "`bpy.ops.object.mode_set(mode='EDIT')` comes before, with the armature's object active.",
+                EDIT_BONE,
+            )  # fmt: skip
+    if not names_edit_bones(script):
         return
     for body in {id(body): body for body, _ in places(script).values()}.values():
         bones = Bones(script)

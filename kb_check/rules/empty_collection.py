@@ -20,6 +20,7 @@ from kb_build.flow.facts import T
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
 from kb_build.records import EMPTY, last_name
+from kb_check.edit_bones import edited_outside
 from kb_check.findings import Finding
 from kb_check.made_here import (
     callee_path,
@@ -61,6 +62,7 @@ def _check(script: Script) -> Iterator[Finding]:
             and is_new(script, collection.value)
             and (symbol.owner != _OBJECT or has_new_data(script, collection.value))
             and not is_tried(script, node)
+            and node not in edited_outside(script)
             and not _may_be_filled(script, symbol.path)
         ):
             message = f"`{symbol.path}` is empty on what is new, and nothing in this script adds to it"

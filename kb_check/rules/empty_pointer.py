@@ -2,11 +2,14 @@
 
 ```python
 fluid = obj.modifiers.new("Fluid", "FLUID")
+fluid.fluid_type = "FLOW"
 fluid.domain_settings.domain_type = "LIQUID"  # reported: fluid.fluid_type = 'DOMAIN' makes domain_settings
 nodes = obj.modifiers.new("Scatter", "NODES")
 nodes.node_group.interface  # reported: nodes.node_group = tree fills it
 cube = bpy.data.objects.new("Cube", bpy.data.meshes.new("Cube"))
 cube.pose.bones  # reported: only an object with an Armature has it
+strip = action.layers.new("Moves").strips.new(type="KEYFRAME")
+strip.channelbag(slot).fcurves  # reported: strip.channelbag(slot, ensure=True)
 ```
 
 Not reported: things that the script did not make itself; scripts that name what fills it, anywhere, that compute
@@ -32,6 +35,7 @@ from kb_check.made_here import (
     called_operators,
     callee_path,
     first_named,
+    first_named_but,
     has_new_data,
     has_plain_operators_only,
     is_new,
@@ -43,6 +47,8 @@ from kb_check.made_here import (
     stage,
     stored_names,
 )
+from kb_check.not_ensured import ensuring, not_ensured
+from kb_check.other_modes import set_otherwise
 from kb_check.rule import Rule
 from kb_check.script import once_for_each, once_per_script
 from kb_check.tried import is_tried
@@ -73,6 +79,15 @@ def _check(script: Script) -> Iterator[Finding]:
     for row in script.resolutions("attribute", "store"):
         node = row.node
         if not isinstance(node, ast.Attribute) or not row.sure or row.guarded:
+            continue
+        if (call := not_ensured(script, node.value)) and not is_tried(script, node):
+            path = call.callee.symbol.path
+            if path not in reported:
+                reported.add(path)
+                message = f"`{path}` gives None for what is new, unless it is told to make it: `ensure=True`."
+                yield Finding(
+                    RULE.id, "warning", script.name_span(node), message, path, (), ensuring(script, call)
+                )
             continue
         pointer = read_pointer(script, node.value)
         if pointer is None or ast.unparse(pointer) in reported:
@@ -113,7 +128,7 @@ def _only_with(script: Script, symbol: Symbol, node: ast.expr) -> str:
 def _filler(script: Script, symbol: Symbol, pointer: ast.Attribute, place: ast.expr) -> str:
     """What fills a pointer of a thing that the script has made, where nothing in it does; empty where it may."""
     if fillers(symbol):
-        is_empty = _stays_empty(script, symbol, place) and _is_made(script, pointer.value)
+        is_empty = _stays_empty(script, symbol, pointer, place) and _is_made(script, pointer.value)
         return fillers(symbol)[-1] if is_empty else ""
     if not _is_never_assigned(script, symbol.path) or not _is_made(script, pointer.value):
         return ""
@@ -148,9 +163,12 @@ def _is_never_assigned(script: Script, path: str) -> bool:
     )
 
 
-def _stays_empty(script: Script, symbol: Symbol, place: ast.expr) -> bool:
+def _stays_empty(script: Script, symbol: Symbol, pointer: ast.Attribute, place: ast.expr) -> bool:
     """Whether the script names nothing that may have filled a pointer, and does not ask whether it is None."""
-    return stage(script, place) < _first_filled(script, symbol.path)
+    first = _first_filled(script, symbol.path)
+    if 0 <= first <= stage(script, place):
+        first = _first_named_to_fill(script, symbol, pointer.value)
+    return stage(script, place) < first
 
 
 @once_for_each
@@ -166,14 +184,23 @@ def _first_filled(script: Script, path: str) -> float:
         or any(map(_COPYING.search, operators))
     ):
         return -1
-    stages: list[float] = [math.inf]
-    for word, first in first_named(script).items():
-        is_animating = symbol.name == "animation_data" and _ANIMATING.search(word)
-        if is_animating or any(_may_fill(word, call, symbol.name) for call in fillers(symbol)):
-            stages.append(first)
     if _computes_kinds(script) and any(".modifiers.new(" in call for call in fillers(symbol)):
         return -1
-    return min(stages)
+    return min(_stages(symbol, first_named(script)), default=math.inf)
+
+
+def _first_named_to_fill(script: Script, symbol: Symbol, owner: ast.expr) -> float:
+    """The same, without what surely leaves the pointer of this owner as it is."""
+    idle = {node for call in fillers(symbol) for node in set_otherwise(script, call, owner)}
+    return min(_stages(symbol, first_named_but(script, idle)), default=math.inf) if idle else -1
+
+
+def _stages(symbol: Symbol, named: dict[str, int]) -> Iterator[int]:
+    """The stages of words by which a script may fill a pointer."""
+    for word, first in named.items():
+        is_animating = symbol.name == "animation_data" and _ANIMATING.search(word)
+        if is_animating or any(_may_fill(word, call, symbol.name) for call in fillers(symbol)):
+            yield first
 
 
 def _may_fill(word: str, call: str, name: str) -> bool:

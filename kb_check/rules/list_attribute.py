@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance, Sequence
 from kb_check.findings import Finding
-from kb_check.made_here import alias, bindings, callee_path
+from kb_check.handler_lists import handler_list
+from kb_check.made_here import bindings, callee_path
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_HANDLERS = "bpy.app.handlers."
 _ADDING = "bpy.types.bpy_struct.driver_add"
 
 
@@ -32,7 +32,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Attribute):
         if hasattr(list, node.attr):
             continue
-        if name := _handlers(script, node.value):
+        if name := handler_list(script, node.value):
             yield Finding(
                 RULE.id, "error", script.name_span(node),
                 f"`{name}` is a list, which has no `{node.attr}`: `append` adds a function, `remove` takes one out.",
@@ -50,14 +50,6 @@ def _check(script: Script) -> Iterator[Finding]:
                 "`driver_add` of a property with several values gives a list of curves, one for each: "
                 "give an index, `driver_add(path, index)`, or take one of the list.", _ADDING,
             )  # fmt: skip
-
-
-def _handlers(script: Script, node: ast.expr) -> str:
-    """The path of the list of handlers that an expression surely is; empty if it is none."""
-    row = script.analysis.resolutions.get(alias(script, node))
-    path = row.symbols[0] if row and row.sure and not row.guarded and len(row.symbols) == 1 else ""
-    symbol = script.api.symbols.symbol(path) if path.startswith(_HANDLERS) else None
-    return path if symbol and symbol.type.startswith("list") else ""
 
 
 def _is_added(script: Script, node: ast.expr) -> bool:

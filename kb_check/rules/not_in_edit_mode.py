@@ -4,8 +4,13 @@ An armature has ``edit_bones`` to change only while its object is in edit mode.
 
 ```python
 armature = bpy.data.armatures.new("Armature")
-armature.edit_bones.new("Bone")  # noted: bpy.ops.object.mode_set(mode='EDIT') comes before
+
+
+def add_bone(name):
+    armature.edit_bones.new(name)  # noted: bpy.ops.object.mode_set(mode='EDIT') comes before
 ```
+
+Where the statements around make it certain, bones-by-mode finds it.
 """
 
 from __future__ import annotations
@@ -14,6 +19,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_check.edit_bones import CHANGING, edited_outside
 from kb_check.findings import Finding
 from kb_check.made_here import callee_path, is_new, knows_all, named_words
 from kb_check.rule import Rule
@@ -24,7 +30,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _ENTERING = re.compile(r"mode_set|mode_toggle|editmode")
-_CHANGING = frozenset({"bpy.types.ArmatureEditBones.new", "bpy.types.ArmatureEditBones.remove"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -33,7 +38,11 @@ def _check(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Call):
         match node:
             case ast.Call(func=ast.Attribute(value=ast.Attribute(attr="edit_bones", value=armature))):
-                if callee_path(script, node) in _CHANGING and is_new(script, armature):
+                if (
+                    callee_path(script, node) in CHANGING
+                    and is_new(script, armature)
+                    and node not in edited_outside(script)
+                ):
                     yield Finding(
                         RULE.id, "note", script.span(node.func),
                         "An armature has bones to edit only in edit mode, which this script never enters: "

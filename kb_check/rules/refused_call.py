@@ -32,6 +32,7 @@ from kb_build.records import ENDS_WITHOUT, last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.literals import number
 from kb_check.made_here import (
     OBJECTS_NEW,
     bindings,
@@ -39,6 +40,7 @@ from kb_check.made_here import (
     is_named_before,
     knows_all,
 )
+from kb_check.removed import OUTSIDE_MAIN
 from kb_check.repeated_calls import follows
 from kb_check.rule import Rule
 from kb_check.script import once_for_each, once_per_script
@@ -55,11 +57,7 @@ _OBJECT = "bpy.types.Object"
 _LIGHT = "bpy.types.Light"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
-# What makes data that belong to an object alone, and what removes them.
-_OUTSIDE_MAIN = {
-    f"{_OBJECT}.to_mesh": "to_mesh_clear", f"{_OBJECT}.to_curve": "to_curve_clear",
-}  # fmt: skip
-_NOT_AFTER = {"any": "a second time", "other": "after another"}
+_NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
 
@@ -78,7 +76,9 @@ def _check(script: Script) -> Iterator[Finding]:
         for refusal in refusals:
             key = (ast.unparse(owner), *_key(refusal, call))
             before = earlier.setdefault(key, call) if refusal.again else call
-            if not _is_of(refusal, call) or (not refusal.given and not refusal.by and _gives_more(call)):
+            if not _is_of(script, refusal, call) or (
+                not refusal.given and not refusal.by and _gives_more(call)
+            ):
                 continue
             if refusal.given and not unknown.isdisjoint(call.node.keywords):  # one of those may stand for it
                 continue
@@ -159,8 +159,8 @@ def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
         case _:
             return
     maker = next(iter(makers)) if len(makers) == 1 else ""
-    clear = _OUTSIDE_MAIN.get(maker, "")
-    if not clear or script.api.member(_OBJECT, clear) is None or is_tried(script, call.node):
+    clearing = OUTSIDE_MAIN.get(maker, "")
+    if not clearing or script.api.symbols.symbol(clearing) is None or is_tried(script, call.node):
         return
     match made:
         case [ast.Call(func=ast.Attribute(value=owner))]:
@@ -168,12 +168,13 @@ def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
         case _:
             owner = None
     is_fixed = isinstance(owner, ast.Name) and len(bindings(script).get(owner.id, ())) == 1
+    clear = last_name(clearing)
     edit = Edit(script.span(call.node), f"{ast.unparse(owner)}.{clear}()") if owner and is_fixed else None
     yield Finding(
         RULE.id, "error", script.span(call.node),
         f"What `{maker}` returns belongs to its object and is not in `bpy.data`: `{path}` refuses it. "
-        f"`{_OBJECT}.{clear}` removes it.",
-        path, (f"{_OBJECT}.{clear}",), Fix(f"Write {clear}", (edit,)) if edit else None,
+        f"`{clearing}` removes it.",
+        path, (clearing,), Fix(f"Write {clear}", (edit,)) if edit else None,
     )  # fmt: skip
 
 
@@ -202,8 +203,10 @@ def _uncalled(script: Script, node: ast.Call) -> Fix | None:
     return Fix("Read it", (Edit(behind, ""),), sure=True) if script.text(behind) == "()" else None
 
 
-def _is_of(refusal: Refusal, call: CallSite) -> bool:
-    """Whether a call has one of the values that are refused, if only some are."""
+def _is_of(script: Script, refusal: Refusal, call: CallSite) -> bool:
+    """Whether a call has one of the values that are refused, if only some are, or surely the same as another one."""
+    if refusal.again == "same" and not _is_written_out(script, call):
+        return False
     if not refusal.values:
         return True
     given = call.argument(refusal.argument)
@@ -217,8 +220,17 @@ def _gives_more(call: CallSite) -> bool:
 
 def _key(refusal: Refusal, call: CallSite) -> tuple[str, str]:
     """The function, and the value that is refused the second time, if only some are, and only after itself."""
+    if refusal.again == "same":
+        return call.callee.symbol.path, ", ".join(map(ast.unparse, (*call.node.args, *call.node.keywords)))
     given = call.argument(refusal.argument) if refusal.again != "other" else None
     return call.callee.symbol.path, ast.unparse(given) if given else ""
+
+
+def _is_written_out(script: Script, call: CallSite) -> bool:
+    """Whether all that a call is given are literals: the same texts are then the same values."""
+    return all(
+        isinstance(given, ast.Constant) or number(script, given) is not None for _, given in call.arguments()
+    )
 
 
 def _refusing(script: Script, owner: ast.expr, refusal: Refusal) -> str:

@@ -7,6 +7,7 @@ what begins as Blender's own nodes do.
 ```python
 nodes.new("ShaderNodeTexMusgrave")  # reported since 4.1: ShaderNodeTexNoise
 nodes.new("ShaderNodeTexNoise")
+nodes.new("Noise Texture")  # reported: that is its label
 tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
 tree.nodes.new("ShaderNodeBsdfPrincipled")  # reported: geometry node trees take none
 tree.nodes.new("GeometryNode")  # reported: the class that the others derive from
@@ -24,13 +25,15 @@ from kb_build.flow.types import Collection, Instance
 from kb_build.records import last_name
 from kb_build.symbol_lines import NODE_FAMILIES, alike_nodes
 from kb_check.calls import CallSite, calls
-from kb_check.findings import Finding
+from kb_check.findings import Finding, Fix
+from kb_check.mode_keeping import own_names
 from kb_check.rule import Rule
-from kb_check.script import once_for_each
+from kb_check.script import once_for_each, once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_build.records import Symbol
     from kb_check.known_names import Lacking
     from kb_check.script import Script
 
@@ -52,10 +55,18 @@ def _check(script: Script) -> Iterator[Finding]:
             name = node.value
             if name in script.own_identifiers:
                 continue
-            if script.api.is_class(f"{T}{name}"):
+            is_label = wanted == "type" and not script.api.descends(f"{T}{name}", _NODE)
+            if script.api.is_class(f"{T}{name}") and not (is_label and _labelled(script, call, name)):
                 yield from _refused(script, call, node, name)
                 continue
             if script.package.has(("bpy.types",), name) or script.names.still_works(f"{T}{name}"):
+                continue
+            if (
+                wanted == "type"
+                and name not in own_names(script)
+                and (called := _labelled(script, call, name))
+            ):
+                yield _label_finding(script, node, called)
                 continue
             if script.names.was("bpy.types", name) or _BLENDERS_OWN.fullmatch(name):
                 lacking = _lacking(script, name)
@@ -68,6 +79,39 @@ def _check(script: Script) -> Iterator[Finding]:
 @once_for_each
 def _lacking(script: Script, name: str) -> Lacking:
     return script.names.member("bpy.types", name)
+
+
+def _labelled(script: Script, call: CallSite, name: str) -> list[Symbol]:
+    """The nodes that are called so in Blender's menus: those of the tree, where it is known."""
+    tree = _tree(script, call)
+    found = _by_label(script).get(name.casefold(), [])
+    return [symbol for symbol in found if not tree or tree in symbol.trees]
+
+
+@once_per_script
+def _by_label(script: Script) -> dict[str, list[Symbol]]:
+    found: dict[str, list[Symbol]] = {}
+    for cls in script.api.descendants(_NODE):
+        symbol = script.api.symbols.symbol(cls)
+        if symbol is not None and symbol.trees and symbol.label:
+            found.setdefault(symbol.label.casefold(), []).append(symbol)
+    return found
+
+
+def _label_finding(script: Script, node: ast.Constant, called: list[Symbol]) -> Finding:
+    names = [last_name(symbol.path) for symbol in called]
+    told = f"{node.value!r} is what menus call {' or '.join(f'`{name}`' for name in names)}: `nodes.new` takes that."
+    edit = script.renamed(node, names[0]) if len(names) == 1 else None
+    fix = Fix(f"Write {names[0]}", (edit,), sure=True) if edit else None
+    return Finding(
+        RULE.id,
+        "error",
+        script.span(node),
+        told,
+        called[0].path,
+        tuple(symbol.path for symbol in called),
+        fix,
+    )
 
 
 def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Iterator[Finding]:

@@ -8,6 +8,8 @@ pointer, and a colour has as many parts as its property says.
 scene.frame_end = 250.0  # reported
 material.diffuse_color = (1, 0, 0)  # reported: 4 floats
 scene.camera = bpy.data.cameras.new("Camera")  # reported: an Object that has it
+scene.render.filepath = pathlib.Path("/tmp/x.png")  # reported: str(…)
+bm.from_mesh(ob)  # reported: ob.data
 ```
 
 So are the attributes of classes, which it reads when they are registered:
@@ -33,13 +35,14 @@ from kb_check.conversions import describe, misfit
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.given import class_values, given_values
 from kb_check.literals import items, set_of
+from kb_check.python_paths import is_path
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_check.conversions import Misfit
-    from kb_check.given import Taker
+    from kb_check.given import Given, Taker
     from kb_check.script import Script
 
 _COLORS = frozenset({"COLOR", "COLOR_GAMMA"})
@@ -50,6 +53,9 @@ _LONGEST_INT = 2**31
 
 def _check(script: Script) -> Iterator[Finding]:
     for given in (*given_values(script), *class_values(script)):
+        if all(taker.kind == "string" for taker in given.takers) and is_path(script, given.node):
+            yield _path_given(script, given)
+            continue
         found = [misfit(script, taker, given.node) for taker in given.takers]
         if not found or not all(found):
             continue
@@ -61,6 +67,15 @@ def _check(script: Script) -> Iterator[Finding]:
             taker.path, (), _fix(script, taker, wrong, given.node) if len(given.takers) == 1 else None,
         )  # fmt: skip
     yield from _items_given(script)
+
+
+def _path_given(script: Script, given: Given) -> Finding:
+    path, span = given.takers[0].path, script.span(given.node)
+    edits = (Edit.before(span, "str("), Edit.behind(span, ")"))
+    return Finding(
+        RULE.id, "error", span, f"`{path}` takes a str, not a path of `pathlib`.", path, (),
+        Fix("Write str(…)", edits, sure=True),
+    )  # fmt: skip
 
 
 def _items_given(script: Script) -> Iterator[Finding]:
@@ -98,6 +113,8 @@ def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
         return ""
     if taker.target == _OBJECT and any(script.api.descends(kind.cls, cls) for cls in (*_DATA, f"{T}ID")):
         return " Give the object that has it: `bpy.data.objects.new(name, data)` makes one."
+    if kind.cls == _OBJECT and (taker.target or taker.documented) in _DATA:
+        return " Give its data: `.data`."
     if taker.target == f"{T}NodeSocket" and script.api.descends(kind.cls, f"{T}Node"):
         return " Give one of its sockets: `node.outputs[...]`, `node.inputs[...]`."
     return ""

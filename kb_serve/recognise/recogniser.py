@@ -5,7 +5,6 @@ enum value or URL. Descriptions are left to the search.
 from __future__ import annotations
 
 import re
-from functools import cached_property
 
 from kb_build.index.analysis import terms, words
 from kb_serve.reader import TYPES, BaseReader
@@ -30,6 +29,7 @@ from kb_serve.recognise.newer_nodes import (
 )
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.old_code import OldCode
+from kb_serve.recognise.operator_words import OperatorWords
 from kb_serve.recognise.products import WITH_AT, Products
 from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
@@ -39,7 +39,6 @@ from kb_serve.recognise.spellings import Spellings
 from kb_serve.recognise.subscripts import NODES_MODIFIER, asks_for_inputs
 
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
-_OPERATORS = "bpy.ops."
 _FEW = 3
 _SURE = 0.9
 _MANY = 12
@@ -74,6 +73,7 @@ class Recogniser:
         self._old = OldCode(reader, self._resolver, self._removed)
         self._expressions = Expressions(reader, self._resolver, self._corrector, self._old)
         self._products = Products(self._resolver)
+        self._operators = OperatorWords(reader)
 
     def recognise(self, query: str) -> Recognition:
         """Everything that ``query`` names, surest first."""
@@ -178,7 +178,7 @@ class Recogniser:
         for missing in recognition.missing:
             if missing.name in removed:
                 continue
-            for place, path in enumerate(self._operators_of_its_words(missing)):
+            for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
                 recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
             otherwise = self._said_otherwise(missing)
             for place, path in enumerate(otherwise):
@@ -204,23 +204,6 @@ class Recogniser:
             return []
         found = labelled(owner.path, missing.name, self._reader)
         return found or (operators_on(owner.path, missing.name, self._reader) if missing.called else [])
-
-    def _operators_of_its_words(self, missing: MissingName) -> list[str]:
-        """The operators of other modules that have all words of an operator's name: ``export_scene.fbx`` for
-        ``wm.fbx_export``. None where too many have.
-        """
-        if not missing.owner.startswith(_OPERATORS):
-            return []
-        said = set(words(missing.name))
-        having = {path: own for path, own in self._words_of_operators.items() if said <= own}
-        module = set(words(missing.owner.removeprefix(_OPERATORS)))
-        found = sorted(having, key=lambda path: (-len(module & having[path]), len(having[path])))
-        return found if said and len(found) <= _FEW else []
-
-    @cached_property
-    def _words_of_operators(self) -> dict[str, set[str]]:
-        rows = self._reader.rows("SELECT path FROM symbols WHERE kind = 'operator' ORDER BY path")
-        return {path: set(words(path.removeprefix(_OPERATORS))) for (path,) in rows}
 
     def _elsewhere(self, missing: MissingName, recognition: Recognition) -> bool:
         """Adds the name on other classes (``CollectionObjects.link``), similar ones first; whether there is any."""

@@ -146,6 +146,17 @@ _KINDS = {
         ob.pose.bones["A#"].location = (0, 0, 0)
         """,
     ),
+    "trees that are cleared, and objects that are made": (
+        "",
+        """
+        mat# = bpy.data.materials.new("A#")
+        mat#.node_tree.nodes.clear()
+        out# = mat#.node_tree.nodes.new("ShaderNodeOutputMaterial")
+        new# = bpy.data.objects.new("A#", None)
+        new#.location = (1, 2, 3)
+        bpy.data.materials.remove(mat#)
+        """,
+    ),
     "meshes that are worked on": (
         "",
         """

@@ -59,6 +59,11 @@ _WRONG = {
     "names of parts": f"{_MADE}{_EDIT}bones = rig.data.edit_bones\nbones.new('b').tail = (0, 0, 1)\n"
     "posed = rig.pose.bones\nposed['b'].location.x = 1",
     "added": f"{_ADDED}eb = rig.data.edit_bones.new('b')\neb.tail = (0, 0, 1)\nrig.data.bones['b']",
+    "never edited": f"{_MADE}arm.edit_bones.new('b')",
+    "edited before": f"{_START}{_LEFT}arm.edit_bones.new('c')",
+    "edited before, by the object": f"{_START}{_LEFT}rig.data.edit_bones['b']",
+    "in a loop": f"{_MADE}for name in 'ab':\n    arm.edit_bones.new(name)",
+    "added, not edited": f"{_ADDED.replace('enter_editmode=True', '')}rig.data.edit_bones[0]",
     "added, set": f"{_ADDED}eb = rig.data.edit_bones['Bone']\n{_LEFT}eb.tail = (0, 0, 2)",
 }
 # What becomes of these is chance: their memory is free, and may hold what it held.
@@ -77,6 +82,10 @@ _SOUND = {
     "second time": f"{_START}{_LEFT}{_EDIT}arm.edit_bones.new('c').tail = (1, 0, 1)\nrig.pose.bones['b']",
     "same name again": f"{_START}{_LEFT}{_EDIT}arm.edit_bones.new('b').tail = (1, 0, 1)\narm.bones['b']",
     "brought up to date": f"{_START}rig.update_from_editmode()\narm.bones['b']",
+    "edited by a helper": f"{_MADE}def edit():\n    {_EDIT}edit()\n{_BONE}",
+    "edited in a loop": f"{_MADE}for name in 'ab':\n    {_EDIT}    arm.edit_bones.new(name)",
+    "asked for bones": f"{_MADE}arm.edit_bones.get('b')\nlen(arm.edit_bones)",
+    "edited after all": f"{_MADE}{_EDIT}{_LEFT}{_EDIT}{_BONE}",
     "another is active": f"{_START}{_ACTIVATED.format(None)}"
     "try:\n    bpy.ops.object.mode_set(mode='OBJECT')\nexcept RuntimeError:\n    pass\neb.roll = 1",
     "two are edited": f"{_START}mesh = bpy.data.meshes.new('Sheet')\n{_ACTIVATED.format('mesh')}{_EDIT}"

@@ -78,6 +78,31 @@ def test_what_may_be_meant_is_told(checker: Checker, code: str, told: str) -> No
     assert found.message.endswith(told)
 
 
+@pytest.mark.parametrize(
+    ("code", "meant", "not_meant"),
+    [
+        ("bpy.ops.wm.fbx_export(filepath='x')", "export_scene.fbx", "fbx_import"),
+        ("bpy.data.curves.new('x', 'FONT').text = 'x'", "body", ""),
+        ("bpy.context.object.rigid_body.bounciness = 1", "restitution", ""),
+        ("bpy.context.object.constraints.new('IK').chain_length = 2", "chain_count", ""),
+        ("bpy.ops.wm.usd_export(filepath='x', use_selection=True)", "selected_objects_only", "filter_blender"),
+        ("bpy.types.FluidDomainSettings.resolution_divisions", "resolution_max", ""),
+        ("m.attributes.new('x', 'FLOAT_VECTOR', 'POINT').data[0].value", "vector", "values"),
+        ("bpy.context.object.constraints.new('FOLLOW_PATH').forward_axis = 'FORWARD_NEGATIVE_Z'",
+         "TRACK_NEGATIVE_Z", "FORWARD_Z"),
+        ("bpy.ops.wm.obj_export(filepath='x', forward_axis='FORWARD_NEGATIVE_Z')", "NEGATIVE_Z", ""),
+        ("m.attributes.new('x', 'FLOAT_COLOR', 'VERTEX')", "AttributeGroupMesh", "AttributeGroupPointCloud"),
+    ],
+)  # fmt: skip
+def test_names_are_told_by_what_menus_call_them(
+    checker: Checker, code: str, meant: str, not_meant: str
+) -> None:
+    (finding,) = checker.check(f"import bpy\nm = bpy.data.meshes.new('m')\n{code}\n")
+    told = finding.message.rpartition("5.")[2] if not_meant else finding.message
+    assert f"`{meant}`" in finding.message or f".{meant}." in finding.message
+    assert not not_meant or f"`{not_meant}`" not in told
+
+
 def test_what_blender_lets_pass_is_a_warning(checker: Checker) -> None:
     (found,) = checker.check("import bpy\nbpy.context.object.driver_remove('locaton')\n")
     assert (found.rule, found.severity) == ("unknown-attribute", "warning")

@@ -31,11 +31,23 @@ _COMPOSITOR = "tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\n"
 _OUTPUT = _COMPOSITOR + "out = tree.nodes.new('CompositorNodeOutputFile')\n"
 _NODES = _CUBE + "nodes = bpy.context.object.modifiers.new('x', 'NODES')\n"
 _MESH = "ob = bpy.data.objects.new('x', bpy.data.meshes.new('x'))\n"
+_OTHER_FLUID = "other = bpy.data.objects.new('y', bpy.data.meshes.new('y')).modifiers.new('Fluid', 'FLUID')\n"
+_PAINT = _CUBE + "paint = bpy.context.object.modifiers.new('Paint', 'DYNAMIC_PAINT')\n"
+_STRIP = (
+    "action = bpy.data.actions.new('x')\nslot = action.slots.new('OBJECT', 'x')\n"
+    "strip = action.layers.new('x').strips.new(type='KEYFRAME')\n"
+)
 _RESET = "bpy.ops.wm.read_factory_settings(use_empty=True)\n"
 WRONG = {
     "empty-pointer": [
         _FLUID + "fluid.domain_settings.domain_type = 'LIQUID'",
         _FLUID + "settings = fluid.flow_settings\nsettings.flow_type = 'SMOKE'",
+        _FLUID + "fluid.fluid_type = 'FLOW'\nfluid.domain_settings.domain_type = 'LIQUID'",
+        _FLUID + _OTHER_FLUID + "other.fluid_type = 'DOMAIN'\nfluid.domain_settings.domain_type = 'LIQUID'",
+        _PAINT + "bpy.ops.dpaint.type_toggle(type='CANVAS')\npaint.brush_settings.paint_color = (1, 0, 0)",
+        "dust = bpy.data.particles.new('x')\ndust.physics_type = 'FLUID'\ndust.boids.health = 1",
+        _STRIP + "strip.channelbag(slot).fcurves.new('location')",
+        _STRIP + "bag = strip.channelbag(slot)\nbag.fcurves.new('location')",
         _OBJECT + "ob.field.type = 'WIND'",
         _OBJECT + "ob.animation_data.use_nla = True",
         _CUBE + "bpy.context.object.rigid_body.mass = 2",
@@ -128,7 +140,9 @@ WRONG = {
         _CUBE + "bpy.context.object.data.face_maps",
     ],
     "unknown-operator": ["bpy.ops.import_mesh.stl(filepath='/x.stl')"],
-    "not-in-edit-mode": [_ARMATURE + "armature.edit_bones.new('x')"],
+    "not-in-edit-mode": [
+        _ARMATURE + "def bone():\n    armature.edit_bones.new('x')\nbone()",
+    ],
 }
 RIGHT = [
     "bpy.ops.wm.read_factory_settings(app_template='Video_Editing')\n"
@@ -201,6 +215,16 @@ RIGHT = [
     + "kind = 'FLOW'\nfluid.fluid_type = kind\nsettings = fluid.flow_settings\nsettings.flow_type = 'SMOKE'",
     _FLUID + "if fluid.domain_settings:\n    fluid.domain_settings.domain_type = 'LIQUID'",
     _FLUID + "settings = fluid.domain_settings\nif settings:\n    settings.domain_type = 'LIQUID'",
+    _FLUID + "same = fluid\nsame.fluid_type = 'DOMAIN'\nfluid.domain_settings.domain_type = 'LIQUID'",
+    _FLUID
+    + "fluid.fluid_type = 'FLOW'\nfluid.fluid_type = 'DOMAIN'\nfluid.domain_settings.domain_type = 'LIQUID'",
+    _FLUID + "bpy.context.object.modifiers['Fluid'].fluid_type = 'DOMAIN'\n"
+    "fluid.domain_settings.domain_type = 'LIQUID'",
+    _PAINT + "bpy.ops.dpaint.type_toggle(type='CANVAS')\nbpy.ops.dpaint.type_toggle(type='BRUSH')\n"
+    "paint.brush_settings.paint_color = (1, 0, 0)",
+    _STRIP + "strip.channelbag(slot, ensure=True).fcurves.new('location')",
+    _STRIP + "strip.channelbags.new(slot)\nstrip.channelbag(slot).fcurves.new('location')",
+    _STRIP + "bag = strip.channelbag(slot)\nif bag:\n    bag.fcurves.new('location')",
     _OBJECT + "ob.keyframe_insert('location')\nob.animation_data.action.name",
     _OBJECT + "ob.driver_add('location', 0)\nob.animation_data.drivers[0].driver",
     _CUBE + "bpy.ops.rigidbody.object_add()\nbpy.context.object.rigid_body.mass = 2",

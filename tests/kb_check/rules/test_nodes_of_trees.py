@@ -42,6 +42,34 @@ def test_nodes_that_a_tree_refuses_are_reported_and_no_others(check: Check, tmp_
     assert {finding.span.line for finding in check("unknown-node", "\n".join(lines))} == refused
 
 
+def test_a_label_is_reported_and_mended(rule_checker: Checker, check: Check, tmp_path: Path) -> None:
+    api = rule_checker.api
+    nodes = [symbol for cls in api.descendants("bpy.types.Node") if (symbol := api.symbols.symbol(cls))]
+    pairs = sorted({(tree, symbol.label) for symbol in nodes for tree in symbol.trees if tree in _TREES})
+    made = [
+        "import bpy",
+        *(f"{kind.lower()} = bpy.data.node_groups.new('tree', '{kind}')" for kind in _TREES),
+    ]
+    lines = [*made, *(f"{tree.lower()}.nodes.new({label!r})" for tree, label in pairs)]
+    answers = run_statements(tmp_path, lines)
+    refused = {place for place, (error, *_) in enumerate(answers, 1) if error}
+    assert len(refused) == len(pairs)
+    found = check("unknown-node", "\n".join(lines))
+    assert {finding.span.line for finding in found} == refused
+    fixes = {finding.span.line: finding.fix.edits[0].text for finding in found if finding.fix}
+    assert len(fixes) > 0.9 * len(found)
+    mended = [
+        *made,
+        *(f"{pairs[line - 1 - len(made)][0].lower()}.nodes.new({text})" for line, text in fixes.items()),
+    ]
+    assert [error for error, *_ in run_statements(tmp_path, mended) if error] == []
+
+
+def test_a_label_that_the_script_calls_a_node_of_its_own_is_left_alone(check: Check) -> None:
+    code = "import bpy\nclass Math(bpy.types.Node):\n    pass\n\ndef add(tree):\n    tree.nodes.new('Math')\n"
+    assert not check("unknown-node", code)
+
+
 def test_the_node_that_the_tree_has_instead_is_named(check: Check) -> None:
     code = "import bpy\ntree = bpy.data.node_groups.new('tree', 'CompositorNodeTree')\n"
     (found,) = check("unknown-node", code + "tree.nodes.new('CompositorNodeGamma')\n")

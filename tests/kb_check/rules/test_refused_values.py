@@ -14,7 +14,8 @@ if TYPE_CHECKING:
     from kb_check.findings import Finding
 
 SETTING = """\
-import bpy, bmesh, mathutils, math
+import bpy, bmesh, mathutils, math, pathlib
+from pathlib import Path
 from mathutils import Vector, Color, Euler, Quaternion, Matrix
 scene = bpy.context.scene
 mesh = bpy.data.meshes.new("mesh")
@@ -58,6 +59,20 @@ scene.render.filepath = None
 scene.camera = camera
 scene.camera = "Camera"
 scene.world = material
+scene.render.filepath = Path("/tmp")
+scene.render.filepath = pathlib.Path.home() / "picture.png"
+ob.name = Path("/tmp/name").with_suffix(".x").parent
+bpy.data.objects.new(Path("name"), None)
+bpy.ops.wm.save_as_mainfile(filepath=Path("/tmp").resolve() / "name.blend", copy=True)
+bm.from_mesh("mesh")
+bm.from_mesh(ob)
+bm.to_mesh(ob)
+bm.from_object(ob, bpy.context)
+bm.faces.new([(0, 0, 0), (1, 0, 0), (0, 1, 0)])
+bm.faces.new(bm.verts[0])
+bm.faces.new([0, 1, 2])
+bm.edges.new((0, 1))
+bm.faces.remove(bm.verts[0])
 scene.gravity = 9.81
 light.energy = "100"
 light.energy = None
@@ -257,6 +272,17 @@ points = mesh.vertices.add(1); points[0].co = (0, 0, 0)
 }
 TAKEN = """\
 scene.frame_end = 250
+scene.render.filepath = str(Path("/tmp"))
+scene.render.filepath = Path("/tmp").as_posix()
+scene.render.filepath = (Path("/tmp") / "name").name
+bmesh.new().from_mesh(ob.data)
+bmesh.new().from_object(ob, bpy.context.evaluated_depsgraph_get())
+bm.edges.new(bm.verts[:2]) if not bm.edges else None
+bm.edges.get((bm.verts[0], bm.verts[1]))
+bm.faces.get(set(bm.verts))
+bm.faces.get(vert for vert in bm.verts)
+bm.verts.new((0, 0, 0), bm.verts[0]); bm.verts.ensure_lookup_table()
+bm.verts.new((0, 0, 0), None); bm.verts.ensure_lookup_table()
 scene.render.fps = int(60 / 2)
 scene.render.fps = round(23.976)
 scene.render.fps = sum([12, 12])

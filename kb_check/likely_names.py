@@ -1,0 +1,66 @@
+"""Which names may be meant by one that does not exist, by more than their spelling: by what menus call them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import stem, words
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping
+
+_MOST = 3
+# Words that say how a thing is used, and not what it is.
+_EMPTY_WORDS = frozenset({"use", "is", "has", "show", "do", "set", "get"})
+_OPPOSITE = "negative"
+_SHORTEST = 4
+
+
+def by_label(written: str, labels: Mapping[str, str]) -> tuple[list[str], list[str]]:
+    """The names whose label says what a name says: ``chain_count``, Chain Length, for ``chain_length``.
+
+    ``labels`` is name → label. First those whose label says nothing else, then those that say more: ``body``, Body
+    Text, for ``text``.
+    """
+    mine = _meaning(written)
+    saying = {name: said for name, label in labels.items() if mine and mine <= (said := _meaning(label))}
+    exact = [name for name, said in saying.items() if said == mine]
+    partly = sorted(saying.keys() - {*exact}, key=lambda name: (len(saying[name]), len(name), name))
+    if len(partly) > _MOST:  # what a label ends with is what the thing is
+        partly = [name for name in partly if _last(labels[name]) == _last(written)]
+    return exact, partly if len(partly) <= _MOST else []
+
+
+def by_first_word(written: str, names: Iterable[str]) -> list[str]:
+    """The names that begin with the first word of one, where they are few: ``resolution_max``."""
+    first, *others = words(written) or [""]
+    if len(first) < _SHORTEST or not others:
+        return []
+    found = [name for name in names if words(name)[:1] == [first]]
+    return found if len(found) <= _MOST else []
+
+
+def of_same_sense(written: str, values: Iterable[str]) -> list[str]:
+    """The values that have all words of one but the first, and say as it does whether the opposite is meant.
+
+    ``TRACK_NEGATIVE_Z`` for ``FORWARD_NEGATIVE_Z``.
+    """
+    mine = words(written)
+    if _OPPOSITE not in mine:
+        return []
+    wanted = {*mine[1:], _OPPOSITE}
+    return [value for value in values if wanted <= set(words(value))][:_MOST]
+
+
+def without_opposites(written: str, values: Iterable[str]) -> Iterator[str]:
+    """Values without those that mean the opposite of one."""
+    is_opposite = _OPPOSITE in words(written)
+    return (value for value in values if (_OPPOSITE in words(value)) == is_opposite)
+
+
+def _last(text: str) -> str:
+    return stem(words(text)[-1])
+
+
+def _meaning(text: str) -> set[str]:
+    return {stem(word) for word in words(text)} - _EMPTY_WORDS

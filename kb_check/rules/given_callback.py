@@ -1,0 +1,143 @@
+"""What is given to Blender to be called, and cannot be: a result instead of a function, or one with other arguments.
+
+```python
+def tick():
+    return 1.0
+
+
+def follow():
+    pass
+
+
+bpy.app.timers.register(tick())  # reported: bpy.app.timers.register(tick)
+bpy.app.handlers.frame_change_post.append(follow)  # reported: def follow(scene, depsgraph)
+```
+
+Blender calls a handler with two arguments, or with one if it has one; a timer with none. Not reported: functions that
+the script does not define itself, methods, and what decorators may have changed.
+"""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.flow.trees import walk
+from kb_build.flow.types import NONE, LocalFunction, Plain, Sequence, Tuple, Type, members
+from kb_check.calls import calls
+from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.handler_lists import handler_list
+from kb_check.rule import Rule
+from kb_check.tried import is_tried
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.script import Script
+
+_ADDING = frozenset({"append", "insert"})
+# What tells how many arguments a function gets, as the base has it: ``Callable[[int], bool] | None``.
+_CALLABLE = re.compile(r"Callable\[\[(.*)\], [^\]]*\](?: \| None)?")
+_DECLARING = "bpy.props."  # has a rule of its own
+_OF_HANDLERS = (1, 2)
+_PERSISTENT = "persistent"
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    for call in calls(script):
+        path = call.callee.symbol.path
+        for parameter, node in () if path.startswith(_DECLARING) else call.arguments():
+            form = _CALLABLE.fullmatch(parameter.type)
+            if form:
+                count = len(_split(form[1]))
+                yield from _judged(script, node, path, (count,), may_be_none=parameter.type.endswith("None"))
+    for node in script.all(ast.Call):
+        match node:
+            case ast.Call(func=ast.Attribute(value=handlers, attr=name), args=[*_, given]) if name in _ADDING:
+                if path := handler_list(script, handlers):
+                    yield from _judged(script, given, path, _OF_HANDLERS, may_be_none=False)
+            case _:
+                pass
+
+
+def _judged(
+    script: Script, node: ast.expr, path: str, counts: tuple[int, ...], *, may_be_none: bool
+) -> Iterator[Finding]:
+    """What is wrong with what is given to be called with one of some numbers of arguments."""
+    kind = script.type_of(node)
+    if is_tried(script, node) or kind is None:
+        return
+    if isinstance(kind, LocalFunction):
+        function = script.analysis.functions[kind.number] if kind.receiver is None else None
+        if function is not None and (wanted := _refused(function, counts)):
+            yield Finding(RULE.id, "error", script.span(node), f"`{path}` calls it with {wanted}.", path)
+    elif _is_no_function(kind) or (_gives_none(script, node) and not may_be_none):
+        fix = _uncalled(script, node)
+        told = "a function, not what it returns" if isinstance(node, ast.Call) else "a function"
+        yield Finding(RULE.id, "error", script.span(node), f"`{path}` takes {told}.", path, (), fix)
+
+
+def _refused(function: ast.AST, counts: tuple[int, ...]) -> str:
+    """How many arguments a function is called with, where it takes no such number; empty where it does."""
+    if not isinstance(function, (ast.FunctionDef, ast.Lambda)):
+        return ""
+    names = getattr(function, "decorator_list", [])
+    if any(getattr(name, "id", getattr(name, "attr", "")) != _PERSISTENT for name in names):
+        return ""
+    arguments = function.args
+    most = len(arguments.posonlyargs) + len(arguments.args)
+    fewest = most - len(arguments.defaults)
+    if any(fewest <= count and (count <= most or arguments.vararg) for count in counts):
+        return ""
+    last = f"{counts[-1]} argument{'' if counts[-1] == 1 else 's'}" if counts[-1] else "no argument"
+    return f"{last}, or with one if it takes one" if counts == _OF_HANDLERS else last
+
+
+def _is_no_function(kind: Type) -> bool:
+    """Whether a value surely cannot be called: a number, a text, a list."""
+    return all(
+        isinstance(member, (Plain, Sequence, Tuple)) or member == NONE for member in members(kind)
+    ) and any(member != NONE for member in members(kind))
+
+
+def _gives_none(script: Script, node: ast.expr) -> bool:
+    """Whether a call is of a function of the script that returns nothing."""
+    kind = script.type_of(node.func) if isinstance(node, ast.Call) else None
+    function = script.analysis.functions[kind.number] if isinstance(kind, LocalFunction) else None
+    if not isinstance(function, ast.FunctionDef) or function.decorator_list:
+        return False
+    return not any(
+        isinstance(part, (ast.Yield, ast.YieldFrom))
+        or (isinstance(part, ast.Return) and part.value is not None)
+        for part in walk(function)
+    )
+
+
+def _uncalled(script: Script, node: ast.expr) -> Fix | None:
+    """``register(tick())`` → ``register(tick)``."""
+    match node:
+        case ast.Call(func=ast.Name() as function, args=[], keywords=[]):
+            pass
+        case _:
+            return None
+    if not isinstance(script.type_of(function), LocalFunction):
+        return None
+    called, whole = script.span(function), script.span(node)
+    behind = Span(called.end_line, called.end_column, whole.end_line, whole.end_column)
+    return Fix("Give the function", (Edit(behind, ""),), sure=True) if script.text(behind) == "()" else None
+
+
+def _split(text: str) -> list[str]:
+    """The types of arguments, which commas part that stand in no brackets."""
+    found, depth = [""] if text else [], 0
+    for character in text:
+        depth += (character in "[(") - (character in "])")
+        if character == "," and not depth:
+            found.append("")
+        else:
+            found[-1] += character
+    return found
+
+
+RULE = Rule("given-callback", "error", "What Blender is given to call, and cannot", _check)

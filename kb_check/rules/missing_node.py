@@ -1,0 +1,188 @@
+"""A node by a name that none has: in a tree that was cleared, or in that of a new material, world or light.
+
+```python
+nodes.clear()
+shader = nodes["Principled BSDF"]  # reported: nodes.new("ShaderNodeBsdfPrincipled")
+material = bpy.data.materials.new("Clay")
+material.node_tree.nodes["Diffuse BSDF"]  # reported: it has "Principled BSDF" and "Material Output"
+```
+
+A new node is called as its kind is in menus. Not reported: scripts that give nodes names, or make some of a kind that
+is not written out, between; that compute names or import modules which may change scenes; and what stands in a ``try``.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.facts import T
+from kb_build.flow.types import Instance
+from kb_check.calls import calls, calls_by_node
+from kb_check.edit_bones import bound_in, names_in, run_in, surely_run
+from kb_check.findings import Finding
+from kb_check.made_here import (
+    alias,
+    callee_path,
+    computes_names,
+    has_plain_operators_only,
+    is_new,
+    knows_all,
+    member_path,
+    places,
+)
+from kb_check.mode_keeping import is_harmless
+from kb_check.rule import Rule
+from kb_check.script import once_per_script
+from kb_check.tried import is_tried
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator
+
+    from kb_check.script import Script
+
+_NEW, _CLEAR = f"{T}Nodes.new", f"{T}Nodes.clear"
+_NODES = f"{T}NodeTree.nodes"
+# The nodes that the tree of a new one has, since there is the Principled BSDF.
+_AT_FIRST = {
+    f"{T}Material": ("Principled BSDF", "Material Output"),
+    f"{T}World": ("Background", "World Output"),
+    f"{T}Light": ("Emission", "Light Output"),
+}
+_SINCE = 2, 80
+_MOST_CLEARED = 8  # trees that are followed at once: each statement is looked at for all of them
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    if computes_names(script):
+        return
+    clearing = {node.value: node for node in script.all(ast.Expr) if isinstance(node.value, ast.Call)}
+    bodies = [
+        places(script)[statement][0]
+        for call, statement in clearing.items()
+        if callee_path(script, call) == _CLEAR and statement in places(script)
+    ]
+    for body in {id(body): body for body in bodies}.values():
+        yield from _after_clearing(script, body)
+    if script.version >= _SINCE and knows_all(script) and has_plain_operators_only(script):
+        yield from _of_new(script)
+
+
+def _after_clearing(script: Script, body: list[ast.stmt]) -> Iterator[Finding]:
+    """What is asked for behind ``nodes.clear()``."""
+    # Nodes as they are written → the names of those that were made since.
+    cleared: dict[str, set[str]] = {}
+    for statement in body:
+        for node in surely_run(statement) if cleared else ():
+            match node:
+                case ast.Subscript(value=nodes, slice=ast.Constant(value=str(key)), ctx=ast.Load()):
+                    made = cleared.get(ast.unparse(nodes))
+                    if made is not None and not _is_named(key, made) and not is_tried(script, node):
+                        told = f"There is no node {key!r} behind `{ast.unparse(nodes)}.clear()`: `nodes.new` makes one."
+                        yield Finding(RULE.id, "error", script.span(node), told, _NODES)
+                case _:
+                    pass
+        made = _made(script, statement)
+        if made is None:
+            cleared.clear()
+        cleared = {text: names | (made or set()) for text, names in cleared.items()}
+        bound = set(bound_in(statement))
+        cleared = {
+            text: names for text, names in cleared.items() if bound.isdisjoint(names_in(_parsed(text)))
+        }
+        match statement:
+            case ast.Expr(value=ast.Call(func=ast.Attribute(value=nodes)) as call) if (
+                callee_path(script, call) == _CLEAR
+            ):
+                cleared[ast.unparse(nodes)] = set()
+                if len(cleared) > _MOST_CLEARED:
+                    del cleared[next(iter(cleared))]
+            case _:
+                pass
+
+
+def _made(script: Script, statement: ast.stmt) -> set[str] | None:
+    """The names of the nodes that a statement makes; None where that is not known, or it gives names."""
+    found: set[str] = set()
+    for node in run_in(statement):
+        if isinstance(node, ast.Attribute) and node.attr == "name" and not isinstance(node.ctx, ast.Load):
+            return None
+        if isinstance(node, ast.Call):
+            name = _name_of_new(script, node) if callee_path(script, node) == _NEW else ""
+            if name is None or (not name and not is_harmless(script, node)):
+                return None
+            found.add(name)
+    return found - {""}
+
+
+def _name_of_new(script: Script, call: ast.Call) -> str | None:
+    """What a new node is called at first; None where its kind is not known."""
+    site = calls_by_node(script).get(call)
+    given = site.argument("type") if site else None
+    if not isinstance(given, ast.Constant):
+        return None
+    symbol = script.api.symbols.symbol(f"{T}{given.value}")
+    return symbol.label or None if symbol else None
+
+
+def _is_named(key: str, names: Iterable[str]) -> bool:
+    """Whether a node may be called so: a name that is taken gets a number behind it."""
+    return any(key.startswith(name) for name in names)
+
+
+def _parsed(text: str) -> ast.AST:
+    return ast.parse(text, mode="eval")
+
+
+def _of_new(script: Script) -> Iterator[Finding]:
+    for node in script.all(ast.Subscript):
+        match node:
+            case ast.Subscript(value=nodes, slice=ast.Constant(value=str(key)), ctx=ast.Load()):
+                names = _at_first(script, nodes)
+            case _:
+                continue
+        made = _all_made(script) if names else None
+        if made is None or _is_named(key, (*names, *made)) or key in _other_texts(script):
+            continue
+        if not is_tried(script, node):
+            told = f"A new one has no node {key!r}, but {' and '.join(map(repr, names))}."
+            yield Finding(RULE.id, "error", script.span(node), told, _NODES)
+
+
+def _at_first(script: Script, nodes: ast.expr) -> tuple[str, ...]:
+    """The nodes that were there at first, where they surely are those of something new; empty for others."""
+    match alias(script, nodes):
+        case ast.Attribute(attr="nodes", value=tree) as held if member_path(script, held) == _NODES:
+            pass
+        case _:
+            return ()
+    match alias(script, tree):
+        case ast.Attribute(attr="node_tree", value=owner) if is_new(script, owner):
+            kind = script.type_of(owner)
+            if not isinstance(kind, Instance) or not kind.sure:
+                return ()
+            kinds = (names for cls, names in _AT_FIRST.items() if script.api.descends(kind.cls, cls))
+            return next(kinds, ())
+        case _:
+            return ()
+
+
+@once_per_script
+def _all_made(script: Script) -> frozenset[str] | None:
+    """The names of all nodes that the script makes; None where that is not known, or it gives names to anything."""
+    if any(node.attr == "name" and not isinstance(node.ctx, ast.Load) for node in script.all(ast.Attribute)):
+        return None
+    names = [_name_of_new(script, call.node) for call in calls(script) if call.callee.symbol.path == _NEW]
+    return None if None in names else frozenset(name for name in names if name)
+
+
+@once_per_script
+def _other_texts(script: Script) -> frozenset[str]:
+    """The texts of a script that are no keys of items: one may be a name that is given to a node."""
+    keys = {node.slice for node in script.all(ast.Subscript)}
+    return frozenset(
+        node.value for node in script.all(ast.Constant) if isinstance(node.value, str) and node not in keys
+    )
+
+
+RULE = Rule("missing-node", "error", "A node by a name that none has", _check)
