@@ -85,14 +85,21 @@ class Successors:
         self._bases = bases
         self._known = known
         until = version_key(version)
+        table = list(table)
         rows = [row for row in table if version_key(row.version) <= until]
+        # What was only renamed later: the new name → its row; and (how such a name is written, the row).
+        renamed = [
+            row for row in table if version_key(row.version) > until and len(row.new) == 1 and not row.how
+        ]
+        self._renamed = {row.new[0]: row for row in reversed(renamed) if self._exists(row.old)}
+        self._renamed_alike = [(_pattern(row.new[0]), row) for row in renamed if "*" in row.new[0]]
         self._rows = {row.old: row for row in rows if "*" not in row.old}
         # By what precedes the star, each with its place in the table.
         self._patterns: dict[str, list[tuple[int, re.Pattern[str], Succession]]] = {}
         for place, row in enumerate(rows):
             if "*" in row.old:
-                pattern = re.compile(re.escape(row.old).replace(r"\*", r"([^.()\[\]:]*)"))
-                self._patterns.setdefault(row.old.partition("*")[0], []).append((place, pattern, row))
+                found = place, _pattern(row.old), row
+                self._patterns.setdefault(row.old.partition("*")[0], []).append(found)
         self._starts = KnownPrefixes(self._patterns)
         self._found: dict[str, list[Succession]] = {}
 
@@ -123,8 +130,9 @@ class Successors:
     def of(self, path: str) -> list[Succession]:
         """What takes the place of a missing path, best first, each row with one target or none.
 
-        Without a row of its own, a name has the same name in what took its owner's place, if that has it; and where
-        nothing took its owner's place, nothing took its own.
+        A name of later versions has the one that it was given in place of. Without a row of its own, a name has the
+        same name in what took its owner's place, if that has it; and where nothing took its owner's place, nothing took
+        its own.
         """
         if path not in self._found:
             self._found[path] = []  # against circles
@@ -134,7 +142,8 @@ class Successors:
     def _of(self, path: str, step: int) -> Iterator[Succession]:
         row = self._row(path)
         if row is None:
-            yield from self._with_owner(path)
+            earlier = self._earlier(path)
+            yield from (earlier,) if earlier else self._with_owner(path)
             return
         if not row.new:
             yield row
@@ -154,6 +163,17 @@ class Successors:
                     yield Succession(path, entry.new, entry.how or row.how, entry.version, entry.source)
         if ends and not seen:
             yield Succession(path, (), ends[0].how, ends[0].version, ends[0].source)
+
+    def _earlier(self, path: str) -> Succession | None:
+        """What a name of later versions is called here; None where it was not only renamed."""
+        if row := self._renamed.get(path):
+            return Succession(path, (row.old,), "", row.version, row.source)
+        for pattern, row in self._renamed_alike:
+            match = pattern.fullmatch(path)
+            old = _filled(row.old, match.groups()) if match else ""
+            if old and "*" not in old and self._exists(old):
+                return Succession(path, (old,), "", row.version, row.source)
+        return None
 
     def _with_owner(self, path: str) -> Iterator[Succession]:
         above, mark, name = split_path(path)
@@ -190,6 +210,11 @@ class Successors:
             path = self._bases.get(path, "")
             if not path:
                 return
+
+
+def _pattern(path: str) -> re.Pattern[str]:
+    """What finds the names that a path with stars stands for."""
+    return re.compile(re.escape(path).replace(r"\*", r"([^.()\[\]:]*)"))
 
 
 def _filled(target: str, parts: tuple[str, ...]) -> str:

@@ -60,6 +60,25 @@ def test_an_unknown_release_is_named_with_those_that_are_known(
         successors.before("2.81.5")
 
 
+@pytest.mark.parametrize(
+    ("later", "here"),
+    [
+        ("bpy.types.TextStrip", "bpy.types.TextSequence"),
+        ("bpy.types.TextStrip.font_size", "bpy.types.TextSequence.font_size"),
+        ("bpy.types.Strip.channel", "bpy.types.Sequence.channel"),
+        # Not only renamed, and in no other version.
+        ("bpy.types.ActionSlot", ""),
+        ("bpy.types.NoSuch", ""),
+    ],
+)
+def test_a_name_of_later_versions_has_the_one_that_it_took_the_place_of(
+    history: ApiHistory, table: list[Succession], later: str, here: str
+) -> None:
+    found = Successors(table, history, "4.2", {}).of(later)
+    assert [target for row in found for target in row.new] == ([here] if here else [])
+    assert not here or not Successors(table, history, "5.1", {}).of(later)
+
+
 def test_every_new_name_came_by_then_or_later(history: ApiHistory, table: list[Succession]) -> None:
     wrong = [
         target
