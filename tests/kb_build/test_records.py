@@ -34,7 +34,7 @@ FULL = Symbol(
     enum_computed=True, base="bpy.types.B", group="data", signature="f(a)",
     parameters=(Parameter("a", "enum", "d", ["X"], True, (EnumItem("X"),), "L", 0.0, 1.0, "MASS"),),
     returns=(Parameter(""),), deprecation=Deprecation("gone", "5.0", "6.0"), modes=("m=A|B",), collection="C",
-    trees=("ShaderNodeTree",), reached="bpy.context", subscripts=("inputs[1]",),
+    trees=("ShaderNodeTree",), reached="bpy.context", lacks="bpy.types.A.b", subscripts=("inputs[1]",),
     new_values=(NewValue([1, 2], ("a", "b")), NewValue(0, when="m='A'")),
     refusals=(Refusal("no", "type", ("A", "B"), ("a",), ("b", "c"), ("length",), "EDIT", "any"), Refusal("")),
 )  # fmt: skip

@@ -219,7 +219,7 @@ def test_all_of_blender_reads_back(extract: Extract, reader: BaseReader) -> None
         read = reader.symbol(symbol.path)
         # How a class is reached is found by its uses, which the extract does not tell.
         assert read is not None
-        assert replace(read, reached=symbol.reached) == symbol
+        assert replace(read, reached=symbol.reached, lacks=symbol.lacks) == symbol
 
 
 def test_a_folder_that_cannot_be_written_is_named(tmp_path: Path) -> None:

@@ -109,7 +109,7 @@ def test_what_has_elements_from_the_beginning_and_what_blender_starts_with_was_c
             "`(1, 1, 1, 1)` (new float color attribute value); RNA says `(0, 0, 0, 0)`"
         ),
         "MovieTrackingCamera.sensor_width": "`35` (new movieclip); RNA says `0`",
-        "SpaceProperties.show_properties_render": "`True` in the startup file; RNA says `False`",
+        "SpaceProperties.show_properties_render": "`True` (new properties space); RNA says `False`",
         "ThemeGraphEditor.vertex_size": "`6` in the factory preferences; RNA says `0`",
         # Which folder it is the machine decides.
         "FileSelectParams.directory": "",
