@@ -14,7 +14,7 @@ from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance
 from kb_check.calls import calls_by_node
 from kb_check.literals import bound_names
-from kb_check.made_here import callee_path, computes_names, named_words, places
+from kb_check.made_here import bodies, callee_path, computes_names, named_words
 from kb_check.mode_keeping import keeps_mode, sets_active
 from kb_check.modes import MODE_SET, literal_argument
 from kb_check.script import once_per_script
@@ -323,7 +323,7 @@ def edited_outside(script: Script) -> dict[ast.Call | ast.Subscript, None]:
     """What a script asks of the edit bones of armatures that surely are not in Edit Mode, in order."""
     found: dict[ast.Call | ast.Subscript, None] = {}
     if names_edit_bones(script):
-        for body in {id(body): body for body, _ in places(script).values()}.values():
+        for body in bodies(script):
             bones = Bones(script)
             for statement in body:
                 found |= dict.fromkeys(bones.edited_outside(statement))

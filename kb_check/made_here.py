@@ -259,6 +259,21 @@ def places(script: Script) -> dict[ast.stmt, tuple[list[ast.stmt], int]]:
 
 
 @once_per_script
+def texts_but_keys(script: Script) -> frozenset[str]:
+    """The texts of a script that are no keys of items."""
+    keys = {node.slice for node in script.all(ast.Subscript)}
+    return frozenset(
+        node.value for node in script.all(ast.Constant) if isinstance(node.value, str) and node not in keys
+    )
+
+
+@once_per_script
+def bodies(script: Script) -> list[list[ast.stmt]]:
+    """The bodies of statements that a script has."""
+    return [body for _, body in _blocks(script) if body]
+
+
+@once_per_script
 def owners(script: Script) -> dict[ast.stmt, ast.AST]:
     """Statement → what has the body that it is in."""
     return {statement: owner for owner, body in _blocks(script) for statement in body}

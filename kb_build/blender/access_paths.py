@@ -7,9 +7,11 @@ import json
 import math
 from collections import defaultdict
 from dataclasses import dataclass, field
+from itertools import takewhile
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import NARROWER
+from kb_build.lineages import lineage
 from kb_build.records import EVALUATED
 from kb_build.symbol_lines import of_evaluated
 
@@ -141,9 +143,7 @@ def _key(target: str, graph: _Graph) -> str:
 
 
 def _lineage(cls: str, graph: _Graph) -> Iterable[str]:
-    while cls and cls != "bpy_struct":
-        yield cls
-        cls = graph.base.get(cls, "")
+    return takewhile(lambda each: each != "bpy_struct", lineage(cls, graph.base))
 
 
 def _steps(cls: str, graph: _Graph) -> Iterable[_Step]:

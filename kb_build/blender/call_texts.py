@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.argument_texts import split_arguments
+
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
@@ -66,24 +68,7 @@ def by_place(call: str) -> str:
 def by_place_up_to(call: str, most: int) -> str:
     """A call's text with the mark before the arguments that are given by their names alone: all but the first few."""
     head, _, given = call.rstrip(")").partition("(")
-    arguments = _split(given)
+    arguments = [text.strip() for text in split_arguments(given) if text.strip()]
     if len(arguments) <= most or "*" in arguments or "/" in arguments:
         return call
     return f"{head}({', '.join([*arguments[:most], '*', *arguments[most:]])})"
-
-
-def _split(given: str) -> list[str]:
-    """The arguments of a call's text; commas in brackets and in quotes are theirs."""
-    arguments = [""]
-    depth, quote = 0, ""
-    for letter in given:
-        if quote:
-            quote = "" if letter == quote else quote
-        elif letter in "'\"":
-            quote = letter
-        depth += (letter in "([{") - (letter in ")]}") if not quote else 0
-        if letter == "," and not depth and not quote:
-            arguments.append("")
-        else:
-            arguments[-1] += letter
-    return [text.strip() for text in arguments if text.strip()]

@@ -9,6 +9,7 @@ from functools import cache
 from typing import TYPE_CHECKING
 
 from kb_build.known_prefixes import KnownPrefixes
+from kb_build.lineages import lineage
 from kb_build.records import Link
 
 if TYPE_CHECKING:
@@ -65,7 +66,7 @@ def manual_links(symbols: Sequence[Symbol], table: Sequence[tuple[str, str]]) ->
 def _namesakes(symbols: Sequence[Symbol], prefixes: Iterable[str]) -> dict[str, set[str]]:
     """Class → the prefixes, names of data-blocks, that its name begins with though it does not belong to these."""
     bases = {symbol.path: symbol.base for symbol in symbols if symbol.kind == "class"}
-    blocks = {path.lower(): path for path in bases if _ID in _lineage(path, bases)}
+    blocks = {path.lower(): path for path in bases if _ID in lineage(path, bases)}
     leading = _leading(symbols, bases)
     pointed_at = {target for targets in leading.values() for target in targets}
     found: dict[str, set[str]] = defaultdict(set)
@@ -74,21 +75,12 @@ def _namesakes(symbols: Sequence[Symbol], prefixes: Iterable[str]) -> dict[str, 
             belonging = _reached(block, leading, blocks.values())
             for path in bases:
                 rest = path[len(block) :]
-                if not path.startswith(block) or not rest or block in _lineage(path, bases):
+                if not path.startswith(block) or not rest or block in lineage(path, bases):
                     continue
-                is_cut = rest[0].islower() and (rest != "s" or _ID in _lineage(path, bases))
+                is_cut = rest[0].islower() and (rest != "s" or _ID in lineage(path, bases))
                 is_of_others = not rest.startswith("_") and path in pointed_at and path not in belonging
                 if is_cut or is_of_others:
                     found[path].add(prefix)
-    return found
-
-
-def _lineage(path: str, bases: Mapping[str, str]) -> list[str]:
-    """A class, and those that it inherits from."""
-    found: list[str] = []
-    while path and path not in found:
-        found.append(path)
-        path = bases.get(path, "")
     return found
 
 
@@ -96,7 +88,7 @@ def _leading(symbols: Iterable[Symbol], bases: Mapping[str, str]) -> dict[str, s
     """Class → the classes of what its pointers and collections have, and of those that inherit from them."""
     below: dict[str, set[str]] = defaultdict(set)
     for path in bases:
-        for base in _lineage(path, bases):
+        for base in lineage(path, bases):
             below[base].add(path)
     found: dict[str, set[str]] = defaultdict(set)
     for symbol in symbols:

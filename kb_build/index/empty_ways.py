@@ -6,6 +6,7 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.lineages import lineage
 from kb_build.records import EMPTY
 from kb_build.symbol_lines import empty_when_new
 
@@ -48,7 +49,7 @@ class EmptyWays:
         is_far = before.count(".") >= _FAR
         if key not in _FIRST and not is_far:
             return ""
-        steps = [step for base in self._lineage(cls) for step in self._leading.get((name, base), ())]
+        steps = [step for base in lineage(cls, self._bases) for step in self._leading.get((name, base), ())]
         for step in steps:
             owner = step.owner.removeprefix(_TYPES)
             if self._reached.get(owner) == before:
@@ -59,11 +60,6 @@ class EmptyWays:
             owner = next((each for each in below if self._reached.get(each) == before), "")
             return self.last_empty(owner) if owner else ""
         return ""
-
-    def _lineage(self, cls: str) -> Iterator[str]:
-        while cls:
-            yield cls
-            cls = self._bases.get(cls, "")
 
     def _descendants(self, cls: str) -> Iterator[str]:
         for each in self._below.get(cls, ()):

@@ -29,7 +29,7 @@ from typing import TYPE_CHECKING
 
 from kb_check.edit_bones import EDIT_BONE, Bones, edited_outside, names_edit_bones, surely_run
 from kb_check.findings import Finding
-from kb_check.made_here import places
+from kb_check.made_here import bodies
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
 
@@ -53,7 +53,7 @@ def _check(script: Script) -> Iterator[Finding]:
             )  # fmt: skip
     if not names_edit_bones(script):
         return
-    for body in {id(body): body for body, _ in places(script).values()}.values():
+    for body in bodies(script):
         bones = Bones(script)
         for statement in body:
             yield from _used(script, statement, bones)

@@ -30,9 +30,10 @@ from kb_check.made_here import (
     named_words,
     read_pointer,
     stored_names,
+    texts_but_keys,
 )
 from kb_check.rule import Rule
-from kb_check.script import once_for_each, once_per_script
+from kb_check.script import once_for_each
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
@@ -157,16 +158,7 @@ def _stays_empty(script: Script, path: str) -> bool:
 @once_for_each
 def _is_named(script: Script, name: str) -> bool:
     """Whether a script has a name for more than to look something up."""
-    return any(name in text for text in _other_texts(script))
-
-
-@once_per_script
-def _other_texts(script: Script) -> frozenset[str]:
-    """The script's texts that are no keys."""
-    keys = {node.slice for node in script.all(ast.Subscript)}
-    return frozenset(
-        node.value for node in script.all(ast.Constant) if isinstance(node.value, str) and node not in keys
-    )
+    return any(name in text for text in texts_but_keys(script))
 
 
 RULE = Rule("empty-file", "warning", "Something read from what an empty file lacks", _check)

@@ -23,6 +23,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.argument_texts import split_arguments
 from kb_build.flow.trees import walk
 from kb_build.flow.types import NONE, LocalFunction, Plain, Sequence, Tuple, Type, members
 from kb_check.calls import calls
@@ -50,7 +51,7 @@ def _check(script: Script) -> Iterator[Finding]:
         for parameter, node in () if path.startswith(_DECLARING) else call.arguments():
             form = _CALLABLE.fullmatch(parameter.type)
             if form:
-                count = len(_split(form[1]))
+                count = len([*split_arguments(form[1])])
                 yield from _judged(script, node, path, (count,), may_be_none=parameter.type.endswith("None"))
     for node in script.all(ast.Call):
         match node:
@@ -126,18 +127,6 @@ def _uncalled(script: Script, node: ast.expr) -> Fix | None:
     called, whole = script.span(function), script.span(node)
     behind = Span(called.end_line, called.end_column, whole.end_line, whole.end_column)
     return Fix("Give the function", (Edit(behind, ""),), sure=True) if script.text(behind) == "()" else None
-
-
-def _split(text: str) -> list[str]:
-    """The types of arguments, which commas part that stand in no brackets."""
-    found, depth = [""] if text else [], 0
-    for character in text:
-        depth += (character in "[(") - (character in "])")
-        if character == "," and not depth:
-            found.append("")
-        else:
-            found[-1] += character
-    return found
 
 
 RULE = Rule("given-callback", "error", "What Blender is given to call, and cannot", _check)

@@ -23,13 +23,14 @@ from kb_check.edit_bones import bound_in, names_in, run_in, surely_run
 from kb_check.findings import Finding
 from kb_check.made_here import (
     alias,
+    bodies,
     callee_path,
     computes_names,
     has_plain_operators_only,
     is_new,
     knows_all,
     member_path,
-    places,
+    texts_but_keys,
 )
 from kb_check.mode_keeping import is_harmless
 from kb_check.rule import Rule
@@ -37,7 +38,7 @@ from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Mapping
 
     from kb_check.script import Script
 
@@ -56,13 +57,7 @@ _MOST_CLEARED = 8  # trees that are followed at once: each statement is looked a
 def _check(script: Script) -> Iterator[Finding]:
     if computes_names(script):
         return
-    clearing = {node.value: node for node in script.all(ast.Expr) if isinstance(node.value, ast.Call)}
-    bodies = [
-        places(script)[statement][0]
-        for call, statement in clearing.items()
-        if callee_path(script, call) == _CLEAR and statement in places(script)
-    ]
-    for body in {id(body): body for body in bodies}.values():
+    for body in bodies(script):
         yield from _after_clearing(script, body)
     if script.version >= _SINCE and knows_all(script) and has_plain_operators_only(script):
         yield from _of_new(script)
@@ -70,35 +65,49 @@ def _check(script: Script) -> Iterator[Finding]:
 
 def _after_clearing(script: Script, body: list[ast.stmt]) -> Iterator[Finding]:
     """What is asked for behind ``nodes.clear()``."""
-    # Nodes as they are written → the names of those that were made since.
-    cleared: dict[str, set[str]] = {}
+    # Nodes as they are written → the names that this takes, and those of the nodes that were made since.
+    cleared: dict[str, tuple[set[str], set[str]]] = {}
     for statement in body:
-        for node in surely_run(statement) if cleared else ():
-            match node:
-                case ast.Subscript(value=nodes, slice=ast.Constant(value=str(key)), ctx=ast.Load()):
-                    made = cleared.get(ast.unparse(nodes))
-                    if made is not None and not _is_named(key, made) and not is_tried(script, node):
-                        told = f"There is no node {key!r} behind `{ast.unparse(nodes)}.clear()`: `nodes.new` makes one."
-                        yield Finding(RULE.id, "error", script.span(node), told, _NODES)
-                case _:
-                    pass
-        made = _made(script, statement)
-        if made is None:
-            cleared.clear()
-        cleared = {text: names | (made or set()) for text, names in cleared.items()}
-        bound = set(bound_in(statement))
-        cleared = {
-            text: names for text, names in cleared.items() if bound.isdisjoint(names_in(_parsed(text)))
-        }
+        if cleared:
+            yield from _missing(script, statement, {text: made for text, (_, made) in cleared.items()})
+            cleared = _kept(script, statement, cleared)
         match statement:
             case ast.Expr(value=ast.Call(func=ast.Attribute(value=nodes)) as call) if (
                 callee_path(script, call) == _CLEAR
             ):
-                cleared[ast.unparse(nodes)] = set()
+                cleared[ast.unparse(nodes)] = names_in(nodes), set()
                 if len(cleared) > _MOST_CLEARED:
                     del cleared[next(iter(cleared))]
             case _:
                 pass
+
+
+def _missing(script: Script, statement: ast.stmt, cleared: Mapping[str, set[str]]) -> Iterator[Finding]:
+    """What a statement asks for of nodes that were cleared; these → the names of those that were made since."""
+    for node in surely_run(statement):
+        match node:
+            case ast.Subscript(value=nodes, slice=ast.Constant(value=str(key)), ctx=ast.Load()):
+                made = cleared.get(ast.unparse(nodes))
+                if made is not None and not _is_named(key, made) and not is_tried(script, node):
+                    told = f"There is no node {key!r} behind `{ast.unparse(nodes)}.clear()`: `nodes.new` makes one."
+                    yield Finding(RULE.id, "error", script.span(node), told, _NODES)
+            case _:
+                pass
+
+
+def _kept(
+    script: Script, statement: ast.stmt, cleared: Mapping[str, tuple[set[str], set[str]]]
+) -> dict[str, tuple[set[str], set[str]]]:
+    """What is known behind a statement of the nodes that were cleared before it."""
+    made = _made(script, statement)
+    if made is None:
+        return {}
+    bound = set(bound_in(statement))
+    return {
+        text: (written, names | made)
+        for text, (written, names) in cleared.items()
+        if bound.isdisjoint(written)
+    }
 
 
 def _made(script: Script, statement: ast.stmt) -> set[str] | None:
@@ -130,10 +139,6 @@ def _is_named(key: str, names: Iterable[str]) -> bool:
     return any(key.startswith(name) for name in names)
 
 
-def _parsed(text: str) -> ast.AST:
-    return ast.parse(text, mode="eval")
-
-
 def _of_new(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Subscript):
         match node:
@@ -142,7 +147,7 @@ def _of_new(script: Script) -> Iterator[Finding]:
             case _:
                 continue
         made = _all_made(script) if names else None
-        if made is None or _is_named(key, (*names, *made)) or key in _other_texts(script):
+        if made is None or _is_named(key, (*names, *made)) or key in texts_but_keys(script):
             continue
         if not is_tried(script, node):
             told = f"A new one has no node {key!r}, but {' and '.join(map(repr, names))}."
@@ -174,15 +179,6 @@ def _all_made(script: Script) -> frozenset[str] | None:
         return None
     names = [_name_of_new(script, call.node) for call in calls(script) if call.callee.symbol.path == _NEW]
     return None if None in names else frozenset(name for name in names if name)
-
-
-@once_per_script
-def _other_texts(script: Script) -> frozenset[str]:
-    """The texts of a script that are no keys of items: one may be a name that is given to a node."""
-    keys = {node.slice for node in script.all(ast.Subscript)}
-    return frozenset(
-        node.value for node in script.all(ast.Constant) if isinstance(node.value, str) and node not in keys
-    )
 
 
 RULE = Rule("missing-node", "error", "A node by a name that none has", _check)

@@ -29,7 +29,7 @@ from kb_check.calls import calls_by_node
 from kb_check.edit_bones import surely_run
 from kb_check.findings import Finding
 from kb_check.literals import times_bound
-from kb_check.made_here import computes_names, member_path, places
+from kb_check.made_here import bodies, computes_names, member_path
 from kb_check.removed import Removed, may_remove
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
@@ -52,7 +52,7 @@ def _check(script: Script) -> Iterator[Finding]:
     yield from _passed(script)
     if computes_names(script) or not may_remove(script):
         return
-    for body in {id(body): body for body, _ in places(script).values()}.values():
+    for body in bodies(script):
         removed = Removed(script)
         for statement in body:
             if removed.gone:

@@ -22,7 +22,7 @@ from kb_check import active_object
 from kb_check.calls import calls_by_node
 from kb_check.edit_bones import bound_in, names_of_others, run_in, surely_run
 from kb_check.findings import Finding
-from kb_check.made_here import OBJECTS_NEW, bindings, callee_path, computes_names, member_path, places
+from kb_check.made_here import OBJECTS_NEW, bindings, bodies, callee_path, computes_names, member_path
 from kb_check.mode_keeping import is_harmless
 from kb_check.rule import Rule
 from kb_check.tried import is_tried
@@ -41,14 +41,13 @@ _REFUSED = frozenset({f"{_OBJECT}.select_set", f"{_OBJECT}.hide_set"})
 def _check(script: Script) -> Iterator[Finding]:
     if computes_names(script):
         return
-    making = (body for statement, (body, _) in places(script).items() if _makes(script, statement))
-    for body in {id(body): body for body in making}.values():
+    for body in bodies(script):
         unlinked: set[str] = set()
         for statement in body:
             if unlinked:
                 yield from _refused(script, statement, unlinked)
                 unlinked -= _taken(script, statement, unlinked)
-            unlinked -= set(bound_in(statement))
+                unlinked -= set(bound_in(statement))
             if name := _makes(script, statement):
                 unlinked.add(name)
 

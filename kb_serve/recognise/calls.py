@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.argument_texts import split_arguments
 from kb_serve.recognise.contexts import NO_OVERRIDE, with_context
 from kb_serve.recognise.corrections import nearest
 from kb_serve.signatures import signature_arguments
@@ -28,21 +29,7 @@ _DEPTH = 5
 
 def arguments(text: str) -> Iterator[tuple[str, str]]:
     """(keyword or "", text) of each argument between a call's brackets."""
-    depth, quote, start = 0, "", 0
-    for position, char in enumerate(text):
-        if quote:
-            quote = "" if char == quote else quote
-        elif char in "\"'":
-            quote = char
-        elif char in "([{":
-            depth += 1
-        elif char in ")]}":
-            depth -= 1
-        elif char == "," and depth == 0:
-            yield _argument(text[start:position])
-            start = position + 1
-    if text[start:].strip():
-        yield _argument(text[start:])
+    return map(_argument, split_arguments(text))
 
 
 def _argument(text: str) -> tuple[str, str]:

@@ -1,4 +1,4 @@
-"""Operators by the words of a name that another module would have."""
+"""Operators by the words of their names."""
 
 from __future__ import annotations
 
@@ -32,7 +32,17 @@ class OperatorWords:
         found = sorted(having, key=lambda path: (-len(module & having[path]), len(having[path])))
         return found if said and len(found) <= _FEW else []
 
+    def beginning(self, name: str) -> list[str]:
+        """The operators whose own names begin with the words of a name: ``ptcache.bake_all`` for ``bake``."""
+        said = words(name)
+        return [path for path, own in self._own_words.items() if own[: len(said)] == said]
+
+    @cached_property
+    def _own_words(self) -> dict[str, list[str]]:
+        rows = self._reader.rows("SELECT path FROM symbols WHERE kind = 'operator' ORDER BY path")
+        return {path: words(path.rpartition(".")[2]) for (path,) in rows}
+
     @cached_property
     def _words(self) -> dict[str, set[str]]:
-        rows = self._reader.rows("SELECT path FROM symbols WHERE kind = 'operator' ORDER BY path")
-        return {path: set(words(path.removeprefix(OPERATORS))) for (path,) in rows}
+        """Those of the module's name as well."""
+        return {path: {*own, *words(path.split(".")[2])} for path, own in self._own_words.items()}

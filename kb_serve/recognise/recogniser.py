@@ -203,7 +203,9 @@ class Recogniser:
         if owner is None or owner.kind != "class" or not words(missing.name):
             return []
         found = labelled(owner.path, missing.name, self._reader)
-        return found or (operators_on(owner.path, missing.name, self._reader) if missing.called else [])
+        if found or not missing.called:
+            return found
+        return operators_on(owner.path, missing.name, self._operators, self._reader)
 
     def _elsewhere(self, missing: MissingName, recognition: Recognition) -> bool:
         """Adds the name on other classes (``CollectionObjects.link``), similar ones first; whether there is any."""

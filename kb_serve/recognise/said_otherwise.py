@@ -7,18 +7,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
+from kb_serve.recognise.operator_words import OPERATORS
 from kb_serve.recognise.variables import variable_fit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.recognise.operator_words import OperatorWords
 
 _FEW = 3
 _MANY = 6  # more members than these whose labels end alike are not told apart
 _MOST_CASES = 8
 _NAMES_ANOTHER = frozenset({"between", "for", "from", "in", "of", "on", "per", "to", "with"})
-_OPERATORS = "bpy.ops."
 _NAMED_AFTER = (
     0.6  # how well the name of a module of operators must fit a class: ``ptcache`` PointCache, not ``object``
 )
@@ -56,19 +57,15 @@ def _ends_with(entry: SymbolEntry, said: list[str]) -> bool:
     return bool(before) and label[len(before) :] == said and _NAMES_ANOTHER.isdisjoint(before)
 
 
-def operators_on(owner: str, name: str, reader: BaseReader) -> list[str]:
+def operators_on(owner: str, name: str, operators: OperatorWords, reader: BaseReader) -> list[str]:
     """The operators of the module that is named after a class which begin with a name, ``ptcache.bake_all`` for the
     ``bake`` of a PointCache: the very name, and what needs no context override, come first.
     """
-    cls, said = owner.rpartition(".")[2], words(name)
-    rows = reader.rows(
-        "SELECT path FROM symbols WHERE kind = 'operator' AND name LIKE ? ORDER BY path", f"{said[0]}%"
-    )
+    cls = owner.rpartition(".")[2]
     fitting = [
         path
-        for (path,) in rows
-        if words(path.rpartition(".")[2])[: len(said)] == said
-        and variable_fit(path.removeprefix(_OPERATORS).partition(".")[0], cls) >= _NAMED_AFTER
+        for path in operators.beginning(name)
+        if variable_fit(path.removeprefix(OPERATORS).partition(".")[0], cls) >= _NAMED_AFTER
     ]
     weights = reader.weights(fitting)
 

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_serve.recognise.operator_words import OperatorWords
 from kb_serve.recognise.said_otherwise import labelled, operators_on
 
 if TYPE_CHECKING:
@@ -31,10 +32,11 @@ def test_a_member_is_found_by_what_its_button_says(
 
 
 def test_operators_of_the_class_do_what_it_lacks_a_function_for(reader: BaseReader) -> None:
-    baking = operators_on("bpy.types.PointCache", "bake", reader)
+    operators = OperatorWords(reader)
+    baking = operators_on("bpy.types.PointCache", "bake", operators, reader)
     assert baking[:2] == ["bpy.ops.ptcache.bake_all", "bpy.ops.ptcache.bake"]  # the second needs an override
-    assert operators_on("bpy.types.Object", "duplicate", reader)[0] == "bpy.ops.object.duplicate"
-    assert operators_on("bpy.types.PointCache", "unwrap", reader) == []
+    assert operators_on("bpy.types.Object", "duplicate", operators, reader)[0] == "bpy.ops.object.duplicate"
+    assert operators_on("bpy.types.PointCache", "unwrap", operators, reader) == []
 
 
 @pytest.mark.parametrize(

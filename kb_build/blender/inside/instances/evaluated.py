@@ -11,7 +11,7 @@ import bpy
 
 from ..rna import path_of
 from .layouts import NOT_ASKED
-from .making import attempts, choices, mesh_object, scratch_scene
+from .making import attempts, choices, mesh_object, new_modifier, scratch_scene
 from .observer import AROUND, DEPTH, UNREADABLE
 
 FRAMES = 4
@@ -23,11 +23,7 @@ def modified():
     """A mesh object with each modifier that it takes; those that need others to work on do nothing."""
     for kind in choices("Modifier", "type"):
         obj = mesh_object()
-        try:
-            modifier = obj.modifiers.new("new", kind)
-        except (TypeError, RuntimeError):
-            continue
-        if modifier is not None:
+        if new_modifier(obj, kind) is not None:
             yield obj
 
 

@@ -84,6 +84,14 @@ def object_of(kind):
     return bpy.context.object
 
 
+def new_modifier(obj, kind):
+    """A new modifier of an object; None where it takes none of that kind."""
+    try:
+        return obj.modifiers.new("new", kind)
+    except (TypeError, RuntimeError):
+        return None
+
+
 def remove(obj):
     """Removes an object that is no longer needed: every other one makes the scene slower."""
     bpy.data.objects.remove(obj)

@@ -23,6 +23,7 @@ from .making import (
     called,
     choices,
     mesh_object,
+    new_modifier,
     object_of,
     operator_choices,
     present,
@@ -97,10 +98,7 @@ def modifiers():
     for kind in choices("Modifier", "type"):
         for obj in objects:
             activate(obj)
-            try:
-                modifier = obj.modifiers.new("new", kind)
-            except (TypeError, RuntimeError):
-                continue
+            modifier = new_modifier(obj, kind)
             if modifier is None:
                 continue
             yield called(modifier), modifier

@@ -12,7 +12,7 @@ import traceback
 
 import bpy
 
-from .making import attempts, block_makers, choices, mesh_object, operator_choices
+from .making import attempts, block_makers, choices, mesh_object, new_modifier, operator_choices
 from .pointers import variable
 
 ADDING = frozenset({"add", "new", "create", "ensure", "mark", "toggle"})
@@ -114,10 +114,7 @@ def modifier_fillers(observer):
     for kind in choices("Modifier", "type"):
         obj = mesh_object()
         trial = Trial(observer, obj)
-        try:
-            modifier = obj.modifiers.new("new", kind)
-        except (TypeError, RuntimeError):
-            continue
+        modifier = new_modifier(obj, kind)
         if modifier is None:
             continue
         observer.note_filled(obj, trial.filled(), f'.modifiers.new("name", {kind!r})')
@@ -179,10 +176,7 @@ def operate(observer, given, modifier=""):
 def unfilled_modifiers(observer):
     """The kinds of modifiers with pointers that are None when they are new, and that nothing is known to fill."""
     for kind in choices("Modifier", "type"):
-        try:
-            modifier = mesh_object().modifiers.new("new", kind)
-        except (TypeError, RuntimeError):
-            continue
+        modifier = new_modifier(mesh_object(), kind)
         if modifier is not None and Trial(observer, modifier).empty - observer.pointers.fillers.keys():
             yield kind
 
