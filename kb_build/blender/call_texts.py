@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.argument_texts import split_arguments
+from kb_build.index.analysis import split_arguments
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

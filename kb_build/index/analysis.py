@@ -5,9 +5,12 @@ from __future__ import annotations
 import math
 import re
 from functools import cache, lru_cache
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import snowballstemmer
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
 _WORD = re.compile(r"\d+[dD]\b|[A-Za-z]+|\d+(?:\.\d+)?|[^\W\d_]+")
 _CAMEL = re.compile(r"[A-Z]{2,}s\b|[A-Z]{2,}(?=[A-Z][a-z])|[A-Z]{2}[a-z]+|[A-Z]?[a-z]+|[A-Z]+")
@@ -97,3 +100,22 @@ def short_path(path: str) -> str:
 def topic_key(text: str) -> str:
     """One key for a topic in any grammatical number: ``lights``, ``Lighting`` and ``light``."""
     return "~" + "".join(terms(text))
+
+
+def split_arguments(text: str) -> Iterator[str]:
+    """The text of each argument as it stands, blanks and all; commas in brackets and in quotes are theirs."""
+    depth, quote, start = 0, "", 0
+    for position, char in enumerate(text):
+        if quote:
+            quote = "" if char == quote else quote
+        elif char in "\"'":
+            quote = char
+        elif char in "([{":
+            depth += 1
+        elif char in ")]}":
+            depth -= 1
+        elif char == "," and depth == 0:
+            yield text[start:position]
+            start = position + 1
+    if text[start:].strip():
+        yield text[start:]

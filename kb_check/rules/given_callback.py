@@ -23,9 +23,9 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.argument_texts import split_arguments
 from kb_build.flow.trees import walk
 from kb_build.flow.types import NONE, LocalFunction, Plain, Sequence, Tuple, Type, members
+from kb_build.index.analysis import split_arguments
 from kb_check.calls import calls
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.handler_lists import handler_list

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.argument_texts import split_arguments
+from kb_build.index.analysis import split_arguments
 from kb_serve.recognise.contexts import NO_OVERRIDE, with_context
 from kb_serve.recognise.corrections import nearest
 from kb_serve.signatures import signature_arguments
