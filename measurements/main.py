@@ -23,12 +23,22 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 PARTS = (
-    *("retrieval", "names", "defaults", "passages", "signatures", "history", "old_code", "usage", "steps"),
-    *("check_blender", "check_truth", "check_versions", "planted", "pyright", "migrate"),
+    *(
+        "retrieval",
+        "names",
+        "defaults",
+        "passages",
+        "signatures",
+        "history",
+        "old_code",
+        "usage",
+        "expressions",
+    ),
+    *("steps", "check_blender", "check_truth", "check_versions", "planted", "pyright", "migrate"),
     *("latency", "server", "schemas", "builds", "blender", "verifier", "audits"),
 )
 LONG = ("soak",)  # only where they are asked for
-_SETS = ("dev.jsonl", "check.jsonl", "blind.jsonl", "paraphrases.jsonl")
+_SETS = ("dev", "check", "blind", "fourth", "fourth_kept", "paraphrases")
 
 
 def _parts(text: str) -> list[str]:
@@ -101,7 +111,7 @@ def main(given: Sequence[str] | None = None) -> int:
     """
     options = _arguments(given)
     home = (options.home or home_folder()).expanduser().absolute()
-    queries = tuple(options.queries or (QUERIES / name for name in _SETS))
+    queries = tuple(options.queries or (QUERIES / f"{name}.jsonl" for name in _SETS))
     try:
         base = _base(home)
         setting = Setting(base, home, queries, options.quick, options.load_seconds)

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
 LIMIT = 8
 NAMED = frozenset({"exact", "member", "expression"})
 TASK = "task"
-FURTHER = ("check", "blind")
+FURTHER = ("check", "blind", "fourth", "fourth_kept")
 PARAPHRASES = "paraphrases"  # of the set that is judged
 KINDS = (
     "exact",

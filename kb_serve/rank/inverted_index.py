@@ -120,6 +120,11 @@ class InvertedIndex:
         return np.array([own.get(ref, 0.0) for ref in self.levels[0].refs], np.float32)
 
     @cached_property
+    def symbols(self) -> Scores:
+        """1 for each unit that is a symbol, no page."""
+        return np.array([not self._reader.is_page(ref) for ref in self.levels[0].refs], np.float32)
+
+    @cached_property
     def operators(self) -> Scores:
         """1 for each unit that is an operator."""
         return np.array([ref.startswith("bpy.ops.") for ref in self.levels[0].refs], np.float32)

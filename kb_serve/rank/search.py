@@ -201,6 +201,7 @@ class Searcher:
             self.index.areas[numbers],
             units.chapters[numbers],
             units.kinds[numbers],
+            self.index.symbols[numbers],
             *self._operators(numbers, concepts),
         )
         return numbers, evidence

@@ -48,8 +48,9 @@ class Evidence:
 
     ``texts``: BM25F of the unit and of the topic around it. ``asked``: how nearly the query is a phrase that the unit
     or its topic is asked for by, 0…1. ``counts``, ``areas``, ``chapters`` and ``kinds`` are as in the index;
-    ``operators`` is 1 for those; ``called``: which share of the query, by rarity, an operator's name is that the query
-    says whole; None if it says none. ``words`` are the query's; it is an error's message if ``failed``.
+    ``symbols`` and ``operators`` are 1 for those; ``called``: which share of the query, by rarity, an operator's name
+    is that the query says whole; None if it says none. ``words`` are the query's; it is an error's message if
+    ``failed``.
     """
 
     words: frozenset[str]
@@ -60,6 +61,7 @@ class Evidence:
     areas: NDArray[np.uint8]
     chapters: NDArray[np.int32]
     kinds: NDArray[np.uint8]
+    symbols: Scores
     operators: Scores
     called: Scores | None
 
@@ -84,8 +86,9 @@ def counts(evidence: Evidence) -> Scores | None:
 
 
 def code(evidence: Evidence) -> Scores | None:
-    """Whether the unit is about code, where the query asks for code."""
-    return None if evidence.words.isdisjoint(CODE_WORDS) else _of_code(evidence)
+    """Whether the unit is about code, or what code calls or sets, where the query asks for code."""
+    is_asked = not evidence.words.isdisjoint(CODE_WORDS)
+    return np.maximum(_of_code(evidence), evidence.symbols) if is_asked else None
 
 
 def operator(evidence: Evidence) -> Scores | None:

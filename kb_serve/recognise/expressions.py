@@ -3,6 +3,16 @@
 from __future__ import annotations
 
 import builtins
+import itertools
+import json
+import logging
+import math
+import os
+import pathlib
+import random
+import re
+import sys
+import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -13,6 +23,7 @@ from kb_serve.recognise.members_by_words import members_by_words
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
+from kb_serve.recognise.resolver import TOLD_BY_MEMBER
 from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import USUAL, is_guess, usual_classes
 
@@ -35,7 +46,6 @@ _BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 _CLEAR = 0.85  # fit of a variable's name that hardly means another class
 _LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
-_OWN_CLASS = 0.2  # from this fit on, a variable's name supports the class at all
 
 # Classes whose members are defined by scripts and add-ons.
 _OPEN = frozenset({"OperatorProperties", "Operator", "PropertyGroup", "AddonPreferences", "Context"})
@@ -44,10 +54,17 @@ _CALLED_OR_SET = frozenset({"property", "function", "operator"})
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
+_PYTHON_MODULES = {
+    module.__name__: module for module in (itertools, json, logging, math, os, pathlib, random, re, sys, time)
+}
 
 
 def _is_api(chain: Chain) -> bool:
-    """Whether a chain may be Blender's; ``object.location`` is, although Python has an ``object`` too."""
+    """Whether a chain may be Blender's; ``object.location`` is, although Python has an ``object`` too, and so is
+    ``math.operation``, which the module ``math`` lacks.
+    """
+    if chain.root in _PYTHON_MODULES and chain.attributes:
+        return not hasattr(_PYTHON_MODULES[chain.root], chain.attributes[0])
     return chain.root not in _NOT_API or bool(chain.attributes)
 
 
@@ -120,7 +137,7 @@ class Expressions:
         For a variable clearly named after a class that lacks the attribute, that class is believed, not another
         one that has the attribute.
         """
-        if not resolved.complete:
+        if not resolved.complete or (_is_file_name(chain) and resolved.fit < _LIKELY):
             return False
         if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and resolved.fit < 0.5:
             return False
@@ -128,7 +145,7 @@ class Expressions:
             return True
         if 'puts["' in resolved.symbols[-1] and (broken is None or broken.fit < _CLEAR):
             return True  # what is in brackets tells it, whatever the variable is called
-        return resolved.fit >= 1.0 or len(chain.attributes) >= (1 if resolved.fit >= _OWN_CLASS else 2)
+        return resolved.fit >= 1.0 or bool(chain.attributes)
 
     def _misspelt(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether a root is a misspelt class: ``PoimtLight`` is hardly a variable that holds a light."""
@@ -167,7 +184,11 @@ class Expressions:
             recognition.add(resolved.symbols[-1], sure - 0.04 * rank - later, "expression")
         if not later and not bare and len(chain.root) > 1:
             usual = usual_classes(chain.root)
-            others = [resolved.symbols[-1] for resolved in likely[1:] if resolved.symbols[0] in usual]
+            others = [
+                resolved.symbols[-1]
+                for resolved in likely[1:]
+                if resolved.symbols[0] in usual or resolved.fit <= TOLD_BY_MEMBER
+            ]
             told = dict.fromkeys((*likely[0].alike, *others))
             recognition.alike = [path for path in told if path != likely[0].symbols[-1]]
         if readings[0].keyed:

@@ -94,6 +94,7 @@ _WORDING = re.compile(
     |bpy_struct:\ (?=attribute|Context)|attribute\ "\w+"\ from\ "\w+"\ is\ read-only|Context\ property\ (?="\w+"\ is)
     |(?:StructRNA|BMesh\ data)\ of\ type\ \w+\ has\ been\ removed|BMeshOpsModule:\ operator
     |\bNode\ type\ (?=\w+\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object
+    |\.\ Did\ you\ mean:\ '[^']*'\?
     |required\ parameter\ "\w+"\ (?:not\ specified|to\ be\ a\ keyword\ argument!?)|Calling\ operator\ (?=")""",
     re.VERBOSE,
 )

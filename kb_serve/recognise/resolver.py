@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, words
 from kb_serve.reader import COLLECTION, TYPES, BaseReader, SymbolEntry
 from kb_serve.recognise.subscripts import CustomProperties
-from kb_serve.recognise.variables import Variables, variable_fit
+from kb_serve.recognise.variables import Variables, classes_of_parts, variable_fit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -31,6 +31,7 @@ ROOTS = {
     "types": "bpy.types",
 }
 _IMPORTED = ("mathutils.", "bmesh.types.")  # whose classes scripts import by name
+_ELEMENT, _LAYERS = "bmesh.types.BM", "bmesh.types.BMLayerAccess"
 _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _NUMBERED = re.compile(r"\.\d{3}$")
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
@@ -38,6 +39,9 @@ _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
 _COLLECTION_FIT = 0.7  # of an indexed variable with the name of a collection property
 _USUAL = 0.05
+# Fit of the class that is likeliest meant by a member, for a variable whose name tells nothing; and of one that a part
+# of the name may mean.
+TOLD_BY_MEMBER, _TOLD_BY_PART = 0.2, 0.28
 _MAX_BRANCHES = 60
 _MOST_NAMES = 8  # in the longest path
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
@@ -147,13 +151,26 @@ class Resolver:
                     is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
                     yield value, 0, _COLLECTION_FIT + (_USUAL if is_usual else 0.0)
         if chain.steps and first:
-            named = self._reader.by_name(first)[:_MAX_BRANCHES]
-            self._reader.entry.load(entry.owner for entry in named)
-            for entry in named:
-                owner = self._reader.entry(entry.owner)
-                if owner and owner.kind == "class" and entry.owner not in seen:
-                    seen.add(entry.owner)
-                    yield ChainValue(owner.path, owner.path), 0, 0.3 * variable_fit(chain.root, owner.name)
+            parts = classes_of_parts(chain.root)
+            for rank, owner in enumerate(self._owners(first)):
+                if owner.path not in seen:
+                    seen.add(owner.path)
+                    told = _TOLD_BY_PART if self._is_one_of(owner.path, parts) else TOLD_BY_MEMBER
+                    fit = max(told - 0.001 * rank, 0.3 * variable_fit(chain.root, owner.name))
+                    yield ChainValue(owner.path, owner.path), 0, fit
+
+    def _is_one_of(self, owner: str, classes: Sequence[str]) -> bool:
+        """Whether a class is one of some, or a kind or a base of one."""
+        return any(self._reader.descends(owner, cls) or self._reader.descends(cls, owner) for cls in classes)
+
+    def _owners(self, member: str) -> Iterator[SymbolEntry]:
+        """The classes that have a member of their own of a name, those first that are likeliest meant."""
+        named = [entry for entry in self._reader.by_name(member) if entry.kind != "socket"]
+        self._reader.entry.load(entry.owner for entry in named)
+        for entry in self._heaviest(named)[:_MAX_BRANCHES]:
+            owner = self._reader.entry(entry.owner)
+            if owner and owner.kind == "class":
+                yield owner
 
     def _named_like_a_module(self, variable: str, member: str, module: str) -> list[str]:
         """The classes that a variable may hold which is called like a module that scripts import by its last name, if
@@ -293,6 +310,7 @@ class Resolver:
         elif value.many:
             yield from self._item(value, step)
         elif step.kind == "index":
+            yield from self._in_layers(value.cls)
             yield replace(value, cls="")  # an element of a vector
         elif not value.cls:
             yield value
@@ -348,6 +366,14 @@ class Resolver:
             yield ChainValue(path, path)
         if not named:
             yield ChainValue(value.symbol, value.cls)
+
+    def _in_layers(self, cls: str) -> Iterator[ChainValue]:
+        """What an element of a bmesh has in its layers, which it is indexed by: ``loop[uv_layer]`` is a BMLoopUV."""
+        if not cls.startswith(_ELEMENT):
+            return
+        for layers in self._reader.members(f"{_LAYERS}{cls.removeprefix(_ELEMENT)}").values():
+            for held in self._classes_in(layers.type.partition("[")[2], layers.path):
+                yield ChainValue(held, held)
 
     def _in_tree(self, nodes: Sequence[str], tree: str) -> Sequence[str]:
         """Of nodes with one name, those that the tree can hold; all if that does not tell them apart."""

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
 USUAL = 0.95  # fit of a name that scripts use for a class
 _OTHERWISE = 0.92  # … and of the further classes that they use it for
+_POINTER = 0.8  # … of what a pointer of that name leads to, or what begins so: a member may tell otherwise
 _LETTER = 0.4  # … of a single letter that a class begins with: it may be anything
 _NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|selected|cur|current)_(?=\w)")
 
@@ -70,14 +71,11 @@ _NAMES = {
     "Key": "shape_keys",
     "Spline": "spline spl",
     "VertexGroup": "vg vgroup vertex_group",
-    "MeshVertex": "vert vertex vtx",
-    "MeshPolygon": "poly polygon face",
-    "MeshEdge": "edge",
-    "MeshLoop": "loop",
-    "MeshVertex bmesh.types.BMVert": "v",
-    "MeshPolygon bmesh.types.BMFace": "f",
-    "MeshEdge bmesh.types.BMEdge": "e",
-    "MeshLoop bmesh.types.BMLoop": "l",
+    "MeshPolygon": "poly polygon",
+    "MeshVertex bmesh.types.BMVert": "v vert vertex vtx",
+    "MeshPolygon bmesh.types.BMFace": "f face",
+    "MeshEdge bmesh.types.BMEdge": "e edge",
+    "MeshLoop bmesh.types.BMLoop": "l loop",
     "SpaceView3D": "space space_data v3d view view3d",
     "SpaceImageEditor": "sima image_editor",
     "SpaceSequenceEditor": "sseq",
@@ -155,6 +153,12 @@ def usual_classes(variable: str) -> list[str]:
     return _BY_NAME.get(name, [])
 
 
+def classes_of_parts(variable: str) -> list[str]:
+    """Paths of the classes that scripts use a part of a variable's name for: ``bone_dest`` as ``bone``."""
+    parts = variable.lower().strip("_").split("_")
+    return [path for part in parts if len(parts) > 1 for path in usual_classes(part)]
+
+
 def is_guess(variable: str) -> bool:
     """Whether a name is too short to tell what it holds: a letter, or two that scripts use for no one class."""
     return len(variable) == 1 or (len(variable) == 2 and len(usual_classes(variable)) != 1)
@@ -188,10 +192,10 @@ class Variables:
         pointed = {entry.target for entry in named if entry.kind == "property" and entry.type == "pointer"}
         for entry in named:
             if entry.target and entry.kind == "property" and entry.type == "pointer":
-                yield TYPES + entry.target, 0.85 if len(pointed) == 1 else 0.5
+                yield TYPES + entry.target, _POINTER if len(pointed) == 1 else 0.5
         for entry in self._reader.members(f"{TYPES}BlendData").values():
             if entry.type == "collection" and (fit := variable_fit(name, entry.target)) > 0:
-                yield TYPES + entry.target, fit
+                yield TYPES + entry.target, fit if fit == 1.0 else min(fit, _POINTER)
         spelled = [identifier for _, identifier in self._reader.by_key(key(name))]
         self._reader.entry.load(spelled)
         for entry in map(self._reader.entry, spelled):

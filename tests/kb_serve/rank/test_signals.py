@@ -28,10 +28,11 @@ def evidence(
     asked: tuple[float, ...] = (),
     counts: tuple[float, ...] = (),
     areas: tuple[int, ...] = (),
+    symbols: tuple[float, ...] = (),
     operators: tuple[float, ...] = (),
     called: tuple[float, ...] = (),
 ) -> Evidence:
-    count = len(kinds) or len(asked) or len(counts) or len(areas) or len(operators) or len(called)
+    count = max(map(len, (kinds, asked, counts, areas, symbols, operators, called)))
     return Evidence(
         frozenset(words.split()),
         failed,
@@ -41,6 +42,7 @@ def evidence(
         np.array(areas or [NO_AREA] * count, np.uint8),
         np.arange(count, dtype=np.int32),
         np.array([DOCUMENT_KINDS.index(kind) for kind in kinds or ["data"] * count], np.uint8),
+        np.array(symbols or [0] * count, np.float32),
         np.array(operators or [0] * count, np.float32),
         np.array(called or [0] * count, np.float32),
     )
@@ -76,6 +78,12 @@ def test_code_and_nodes_are_data_alike_where_the_query_says_nothing_of_either() 
 def test_a_unit_gains_by_a_phrase_that_is_near() -> None:
     far, near = scores_of(evidence(asked=(0.2, 0.8))).tolist()
     assert near > far
+
+
+def test_a_symbol_of_any_kind_gains_where_code_is_asked_for() -> None:
+    page, symbol = scores_of(evidence("active object python", symbols=(0.0, 1.0))).tolist()
+    assert symbol > page
+    assert len(set(scores_of(evidence("active object", symbols=(0.0, 1.0))).tolist())) == 1
 
 
 def test_an_operator_gains_where_code_is_asked_for() -> None:

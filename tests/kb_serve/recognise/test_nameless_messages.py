@@ -42,6 +42,7 @@ grouped()["grouped"]["number"] = "A"
 ob.modifiers.new("w", "WAVE")["a"] = 1
 ob.modifiers.new("w", "WAVE").keys()
 bpy.props.IntProperty()["default"]
+bpy.props.IntProperty() + 1
 register_operator_with_own_init(); bpy.ops.wm.made()
 import gpu; gpu.types.GPUShader("", "")
 tree().nodes.new("NodeGroupInput").outputs.new("NodeSocketFloat", "x")

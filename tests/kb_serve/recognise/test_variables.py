@@ -117,3 +117,46 @@ def test_what_is_sure_names_no_others(kb: KnowledgeBase, query: str) -> None:
     answer = kb.query(query)
     assert answer.hits[0].id.startswith("bpy.types.")
     assert not [note for note in answer.notes if "may also stand" in note]
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("plane.rotation_euler", "Object.rotation_euler"), ("thing.modifiers.new('x', 'BEVEL')", "ObjectModifiers.new"),
+        ("anything.keyframe_points", "FCurve.keyframe_points"), ("left.select_set(True)", "Object.select_set"),
+        ("child.matrix_parent_inverse", "Object.matrix_parent_inverse"), ("par.matrix_world", "Object.matrix_world"),
+        ("bone_dest.bbone_segments", "Bone.bbone_segments"), ("kmi_toolbar.type", "KeyMapItem.type"),
+    ],
+)  # fmt: skip
+def test_a_member_tells_what_a_variable_is_whose_name_does_not(
+    kb: KnowledgeBase, query: str, first: str
+) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id == f"bpy.types.{first}"
+    assert not [note for note in answer.notes if "has no" in note]
+
+
+def test_what_else_such_a_variable_may_be_is_named(kb: KnowledgeBase) -> None:
+    assert [note for note in kb.query("plane.scale").notes if "`PoseBone.scale`" in note]
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("l[uv_layer].uv", "bmesh.types.BMLoopUV.uv"), ("loop[layer].pin_uv", "bmesh.types.BMLoopUV.pin_uv"),
+        ("v[deform_layer].keys()", "bmesh.types.BMDeformVert.keys"),
+    ],
+)  # fmt: skip
+def test_an_element_of_a_bmesh_is_indexed_by_its_layers(kb: KnowledgeBase, query: str, first: str) -> None:
+    assert kb.query(query).hits[0].id == first
+
+
+@pytest.mark.parametrize("query", ["random.seed(3)", "math.radians(90)", "os.path.join(a, b)", "time.time()"])
+def test_pythons_own_modules_are_no_variables(kb: KnowledgeBase, query: str) -> None:
+    answer = kb.query(query)
+    assert not answer.notes
+    assert answer.kind == "candidates"
+
+
+def test_a_variable_called_as_a_module_of_python_is_known(kb: KnowledgeBase) -> None:
+    assert kb.query("math.operation = 'ADD'").hits[0].id.endswith("NodeMath.operation")

@@ -13,6 +13,11 @@ _NO_CUSTOM_PROPERTIES = (
     "`setattr(self, name, value)`). Nor do other modifiers, constraints or sockets: store the value on their object or "
     "node."
 )
+_ONLY_DEFINED = (
+    "A property that a class got by `size = bpy.props.IntProperty()` is only its definition. Write an annotation, "
+    "`size: bpy.props.IntProperty()`, register the class, and read the value from an instance: `self.size` of an "
+    "operator, `scene.settings.size` of a property group."
+)
 CUSTOM_PROPERTIES = (
     NamelessMessage(
         ("value to the existing '", "Group IDProperty"),
@@ -43,6 +48,12 @@ CUSTOM_PROPERTIES = (
         ("'_PropertyDeferred' object is not subscriptable",),
         ("bpy.props._PropertyDeferred",),
         "What `bpy.props` returns is no tuple since Blender 2.93: `deferred.function` instead of `deferred[0]`, and "
-        "`deferred.keywords`, a dictionary, instead of `deferred[1]`.",
+        "`deferred.keywords`, a dictionary, instead of `deferred[1]`. " + _ONLY_DEFINED,
+    ),
+    NamelessMessage(
+        ("_PropertyDeferred",),
+        ("bpy.props", f"{_T}PropertyGroup"),
+        _ONLY_DEFINED,
+        ("is not subscriptable",),
     ),
 )
