@@ -9,6 +9,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.call_texts import by_place, by_place_up_to, call_text, with_sets
+from kb_build.blender.context_members import name_classes
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.manual_links import manual_links
 from kb_build.blender.tried_facts import ADDED, add_items
@@ -293,6 +294,7 @@ def read_extract(path: Path) -> Extract:
         if holder in raw.symbols and f"bpy.types.{tree}" in raw.symbols:
             raw.symbols[holder]["target"] = tree
     _name_active_items(raw.symbols)
+    name_classes(raw.symbols)
     _substitute(raw.symbols.values())
     described = [*_described_members(raw.symbols.values())]
     symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}

@@ -9,7 +9,6 @@ from typing import TYPE_CHECKING, Protocol
 from kb_build.flow.facts import (
     CALLED,
     CLASS_OF_VALUE,
-    CONTEXT_MEMBERS,
     DISCRIMINANTS,
     ELEMENT,
     ELEMENTS,
@@ -243,19 +242,11 @@ class Api:
             return Collection(element, container, path, UNKNOWN)
         if symbol.type == "pointer" or symbol.target:
             return Instance(self._target(symbol))
-        if symbol.kind == "context" and not symbol.type:
-            return self._context_member(symbol.name)
         return self._value_type(symbol)
 
     def _target(self, symbol: Symbol) -> str:
         narrower = T + NARROWER.get(symbol.path, "")
         return narrower if self.is_class(narrower) else f"{T}{symbol.target}"
-
-    def _context_member(self, name: str) -> Type:
-        cls = CONTEXT_MEMBERS.get(name, "")
-        if cls.startswith("["):
-            return Sequence("list", self.instance(T + cls[1:-1]))
-        return self.instance(T + cls)
 
     def instance(self, cls: str) -> Type:
         """An instance of a class; UNKNOWN if there is no such class."""

@@ -184,21 +184,6 @@ SUMS = {
     "/": frozenset({("mathutils.Vector", "number"), ("mathutils.Color", "number")}),
 }  # fmt: skip
 
-# Members of ``bpy.context`` whose class only an editor tells: name → class; with brackets, a list of them.
-CONTEXT_MEMBERS = {
-    "active_editable_fcurve": "FCurve", "cloth": "ClothModifier", "collision": "CollisionModifier",
-    "dynamic_paint": "DynamicPaintModifier", "edit_movieclip": "MovieClip", "editable_fcurves": "[FCurve]",
-    "fluid": "FluidModifier", "gpencil": "GreasePencil", "image_paint_object": "Object", "lightprobe": "LightProbe",
-    "line_style": "FreestyleLineStyle", "particle_edit_object": "Object", "pointcloud": "PointCloud",
-    "particle_system_editable": "ParticleSystem", "sculpt_object": "Object",
-    "selected_editable_fcurves": "[FCurve]", "selected_movieclip_tracks": "[MovieTrackingTrack]",
-    "selected_pose_bones_from_active_object": "[PoseBone]", "selected_visible_fcurves": "[FCurve]",
-    "sequencer_scene": "Scene", "soft_body": "SoftBodyModifier", "ui_list": "UIList",
-    "vertex_paint_object": "Object", "visible_fcurves": "[FCurve]", "weight_paint_object": "Object",
-    "curves": "Curves", "selected_ids": "[ID]", "edit_image": "Image", "active_file": "FileSelectEntry",
-    "selected_files": "[FileSelectEntry]",
-}  # fmt: skip
-
 # Members whose value has the class of what they are read from, though they are declared wider.
 SAME_CLASS = frozenset(
     {"original", "evaluated_get", "copy", "override_create", "make_local", "evaluated_object"}

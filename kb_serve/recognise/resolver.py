@@ -9,7 +9,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
-from kb_serve.reader import COLLECTION, TYPES, BaseReader, SymbolEntry
+from kb_serve.reader import COLLECTION, STRUCT, TYPES, BaseReader, SymbolEntry
 from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import Variables, classes_of_parts, variable_fit
 
@@ -31,6 +31,7 @@ ROOTS = {
     "types": "bpy.types",
 }
 _IMPORTED = ("mathutils.", "bmesh.types.")  # whose classes scripts import by name
+_INSTANCE = "self"  # of a class of the script's own, whose attributes are like variables
 _ELEMENT, _LAYERS = "bmesh.types.BM", "bmesh.types.BMLayerAccess"
 _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _NUMBERED = re.compile(r"\.\d{3}$")
@@ -89,6 +90,10 @@ class ResolvedChain:
         return bool(self.symbols) and not self.missing
 
 
+def _first_name(chain: Chain) -> str:
+    return next(iter(chain.attributes), "")
+
+
 class Resolver:
     """Resolves chains against one base."""
 
@@ -126,38 +131,48 @@ class Resolver:
 
     def _starts(self, chain: Chain) -> Iterator[tuple[ChainValue, int, float]]:
         """(value, steps used, fit) for everything that the chain's root can stand for."""
-        exact = self._rooted(chain)
-        first = next((step.text for step in chain.steps if step.kind == "attr"), "")
-        if exact:
-            named = self._named_like_a_module(chain.root, first, exact[0].symbol)
+        if self._is_of_the_instance(chain):
+            own = replace(chain, root=chain.steps[0].text, steps=chain.steps[1:])
+            yield from ((value, used + 1, fit) for value, used, fit in self._starts(own))
+        elif exact := self._rooted(chain):
+            named = self._named_like_a_module(chain.root, _first_name(chain), exact[0].symbol)
             for rank, cls in enumerate(named):
                 yield ChainValue(cls, cls), 0, _NAMED_LIKE_A_MODULE - 0.001 * rank
             if not named:
                 yield exact
-            return
+        else:
+            yield from ((value, 0, fit) for value, fit in self._of_variable(chain))
+
+    def _is_of_the_instance(self, chain: Chain) -> bool:
+        """Whether a chain goes on from an attribute that only a script's own class can have: ``self.obj.location``."""
+        goes_on = chain.root == _INSTANCE and len(chain.steps) > 1 and chain.steps[0].kind == "attr"
+        return goes_on and not any(e.group == "ui" for e in self._reader.by_name(chain.steps[0].text))
+
+    def _of_variable(self, chain: Chain) -> Iterator[tuple[ChainValue, float]]:
+        """(value, fit) for everything that a variable can stand for: by its name, then by the member that it has."""
         seen: set[str] = set()
         for cls, fit in self._variables.classes(chain.root):
             if cls not in seen:
                 seen.add(cls)
-                yield ChainValue(cls, cls), 0, fit
-        if chain.steps:
-            for entry in self._reader.by_name(chain.root)[:_MAX_BRANCHES]:
-                if (
-                    entry.kind == "property"
-                    and (value := self._value_of(entry)).many
-                    and self._is_used_as(value, chain)
-                ):
-                    # An Object's modifiers are likelier than an FCurve's.
-                    is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
-                    yield value, 0, _COLLECTION_FIT + (_USUAL if is_usual else 0.0)
-        if chain.steps and first:
-            parts = classes_of_parts(chain.root)
-            for rank, owner in enumerate(self._owners(first)):
-                if owner.path not in seen:
-                    seen.add(owner.path)
-                    told = _TOLD_BY_PART if self._is_one_of(owner.path, parts) else TOLD_BY_MEMBER
-                    fit = max(told - 0.001 * rank, 0.3 * variable_fit(chain.root, owner.name))
-                    yield ChainValue(owner.path, owner.path), 0, fit
+                yield ChainValue(cls, cls), fit
+        if not chain.steps:
+            return
+        for entry in self._reader.by_name(chain.root)[:_MAX_BRANCHES]:
+            if (
+                entry.kind == "property"
+                and (value := self._value_of(entry)).many
+                and self._is_used_as(value, chain)
+            ):
+                # An Object's modifiers are likelier than an FCurve's.
+                is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
+                yield value, _COLLECTION_FIT + (_USUAL if is_usual else 0.0)
+        parts = classes_of_parts(chain.root)
+        for rank, owner in enumerate(self._owners(_first_name(chain))):
+            if owner.path not in seen:
+                seen.add(owner.path)
+                told = _TOLD_BY_PART if self._is_one_of(owner.path, parts) else TOLD_BY_MEMBER
+                fit = max(told - 0.001 * rank, 0.3 * variable_fit(chain.root, owner.name))
+                yield ChainValue(owner.path, owner.path), fit
 
     def _is_one_of(self, owner: str, classes: Sequence[str]) -> bool:
         """Whether a class is one of some, or a kind or a base of one."""
@@ -320,7 +335,9 @@ class Resolver:
 
     def _attribute(self, value: ChainValue, name: str) -> Iterator[ChainValue]:
         if value.many:
-            entry = self.member(value.container, name) or self.member(COLLECTION, name)
+            entry = self.member(value.container, name)
+            if entry is None or entry.owner == STRUCT:  # ``get`` of a collection is no struct's
+                entry = self.member(COLLECTION, name) or entry
             if entry:
                 yield self._value_of(entry, value.cls)
             return

@@ -186,7 +186,10 @@ def test_data_blocks_are_found_by_name_or_number(kb: KnowledgeBase, reader: Base
 def test_a_collection_has_its_own_methods_and_those_of_every_collection(
     kb: KnowledgeBase, reader: BaseReader
 ) -> None:
-    cases = [("bpy.context.object.modifiers.foreach_get", "bpy.types.bpy_prop_collection.foreach_get")]
+    cases = [
+        ("bpy.context.object.modifiers.foreach_get", "bpy.types.bpy_prop_collection.foreach_get"),
+        ('bpy.data.collections.get("x")', "bpy.types.bpy_prop_collection.get"),
+    ]
     for entry in reader.members("bpy.types.BlendData").values():
         for member in reader.members(TYPES + entry.collection).values() if entry.collection else ():
             if member.kind == "function" and not member.name.startswith("bl_rna"):
@@ -199,6 +202,8 @@ def test_a_collection_has_its_own_methods_and_those_of_every_collection(
     ("expression", "path"),
     [
         ("bpy.context.object.location.x", "mathutils.Vector.x"),
+        ("bpy.context.cloth.settings.quality", "bpy.types.ClothSettings.quality"),
+        ("bpy.context.selected_editable_fcurves[0].array_index", "bpy.types.FCurve.array_index"),
         ("obj.matrix_world.translation", "mathutils.Matrix.translation"),
         ("obj.matrix_world.inverted() @ v", "mathutils.Matrix.inverted"),
         ("obj.location.lerp(b, 0.5).normalized()", "mathutils.Vector.normalized"),

@@ -136,6 +136,19 @@ def test_a_member_tells_what_a_variable_is_whose_name_does_not(
     assert not [note for note in answer.notes if "has no" in note]
 
 
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("self.obj.location", "Object.location"), ("self.rig.pose.bones", "Pose.bones"),
+        ("self.report({'INFO'}, 'done')", "Operator.report"), ("self.layout.prop(ob, 'name')", "UILayout.prop"),
+    ],
+)  # fmt: skip
+def test_an_attribute_of_a_scripts_own_class_is_like_a_variable(
+    kb: KnowledgeBase, query: str, first: str
+) -> None:
+    assert kb.query(query).hits[0].id == f"bpy.types.{first}"
+
+
 def test_what_else_such_a_variable_may_be_is_named(kb: KnowledgeBase) -> None:
     assert [note for note in kb.query("plane.scale").notes if "`PoseBone.scale`" in note]
 

@@ -1,0 +1,37 @@
+"""What those members of ``bpy.context`` are that only an editor gives: asked, Blender has no value of them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+_TYPES = "bpy.types."
+# Name → class, of several that which this Blender has; with brackets, a list of them.
+_MEMBERS = {
+    "active_editable_fcurve": "FCurve", "active_file": "FileSelectEntry", "annotation_data": "Annotation GreasePencil",
+    "asset": "AssetRepresentation", "cloth": "ClothModifier", "collision": "CollisionModifier", "curves": "Curves",
+    "dynamic_paint": "DynamicPaintModifier", "edit_image": "Image", "edit_movieclip": "MovieClip",
+    "editable_fcurves": "[FCurve]", "fluid": "FluidModifier", "gpencil": "GreasePencil",
+    "image_paint_object": "Object", "lightprobe": "LightProbe", "line_style": "FreestyleLineStyle",
+    "particle_edit_object": "Object", "particle_system_editable": "ParticleSystem", "pointcloud": "PointCloud",
+    "sculpt_object": "Object", "selected_assets": "[AssetRepresentation]", "selected_editable_fcurves": "[FCurve]",
+    "selected_files": "[FileSelectEntry]", "selected_ids": "[ID]", "selected_movieclip_tracks": "[MovieTrackingTrack]",
+    "selected_pose_bones_from_active_object": "[PoseBone]", "selected_visible_fcurves": "[FCurve]",
+    "sequencer_scene": "Scene", "soft_body": "SoftBodyModifier", "texture_user_property": "Property",
+    "ui_list": "UIList", "vertex_paint_object": "Object", "visible_fcurves": "[FCurve]",
+    "weight_paint_object": "Object",
+}  # fmt: skip
+
+
+def name_classes(symbols: Mapping[str, dict[str, Any]]) -> None:
+    """Gives those members their class that Blender, when it was asked, had no value of."""
+    for row in symbols.values():
+        if row["kind"] != "context" or row.get("type"):
+            continue
+        told = _MEMBERS.get(row["path"].rpartition(".")[2], "")
+        for name in told.strip("[]").split():
+            if f"{_TYPES}{name}" in symbols:
+                row["type"], row["target"] = "collection" if told.startswith("[") else "pointer", name
+                break
