@@ -145,8 +145,9 @@ class Resolver:
 
     def _is_of_the_instance(self, chain: Chain) -> bool:
         """Whether a chain goes on from an attribute that only a script's own class can have: ``self.obj.location``."""
-        goes_on = chain.root == _INSTANCE and len(chain.steps) > 1 and chain.steps[0].kind == "attr"
-        return goes_on and not any(e.group == "ui" for e in self._reader.by_name(chain.steps[0].text))
+        if chain.root != _INSTANCE or not chain.steps[1:] or chain.steps[0].kind != "attr":
+            return False
+        return not any(entry.group == "ui" for entry in self._reader.by_name(_first_name(chain)))
 
     def _of_variable(self, chain: Chain) -> Iterator[tuple[ChainValue, float]]:
         """(value, fit) for everything that a variable can stand for: by its name, then by the member that it has."""
