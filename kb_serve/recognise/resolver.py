@@ -43,6 +43,7 @@ _USUAL = 0.05
 # Fit of the class that is likeliest meant by a member, for a variable whose name tells nothing; and of one that a part
 # of the name may mean.
 TOLD_BY_MEMBER, _TOLD_BY_PART = 0.2, 0.28
+_MOST_TOLD = 8  # classes that a member alone may mean
 _MAX_BRANCHES = 60
 _MOST_NAMES = 8  # in the longest path
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
@@ -173,7 +174,9 @@ class Resolver:
                 seen.add(owner.path)
                 told = _TOLD_BY_PART if self._is_one_of(owner.path, parts) else TOLD_BY_MEMBER
                 fit = max(told - 0.001 * rank, 0.3 * variable_fit(chain.root, owner.name))
-                yield ChainValue(owner.path, owner.path), fit
+                # Where a chain goes on, what follows tells which one is meant.
+                if rank < _MOST_TOLD or fit > TOLD_BY_MEMBER or len(chain.steps) > 1:
+                    yield ChainValue(owner.path, owner.path), fit
 
     def _is_one_of(self, owner: str, classes: Sequence[str]) -> bool:
         """Whether a class is one of some, or a kind or a base of one."""
