@@ -140,6 +140,7 @@ _ROWS = (
     Target("expressions1", "expressions of Blender's scripts, asked alone: right first", "share", 0.85, True),
     Target("expressions5", "… or among five", "share", 0.92, True),
     Target("nameless5", "… with a variable whose name tells nothing, among five", "share", None, True),
+    Target("bound5", "… behind the line that binds such a variable", "share", None, True),
     Target("steps_done", "steps of topics that Blender does in a new scene", "share", 0.99, True),
     Target("flow_speed", "types flow through 1,000 lines", "ms", 150),
     Target("check_false", "Blender's own scripts: findings that Blender does not prove", "count", 0),

@@ -10,7 +10,7 @@ from typing import Literal
 _BUILTINS = frozenset(dir(builtins))
 MAX_QUERY = 4_000
 _MAX_CHAINS = 12
-_MAX_STEPS = 16  # the longest expression of a scene's script has ten
+MAX_STEPS = 16  # the longest expression of a scene's script has ten
 _MAX_BUILTINS = 12
 _MAX_VALUES = 8
 _HUMP = re.compile(r"[a-z0-9][A-Z]")
@@ -126,7 +126,7 @@ def find_chains(text: str) -> list[Chain]:
     while match := _IDENTIFIER.search(text, position):
         start, position = match.span()
         steps: list[ChainStep] = []
-        while len(steps) < _MAX_STEPS and (taken := _step(text, position)):
+        while len(steps) < MAX_STEPS and (taken := _step(text, position)):
             step, position = taken
             steps.append(step)
         assigned = _ASSIGNMENT.match(text, position) is not None

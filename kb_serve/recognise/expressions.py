@@ -211,9 +211,10 @@ class Expressions:
             return False
         resolved, corrections = corrected
         recognition.corrections += corrections
-        recognition.add(
-            resolved.symbols[-1], 0.93 * min(c.similarity for c in corrections) ** 0.25 - later, "correction"
-        )
+        alike = min(correction.similarity for correction in corrections) ** 0.25
+        # What is wrong in code is what is asked for, before what is right.
+        sure = 0.93 * alike if resolved.fit < USUAL else 1.0 - 0.1 * (1 - alike)
+        recognition.add(resolved.symbols[-1], sure - later, "correction")
         for step, symbol in enumerate(reversed(resolved.symbols[:-1])):
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
         return True
@@ -230,6 +231,8 @@ class Expressions:
         owner = self._reader.entry(resolved.owner)
         if owner and owner.kind == "property" and hasattr(str, resolved.missing):
             return  # ``obj.name.startswith``
+        if owner and owner.kind == "function":
+            return  # what it gives is not known
         if resolved.fit < 1.0 and is_guess(chain.root):
             return
         sure = self._is_sure(chain, resolved)

@@ -9,6 +9,7 @@ import re
 from kb_build.index.analysis import terms, words
 from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.addresses import ids_in_urls
+from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.calls import wrong_arguments
 from kb_serve.recognise.chains import Chain, find_chains
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
@@ -78,7 +79,7 @@ class Recogniser:
     def recognise(self, query: str) -> Recognition:
         """Everything that ``query`` names, surest first."""
         recognition = Recognition()
-        chains = find_chains(query)
+        chains = with_bindings(query, find_chains(query))
         for identifier in ids_in_urls(query, self._reader):
             recognition.add(identifier, 1.0, "address")
         self._spellings.recognise(query, recognition)
@@ -86,7 +87,8 @@ class Recogniser:
             self._messages.recognise(query, recognition)
             text = without_callers_names(without_wording(query))
             code = _FILE_PATH.sub(" ", without_callers_names(without_wording(without_values(query))))
-            self._expressions.recognise(chains if code == query else find_chains(code), recognition)
+            found = chains if code == query else with_bindings(code, find_chains(code))
+            self._expressions.recognise(found, recognition)
             self._enum_values.recognise(text, recognition)
             self._removed_values(text, recognition)
             if asks_for_inputs(query) and not is_message(query) and self._reader.entry(NODES_MODIFIER):

@@ -31,10 +31,14 @@ ROOTS = {
     "types": "bpy.types",
 }
 _IMPORTED = ("mathutils.", "bmesh.types.")  # whose classes scripts import by name
+_OBJECT_DATA = f"{TYPES}Object.data"
+_MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
+_GROUP, _GROUPS = f"{TYPES}PropertyGroup", f"{TYPES}bpy_prop_collection_idprop"
 _INSTANCE = "self"  # of a class of the script's own, whose attributes are like variables
 _ELEMENT, _LAYERS = "bmesh.types.BM", "bmesh.types.BMLayerAccess"
 _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _NUMBERED = re.compile(r"\.\d{3}$")
+_QUOTED = re.compile(r"""(["'])(\w+)\1""")
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
@@ -325,12 +329,12 @@ class Resolver:
         if step.kind == "attr":
             yield from self._attribute(value, step.text)
         elif step.kind == "call":
-            yield self._call(value)
+            yield self._call(value, step.text)
         elif value.many:
             yield from self._item(value, step)
         elif step.kind == "index":
             yield from self._in_layers(value.cls)
-            yield replace(value, cls="")  # an element of a vector
+            yield replace(value, cls=_ROW if value.cls == _MATRIX else "")  # an element of a vector
         elif not value.cls:
             yield value
         else:
@@ -339,10 +343,7 @@ class Resolver:
 
     def _attribute(self, value: ChainValue, name: str) -> Iterator[ChainValue]:
         if value.many:
-            entry = self.member(value.container, name)
-            if entry is None or entry.owner == STRUCT:  # ``get`` of a collection is no struct's
-                entry = self.member(COLLECTION, name) or entry
-            if entry:
+            if entry := self._of_collection(value, name):
                 yield self._value_of(entry, value.cls)
             return
         if name in _OPERATOR_METHODS and value.symbol.startswith("bpy.ops."):
@@ -361,8 +362,18 @@ class Resolver:
                 for entry in self._reader.by_name(name)
                 if entry.kind != "socket" and self._reader.descends(entry.owner, value.cls)
             ]
+            if value.symbol == _OBJECT_DATA:
+                below = [entry for entry in below if self._reader.is_object_data(entry.owner)] or below
             for entry in self._heaviest(below):
                 yield self._value_of(entry, entry.owner)
+
+    def _of_collection(self, value: ChainValue, name: str) -> SymbolEntry | None:
+        """A member of a collection: of its own class, of all collections, or of those of property groups."""
+        own = self.member(value.container, name)
+        if own and own.owner != STRUCT:  # ``get`` of a collection is no struct's
+            return own
+        of_groups = self._reader.descends(value.cls, _GROUP) and self.member(_GROUPS, name)
+        return self.member(COLLECTION, name) or of_groups or own
 
     def _heaviest(self, members: Sequence[SymbolEntry]) -> Sequence[SymbolEntry]:
         """Members of one name, those first that count most, and whose classes do."""
@@ -427,11 +438,17 @@ class Resolver:
             if on_side and self._reader.descends(entry.owner, owner):
                 yield self._value_of(entry)
 
-    def _call(self, value: ChainValue) -> ChainValue:
-        """What a call returns; a function that returns a base class of its owner returns the owner's class."""
+    def _call(self, value: ChainValue, arguments: str) -> ChainValue:
+        """What a call returns; a function that returns a base class of its owner returns the owner's class, and one
+        that makes several classes that which its arguments say.
+        """
         entry = self._reader.entry(value.symbol)
         if entry is None or entry.kind != "function":
             return replace(value)
+        for _, choice in _QUOTED.findall(arguments):
+            for cls, maker in self._reader.made_by_choice(choice):
+                if maker == value.symbol:
+                    return ChainValue(value.symbol, cls)
         returned = self._returned(value.symbol)
         if (
             value.container

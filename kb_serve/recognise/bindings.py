@@ -1,0 +1,72 @@
+"""What the variables of a piece of code were bound to in it: the expressions that they stand for.
+
+Code stands in queries between prose, in tracebacks, or without its ends of lines, so that Python cannot parse it.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from kb_serve.recognise.chains import MAX_STEPS, Chain, ChainStep
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+_ELEMENT = ChainStep("index", "0")  # any element of what is iterated over
+_MOST_TARGETS = 5  # words of ``for a, b in``
+_SEQUENCE = re.compile(r"(?:(?:enumerate|list|reversed|sorted|tuple)\()*")  # in which the same elements are
+# Behind an expression that is only a part of what is assigned; ``if`` and ``for`` may begin the next line as well.
+_GOES_ON = re.compile(r"\s*(?:[-+*/%@|&^<>!,.\[(]|(?:and|or|in|is|not)\b|if\b[^:]*\belse\b)")
+
+
+def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
+    """The chains of a text; those that begin with a variable which was bound before begin with what it was bound to."""
+    bound: dict[str, Chain] = {}
+    elements: dict[str, Chain] = {}
+    found: list[Chain] = []
+    end = 0
+    for chain in chains:
+        start = text.find(chain.source, end)
+        gap = "".join(text[end:start].split())
+        end = start + len(chain.source)
+        is_assigned = gap == "=" and _is_single(found, text)
+        own = _from(chain, bound if is_assigned else _without(found, bound))
+        is_whole = own.steps and not _GOES_ON.match(text, end)
+        bound = _without(found, bound)
+        if is_whole and is_assigned:
+            bound[found[-1].root] = own
+        elif is_whole and (name := _iterated(found)) and _SEQUENCE.fullmatch(gap):
+            elements[name] = bound[name] = replace(own, steps=(*own.steps, _ELEMENT))
+        elif not own.steps and len(found) > 1 and found[-1].root == "as" and found[-2].steps:
+            bound[own.root] = found[-2]
+        found.append(own)
+    # ``[v.co for v in …]``: used before it is bound.
+    return [_from(chain, elements) for chain in found]
+
+
+def _without(found: Sequence[Chain], bound: dict[str, Chain]) -> dict[str, Chain]:
+    """What is bound, without the variable that is assigned to at the end."""
+    if not found or not found[-1].assigned or found[-1].steps:
+        return bound
+    return {name: value for name, value in bound.items() if name != found[-1].root}
+
+
+def _is_single(found: Sequence[Chain], text: str) -> bool:
+    """Whether the last chain is one variable by itself: of ``a, b = …`` none is what stands behind."""
+    return bool(found) and not found[-1].steps and not re.search(rf",\s*{found[-1].root}\s*=", text)
+
+
+def _iterated(found: Sequence[Chain]) -> str:
+    """The variable of ``for … in`` at the end, of several the last; empty for none."""
+    names = ["" if chain.steps else chain.root for chain in found[-_MOST_TARGETS:]]
+    return names[-2] if len(names) > 2 and names[-1] == "in" and "for" in names[:-2] else ""
+
+
+def _from(chain: Chain, bound: Mapping[str, Chain]) -> Chain:
+    """A chain from what its variable was bound to, if it goes on from there."""
+    value = bound.get(chain.root) if chain.steps else None
+    if value is None or len(value.steps) + len(chain.steps) > MAX_STEPS:
+        return chain
+    return replace(chain, root=value.root, steps=(*value.steps, *chain.steps))
