@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 LIKELY = 0.72  # similarity from which on a name is offered as a correction
 _CONTAINED = 0.8  # for a name whose words are all in the other one: ``select`` and ``select_set``
 _CUT_OFF = 6  # letters of what may be the beginning of a name
-_SEVERAL = 3  # words of a name that may be made of two others
+_SEVERAL = 2  # words of a name that may be made of two others
 _ROUNDS = 3
 _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85

@@ -238,12 +238,20 @@ class Expressions:
         sure = self._is_sure(chain, resolved)
         behind = chain.steps[len(chain.steps) - resolved.steps_left + 1 :]
         called = bool(behind) and behind[0].kind == "call"
-        recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure, called))
+        if not self._is_told(resolved, recognition):
+            recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure, called))
         for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'
             )  # one that takes no value of its own is still what was meant
             recognition.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
+
+    def _is_told(self, resolved: ResolvedChain, recognition: Recognition) -> bool:
+        """Whether the message beside the code says already that the name is missing, on a kind of the class."""
+        return any(
+            missing.name == resolved.missing and self._reader.descends(missing.owner, resolved.owner)
+            for missing in recognition.missing
+        )
 
     def _is_sure(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether the owner of a missing name is certain, and has no members that only exist at run time."""

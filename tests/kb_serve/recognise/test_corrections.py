@@ -154,3 +154,11 @@ def test_a_name_that_is_made_of_two_leads_to_both(kb: KnowledgeBase, query: str)
     }
     assert "`bpy.types.Object.hide_set`" in answer.notes[0]
     assert "`bpy.types.Object.hide_viewport`" in answer.notes[0]
+
+
+def test_a_name_with_a_word_too_many_leads_to_the_one_without(kb: KnowledgeBase) -> None:
+    message = (
+        "light.energy_strength = 3\nAttributeError: 'PointLight' object has no attribute 'energy_strength'"
+    )
+    (note,) = kb.query(message).notes
+    assert note.endswith("Closest: `bpy.types.PointLight.energy`.")
