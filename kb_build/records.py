@@ -67,6 +67,10 @@ FREE_ON = "free-on:"
 LOCKED_WITH = "locked-with:"
 FREED_BY = "freed-by:"
 ANY = "any"
+# How a flag begins that names what a class of a script's own must have, or Blender does not register it.
+MUST_HAVE = "must-have:"
+# The flags of functions that such classes define and Blender calls: if they want, and in any case.
+DEFINED, DEFINED_ALWAYS = "defined", "defined-always"
 # The flag of what Blender computes for evaluated objects, and leaves empty on the originals.
 EVALUATED = "evaluated-only"
 THEN = " then "  # between calls that fill it one after the other

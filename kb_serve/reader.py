@@ -459,6 +459,12 @@ class BaseReader:
         sql = "SELECT path FROM symbols WHERE kind = 'operator' AND line GLOB ? ORDER BY path"
         return [row[0] for row in self.rows(sql, f"*[( ]{argument}=*")]
 
+    def is_written(self, name: str) -> bool:
+        """Whether a name stands in a call's text, or in what Blender's own scripts write: as an argument, say."""
+        sql = """SELECT EXISTS (SELECT 1 FROM symbols WHERE kind IN ('function', 'operator') AND instr(line, ?))
+            OR EXISTS (SELECT 1 FROM uses WHERE instr(code, ?))"""
+        return bool(self.rows(sql, name, name)[0][0])
+
     @cached_property
     def operator_arguments(self) -> frozenset[str]:
         """The names of all operators' arguments."""

@@ -50,6 +50,8 @@ _TOLD_COST = 5  # of what Blender tells how to reach: the preferences of an add-
 # that scripts make are those of groups.
 _TOLD = {
     "Driver": ('bpy.context.object.animation_data.drivers.find("location", index=0).driver', _TOLD_COST),
+    "Depsgraph": ("bpy.context.evaluated_depsgraph_get()", 1),  # a view layer's own is None, or stale
+    "UILayout": ("self.layout", 1),  # where a class of the script's own draws
     "NodeTreeInterface": ('bpy.data.node_groups["Geometry Nodes"].interface', 1),
 }
 _NEVER_ACTIVE = frozenset({"Nodes"})  # none is, of those that scripts make

@@ -68,7 +68,7 @@ def by_place(call: str) -> str:
 def by_place_up_to(call: str, most: int) -> str:
     """A call's text with the mark before the arguments that are given by their names alone: all but the first few."""
     head, _, given = call.rstrip(")").partition("(")
-    arguments = [text.strip() for text in split_arguments(given) if text.strip()]
-    if len(arguments) <= most or "*" in arguments or "/" in arguments:
+    arguments = [text.strip() for text in split_arguments(given) if text.strip() not in {"", "*"}]
+    if len(arguments) <= most or "/" in arguments or any(text.startswith("*") for text in arguments):
         return call
     return f"{head}({', '.join([*arguments[:most], '*', *arguments[most:]])})"

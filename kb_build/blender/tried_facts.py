@@ -22,6 +22,7 @@ from kb_build.records import (
     INVERTED,
     LOCKED_ON,
     LOCKED_WITH,
+    MUST_HAVE,
     NEEDS,
     STOPS,
     UNBOUNDED,
@@ -166,6 +167,12 @@ def _add_evaluated(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
 
 
 # Kind of record → what adds it to the row of its symbol, which may be missing.
+def _add_own_class(row: dict[str, Any] | None, tried: dict[str, Any]) -> None:
+    """Adds what a class of a script's own must have, as Blender asked for one thing after the other."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), *(f"{MUST_HAVE}{name}" for name in tried["names"])]
+
+
 ADDED = {
     "argument_items": _add_argument_items,
     "choices": _add_choices,
@@ -180,4 +187,5 @@ ADDED = {
     "left_out": _add_left_out,
     "limits": _add_limits,
     "locked": _add_locked,
+    "own_class": _add_own_class,
 }

@@ -66,7 +66,7 @@ def _judged(script: Script, own: OwnClass, function: FunctionDefinition, symbol:
     decorators = [node.id if isinstance(node, ast.Name) else "" for node in function.decorator_list]
     if any(name not in {"classmethod", "staticmethod"} for name in decorators):
         return None
-    of_class = "static" in symbol.flags
+    of_class = not {"classmethod", "static"}.isdisjoint(symbol.flags)
     names = ("cls" if of_class else "self", *(parameter.name for parameter in symbol.parameters))
     written = [*function.args.posonlyargs, *function.args.args]
     takes = f"`({', '.join(names)})`"

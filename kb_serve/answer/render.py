@@ -49,6 +49,7 @@ from kb_build.symbol_lines import (
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.calls_before import calls_before
+from kb_serve.answer.own_classes import asked_of_classes, definition, is_called_back
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
@@ -67,6 +68,7 @@ _PUT_TOGETHER = (
     "put together while Blender runs, and not known here: the error for any other value lists them"
 )
 _NAMED_ITEMS = 40  # enum items in an argument's own line; the full list follows
+_MOST_ITEMS = 500  # that are listed one by one
 _SHORT_PAGE = 80  # letters
 _LONGEST_DEFAULT = 60  # letters
 _IN_A_CALL = 20  # arguments
@@ -172,7 +174,7 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield f"unit: {_UNITS.get(symbol.unit, symbol.unit.lower())}"
     if symbol.subtype and symbol.subtype not in {"UNSIGNED"}:
         yield f"subtype: {symbol.subtype}"
-    if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS]:
+    if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS and not is_called_back(symbol)]:
         yield ", ".join(flags)
     if _NEVER_NONE in symbol.flags and symbol.type == "pointer" and not is_locked(symbol):
         yield "cannot be set to `None`"
@@ -340,6 +342,8 @@ def _taken(symbol: Symbol, parameter: Parameter) -> str:
 def _has_list(symbol: Symbol, parameter: Parameter) -> bool:
     """Whether the values of an argument are listed one by one."""
     items = () if parameter.name in _of_file_browser(symbol) else parameter.enum_items
+    if len(items) > _MOST_ITEMS:  # icons, which nobody reads through
+        return False
     return len(items) > _NAMED_ITEMS or (
         len(items) > 3 and any(item.description or item.where for item in items)
     )
@@ -503,6 +507,7 @@ class MarkdownRenderer:
             lines.append(text)
         if line := " · ".join(facts(symbol)):
             lines.append(line)
+        lines.extend(asked_of_classes(symbol))
         if needs := operator_needs(symbol):
             lines.append(f"Of all that was tried, its poll takes {needs}.")
         told = [*panel_lines(symbol, self.reader)] or [*switch_lines(symbol, self.reader)]
@@ -521,6 +526,8 @@ class MarkdownRenderer:
     def _call(symbol: Symbol) -> str:
         if symbol.kind == "operator":
             return _call_without(symbol.signature, _of_file_browser(symbol))
+        if is_called_back(symbol):
+            return definition(symbol)
         owner = symbol.owner
         if symbol.kind == "function" and owner.startswith(TYPES) and "static" not in symbol.flags:
             owner = owner.removeprefix(TYPES)
@@ -564,6 +571,8 @@ class MarkdownRenderer:
         cls = self._owning_class(symbol)
         reached = cls.reached if cls else ""
         if not reached or symbol.kind not in {"class", "property", "socket", "function"}:
+            return ""
+        if is_called_back(symbol):  # by Blender, not by scripts
             return ""
         last = symbol.path[len(symbol.owner) :] if symbol.kind != "class" else ""
         if symbol.kind == "socket" and (subscript := new_subscript(symbol)):

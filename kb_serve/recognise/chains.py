@@ -19,6 +19,8 @@ _DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
 _VALUE = re.compile(r"\s*(?:[-+*/|&^%=!]?=|not\s+in\b|in\b)\s*(?=['\"{(\[])")
 _ITEM = re.compile(r"""(["'])(\w[\w. -]{0,60})\1""")
+_QUOTES = ("'", '"')
+_DEFINED = re.compile(r"\bclass\s+\Z")
 _CLOSING = {"(": ")", "[": "]"}
 _QUOTED = re.compile(r"""^\s*[bru]?(["'])(.*)\1\s*$""", re.DOTALL)
 
@@ -38,7 +40,7 @@ class Chain:
     """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed.
 
     ``assigned`` tells whether it stands left of an assignment; ``values`` are the texts that it is set to or
-    compared with.
+    compared with; ``quoted``: whether it is a text in the code, as an operator's ``bl_idname``.
     """
 
     root: str
@@ -46,6 +48,7 @@ class Chain:
     source: str
     assigned: bool = False
     values: tuple[str, ...] = ()
+    quoted: bool = False
 
     @property
     def dotted(self) -> str:
@@ -135,12 +138,16 @@ def find_chains(text: str) -> list[Chain]:
             if builtins_called <= _MAX_BUILTINS:
                 position = match.end() + 1  # the arguments of Python's own functions may be Blender's
             continue
+        if steps and steps[0].kind == "call" and _DEFINED.search(text, 0, start):
+            position = match.end() + 1  # what a class derives from
+            continue
         chain = Chain(
             match.group(),
             tuple(steps),
             text[start:position],
             assigned,
             _values(text, position) if steps else (),
+            text[start - 1 : start] in _QUOTES and text[start - 1 : start] == text[position : position + 1],
         )
         chains.append(chain)
         code += chain.is_code

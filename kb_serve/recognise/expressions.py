@@ -24,14 +24,18 @@ from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
 from kb_serve.recognise.resolver import TOLD_BY_MEMBER
+from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import USUAL, is_guess, usual_classes
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.chains import Chain
     from kb_serve.recognise.corrections import Corrector
     from kb_serve.recognise.old_code import OldCode, OldName
+    from kb_serve.recognise.operator_words import OperatorWords
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
@@ -45,6 +49,7 @@ _CALLED = 0.9  # from here on, a named operator's or function's arguments may st
 _BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 _CLEAR = 0.85  # fit of a variable's name that hardly means another class
+_LEAST = 0.1  # fit below which neither the variable's name nor its member tells the class
 _LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
 
 # Classes whose members are defined by scripts and add-ons.
@@ -73,11 +78,27 @@ def _is_file_name(chain: Chain) -> bool:
     return len(chain.steps) == 1 and set(chain.attributes) <= _FILE_ENDINGS and chain.steps[0].kind == "attr"
 
 
+def _likeliest_broken(readings: Iterable[ResolvedChain]) -> ResolvedChain | None:
+    """Of the readings that break off, of those that suit the variable best the one that leads furthest."""
+    broken = [resolved for resolved in readings if resolved.missing]
+    best = max((resolved.fit for resolved in broken), default=0.0)
+    likely = (resolved for resolved in broken if resolved.fit >= _CLEAR * best)
+    return min(likely, key=lambda resolved: (resolved.steps_left, -resolved.fit), default=None)
+
+
 class Expressions:
     """Recognises code against one base."""
 
-    def __init__(self, reader: BaseReader, resolver: Resolver, corrector: Corrector, old: OldCode) -> None:
+    def __init__(
+        self,
+        reader: BaseReader,
+        resolver: Resolver,
+        corrector: Corrector,
+        old: OldCode,
+        operators: OperatorWords,
+    ) -> None:
         self._reader = reader
+        self._operators = operators
         self._resolver = resolver
         self._corrector = corrector
         self._old = old
@@ -103,15 +124,15 @@ class Expressions:
                     old = replace(old, removed=for_reading(old.removed))
                 self._old_name(old, later, recognition)
                 continue
-            broken = max(
-                (resolved for resolved in readings if resolved.missing), key=lambda w: w.fit, default=None
-            )
+            broken = _likeliest_broken(readings)
             if (
                 readings
                 and self._trusted(chain, readings[0], broken)
                 and not self._misspelt(chain, readings[0])
             ):
                 self._reading(chain, readings, later, recognition)
+                if broken and not later and broken.fit >= _CLEAR and readings[0].fit < _LIKELY:
+                    self._tell_if(chain, broken, recognition)
             elif operator := self._reader.entry(f"bpy.ops.{chain.dotted}") if chain.steps else None:
                 recognition.add(operator.path, 0.97 - later, "expression")
             elif _is_file_name(chain) or self._is_argument(chain, recognition):
@@ -130,22 +151,31 @@ class Expressions:
                 return True
         return False
 
-    @staticmethod
-    def _trusted(chain: Chain, resolved: ResolvedChain, broken: ResolvedChain | None) -> bool:
+    def _trusted(self, chain: Chain, resolved: ResolvedChain, broken: ResolvedChain | None) -> bool:
         """Whether a reading rests on more than a guess at what a variable or a bare word is.
 
-        For a variable clearly named after a class that lacks the attribute, that class is believed, not another
-        one that has the attribute.
+        A variable clearly named after a class that lacks the attribute is one, not of another class that has it, if the
+        class calls something so. So is one of a class that has it and lacks what follows.
         """
         if not resolved.complete or (_is_file_name(chain) and resolved.fit < _LIKELY):
             return False
-        if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and resolved.fit < 0.5:
-            return False
+        if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and resolved.fit < _LIKELY:
+            missing = MissingName(broken.missing, broken.owner, called=chain.steps[-1].kind == "call")
+            has_member = broken.steps_left < len(chain.steps)
+            if has_member or said_otherwise(missing, self._operators, self._reader):
+                return False
         if resolved.keyed and resolved.fit >= _CLEAR:
             return True
         if 'puts["' in resolved.symbols[-1] and (broken is None or broken.fit < _CLEAR):
             return True  # what is in brackets tells it, whatever the variable is called
-        return resolved.fit >= 1.0 or bool(chain.attributes)
+        return resolved.fit >= 1.0 or (bool(chain.attributes) and resolved.fit >= _LEAST)
+
+    def _tell_if(self, chain: Chain, broken: ResolvedChain, recognition: Recognition) -> None:
+        """Notes what the class lacks that a variable is named after, where another one has what is read."""
+        owner = self._reader.entry(broken.owner)
+        if owner and owner.kind == "class" and not is_guess(chain.root):
+            missing = MissingName(broken.missing, broken.owner, sure=self._is_sure(chain, broken))
+            recognition.doubted[chain.root] = missing
 
     def _misspelt(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether a root is a misspelt class: ``PoimtLight`` is hardly a variable that holds a light."""
@@ -223,6 +253,8 @@ class Expressions:
         self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition
     ) -> None:
         """Adds a chain as far as it could be resolved, and its missing name."""
+        if chain.quoted and chain.root != "bpy":
+            return  # ``bl_idname = "object.my_operator"``
         assigned = chain.assigned and resolved.steps_left == 1
         if assigned and chain.dotted.startswith(("bpy.types.", "types.")) and len(resolved.symbols) == 1:
             return  # ``bpy.types.Scene.my_property = …`` defines it
@@ -311,6 +343,7 @@ class Expressions:
         for rank, path in enumerate(list(best.values())[:_FEW]):
             recognition.add(path, 0.84 - 0.01 * rank, SIMILAR)
         is_name = "_" in name and not chain.assigned and not self._reader.by_key(key(name))
+        is_name = is_name and not self._reader.is_written(name)
         if best or is_name:
             recognition.missing.append(MissingName(name))
 

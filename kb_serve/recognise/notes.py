@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.recognition import MissingName, Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol
 
 SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
@@ -135,9 +135,16 @@ class Notes:
             elif missing.owner and missing.name.startswith("["):
                 yield f"`{missing.owner}` takes no custom properties: `{missing.name}` fails.{closest}"
             elif missing.owner and missing.name not in removed_names:
-                never = self.never(missing.owner, missing.name) if missing.sure else ""
-                aside = " (add-ons and custom properties aside)" if never else ""
-                yield f"`{missing.owner}` has no `{missing.name}`{never}{aside}.{closest}"
+                yield f"{self._lacks(missing)}{closest}"
+        if not recognition.removed:
+            for variable, missing in recognition.doubted.items():
+                yield f"If `{variable}` is one of these: {self._lacks(missing)}"
+
+    def _lacks(self, missing: MissingName) -> str:
+        """A sentence on what a class does not have, and whether it ever had it."""
+        never = self.never(missing.owner, missing.name) if missing.sure else ""
+        aside = " (add-ons and custom properties aside)" if never else ""
+        return f"`{missing.owner}` has no `{missing.name}`{never}{aside}."
 
     def never(self, owner: str, name: str) -> str:
         """Since when a class is known not to have had a name, as the end of a sentence; "" where that is not known.

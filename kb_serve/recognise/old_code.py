@@ -198,7 +198,10 @@ class OldCode:
         today = [reading.symbols[0].rpartition(".")[2] for reading in readings if reading.complete]
         best = max((variable_fit(chain.root, cls) for cls in today), default=0.0)
         removed = self._removed.of_path(path) if fit >= max(_NAMED_AFTER, best + _BETTER) else None
-        return OldName(removed, chain.steps[1:]) if removed else None
+        # The class that took its place may have the member, too.
+        if removed is None or any(target.endswith(f".{attribute.text}") for target in removed.targets):
+            return None
+        return OldName(removed, chain.steps[1:])
 
     def _of_any_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
         """A member that no class has any more, of a variable that may be anything, or by itself."""
@@ -285,8 +288,9 @@ class OldCode:
                 continue
             known = {item.identifier for item in parameters[name].enum_items}
             for item in texts_in(value):
-                if item not in known and (removed := self._removed.of_part(symbol.path, f"({name}):{item}")):
-                    yield removed
+                # Of what Blender puts together while it runs, the items are not known.
+                if known and item not in known:
+                    yield from filter(None, (self._removed.of_part(symbol.path, f"({name}):{item}"),))
 
     def _lost(self, symbol: Symbol, keyword: str) -> RemovedSymbol | None:
         """A parameter that a function had before; not one that only newer versions have."""

@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import re
 
-from kb_build.index.analysis import terms, words
+from kb_build.index.analysis import terms
 from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.addresses import ids_in_urls
 from kb_serve.recognise.bindings import with_bindings
@@ -35,7 +35,7 @@ from kb_serve.recognise.products import WITH_AT, Products
 from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
 from kb_serve.recognise.resolver import Resolver
-from kb_serve.recognise.said_otherwise import labelled, operators_on
+from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.spellings import Spellings
 from kb_serve.recognise.subscripts import NODES_MODIFIER, asks_for_inputs
 
@@ -72,9 +72,9 @@ class Recogniser:
         self._enum_values = EnumValues(reader)
         self._messages = Messages(reader, self._resolver, self._removed, self._enum_values)
         self._old = OldCode(reader, self._resolver, self._removed)
-        self._expressions = Expressions(reader, self._resolver, self._corrector, self._old)
-        self._products = Products(self._resolver)
         self._operators = OperatorWords(reader)
+        self._expressions = Expressions(reader, self._resolver, self._corrector, self._old, self._operators)
+        self._products = Products(self._resolver)
 
     def recognise(self, query: str) -> Recognition:
         """Everything that ``query`` names, surest first."""
@@ -182,7 +182,7 @@ class Recogniser:
                 continue
             for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
                 recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
-            otherwise = self._said_otherwise(missing)
+            otherwise = said_otherwise(missing, self._operators, self._reader)
             for place, path in enumerate(otherwise):
                 recognition.add(path, _OTHERWISE - 0.01 * place, SIMILAR)
             names = self._reader.member_names(missing.owner) if missing.owner else []
@@ -198,16 +198,6 @@ class Recogniser:
                 continue
             if not self._elsewhere(missing, recognition):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
-
-    def _said_otherwise(self, missing: MissingName) -> list[str]:
-        """What the class has that lacks a name: what its buttons call so, else the operators that do it."""
-        owner = self._reader.entry(missing.owner) if missing.name.isidentifier() else None
-        if owner is None or owner.kind != "class" or not words(missing.name):
-            return []
-        found = labelled(owner.path, missing.name, self._reader)
-        if found or not missing.called:
-            return found
-        return operators_on(owner.path, missing.name, self._operators, self._reader)
 
     def _elsewhere(self, missing: MissingName, recognition: Recognition) -> bool:
         """Adds the name on other classes (``CollectionObjects.link``), similar ones first; whether there is any."""

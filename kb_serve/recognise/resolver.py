@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, words
 from kb_serve.reader import COLLECTION, STRUCT, TYPES, BaseReader, SymbolEntry
 from kb_serve.recognise.subscripts import CustomProperties
-from kb_serve.recognise.variables import Variables, classes_of_parts, variable_fit
+from kb_serve.recognise.variables import Variables, classes_of_parts, usual_classes, variable_fit
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -32,6 +32,11 @@ ROOTS = {
 }
 _IMPORTED = ("mathutils.", "bmesh.types.")  # whose classes scripts import by name
 _OBJECT_DATA = f"{TYPES}Object.data"
+_RNA, _STRUCT_OF_ALL = (
+    ("bl_rna", "rna_type"),
+    f"{TYPES}Struct",
+)  # what every class and instance tells of itself
+_ARRAY = f"{TYPES}bpy_prop_array"
 _MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
 _GROUP, _GROUPS = f"{TYPES}PropertyGroup", f"{TYPES}bpy_prop_collection_idprop"
 _INSTANCE = "self"  # of a class of the script's own, whose attributes are like variables
@@ -172,15 +177,25 @@ class Resolver:
                 # An Object's modifiers are likelier than an FCurve's.
                 is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
                 yield value, _COLLECTION_FIT + (_USUAL if is_usual else 0.0)
-        parts = classes_of_parts(chain.root)
+        parts, taking = classes_of_parts(chain.root), self._taking(chain)
+        named = [set(words(cls.rpartition(".")[2])) for cls in usual_classes(chain.root)]
+        is_class = chain.root[:1].isupper()  # misspelt, or of the script: a member does not tell it
         for rank, owner in enumerate(self._owners(_first_name(chain))):
             if owner.path not in seen:
                 seen.add(owner.path)
-                told = _TOLD_BY_PART if self._is_one_of(owner.path, parts) else TOLD_BY_MEMBER
+                is_part = any(name <= set(words(owner.name)) for name in named)
+                is_told = is_part or owner.path in taking or self._is_one_of(owner.path, parts)
+                told = 0.0 if is_class else _TOLD_BY_PART if is_told else TOLD_BY_MEMBER
                 fit = max(told - 0.001 * rank, 0.3 * variable_fit(chain.root, owner.name))
                 # Where a chain goes on, what follows tells which one is meant.
                 if rank < _MOST_TOLD or fit > TOLD_BY_MEMBER or len(chain.steps) > 1:
                     yield ChainValue(owner.path, owner.path), fit
+
+    def _taking(self, chain: Chain) -> set[str]:
+        """The classes of which an enumeration takes what a lone member is set to or compared with."""
+        name = _first_name(chain)
+        found = (path for value in chain.values for path, *_ in self._reader.enum_owners(key(value)))
+        return {path.removesuffix(f".{name}") for path in found if path.endswith(f".{name}")}
 
     def _is_one_of(self, owner: str, classes: Sequence[str]) -> bool:
         """Whether a class is one of some, or a kind or a base of one."""
@@ -223,12 +238,13 @@ class Resolver:
         names[:1] = ROOTS.get(names[0], names[0]).split(".")
         extra = len(names) - len(chain.dotted.split("."))
         paths = [".".join(names[:length]) for length in range(min(len(names), _MOST_NAMES), 0, -1)]
-        packages = ("", TYPES, *_IMPORTED)
+        packages = ("", "bpy.props.", TYPES, *_IMPORTED)
         self._reader.entry.load(package + path for path in paths for package in packages)
         for length, path in zip(range(len(paths), 0, -1), paths, strict=True):
             for package in packages:
                 entry = self._reader.entry(package + path)
-                if entry and not (length == 1 and entry.kind not in {"module", "class"}):
+                is_imported = package or length > 1
+                if entry and (is_imported or entry.kind in {"module", "class"}):
                     return self._value_of(entry), max(0, length - 1 - extra), 1.0
         return None
 
@@ -265,7 +281,7 @@ class Resolver:
         symbol = self._reader.symbol(entry.path)
         if symbol and symbol.subtype in _MATH:
             return f"mathutils.{_MATH[symbol.subtype]}"
-        return ""
+        return _ARRAY if symbol and symbol.array else ""
 
     def _classes_in(self, text: str, path: str, *, whole: bool = False) -> list[str]:
         """The classes in the text of a type, ``BMElemSeq[BMEdge]``; each the nearest to ``path`` of that name.
@@ -345,6 +361,9 @@ class Resolver:
         if value.many:
             if entry := self._of_collection(value, name):
                 yield self._value_of(entry, value.cls)
+            return
+        if name in _RNA and value.cls.startswith(TYPES):
+            yield ChainValue(_STRUCT_OF_ALL, _STRUCT_OF_ALL)
             return
         if name in _OPERATOR_METHODS and value.symbol.startswith("bpy.ops."):
             yield value

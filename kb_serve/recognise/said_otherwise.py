@@ -15,6 +15,7 @@ if TYPE_CHECKING:
 
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.operator_words import OperatorWords
+    from kb_serve.recognise.recognition import MissingName
 
 _FEW = 3
 _MANY = 6  # more members than these whose labels end alike are not told apart
@@ -24,6 +25,17 @@ _NAMED_AFTER = (
     0.6  # how well the name of a module of operators must fit a class: ``ptcache`` PointCache, not ``object``
 )
 _GIVEN = "given:"  # the flag of an operator that runs only where a context override gives it something
+
+
+def said_otherwise(missing: MissingName, operators: OperatorWords, reader: BaseReader) -> list[str]:
+    """What the class has that lacks a name: what its buttons call so, else the operators that do it."""
+    owner = reader.entry(missing.owner) if missing.name.isidentifier() else None
+    if owner is None or owner.kind != "class" or not words(missing.name):
+        return []
+    found = labelled(owner.path, missing.name, reader)
+    if found or not missing.called:
+        return found
+    return operators_on(owner.path, missing.name, operators, reader)
 
 
 def labelled(owner: str, name: str, reader: BaseReader) -> list[str]:

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
 
+PROPERTIES = "bpy.props."  # whose functions scripts import by name
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3
 _NEAR = 2  # dots in the path of a module that a bare word may mean
@@ -70,7 +71,9 @@ class Spellings:
         text = query.strip().strip("`'\"").rstrip(".:;,?!")
         if is_quoted_value(query, self._reader):
             return  # ``'EMITTER'`` is not the page of emitters
-        if "[" in text or " " not in text:  # a path; only sockets' have spaces, in brackets
+        if "[" in text or (
+            " " not in text and not self._reader.entry(PROPERTIES + text)
+        ):  # a path; only sockets' have spaces, in brackets
             candidates = (text, f"bpy.{text}")
             self._reader.entry.load(candidates)
             for path in candidates:
@@ -84,6 +87,9 @@ class Spellings:
             recognition.add(slug, 1.0, "exact")
             return
         called = _MEMBER.sub(".", _called(text))
+        if self._reader.entry(PROPERTIES + called):  # rather than RNA's class of the same name
+            recognition.add(PROPERTIES + called, 1.0, "exact")
+            return
         if inherited := self._inherited(called):
             recognition.add(inherited, 1.0, "exact")
             return
@@ -113,7 +119,8 @@ class Spellings:
         is_long = text.count(" ") + 1 >= _LONG_LABEL
         strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
         typed = 0 in strange.values() or self._is_enum_item(text) or self._is_removed(text)
-        for form, identifier in sorted(rows, key=lambda row: strange[row[1]]):
+        weights = self._reader.weights(strange) if len(rows) > 1 else {}
+        for form, identifier in sorted(rows, key=lambda row: (strange[row[1]], -weights.get(row[1], 0.0))):
             if form == FORM_PATH or (form == FORM_SHORT and "/" not in identifier):
                 # ``view_layers`` and ``ViewLayers`` share a key: the one in another spelling is hardly meant.
                 recognition.add(identifier, _OTHERWISE if typed and strange[identifier] > 1 else 1.0, "exact")

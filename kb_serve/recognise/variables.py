@@ -29,7 +29,7 @@ _NAMES = {
     "Mesh": "me mesh msh mesh_data",
     "Curve": "cu curve curve_data crv",
     "TextCurve Object": "txt text_obj font_curve",
-    "Text TextCurve": "text",
+    "Text TextCurve Object": "text",
     "TextCurve": "text_data txt_data text_curve font_data",
     "MetaBall": "mball metaball mb",
     "Scene": "sce scn scene sc",

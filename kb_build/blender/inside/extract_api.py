@@ -15,7 +15,7 @@ import traceback
 
 import bpy
 
-from . import context, left_out, modules, nodes, operator_needs, operators, refusals, rna
+from . import context, left_out, modules, nodes, operator_needs, operators, own_classes, refusals, rna
 from .apart import Beside, can_work_apart
 from .instances import evaluated, limits, new_things, own_names, pointer_fillers, startup
 from .instances.neighbours import Neighbours
@@ -107,6 +107,7 @@ STEPS = (
     ),
     ("places of nodes", lambda write, _found: own_names.write_places(write)),
     ("modules", lambda write, _found: modules.write_all(write)),
+    ("own classes", lambda write, found: own_classes.find_all(write, found["structs"])),
     ("enums", write_enum_sets),
     ("links", write_manual_links),
     ("inverted", write_inverted),

@@ -20,6 +20,9 @@ BY_PLACE = "by-place:"  # and how many arguments are taken so
 REFUSED = "takes no keyword arguments"
 TAKES = re.compile(r"takes at most (\d+) arguments?")
 TAKES_BY_PLACE = re.compile(r"takes (?:at most|exactly) (\d+) positional|takes (no|0) positional")
+# What definitions of properties say of what is given by its place, the first of which is a class.
+PROPERTIES = "bpy.props"
+NONE_BY_PLACE, ONE_BY_PLACE = "all args must be keywords", "expected one positional arg"
 NO_TEXT = "argument 1 must be str"
 NO_NAME = {"no argument's name": None}
 MANY = (object(),) * 30
@@ -60,6 +63,8 @@ def callable_of(value):
         owner = value.__objclass__
         is_of_class = isinstance(value, types.ClassMethodDescriptorType)
         return getattr(owner if is_of_class else instances().get(owner), value.__name__, None)
+    if isinstance(value, classmethod) and isinstance(value.__func__, types.BuiltinFunctionType):
+        return value.__func__
     return None
 
 
@@ -67,11 +72,19 @@ def refusal(function, *given, **named):
     """What Blender says of a call; empty where it says nothing."""
     try:
         function(*given, **named)
-    except TypeError as error:
+    except (TypeError, ValueError) as error:
         return str(error)
     except Exception:
         return ""
     return ""
+
+
+def of_property(function):
+    """The flag of a function that defines a property: none of them tells that it takes names only."""
+    said = refusal(function, object(), object())
+    if NONE_BY_PLACE in said:
+        return [f"{BY_PLACE}0"]
+    return [f"{BY_PLACE}1"] if ONE_BY_PLACE in said else []
 
 
 def lacks_marks(function):
@@ -87,6 +100,8 @@ def flags_of(value):
     function = callable_of(value)
     if function is None:
         return []
+    if function.__module__ == PROPERTIES:
+        return of_property(function)
     if REFUSED in refusal(function, **NO_NAME):
         return [NO_KEYWORDS]
     takes = TAKES.search(refusal(function, *MANY)) if lacks_marks(function) else None

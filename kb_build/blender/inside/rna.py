@@ -24,6 +24,10 @@ METHOD_TYPES = (
     classmethod, staticmethod,
     *{type(value) for value in vars(bpy.types.Gizmo).values() if type(value).__name__ == "instancemethod"},
 )  # fmt: skip
+LAYOUT = "UILayout"  # of which RNA's defaults are no layout's
+SET_OF_ITEMS = "set[enum]"
+# The flags of functions that classes of scripts define and Blender calls, and of those that it insists on.
+DEFINED, DEFINED_ALWAYS = "defined", "defined-always"
 ATTRIBUTE_TYPES = (property, types.GetSetDescriptorType, types.MemberDescriptorType)
 
 
@@ -136,10 +140,13 @@ def parameter(prop):
         result["type"] += " or None"
     if prop.type == "ENUM" and prop.is_enum_flag:
         result["default"] = row["default"]
+        if prop.is_required or prop.is_output:
+            result["type"] = SET_OF_ITEMS
     if row.get("array") == [1]:  # of any length: left out, it is none or all
         result.pop("default", None)
     if prop.is_required and not prop.is_output:
         result["required"] = True
+    if prop.is_required or prop.is_output:
         result.pop("default", None)
     return result
 
@@ -216,9 +223,23 @@ def write_function(write, owner, function, flags):
         owner=owner,
         description=function.description,
         parameters=[parameter(item) for item in parameters if not item.is_output],
-        returns=[parameter(item) for item in parameters if item.is_output],
-        flags=flags + ([] if function.use_self or getattr(function, "use_self_type", False) else ["static"]),
+        returns=[result_of(function, item) for item in parameters if item.is_output],
+        flags=flags + kind_of(function),
     )
+
+
+def result_of(function, prop):
+    """One result of a function; of one that scripts define it has to be given, but nothing stands for False."""
+    row = parameter(prop)
+    return {**row, "required": True} if function.is_registered and prop.type != "BOOLEAN" else row
+
+
+def kind_of(function):
+    """The flags that tell what calls a function, and on what."""
+    if not function.is_registered:
+        return [] if function.use_self or getattr(function, "use_self_type", False) else ["static"]
+    defined = DEFINED if function.is_registered_optional else DEFINED_ALWAYS
+    return [defined] if function.use_self else [defined, "classmethod"]
 
 
 def write_struct(write, identifier, rna):
@@ -239,6 +260,8 @@ def write_struct(write, identifier, rna):
     key = rna.name_property.identifier if rna.name_property else ""
     for prop in own(rna, "properties"):
         row = describe(prop)
+        if identifier == LAYOUT:
+            row["default"] = None
         if prop.identifier == key and key != "name":
             row["flags"].append("names-items")
         write("symbol", path=f"{path}.{prop.identifier}", kind="property", owner=path, **row)

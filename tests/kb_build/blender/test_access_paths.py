@@ -222,7 +222,8 @@ def test_every_expression_is_python_from_a_root(reached: dict[str, str]) -> None
     assert len(reached) > 1_350
     for expression in reached.values():
         compile(expression, "reached", "eval")
-        assert expression.startswith(("bpy.context", "bpy.data"))
+        # A layout is given to what draws.
+        assert expression.startswith(("bpy.context", "bpy.data", "self.layout"))
 
 
 def test_no_node_is_placed_in_a_tree_that_refuses_it(extract: Extract, reached: dict[str, str]) -> None:

@@ -228,7 +228,7 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
         (
             'TypeError: Scene.ray_cast(): error with argument 1, "depsgraph" -  Function.depsgraph expected a '
             "Depsgraph type, not ViewLayer",
-            "A `bpy.types.Depsgraph` is reached as `bpy.context.view_layer.depsgraph`.",
+            "A `bpy.types.Depsgraph` is reached as `bpy.context.evaluated_depsgraph_get()`.",
         ),
         (
             'TypeError: ObjectModifiers.new(): error with argument 2, "type" -  enum "SUBSURFACE" not found in '

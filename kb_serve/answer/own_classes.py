@@ -1,0 +1,39 @@
+"""What classes of a script's own are asked for: what they must have, and the functions that Blender calls on them."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.records import DEFINED, DEFINED_ALWAYS, MUST_HAVE
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Symbol
+
+
+def is_called_back(symbol: Symbol) -> bool:
+    """Whether scripts define a function, and Blender calls it."""
+    return DEFINED in symbol.flags or DEFINED_ALWAYS in symbol.flags
+
+
+def definition(symbol: Symbol) -> str:
+    """The source by which a class of a script's own defines a function that Blender calls."""
+    is_of_class = "classmethod" in symbol.flags
+    given = [parameter.name for parameter in symbol.parameters]
+    head = f"def {symbol.name}({', '.join(('cls' if is_of_class else 'self', *given))}):"
+    lines = [f"class My{symbol.owner.removeprefix(TYPES)}({symbol.owner}):"]
+    lines += ["    @classmethod"] if is_of_class else []
+    return "\n".join((*lines, f"    {head}", "        ..."))
+
+
+def asked_of_classes(symbol: Symbol) -> Iterator[str]:
+    """Sentences on what a class of a script's own must have, or on a function that it defines."""
+    if DEFINED_ALWAYS in symbol.flags:
+        yield "A class of your own has to define it: Blender calls it."
+    elif DEFINED in symbol.flags:
+        yield "A class of your own may define it: Blender calls it where it is."
+    if must := symbol.flagged(MUST_HAVE):
+        names = ", ".join(f"`{name}`" for name in must)
+        yield f"A class of your own must have {names}: Blender does not register it without."
