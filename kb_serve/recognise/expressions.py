@@ -78,11 +78,19 @@ def _is_file_name(chain: Chain) -> bool:
     return len(chain.steps) == 1 and set(chain.attributes) <= _FILE_ENDINGS and chain.steps[0].kind == "attr"
 
 
-def _likeliest_broken(readings: Iterable[ResolvedChain]) -> ResolvedChain | None:
-    """Of the readings that break off, of those that suit the variable best the one that leads furthest."""
+def _likeliest_broken(chain: Chain, readings: Iterable[ResolvedChain]) -> ResolvedChain | None:
+    """Of the readings that break off, of those that suit the variable best the one that leads furthest.
+
+    Where those lack the first name already, one that leads further is likelier.
+    """
     broken = [resolved for resolved in readings if resolved.missing]
     best = max((resolved.fit for resolved in broken), default=0.0)
-    likely = (resolved for resolved in broken if resolved.fit >= _CLEAR * best)
+    likely = [resolved for resolved in broken if resolved.fit >= _CLEAR * best]
+    further = [
+        resolved for resolved in broken if resolved.steps_left < len(chain.steps) and resolved.fit >= _LEAST
+    ]
+    if further and all(resolved.steps_left == len(chain.steps) for resolved in likely):
+        likely = further
     return min(likely, key=lambda resolved: (resolved.steps_left, -resolved.fit), default=None)
 
 
@@ -124,7 +132,7 @@ class Expressions:
                     old = replace(old, removed=for_reading(old.removed))
                 self._old_name(old, later, recognition)
                 continue
-            broken = _likeliest_broken(readings)
+            broken = _likeliest_broken(chain, readings)
             if (
                 readings
                 and self._trusted(chain, readings[0], broken)

@@ -90,7 +90,7 @@ _WORDING = re.compile(
     |was\ called\ with\ invalid\ keyword\ argument\(s\)\ \([^)]*\),\ expected\ \([^)]*\)?
     |No\ module\ named|cannot\ import\ name|function\ takes\ exactly\ \d+\ arguments?\ \(\d+\ given\)
     |not\ found\ in\ \([^)]*\)?|expected\ an?\ \w+\ type,\ not\ \w+|error\ with\ argument\ \d+,\ "\w+"\ -
-    |\bFunction\.(?=\w+(?:\ expected|:\ |\ does\ not))|[A-Z][A-Z_0-9]*_OT_\w+\.(?=\w+\ expected)
+    |\bFunction\.(?=\w+(?:\ expected|:\ |\ does\ not|\ enum))|[A-Z][A-Z_0-9]*_OT_\w+\.(?=\w+\ expected)
     |bpy_struct:\ (?=attribute|Context)|attribute\ "\w+"\ from\ "\w+"\ is\ read-only|Context\ property\ (?="\w+"\ is)
     |(?:StructRNA|BMesh\ data)\ of\ type\ \w+\ has\ been\ removed|BMeshOpsModule:\ operator
     |\bNode\ type\ (?=\w+\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object

@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import MissingName
 
 _FEW = 3
+_MAKERS = ("new", "add", "append", "link", "load", "resize")
+_MAKING = frozenset({*_MAKERS, "create", "insert", "push"})
 _MANY = 6  # more members than these whose labels end alike are not told apart
 _MOST_CASES = 8
 _NAMES_ANOTHER = frozenset({"between", "for", "from", "in", "of", "on", "per", "to", "with"})
@@ -32,10 +34,18 @@ def said_otherwise(missing: MissingName, operators: OperatorWords, reader: BaseR
     owner = reader.entry(missing.owner) if missing.name.isidentifier() else None
     if owner is None or owner.kind != "class" or not words(missing.name):
         return []
+    if missing.name in _MAKING and (makers := _makers(owner.path, reader)):
+        return makers
     found = labelled(owner.path, missing.name, reader)
     if found or not missing.called:
         return found
     return operators_on(owner.path, missing.name, operators, reader)
+
+
+def _makers(owner: str, reader: BaseReader) -> list[str]:
+    """What a collection has to add an element, however it is called."""
+    members = reader.members(owner)
+    return [members[name].path for name in _MAKERS if name in members]
 
 
 def labelled(owner: str, name: str, reader: BaseReader) -> list[str]:

@@ -38,13 +38,14 @@ class Indices:
                 return (
                     f"{note} Blender fills `.{symbol.name}` on evaluated objects only: `obj{GET_EVALUATED}`."
                 )
-        for name in forms.SUBSCRIPTED.findall(query):
+        # Of ``vertices[0].groups[0]`` it is mostly the last that is empty.
+        for name in reversed(forms.SUBSCRIPTED.findall(query)):
             entries = [entry for entry in self._reader.by_name(name) if entry.type == "collection"]
             entries = [entry for entry in entries if entry.path in found] or entries
             if len({(entry.collection, entry.target) for entry in entries}) == 1:
                 functions = self._reader.members(f"{TYPES}{entries[0].collection}")
                 made = self._reader.creations([f"{TYPES}{entries[0].target}"]).values()
                 calls = [f".{name}.{function}()" for function in _ADD if function in functions]
-                if calls := calls or [creation.call for creation in made]:
-                    return f"{note} `{calls[0]}` adds one."
+                calls = calls or [creation.call for creation in made]
+                return f"{note} `{calls[0]}` adds one." if calls else note
         return note

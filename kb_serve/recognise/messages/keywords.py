@@ -54,11 +54,13 @@ class Keywords:
         by_name = {match.id for match in recognition.matches if match.why == "name"} & shared
         ids += [m.id for m in sorted(recognition.matches, key=lambda m: -m.sure) if m.id not in by_name]
         for symbol in filter(None, map(self._reader.symbol, filter(None, ids))):
-            if symbol.parameters:
+            if symbol.parameters or symbol.kind == "operator":
                 if removed := self._removed.of_part(symbol.path, f"({name})"):
                     recognition.add_removed(removed)
-                else:
+                elif symbol.parameters:
                     recognition.notes += unknown_keywords(symbol, [name])
+                else:
+                    recognition.notes.append(f"`{symbol.path}` takes no arguments.")
                 recognition.add(symbol.path, 0.9, "error message")
                 return
         if shared:

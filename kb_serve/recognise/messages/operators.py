@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise import message_patterns as forms
@@ -21,6 +22,10 @@ _READS_ONLY = (
 )
 
 
+# Behind a poll that failed for another reason than the context.
+_SAYS_WHY = re.compile(r"[^.]*\bin background-mode")
+
+
 class Operators:
     """Finds in one base the operators of messages."""
 
@@ -32,6 +37,8 @@ class Operators:
         for match in forms.first_matches(forms.POLL, query):
             if symbol := self._reader.symbol(match["path"]):
                 recognition.add(symbol.path, 0.98, "error message")
+                if _SAYS_WHY.match(query, match.end()):
+                    continue
                 recognition.notes.append(context_for(symbol))
                 add_guide(ON_OPERATORS, self._reader, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")

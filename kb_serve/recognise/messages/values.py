@@ -72,11 +72,11 @@ class Values:
                 recognition.notes.append(elsewhere)
             elif owners and (condition := self._enum_values.condition(owners[0], match["name"])):
                 recognition.notes.append(condition)
-            elif similar := _closest(match["name"], items):
-                recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
-            elif owners and (labelled := self._enum_values.labelled(owners[0], match["name"])):
+            elif owners and (labelled := self._labelled(owners[0], match["name"], items)):
                 listed = ", ".join(f"`{item}`" for item in labelled[:_FEW])
                 recognition.notes.append(_LABELLED.format(name=match["name"], items=listed))
+            elif similar := _closest(match["name"], items):
+                recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
             elif (others := self._taking_only(match["name"])) and owners:
                 listed = ", ".join(f"`{other}`" for other in others)
                 recognition.notes.append(f"`{match['name']}` is a value of {listed}.")
@@ -86,6 +86,11 @@ class Values:
                 recognition.add_removed(removed)
             elif similar := _closest(match["name"], re.findall(r"'([^']+)'", match["items"])):
                 recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+
+    def _labelled(self, owner: str, name: str, items: Sequence[str]) -> list[str]:
+        """The other items whose label is a name, where spelling does not tell just these: the label is surer."""
+        labelled = [item for item in self._enum_values.labelled(owner, name) if item != name]
+        return [] if _closest(name, items) == ", ".join(f"`{item}`" for item in labelled) else labelled
 
     def _taking_only(self, value: str) -> list[str]:
         """The properties that take a value, where only a few do."""

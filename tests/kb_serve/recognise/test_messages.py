@@ -723,3 +723,30 @@ def test_operators_take_no_arguments_by_place(kb: KnowledgeBase) -> None:
 def test_a_key_that_an_input_of_geometry_nodes_lacks_is_no_registered_property(kb: KnowledgeBase) -> None:
     notes = kb.query("KeyError: 'bpy_struct[key]: key \"Socket_9\" not found'").notes
     assert not any("bpy.props" in note for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("query", "note"),
+    [
+        ("bpy.ops.material.new(name='x')\nTypeError: Converting py args to operator properties:: keyword \"name\" "
+         "unrecognized", "`bpy.ops.material.new` takes no arguments."),
+        ("AttributeGroupMesh.new(): error with argument 3, \"domain\" -  Function.domain enum \"FACE_CORNER\" not "
+         "found in ('POINT', 'EDGE', 'FACE', 'CORNER', 'CURVE', 'INSTANCE', 'LAYER')",
+         "`FACE_CORNER` is not an item of this enum; of that label: `CORNER`."),
+        ("ob.data.vertices[0].groups[0].weight\nIndexError: bpy_prop_collection[index]: index 0 out of range, size 0",
+         "The collection has no elements: there is no `[0]` yet."),
+    ],
+)  # fmt: skip
+def test_a_message_beside_its_line_says_one_thing(kb: KnowledgeBase, query: str, note: str) -> None:
+    assert kb.query(query).notes == (note,)
+
+
+def test_a_poll_that_says_why_is_not_explained_otherwise(kb: KnowledgeBase) -> None:
+    said = "RuntimeError: Operator bpy.ops.ed.undo.poll() Undo disabled at startup in background-mode"
+    assert not [note for note in kb.query(said).notes if "active object" in note]
+
+
+def test_what_a_collection_has_to_add_elements_is_closest(kb: KnowledgeBase) -> None:
+    for query in ("AttributeError: 'NlaStrips' object has no attribute 'add'", "track.strips.add()"):
+        (note,) = [note for note in kb.query(query).notes if "has no `add`" in note]
+        assert "Closest: `bpy.types.NlaStrips.new`" in note or "Closest: `bpy.types.ActionStrips.new`" in note

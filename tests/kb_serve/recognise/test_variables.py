@@ -173,3 +173,28 @@ def test_pythons_own_modules_are_no_variables(kb: KnowledgeBase, query: str) -> 
 
 def test_a_variable_called_as_a_module_of_python_is_known(kb: KnowledgeBase) -> None:
     assert kb.query("math.operation = 'ADD'").hits[0].id.endswith("NodeMath.operation")
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("img.interpolation = 'Closest'", "ShaderNodeTexImage.interpolation"),
+        ("bag = strip.channelbag(slot)", "ActionKeyframeStrip.channelbag"),
+        ("coll.assign(bone)", "BoneCollection.assign"), ("s.type = 'IK'", "Constraint.type"),
+    ],
+)  # fmt: skip
+def test_a_name_denies_nothing_that_another_class_has(kb: KnowledgeBase, query: str, first: str) -> None:
+    answer = kb.query(query)
+    assert first in [hit.id.removeprefix("bpy.types.") for hit in answer.hits[:2]]
+    assert not [note for note in answer.notes if "has no" in note and not note.startswith("If ")]
+
+
+def test_what_a_class_calls_otherwise_is_believed_of_a_variable_named_after_it(kb: KnowledgeBase) -> None:
+    assert kb.query("light.power = 100").hits[0].id == "bpy.types.PointLight.energy"
+
+
+@pytest.mark.parametrize("query", ["scene.bl_rna.properties", "bpy.context.object.rna_type.identifier"])
+def test_every_instance_tells_of_its_class(kb: KnowledgeBase, query: str) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id.startswith("bpy.types.Struct.")
+    assert not answer.notes
