@@ -10,14 +10,13 @@ from kb_build.flow.trees import walk
 from kb_build.flow.types import ClassObject
 from kb_check.computing import NAMESPACES, RUNNING, STORING, computing
 from kb_check.literals import bound_names, times_bound
-from kb_check.registered_types import TYPES
+from kb_check.registered_types import TYPES, callbacks, needs
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from kb_build.records import Symbol
-    from kb_check.registered_types import RegisteredType
     from kb_check.script import Script
 
 # Name → the one statement of a body that gives it; None where several do, or one that may not be run.
@@ -30,7 +29,6 @@ _REGISTERING = frozenset({"register_class", "register_classes_factory"})
 _TELLING = (ast.Call, ast.For, ast.Attribute, ast.FunctionDef, ast.Assign)
 # Classes are Python's: what holds names gives attributes to them as well.
 _COMPUTING = RUNNING | STORING | NAMESPACES
-_DEMANDED = frozenset(name for kind in TYPES.values() for name in kind.needs)
 # Bases in Python that give what their reference lists, and nothing more.
 _HELPERS = "bpy_extras."
 
@@ -46,7 +44,6 @@ class OwnClass:
 
     node: ast.ClassDef
     path: str
-    type: RegisteredType
     bodies: tuple[Body, ...]
     is_closed: bool
     is_final: bool
@@ -65,10 +62,9 @@ class OwnClass:
 
     def callbacks(self, script: Script) -> Iterator[tuple[Symbol, FunctionDefinition]]:
         """The functions that Blender calls, as it knows them and as they are surely defined."""
-        for name in self.type.callbacks if self.is_final else ():
-            function, member = self.given(name), script.api.member(self.path, name)
-            if member and member.symbol.kind == "function" and isinstance(function, FunctionDefinition):
-                yield member.symbol, function
+        for symbol in callbacks(self.path, script.api) if self.is_final else ():
+            if isinstance(function := self.given(symbol.name), FunctionDefinition):
+                yield symbol, function
 
     def attributes(self) -> Iterator[tuple[str, ast.expr]]:
         """The attributes that are surely given, each with its value."""
@@ -104,7 +100,7 @@ def own_classes(script: Script) -> list[OwnClass]:
         if family.path:
             found.append(
                 OwnClass(
-                    node, family.path, TYPES[family.path], tuple(reversed(family.bodies)), family.is_closed,
+                    node, family.path, tuple(reversed(family.bodies)), family.is_closed,
                     is_registered or node.name not in parents, is_registered,
                 )
             )  # fmt: skip
@@ -182,6 +178,7 @@ def _registered_names(script: Script) -> frozenset[str]:
     """
     if not _COMPUTING.isdisjoint(computing(script)):
         return frozenset()
+    demanded = {name for path in TYPES for name in needs(path, script.api)}
     lists: dict[str, ast.expr] = {}
     given: list[ast.expr] = []
     loops: list[ast.For] = []
@@ -193,7 +190,7 @@ def _registered_names(script: Script) -> frozenset[str]:
                 given.append(one)
             case ast.For():
                 loops.append(node)
-            case ast.Attribute(attr=name, ctx=ast.Store()) if name in _DEMANDED:
+            case ast.Attribute(attr=name, ctx=ast.Store()) if name in demanded:
                 return frozenset()
             case ast.FunctionDef(name="__init_subclass__"):
                 return frozenset()

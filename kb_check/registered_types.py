@@ -1,79 +1,44 @@
-"""What Blender demands of the classes that scripts register.
+"""Blender's types that scripts derive classes from and register.
 
-RNA says which functions of a type it looks for in a class (``bpy.types.Function.is_registered``, and
-``is_registered_optional`` for those that a class may lack); what else a class must have was found by registering one
-without it, in each version from 4.2 to 5.2. How many arguments a function gets is in the base, as are the values of
-attributes.
+What Blender demands of such a class, and which of its functions it calls, is in the base: it was asked.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
+from kb_build.records import DEFINED, DEFINED_ALWAYS, MUST_HAVE
 
+if TYPE_CHECKING:
+    from collections.abc import Iterator
 
-@dataclass(frozen=True, slots=True)
-class RegisteredType:
-    """One of Blender's types that scripts derive classes from.
+    from kb_build.flow.api import Api
+    from kb_build.records import Symbol
 
-    ``needs`` are the attributes and functions without which a class is refused, ``callbacks`` all functions whose
-    arguments are counted. ``makes_properties``: annotations become properties, which other types only drop.
-    """
-
-    needs: tuple[str, ...] = ()
-    callbacks: tuple[str, ...] = ()
-    makes_properties: bool = False
-
-
-_OPERATOR = RegisteredType(
-    ("bl_idname", "bl_label"),
-    ("poll", "execute", "check", "invoke", "modal", "draw", "cancel", "description"),
-    makes_properties=True,
-)
-_NODE = (
-    "poll", "poll_instance", "update", "insert_link", "init", "copy", "free", "draw_buttons", "draw_buttons_ext",
-    "draw_label",
+_WITH_PROPERTIES = (
+    "AddonPreferences", "Gizmo", "GizmoGroup", "Macro", "Node", "NodeSocket", "NodeTree", "Operator", "PropertyGroup",
+    "UIList",
 )  # fmt: skip
-_RENDER_ENGINE = (
-    "update", "render", "render_frame_finish", "draw", "bake", "view_update", "view_draw", "update_script_node",
-    "update_render_passes", "update_custom_camera",
-)  # fmt: skip
-_GIZMO = ("draw", "draw_select", "test_select", "modal", "setup", "invoke", "exit", "select_refresh")
-_GIZMO_GROUP = ("poll", "setup_keymap", "setup", "refresh", "draw_prepare", "invoke_prepare")
-
-TYPES = {
-    f"{T}AddonPreferences": RegisteredType(makes_properties=True),
-    f"{T}AssetShelf": RegisteredType(
-        ("bl_space_type",), ("poll", "asset_poll", "get_active_asset", "draw_context_menu")
-    ),
-    f"{T}FileHandler": RegisteredType(("bl_label", "bl_file_extensions"), ("poll_drop",)),
-    f"{T}Gizmo": RegisteredType(("draw",), _GIZMO, makes_properties=True),
-    f"{T}GizmoGroup": RegisteredType(
-        ("bl_label", "bl_space_type", "bl_region_type", "setup"), _GIZMO_GROUP, makes_properties=True
-    ),
-    f"{T}Header": RegisteredType(("bl_space_type", "draw"), ("draw",)),
-    f"{T}KeyingSetInfo": RegisteredType(
-        ("bl_label", "poll", "iterator", "generate"), ("poll", "iterator", "generate")
-    ),
-    f"{T}Macro": RegisteredType(("bl_idname", "bl_label"), ("poll", "draw"), makes_properties=True),
-    f"{T}Menu": RegisteredType(("bl_label", "draw"), ("poll", "draw")),
-    f"{T}Node": RegisteredType(("bl_label",), _NODE, makes_properties=True),
-    f"{T}NodeSocket": RegisteredType(
-        ("draw",), ("draw", "draw_color", "draw_color_simple"), makes_properties=True
-    ),
-    f"{T}NodeTree": RegisteredType(
-        ("bl_label", "bl_icon"), ("poll", "update", "get_from_context", "valid_socket_type"), makes_properties=True
-    ),
-    f"{T}Operator": _OPERATOR,
-    f"{T}Panel": RegisteredType(
-        ("bl_label", "bl_space_type", "bl_region_type", "draw"),
-        ("poll", "draw", "draw_header", "draw_header_preset"),
-    ),
-    f"{T}PropertyGroup": RegisteredType(makes_properties=True),
-    f"{T}RenderEngine": RegisteredType(("bl_label",), _RENDER_ENGINE),
-    f"{T}UIList": RegisteredType((), ("draw_item", "draw_filter", "filter_items"), makes_properties=True),
-}  # fmt: skip
-
+_WITHOUT = ("AssetShelf", "FileHandler", "Header", "KeyingSetInfo", "Menu", "Panel", "RenderEngine")
+# Those on which annotations become properties, which the others only drop.
+MAKE_PROPERTIES = frozenset(f"{T}{name}" for name in _WITH_PROPERTIES)
+TYPES = MAKE_PROPERTIES | frozenset(f"{T}{name}" for name in _WITHOUT)
+# An operator gets the name of its class where it has no ``bl_idname``, and such a name is refused.
+_NAMED = frozenset({f"{T}Macro", f"{T}Operator"})
 # Functions that may take fewer arguments than they get, and the fewest, with ``self``.
 FEWEST_ARGUMENTS = {f"{T}UIList.draw_item": 7}
+
+
+def needs(path: str, api: Api) -> tuple[str, ...]:
+    """The attributes and functions without which Blender refuses a class derived from a type."""
+    symbol = api.symbols.symbol(path)
+    names = symbol.flagged(MUST_HAVE) if symbol else ()
+    return ("bl_idname", *names) if path in _NAMED else names
+
+
+def callbacks(path: str, api: Api) -> Iterator[Symbol]:
+    """The functions that Blender calls on classes derived from a type."""
+    for symbol in api.symbols.members(path):
+        if symbol.kind == "function" and not {DEFINED, DEFINED_ALWAYS}.isdisjoint(symbol.flags):
+            yield symbol

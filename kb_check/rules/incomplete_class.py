@@ -34,6 +34,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import T
 from kb_check.findings import Finding, Fix
 from kb_check.own_classes import own_classes
+from kb_check.registered_types import needs
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -52,8 +53,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for own in own_classes(script):
         if not own.is_registered:
             continue
-        known = [name for name in own.type.needs if script.api.member(own.path, name)]
-        missing = [name for name in known if own.lacks(name)]
+        missing = [name for name in needs(own.path, script.api) if own.lacks(name)]
         if missing:
             names = ", ".join(f"`{name}`" for name in missing)
             yield Finding(

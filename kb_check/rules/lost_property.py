@@ -24,6 +24,7 @@ from kb_build.flow.types import Function
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.made_here import callee_path
 from kb_check.own_classes import own_classes
+from kb_check.registered_types import MAKE_PROPERTIES
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
@@ -70,14 +71,14 @@ def _annotated(
         value is None
         and isinstance(kind, Function)
         and kind.path.startswith(_PROPS)
-        and own.type.makes_properties
+        and own.path in MAKE_PROPERTIES
     ):
         yield _finding(
             script, own, name, f"makes no property: `{kind.path}` is not called",
             Fix("Call it", (Edit.behind(script.span(annotation), "()"),)),
         )  # fmt: skip
     elif _declares(script, annotation):
-        if not own.type.makes_properties:
+        if own.path not in MAKE_PROPERTIES:
             yield _finding(
                 script, own, name,
                 f"makes no property: {own.label} has none of its own. Declare it in a PropertyGroup, or on a class "
@@ -90,7 +91,7 @@ def _annotated(
 def _assigned(script: Script, own: OwnClass, name: ast.Name, call: ast.Call) -> Finding:
     start, end = script.span(name), script.span(call)
     between = Span(start.end_line, start.end_column, end.line, end.column)
-    can_be = own.type.makes_properties and not name.id.startswith("_")
+    can_be = own.path in MAKE_PROPERTIES and not name.id.startswith("_")
     fix = Fix("Write an annotation", (Edit(between, ": "),), sure=True) if can_be else None
     return _finding(
         script, own, name,

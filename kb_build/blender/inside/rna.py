@@ -258,7 +258,10 @@ def write_struct(write, identifier, rna):
         reached=f'bpy.context.preferences.addons["{addon.bl_idname}"].preferences' if addon else "",
     )
     key = rna.name_property.identifier if rna.name_property else ""
+    called_back = {function.identifier for function in own(rna, "functions") if function.is_registered}
     for prop in own(rna, "properties"):
+        if prop.identifier in called_back:  # which the function of the script's class takes the place of
+            continue
         row = describe(prop)
         if identifier == LAYOUT:
             row["default"] = None
