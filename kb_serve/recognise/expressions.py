@@ -21,9 +21,9 @@ from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
 from kb_serve.recognise.members_by_words import members_by_words
 from kb_serve.recognise.notes import SIMILAR
+from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
-from kb_serve.recognise.resolver import TOLD_BY_MEMBER
 from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import USUAL, is_guess, usual_classes

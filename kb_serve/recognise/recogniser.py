@@ -52,8 +52,15 @@ _OWNER_OF_REMOVED = 0.85  # … one whose removed member has no known successor
 _LIKELY = 1.1
 _LIKELY_GUESS = 0.88
 _GUESS = 0.83
+_SOCKET_VALUE = "The value of a socket is its `default_value`: `node.inputs[…].default_value = …`."
 _OF_STRINGS = frozenset({"enum item", "quoted name"})
 _GUESSES = _OF_STRINGS | {"name", "label", "title", "on the way"}
+
+
+def _sets_a_socket(chain: Chain) -> bool:
+    """Whether a chain assigns to a socket itself, which Blender refuses."""
+    last = chain.steps[-2:]
+    return chain.assigned and len(last) == 2 and last[0].text == "inputs" and last[1].kind in {"key", "index"}
 
 
 def _name(chain: Chain) -> str:
@@ -114,6 +121,8 @@ class Recogniser:
         for taken_as in self._old.still_taken_in_strings(query):
             recognition.add_former_name(taken_as, _SURE)
         for chain in chains:
+            if _sets_a_socket(chain):
+                recognition.notes.append(_SOCKET_VALUE)
             called = bool(chain.steps) and chain.steps[-1].kind == "call"
             if not (called or chain.values):
                 continue

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
 from kb_serve.reader import COLLECTION, STRUCT, TYPES, BaseReader, SymbolEntry
+from kb_serve.recognise.owners import Owners
 from kb_serve.recognise.subscripts import CustomProperties
-from kb_serve.recognise.variables import Variables, classes_of_parts, usual_classes, variable_fit
+from kb_serve.recognise.variables import Variables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -49,10 +50,6 @@ _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
 _COLLECTION_FIT = 0.7  # of an indexed variable with the name of a collection property
 _USUAL = 0.05
-# Fit of the class that is likeliest meant by a member, for a variable whose name tells nothing; and of one that a part
-# of the name may mean.
-TOLD_BY_MEMBER, _TOLD_BY_PART = 0.2, 0.28
-_MOST_TOLD = 8  # classes that a member alone may mean
 _MAX_BRANCHES = 60
 _MOST_NAMES = 8  # in the longest path
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
@@ -110,6 +107,7 @@ class Resolver:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
         self._variables = Variables(reader)
+        self._owners = Owners(reader)
         self._custom = CustomProperties(reader)
         self._returned = lru_cache(maxsize=500)(self._returned_class)
         self._named = lru_cache(maxsize=64)(self._named_classes)
@@ -177,38 +175,10 @@ class Resolver:
                 # An Object's modifiers are likelier than an FCurve's.
                 is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
                 yield value, _COLLECTION_FIT + (_USUAL if is_usual else 0.0)
-        parts, taking = classes_of_parts(chain.root), self._taking(chain)
-        named = [set(words(cls.rpartition(".")[2])) for cls in usual_classes(chain.root)]
-        is_class = chain.root[:1].isupper()  # misspelt, or of the script: a member does not tell it
-        for rank, owner in enumerate(self._owners(_first_name(chain))):
-            if owner.path not in seen:
-                seen.add(owner.path)
-                is_part = any(name <= set(words(owner.name)) for name in named)
-                is_told = is_part or owner.path in taking or self._is_one_of(owner.path, parts)
-                told = 0.0 if is_class else _TOLD_BY_PART if is_told else TOLD_BY_MEMBER
-                fit = max(told - 0.001 * rank, 0.3 * variable_fit(chain.root, owner.name))
-                # Where a chain goes on, what follows tells which one is meant.
-                if rank < _MOST_TOLD or fit > TOLD_BY_MEMBER or len(chain.steps) > 1:
-                    yield ChainValue(owner.path, owner.path), fit
-
-    def _taking(self, chain: Chain) -> set[str]:
-        """The classes of which an enumeration takes what a lone member is set to or compared with."""
-        name = _first_name(chain)
-        found = (path for value in chain.values for path, *_ in self._reader.enum_owners(key(value)))
-        return {path.removesuffix(f".{name}") for path in found if path.endswith(f".{name}")}
-
-    def _is_one_of(self, owner: str, classes: Sequence[str]) -> bool:
-        """Whether a class is one of some, or a kind or a base of one."""
-        return any(self._reader.descends(owner, cls) or self._reader.descends(cls, owner) for cls in classes)
-
-    def _owners(self, member: str) -> Iterator[SymbolEntry]:
-        """The classes that have a member of their own of a name, those first that are likeliest meant."""
-        named = [entry for entry in self._reader.by_name(member) if entry.kind != "socket"]
-        self._reader.entry.load(entry.owner for entry in named)
-        for entry in self._heaviest(named)[:_MAX_BRANCHES]:
-            owner = self._reader.entry(entry.owner)
-            if owner and owner.kind == "class":
-                yield owner
+        for cls, fit in self._owners.of(chain):
+            if cls not in seen:
+                seen.add(cls)
+                yield ChainValue(cls, cls), fit
 
     def _named_like_a_module(self, variable: str, member: str, module: str) -> list[str]:
         """The classes that a variable may hold which is called like a module that scripts import by its last name, if
@@ -383,7 +353,7 @@ class Resolver:
             ]
             if value.symbol == _OBJECT_DATA:
                 below = [entry for entry in below if self._reader.is_object_data(entry.owner)] or below
-            for entry in self._heaviest(below):
+            for entry in self._owners.heaviest(below):
                 yield self._value_of(entry, entry.owner)
 
     def _of_collection(self, value: ChainValue, name: str) -> SymbolEntry | None:
@@ -393,13 +363,6 @@ class Resolver:
             return own
         of_groups = self._reader.descends(value.cls, _GROUP) and self.member(_GROUPS, name)
         return self.member(COLLECTION, name) or of_groups or own
-
-    def _heaviest(self, members: Sequence[SymbolEntry]) -> Sequence[SymbolEntry]:
-        """Members of one name, those first that count most, and whose classes do."""
-        if len(members) < 2:
-            return members
-        weights = self._reader.weights({path for entry in members for path in (entry.path, entry.owner)})
-        return sorted(members, key=lambda e: -weights.get(e.path, 0.0) - weights.get(e.owner, 0.0))
 
     def _is_list(self, path: str) -> bool:
         entry = self._reader.entry(path)

@@ -138,3 +138,15 @@ def test_what_takes_no_custom_properties_says_so(kb: KnowledgeBase) -> None:
 def test_a_variable_called_context_may_be_a_dictionary(kb: KnowledgeBase) -> None:
     answer = kb.query("context = bpy.context.copy(); context['object'] = ob")
     assert not any("custom properties" in note for note in answer.notes)
+
+
+@pytest.mark.parametrize("query", ['bsdf.inputs["Base Color"] = (1, 0, 0, 1)', "n.inputs[0] = 3"])
+def test_a_socket_is_set_by_its_value(kb: KnowledgeBase, query: str) -> None:
+    assert [note for note in kb.query(query).notes if "is its `default_value`" in note]
+
+
+@pytest.mark.parametrize(
+    "query", ['bsdf.inputs["Base Color"].default_value = (1, 0, 0, 1)', "mod['Socket_2'] = 3"]
+)
+def test_the_value_of_a_socket_is_left_alone(kb: KnowledgeBase, query: str) -> None:
+    assert not [note for note in kb.query(query).notes if "is its `default_value`" in note]
