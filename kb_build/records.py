@@ -278,6 +278,11 @@ class Symbol:
         """The settings of its node that choose a socket's type; none where it is always the same."""
         return self.flagged("type-by:")
 
+    @property
+    def is_called_back(self) -> bool:
+        """Whether classes of scripts define the function, and Blender calls it."""
+        return not {DEFINED, DEFINED_ALWAYS}.isdisjoint(self.flags)
+
     def flagged(self, prefix: str) -> tuple[str, ...]:
         """What the flags that begin with ``prefix`` say."""
         return tuple(flag.removeprefix(prefix) for flag in self.flags if flag.startswith(prefix))

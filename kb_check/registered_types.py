@@ -8,7 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import T
-from kb_build.records import DEFINED, DEFINED_ALWAYS, MUST_HAVE
+from kb_build.records import MUST_HAVE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -40,5 +40,5 @@ def needs(path: str, api: Api) -> tuple[str, ...]:
 def callbacks(path: str, api: Api) -> Iterator[Symbol]:
     """The functions that Blender calls on classes derived from a type."""
     for symbol in api.symbols.members(path):
-        if symbol.kind == "function" and not {DEFINED, DEFINED_ALWAYS}.isdisjoint(symbol.flags):
+        if symbol.is_called_back:
             yield symbol

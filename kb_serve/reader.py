@@ -25,6 +25,7 @@ _Record = TypeVar("_Record")
 _Value = TypeVar("_Value")
 
 TYPES = "bpy.types."
+PROPERTIES = "bpy.props."  # whose functions scripts import by name
 STRUCT = "bpy.types.bpy_struct"
 COLLECTION = "bpy.types.bpy_prop_collection"
 _ARGUMENT = re.compile(r"[( ](\w+)=")

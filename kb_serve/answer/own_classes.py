@@ -13,11 +13,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
 
 
-def is_called_back(symbol: Symbol) -> bool:
-    """Whether scripts define a function, and Blender calls it."""
-    return DEFINED in symbol.flags or DEFINED_ALWAYS in symbol.flags
-
-
 def definition(symbol: Symbol) -> str:
     """The source by which a class of a script's own defines a function that Blender calls."""
     is_of_class = "classmethod" in symbol.flags

@@ -49,7 +49,7 @@ from kb_build.symbol_lines import (
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.calls_before import calls_before
-from kb_serve.answer.own_classes import asked_of_classes, definition, is_called_back
+from kb_serve.answer.own_classes import asked_of_classes, definition
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
@@ -174,7 +174,7 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield f"unit: {_UNITS.get(symbol.unit, symbol.unit.lower())}"
     if symbol.subtype and symbol.subtype not in {"UNSIGNED"}:
         yield f"subtype: {symbol.subtype}"
-    if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS and not is_called_back(symbol)]:
+    if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS and not symbol.is_called_back]:
         yield ", ".join(flags)
     if _NEVER_NONE in symbol.flags and symbol.type == "pointer" and not is_locked(symbol):
         yield "cannot be set to `None`"
@@ -526,7 +526,7 @@ class MarkdownRenderer:
     def _call(symbol: Symbol) -> str:
         if symbol.kind == "operator":
             return _call_without(symbol.signature, _of_file_browser(symbol))
-        if is_called_back(symbol):
+        if symbol.is_called_back:
             return definition(symbol)
         owner = symbol.owner
         if symbol.kind == "function" and owner.startswith(TYPES) and "static" not in symbol.flags:
@@ -572,7 +572,7 @@ class MarkdownRenderer:
         reached = cls.reached if cls else ""
         if not reached or symbol.kind not in {"class", "property", "socket", "function"}:
             return ""
-        if is_called_back(symbol):  # by Blender, not by scripts
+        if symbol.is_called_back:  # by Blender, not by scripts
             return ""
         last = symbol.path[len(symbol.owner) :] if symbol.kind != "class" else ""
         if symbol.kind == "socket" and (subscript := new_subscript(symbol)):

@@ -32,9 +32,10 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
         gap = "".join(text[end:start].split())
         end = start + len(chain.source)
         is_assigned = gap == "=" and _is_single(found, text)
-        own = _from(chain, bound if is_assigned else _without(found, bound))
+        rest = _without(found, bound)
+        own = _from(chain, bound if is_assigned else rest)
         is_whole = own.steps and not _GOES_ON.match(text, end)
-        bound = _without(found, bound)
+        bound = rest
         if is_whole and is_assigned:
             bound[found[-1].root] = own
         elif is_whole and (name := _iterated(found)) and _SEQUENCE.fullmatch(gap):

@@ -9,7 +9,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
-from kb_serve.reader import COLLECTION, STRUCT, TYPES, BaseReader, SymbolEntry
+from kb_serve.reader import COLLECTION, PROPERTIES, STRUCT, TYPES, BaseReader, SymbolEntry
 from kb_serve.recognise.owners import Owners
 from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import Variables
@@ -33,10 +33,8 @@ ROOTS = {
 }
 _IMPORTED = ("mathutils.", "bmesh.types.")  # whose classes scripts import by name
 _OBJECT_DATA = f"{TYPES}Object.data"
-_RNA, _STRUCT_OF_ALL = (
-    ("bl_rna", "rna_type"),
-    f"{TYPES}Struct",
-)  # what every class and instance tells of itself
+# What every class and instance tells of itself, and what that is.
+_RNA, _STRUCT_OF_ALL = ("bl_rna", "rna_type"), f"{TYPES}Struct"
 _ARRAY = f"{TYPES}bpy_prop_array"
 _MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
 _GROUP, _GROUPS = f"{TYPES}PropertyGroup", f"{TYPES}bpy_prop_collection_idprop"
@@ -208,7 +206,7 @@ class Resolver:
         names[:1] = ROOTS.get(names[0], names[0]).split(".")
         extra = len(names) - len(chain.dotted.split("."))
         paths = [".".join(names[:length]) for length in range(min(len(names), _MOST_NAMES), 0, -1)]
-        packages = ("", "bpy.props.", TYPES, *_IMPORTED)
+        packages = ("", PROPERTIES, TYPES, *_IMPORTED)
         self._reader.entry.load(package + path for path in paths for package in packages)
         for length, path in zip(range(len(paths), 0, -1), paths, strict=True):
             for package in packages:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
-from kb_serve.reader import TYPES
+from kb_serve.reader import PROPERTIES, TYPES
 from kb_serve.recognise.addresses import find_page
 from kb_serve.recognise.enum_values import is_quoted_value, is_value
 
@@ -19,7 +19,6 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
 
-PROPERTIES = "bpy.props."  # whose functions scripts import by name
 _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3
 _NEAR = 2  # dots in the path of a module that a bare word may mean
