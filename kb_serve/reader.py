@@ -147,7 +147,9 @@ class BaseReader:
         # The members of a class or module by name; the classes right below one; the symbols whose last part is a name.
         self.members = lru_cache(maxsize=64)(self._members)
         self.subclasses = lru_cache(maxsize=64)(self._subclasses)
-        # A page with its sections, or None. It is looked at several times while it is answered with.
+        # The whole record of an identifier, and a page with its sections, or None. They are looked at several times
+        # while they are answered with.
+        self.symbol = lru_cache(maxsize=32)(self._symbol)
         self.page = lru_cache(maxsize=8)(self._page)
         # A thousand symbols share a name, and resolving asks for the same few again and again.
         self.by_name = lru_cache(maxsize=8)(self._by_name)
@@ -298,8 +300,7 @@ class BaseReader:
             owner == f"{TYPES}Object.type" for name in names for owner, *_ in self.enum_owners(key(name))
         )
 
-    def symbol(self, path: str) -> Symbol | None:
-        """The whole record of an identifier."""
+    def _symbol(self, path: str) -> Symbol | None:
         rows = self.rows("SELECT record FROM symbols WHERE path = ?", path)
         return self._record(symbol_from_json, rows[0][0]) if rows else None
 

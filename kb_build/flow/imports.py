@@ -13,7 +13,8 @@ if TYPE_CHECKING:
     from collections.abc import Iterable
 
 _API_MODULES = frozenset({"bpy", "mathutils", "bmesh", "gpu", "gpu_extras", "bpy_extras", "blf", "aud", "freestyle",
-                          "bl_math", "idprop", "imbuf"})  # fmt: skip
+                          "bl_math", "idprop", "imbuf", "addon_utils", "bl_keymap_utils", "nodeitems_utils",
+                          "rna_keymap_ui", "rna_prop_ui"})  # fmt: skip
 
 
 class Imports(Members):

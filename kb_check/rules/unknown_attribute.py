@@ -36,6 +36,7 @@ from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
+from kb_serve.recognise.elements import elsewhere
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -64,6 +65,9 @@ def _check(script: Script) -> Iterator[Finding]:
             level = "warning" if lost or _is_let_pass(row) else "error"
             if not lacking.removed and _is_of_object(script, row, owner):
                 level, lacking = "warning", _confused(row, owner, lacking)
+            elif not lacking.removed and (other := elsewhere(row.missing[0], row.value, script.names.reader)):
+                told = f"`{row.missing[0]}` has no `{row.value}`. {other.how}"
+                lacking = replace(lacking, message=told, instead=(other.path,), replacement="")
             yield lacking_finding(script, RULE.id, row, lacking, level)
     yield from _of_python(script)
     yield from _of_libraries(script)

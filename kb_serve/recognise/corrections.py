@@ -11,7 +11,7 @@ from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.chains import Chain, ChainStep
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Mapping
+    from collections.abc import Container, Iterable, Mapping, Sequence
 
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
@@ -19,6 +19,7 @@ LIKELY = 0.72  # similarity from which on a name is offered as a correction
 _CONTAINED = 0.8  # for a name whose words are all in the other one: ``select`` and ``select_set``
 _CUT_OFF = 6  # letters of what may be the beginning of a name
 _SEVERAL = 2  # words of a name that may be made of two others
+_READINGS = 3  # of a chain, of which one may lack a name that is only misspelt
 _ROUNDS = 3
 _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
@@ -173,18 +174,27 @@ class Corrector:
         for _ in range(_ROUNDS):
             if not readings or readings[0].complete:
                 break
-            resolved = readings[0]
-            similar = nearest(resolved.missing, self._reader.member_names(resolved.owner), 1)
-            if not similar:
-                break
-            name, alike = similar[0]
-            if not is_misspelling(resolved.missing, name, self._words):
+            found = self._misspelt(readings)
+            if found is None:
                 return None
-            corrections.append(Correction(resolved.missing, name, alike))
-            chain = _with_step(chain, len(chain.steps) - resolved.steps_left, name)
+            correction, place = found
+            corrections.append(correction)
+            chain = _with_step(chain, len(chain.steps) - place, correction.meant)
             readings = self._resolver.resolve(chain)
         if corrections and readings and readings[0].complete:
             return readings[0], corrections
+        return None
+
+    def _misspelt(self, readings: Sequence[ResolvedChain]) -> tuple[Correction, int] | None:
+        """The name that the first reading lacks, corrected, or else one that another lacks which leads as far; and how
+        many steps there are from it on.
+        """
+        for resolved in readings[:_READINGS]:
+            if resolved.steps_left != readings[0].steps_left:
+                break
+            for name, alike in nearest(resolved.missing, self._reader.member_names(resolved.owner), 1):
+                if is_misspelling(resolved.missing, name, self._words):
+                    return Correction(resolved.missing, name, alike), resolved.steps_left
         return None
 
 

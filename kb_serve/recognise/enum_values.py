@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
 _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _WHOLE = re.compile(r"(['\"])([^'\"\n]{2,60})\1")
+# What an element is looked up by, as ``objects["Cube"]``, which is its name.
+_SUBSCRIPT = re.compile(r"""(?<=[\w)\]])\[(['"])([^'"\n]{2,60})\1\]""")
 _CAPITALS = re.compile(r"(?<![\w.])(?=[0-9]*[A-Z])[A-Z0-9_]{3,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
@@ -64,7 +66,8 @@ class EnumValues:
         """Adds the properties and parameters that take the values in a query, and quoted classes."""
         text = _ERROR.sub(" ", query)
         quoted = [a or b for a, b in _QUOTED.findall(text)][:_MOST_VALUES]
-        values = self.values(query)
+        names = {name for _, name in _SUBSCRIPT.findall(query) if not name.isupper()}
+        values = [value for value in self.values(query) if value not in names]
         if not values:
             return
         for value in quoted:

@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
+from kb_serve.recognise.elements import elsewhere, meant_by_key
 from kb_serve.recognise.members_by_words import members_by_words
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
@@ -278,13 +279,42 @@ class Expressions:
         sure = self._is_sure(chain, resolved)
         behind = chain.steps[len(chain.steps) - resolved.steps_left + 1 :]
         called = bool(behind) and behind[0].kind == "call"
-        if not self._is_told(resolved, recognition):
+        is_element = self._is_element(chain, resolved, later, recognition)
+        if called and not is_element:
+            self._tell_elsewhere(resolved, later, recognition)
+        if not is_element and not self._is_told(resolved, recognition):
             recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure, called))
         for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'
             )  # one that takes no value of its own is still what was meant
             recognition.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
+
+    def _is_element(
+        self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition
+    ) -> bool:
+        """Adds what a chain leads to that looks up an element in what only has the collection of them."""
+        holder = self._reader.entry(resolved.symbols[-1])
+        place = len(chain.steps) - resolved.steps_left - (not resolved.missing.startswith("["))
+        if holder is None or place < 0 or chain.steps[place].kind != "key":
+            return False
+        collection = meant_by_key(f"{TYPES}{holder.target}" if holder.target else holder.path, self._reader)
+        meant = self._resolver.onward(collection.path, chain.steps[place:]) if collection else None
+        if collection is None or meant is None or not meant.complete:
+            return False
+        key_of = f'["{chain.steps[place].text}"]'
+        recognition.notes.append(
+            f"`{key_of}` is none of the {collection.label.lower()} of a `{collection.owner}`: those are in its "
+            f"`{collection.name}`, `.{collection.name}{key_of}`."
+        )
+        recognition.add(meant.symbols[-1], 0.96 - later, "expression")
+        return True
+
+    def _tell_elsewhere(self, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
+        """Adds what does what a collection lacks a function for."""
+        if other := elsewhere(resolved.symbols[-1], resolved.missing, self._reader):
+            recognition.notes.append(other.how)
+            recognition.add(other.path, 0.96 - later, "expression")
 
     def _is_told(self, resolved: ResolvedChain, recognition: Recognition) -> bool:
         """Whether the message beside the code says already that the name is missing, on a kind of the class."""

@@ -31,8 +31,13 @@ _INTERFACE = re.compile(
 )  # of whose classes the history has those alone that scripts use
 _UNLISTED = (
     "_",
+    "addon_utils",
     "aud",
+    "bl_keymap_utils",
     "bpy_extras",
+    "nodeitems_utils",
+    "rna_keymap_ui",
+    "rna_prop_ui",
 )  # modules of which the history has nothing, or nothing of most versions
 
 

@@ -20,7 +20,8 @@ from .wire import plain
 ROOTS = (
     "mathutils", "bmesh.types", "bmesh", "gpu.types", "gpu", "gpu_extras", "bl_math", "blf", "aud", "idprop.types",
     "idprop", "bgl", "imbuf.types", "imbuf", "freestyle.types", "freestyle", "bpy.app", "bpy.props", "bpy.utils",
-    "bpy.path", "bpy.msgbus", "bpy_extras", "_bpy_internal.grease_pencil.stroke",
+    "bpy.path", "bpy.msgbus", "bpy_extras", "_bpy_internal.grease_pencil.stroke", "addon_utils", "nodeitems_utils",
+    "rna_prop_ui", "rna_keymap_ui", "bl_keymap_utils",
 )  # fmt: skip
 # Class → path of those written so far.
 WRITTEN = {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_serve.reader import COLLECTION, STRUCT, TYPES
@@ -15,6 +16,12 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
 
 _OF_PROPERTIES = (f"{STRUCT}.get", f"{TYPES}ID.bl_system_properties_get")  # where they are read
+
+_EDIT_BONES = re.compile(r"\bedit_bones\b")
+_IN_EDIT_MODE = (
+    "`edit_bones` are empty unless the armature is in Edit Mode: make its object active, then "
+    "`bpy.ops.object.mode_set(mode='EDIT')`."
+)
 
 
 class Keys:
@@ -36,6 +43,8 @@ class Keys:
                 f'The collection has no element `{name}`; `.get("{name}")` returns None instead of an error, '
                 "and `.keys()` tells which there are."
             )
+            if _EDIT_BONES.search(query):
+                recognition.notes.append(_IN_EDIT_MODE)
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return
         if collection != "bpy_prop_collection":

@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_serve.reader import TYPES
+from kb_serve.recognise.elements import elsewhere
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
@@ -58,6 +59,9 @@ class LackingOwners:
         elif owner and not self._resolver.member(owner, name):
             recognition.missing.append(MissingName(name, owner, sure=True))
             recognition.add(owner, 0.6, "error message")
+            if other := elsewhere(owner, name, self._reader):
+                recognition.notes.append(other.how)
+                recognition.add(other.path, 0.98, "error message")
             self._within(owner, name, recognition)
 
     def _own_first(self, removed: RemovedSymbol, owner: str) -> RemovedSymbol:

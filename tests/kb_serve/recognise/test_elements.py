@@ -1,0 +1,197 @@
+"""What is said to add or remove a collection's elements does so, in this environment's Blender."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.recognise.elements import ADDED_BY, REMOVED_BY
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from kb_serve.knowledge_base import KnowledgeBase
+
+# Collection → (what it lacks, statements that add elements; their count before and after), then the same for removing.
+_ADDED = {
+    "Object.material_slots": ("ob.material_slots", "ob.data.materials.append(material)", 1),
+    "Key.key_blocks": ("mesh.shape_keys.key_blocks", 'ob.shape_key_add(name="Key")', 1),
+    "BlendData.shape_keys": ("bpy.data.shape_keys", 'other.shape_key_add(name="Key")', 1),
+    "Armature.bones": ("armature.bones", "new_bone()", 1),
+    "Pose.bones": ("rig.pose.bones", "new_bone()", 1),
+    "Object.particle_systems": (
+        "ob.particle_systems",
+        "assert ob.modifiers.new(\"Particles\", 'PARTICLE_SYSTEM').particle_system",
+        1,
+    ),
+    "Scene.objects": ("scene.objects", "bpy.context.collection.objects.link(new)", 1),
+    "ViewLayer.objects": ("bpy.context.view_layer.objects", "bpy.context.collection.objects.link(new)", 1),
+    "Collection.all_objects": ("scene.collection.all_objects", "bpy.context.collection.objects.link(new)", 1),
+    "LayerCollection.children": (
+        "bpy.context.view_layer.layer_collection.children",
+        'scene.collection.children.link(bpy.data.collections.new("c"))',
+        1,
+    ),
+    "MeshVertex.groups": (
+        "mesh.vertices[0].groups",
+        'ob.vertex_groups.new(name="Group"); ob.vertex_groups["Group"].add([0], 1.0, \'REPLACE\')',
+        1,
+    ),
+}
+_REMOVED = {
+    "Object.material_slots": ("ob.material_slots", "remove_slots()", -1),
+    "Key.key_blocks": (
+        "mesh.shape_keys.key_blocks",
+        'ob.shape_key_remove(ob.data.shape_keys.key_blocks["Top"])',
+        -1,
+    ),
+    "Armature.bones": ("armature.bones", "remove_bone()", -1),
+    "Pose.bones": ("rig.pose.bones", "remove_bone()", -1),
+    "Object.particle_systems": (
+        "dusty.particle_systems",
+        'dusty.modifiers.remove(dusty.modifiers["Dust"])',
+        -1,
+    ),
+    "Scene.objects": ("scene.objects", "bpy.data.objects.remove(other)", -1),
+    "ViewLayer.objects": ("bpy.context.view_layer.objects", "bpy.data.objects.remove(other)", -1),
+    "Collection.all_objects": (
+        "scene.collection.all_objects",
+        "bpy.context.collection.objects.unlink(other)",
+        -1,
+    ),
+    "MeshVertex.groups": (
+        "weighted.data.vertices[0].groups",
+        'weighted.vertex_groups["Group"].remove([0])',
+        -1,
+    ),
+}
+_RUN = """
+import json, sys
+import bpy
+
+def in_edit_mode():
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+
+def new_bone():
+    in_edit_mode()
+    bone = armature.edit_bones.new("Bone")
+    bone.head, bone.tail = (0, 0, 0), (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+def remove_bone():
+    in_edit_mode()
+    armature.edit_bones.remove(armature.edit_bones["Root"])
+    bpy.ops.object.mode_set(mode="OBJECT")
+
+def remove_slots():
+    ob.data.materials.append(material)
+    ob.data.materials.pop(index=0)
+    assert [slot.material for slot in ob.material_slots] == [material]
+    ob.data.materials.pop(index=0)
+    assert [slot.material for slot in ob.material_slots] == [None]
+    ob.data.materials.clear()
+
+counts = []
+for collection, change in json.load(open(sys.argv[-1])):
+    bpy.ops.wm.read_factory_settings()
+    scene = bpy.context.scene
+    ob = bpy.data.objects["Cube"]
+    mesh = ob.data
+    ob.shape_key_add(name="Basis")
+    ob.shape_key_add(name="Top")
+    material = bpy.data.materials.new("m")
+    def linked(name, data):
+        made = bpy.data.objects.new(name, data)
+        bpy.context.collection.objects.link(made)
+        return made
+    def triangle():
+        made = bpy.data.meshes.new("t")
+        made.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+        return made
+    other, dusty, weighted = (linked(name, triangle()) for name in ("Other", "Dusty", "Weighted"))
+    dusty.modifiers.new("Dust", "PARTICLE_SYSTEM")
+    weighted.vertex_groups.new(name="Group").add([0], 1.0, "REPLACE")
+    new = bpy.data.objects.new("New", None)
+    armature = bpy.data.armatures.new("a")
+    rig = linked("Rig", armature)
+    in_edit_mode()
+    bone = armature.edit_bones.new("Root")
+    bone.tail = (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    own = [name for name in ("new", "add", "append", "link", "remove") if hasattr(eval(collection), name)]
+    before = len(eval(collection))
+    exec(change)
+    bpy.context.view_layer.update()
+    counts.append((own, len(eval(collection)) - before))
+open(sys.argv[-1], "w").write(json.dumps(counts))
+"""
+
+
+def _tried(folder: Path, table: dict[str, tuple[str, str, int]]) -> list[tuple[list[str], int]]:
+    """For each collection which functions it has, and by how many elements it grows."""
+    file = folder / "tried.json"
+    file.write_text(json.dumps([(collection, change) for collection, change, _ in table.values()]))
+    run = [sys.executable, "-P", "-c", _RUN, str(file)]
+    subprocess.run(run, check=True, timeout=120, capture_output=True, cwd=folder)
+    return [(own, grown) for own, grown in json.loads(file.read_text())]
+
+
+@pytest.mark.parametrize("table", [_ADDED, _REMOVED], ids=["adds", "removes"])
+def test_each_changes_a_collection_that_cannot(
+    tmp_path: Path, table: dict[str, tuple[str, str, int]]
+) -> None:
+    done = zip(table.items(), _tried(tmp_path, table), strict=True)
+    wrong = [(name, own, grown) for (name, (_, _, change)), (own, grown) in done if own or grown != change]
+    assert wrong == []
+
+
+def test_all_are_tried_and_known(kb: KnowledgeBase) -> None:
+    for told, tried in ((ADDED_BY, _ADDED), (REMOVED_BY, _REMOVED)):
+        assert {path.removeprefix("bpy.types.") for path in told} == set(tried)
+        assert all(kb.symbol(path) and kb.symbol(other.path) for path, other in told.items())
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        ("obj.material_slots.new()", "bpy.types.IDMaterials.append"),
+        ("obj.data.shape_keys.key_blocks.remove(kb)", "bpy.types.Object.shape_key_remove"),
+        ('armature.bones.new("Bone")', "bpy.types.ArmatureEditBones.new"),
+        ("AttributeError: 'ParticleSystems' object has no attribute 'new'", "bpy.types.ObjectModifiers.new"),
+    ],
+)
+def test_answers_say_where_it_is_done(kb: KnowledgeBase, query: str, first: str) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id == first
+    told = [*ADDED_BY.values(), *REMOVED_BY.values()]
+    assert any(other.how in answer.notes for other in told if other.path == first)
+
+
+@pytest.mark.parametrize(
+    ("query", "first", "said"),
+    [
+        ('obj.data.shape_keys["Smile"].value = 1', "bpy.types.ShapeKey.value", '`.key_blocks["Smile"]`'),
+        ('rig.pose["Bone"].location', "bpy.types.PoseBone.location", '`.bones["Bone"]`'),
+        (
+            'material.node_tree["Mix"].inputs[0].default_value',
+            "bpy.types.NodeSocketFloat.default_value",
+            '`.nodes["Mix"]`',
+        ),
+    ],
+)
+def test_elements_are_looked_up_in_the_collection(
+    kb: KnowledgeBase, query: str, first: str, said: str
+) -> None:
+    answer = kb.query(query)
+    assert answer.hits[0].id == first
+    assert said in answer.notes[0]
+
+
+def test_custom_properties_stay_what_they_are(kb: KnowledgeBase) -> None:
+    notes = kb.query('pose.bones["Arm"]["ik_fk"] = 1.0').notes
+    assert '`["ik_fk"]` is a custom property of `bpy.types.PoseBone`' in notes[0]
