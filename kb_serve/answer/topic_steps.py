@@ -67,9 +67,12 @@ class Steps:
         """All steps in their order; what is told depends on what has been told before."""
         yield from self._functions()
         yield from made_by_subscript(self._names, self._reader)
-        for part in (self._make, self._there) if self._is_made() else (self._there, self._make):
+        is_made = self._is_made()
+        for part in (self._make, self._there) if is_made else (self._there, self._make):
             yield from part()
-        yield from runs(self._names, self._reader, is_cached=POINT_CACHE in self._scene.shown)
+        is_cached = POINT_CACHE in self._scene.shown
+        is_made = is_made and any(map(self._has_title, self._classes[:1]))
+        yield from runs(self._names, self._reader, is_cached=is_cached, is_made=is_made)
         yield from self._reached.waiting
 
     def _main_classes(self) -> list[str]:

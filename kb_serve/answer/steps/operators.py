@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import literal, operator_needs, refused_nothing
+from kb_build.index.analysis import key
+from kb_build.symbol_lines import literal, operator_areas, operator_needs, refused_nothing
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.reader import TYPES
 
@@ -20,6 +21,7 @@ _MOST = 4
 _ARGUMENTS = 3  # of an operator's call
 _USED_ELSEWHERE = 3  # weight of an operator that has not the topic's module
 _PATH = "data_path"
+_BAKE = "bake"  # what runs what has been set, wherever it is
 _MAKE_OR_REMOVE = frozenset(
     {
         "add",
@@ -42,8 +44,12 @@ _MAKE_OR_REMOVE = frozenset(
 )
 
 
-def runs(names: TopicNames, reader: BaseReader, *, is_cached: bool) -> Iterator[str]:
-    """The topic's operators that neither make nor remove anything; before them what bakes the cache, if it has one."""
+def runs(names: TopicNames, reader: BaseReader, *, is_cached: bool, is_made: bool) -> Iterator[str]:
+    """The topic's operators that neither make nor remove anything; before them what bakes the cache, if it has one.
+
+    Where a thing that is called as the topic ``is_made``, those are left out that do something else: an armature
+    modifier needs none of an armature's operators.
+    """
     weights = reader.weights(list(names.operators))
     operators = [
         path
@@ -51,11 +57,22 @@ def runs(names: TopicNames, reader: BaseReader, *, is_cached: bool) -> Iterator[
         if _runs(path)
         and not _wants_a_path(reader.symbol(path))
         and weights.get(path, 0) >= (1 if path.split(".")[2] in names.keys else _USED_ELSEWHERE)
+        and not (is_made and _is_beside(path, names, reader))
     ]
     if is_cached:
         operators = [*_bakes(reader), *operators]
     for path in operators[:_MOST]:
         yield _line(path, reader)
+
+
+def _is_beside(path: str, names: TopicNames, reader: BaseReader) -> bool:
+    """Whether neither an operator nor its module is called as the topic is, or it waits for a window."""
+    _, _, module, name = path.split(".")
+    symbol = reader.symbol(path)
+    if names.has_title(name) or names.title.removesuffix("s") in key(name) or _BAKE in name.split("_"):
+        return False
+    waits = symbol and (operator_areas(symbol) or not (operator_needs(symbol) or refused_nothing(symbol)))
+    return bool(waits) or key(module) != names.title
 
 
 def asked(operator: Symbol, reader: BaseReader) -> str:

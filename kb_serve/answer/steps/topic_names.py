@@ -18,10 +18,11 @@ _SHORTEST = 4  # of the keys that members are called as
 class TopicNames:
     """The classes and operators of a topic, each with a weight, the heaviest first.
 
-    ``words``: those of its title, then those of its address. ``explained``: the symbols that its page explains,
-    if there are none below it.
+    ``title`` is the key of its title; ``words``: those of its title, then those of its address. ``explained``: the
+    symbols that its page explains, if there are none below it.
     """
 
+    title: str
     keys: frozenset[str]
     words: tuple[frozenset[str], ...]
     explained: frozenset[str] = frozenset()
