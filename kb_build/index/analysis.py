@@ -102,9 +102,15 @@ def topic_key(text: str) -> str:
     return "~" + "".join(terms(text))
 
 
+_LAMBDA = re.compile(r"\blambda\b")
+
+
 def split_arguments(text: str) -> Iterator[str]:
-    """The text of each argument as it stands, blanks and all; commas in brackets and in quotes are theirs."""
-    depth, quote, start = 0, "", 0
+    """The text of each argument as it stands, blanks and all; commas in brackets and in quotes are theirs, and those
+    between the names that a ``lambda`` takes.
+    """
+    lambdas = {match.start() for match in _LAMBDA.finditer(text)}
+    depth, quote, start, named = 0, "", 0, False
     for position, char in enumerate(text):
         if quote:
             quote = "" if char == quote else quote
@@ -114,8 +120,10 @@ def split_arguments(text: str) -> Iterator[str]:
             depth += 1
         elif char in ")]}":
             depth -= 1
-        elif char == "," and depth == 0:
+        elif char == "," and depth == 0 and not named:
             yield text[start:position]
             start = position + 1
+        elif depth == 0:
+            named = (named and char != ":") or position in lambdas
     if text[start:].strip():
         yield text[start:]

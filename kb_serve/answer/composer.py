@@ -51,6 +51,7 @@ _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
 _NAMES = "further names"
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
+_COMMENT = re.compile(r"(?:^|(?<=\s))#\s[^\n]*\n", re.MULTILINE)  # of code, of which lines are joined
 _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
 
 
@@ -116,7 +117,8 @@ class AnswerComposer:
         Raises BadQuery for an empty one, a wrong limit, or a part that does not exist.
         """
         # No base holds lone surrogates.
-        text = " ".join(query.encode(errors="ignore").decode().replace("\0", " ").split())
+        text = _COMMENT.sub("", query).strip() or query
+        text = " ".join(text.encode(errors="ignore").decode().replace("\0", " ").split())
         text = _LONG_WORD.sub(r"\1", text)
         if not text:
             raise BadQuery(

@@ -60,7 +60,8 @@ def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
 def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ()) -> Iterator[str]:
     """Sentences on the wrong arguments of a call, as far as its text shows; but on ``removed`` ones, given by path."""
     last = chain.steps[-1] if chain.steps else None
-    if last is None or last.kind != "call" or symbol.kind not in {"operator", "function"}:
+    is_method = symbol.kind in {"operator", "function"} and not symbol.name.startswith("__")
+    if last is None or last.kind != "call" or not is_method:
         return
     text = last.text
     once = {path.rpartition("(")[2].rstrip(")") for path in removed if path.startswith(f"{symbol.path}(")}

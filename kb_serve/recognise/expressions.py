@@ -16,6 +16,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import SOMETIMES
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
@@ -25,9 +26,10 @@ from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
+from kb_serve.recognise.resolver import ROOTS
 from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.subscripts import CustomProperties
-from kb_serve.recognise.variables import USUAL, is_guess, usual_classes
+from kb_serve.recognise.variables import OTHERWISE, USUAL, is_guess, usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -54,7 +56,8 @@ _LEAST = 0.1  # fit below which neither the variable's name nor its member tells
 _LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
 
 # Classes whose members are defined by scripts and add-ons.
-_OPEN = frozenset({"OperatorProperties", "Operator", "PropertyGroup", "AddonPreferences", "Context"})
+_OF_OPERATORS = "OperatorProperties"
+_OPEN = frozenset({_OF_OPERATORS, "Operator", "PropertyGroup", "AddonPreferences", "Context"})
 
 _CALLED_OR_SET = frozenset({"property", "function", "operator"})
 
@@ -77,6 +80,12 @@ def _is_api(chain: Chain) -> bool:
 def _is_file_name(chain: Chain) -> bool:
     """Whether a chain is a name and an ending that files have: ``file.blend``."""
     return len(chain.steps) == 1 and set(chain.attributes) <= _FILE_ENDINGS and chain.steps[0].kind == "attr"
+
+
+def _is_clear(chain: Chain, resolved: ResolvedChain) -> bool:
+    """Whether it is as good as certain what a chain begins with: a path, or a variable that all scripts call so."""
+    named = resolved.symbols[0].rpartition(".")[2] == chain.root or chain.root in {"bpy", *ROOTS}
+    return resolved.fit >= OTHERWISE and (named or bool(usual_classes(chain.root)))
 
 
 def _likeliest_broken(chain: Chain, readings: Iterable[ResolvedChain]) -> ResolvedChain | None:
@@ -149,7 +158,8 @@ class Expressions:
             elif not self._corrected(chain, readings, later, recognition):
                 if broken:
                     self._broken_off(chain, broken, later, recognition)
-                self._loose_name(chain, prose, recognition)
+                is_own = not chain.steps or chain.steps[0].kind == "call"
+                self._loose_name(chain, prose, recognition, is_variable=is_own and len(code) > 1)
 
     def _is_argument(self, chain: Chain, recognition: Recognition) -> bool:
         """Adds a name that stands behind an operator or function as an argument of it; whether it is one."""
@@ -212,6 +222,7 @@ class Expressions:
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
     ) -> None:
         """Adds the best readings of a chain, and the symbols on the way to the first."""
+        recognition.readings[chain.source] = readings[0].symbols[-1] if _is_clear(chain, readings[0]) else ""
         bare = not chain.attributes and not readings[0].keyed  # a class with a call or an index behind it
         likely = [
             resolved
@@ -250,6 +261,7 @@ class Expressions:
             return False
         resolved, corrections = corrected
         recognition.corrections += corrections
+        recognition.readings[chain.source] = resolved.symbols[-1] if _is_clear(chain, resolved) else ""
         alike = min(correction.similarity for correction in corrections) ** 0.25
         # What is wrong in code is what is asked for, before what is right.
         sure = 0.93 * alike if resolved.fit < USUAL else 1.0 - 0.1 * (1 - alike)
@@ -262,33 +274,73 @@ class Expressions:
         self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition
     ) -> None:
         """Adds a chain as far as it could be resolved, and its missing name."""
-        if chain.quoted and chain.root != "bpy":
-            return  # ``bl_idname = "object.my_operator"``
-        assigned = chain.assigned and resolved.steps_left == 1
-        if assigned and chain.dotted.startswith(("bpy.types.", "types.")) and len(resolved.symbols) == 1:
-            return  # ``bpy.types.Scene.my_property = …`` defines it
-        if resolved.missing.startswith("[") and len(resolved.symbols) == 1 and chain.root != "bpy":
-            return  # a variable called ``context`` may hold a dictionary
-        owner = self._reader.entry(resolved.owner)
-        if owner and owner.kind == "property" and hasattr(str, resolved.missing):
-            return  # ``obj.name.startswith``
-        if owner and owner.kind == "function":
-            return  # what it gives is not known
-        if resolved.fit < 1.0 and is_guess(chain.root):
+        is_element = self._is_element(chain, resolved, later, recognition)
+        if self._says_nothing(chain, resolved) or (not is_element and self._is_custom(chain, resolved)):
             return
+        assigned = chain.assigned and resolved.steps_left == 1
         sure = self._is_sure(chain, resolved)
         behind = chain.steps[len(chain.steps) - resolved.steps_left + 1 :]
         called = bool(behind) and behind[0].kind == "call"
-        is_element = self._is_element(chain, resolved, later, recognition)
         if called and not is_element:
             self._tell_elsewhere(resolved, later, recognition)
-        if not is_element and not self._is_told(resolved, recognition):
-            recognition.missing.append(MissingName(resolved.missing, resolved.owner, assigned, sure, called))
+        missing = MissingName(resolved.missing, resolved.owner, assigned, sure, called)
+        if not _is_clear(chain, resolved):
+            recognition.doubted.setdefault(chain.root, missing)
+        elif not is_element and not self._is_told(resolved, recognition):
+            recognition.missing.append(missing)
         for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'
             )  # one that takes no value of its own is still what was meant
             recognition.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
+
+    def _says_nothing(self, chain: Chain, resolved: ResolvedChain) -> bool:
+        """Whether a name may be right that was not found: no class is known, or it has what a script gives it."""
+        owner = self._reader.entry(resolved.owner)
+        is_definition = chain.assigned and resolved.steps_left == 1
+        return (
+            resolved.fit < _LIKELY
+            or (resolved.fit < 1.0 and is_guess(chain.root))
+            or resolved.missing.startswith("__")  # every class and module has such names
+            or self._is_indexed(chain, resolved)
+            # ``bl_idname = "object.my_operator"``
+            or (chain.quoted and chain.root != "bpy")
+            # ``bpy.types.Scene.my_property = …``
+            or (
+                is_definition
+                and chain.dotted.startswith(("bpy.types.", "types."))
+                and len(resolved.symbols) == 1
+            )
+            # A variable called ``context`` may hold a dictionary.
+            or (resolved.missing.startswith("[") and len(resolved.symbols) == 1 and chain.root != "bpy")
+            # ``obj.name.startswith``, what a function or an operator that is not said gives, what panels written in
+            # Python have of their own
+            or (
+                owner is not None
+                and (
+                    owner.name == _OF_OPERATORS
+                    or (owner.kind == "module" and resolved.missing.startswith("_"))
+                    or resolved.missing in SOMETIMES.get(owner.path, ())
+                    or (owner.group == "ui" and owner.path.rpartition(".")[2] == chain.root)
+                    or owner.kind == "function"
+                    or (owner.kind == "property" and hasattr(str, resolved.missing))
+                )
+            )
+        )
+
+    @staticmethod
+    def _is_custom(chain: Chain, resolved: ResolvedChain) -> bool:
+        """Whether a name is read of a custom property, which may hold anything: ``strip["files"].sort()``."""
+        place = len(chain.steps) - resolved.steps_left - 1
+        if resolved.missing.startswith("[") or place < 0 or chain.steps[place].kind != "key":
+            return False
+        return resolved.owner == resolved.symbols[-1]
+
+    def _is_indexed(self, chain: Chain, resolved: ResolvedChain) -> bool:
+        """Whether a variable is no instance of the class that its name tells, as it is indexed or called."""
+        root = self._reader.entry(resolved.symbols[0])
+        is_class = root is not None and root.kind == "class" and len(resolved.symbols) == 1
+        return is_class and chain.root[:1].islower() and chain.steps[0].kind in {"index", "call"}
 
     def _is_element(
         self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition
@@ -339,8 +391,12 @@ class Expressions:
             return False
         return resolved.fit >= 1.0 or (resolved.fit >= USUAL and len(usual_classes(chain.root)) <= 1)
 
-    def _loose_name(self, chain: Chain, prose: set[str], recognition: Recognition) -> None:
-        """Adds the owners of a name without its owner (``thickness_outer``), by the words around it."""
+    def _loose_name(
+        self, chain: Chain, prose: set[str], recognition: Recognition, *, is_variable: bool
+    ) -> None:
+        """Adds the owners of a name without its owner (``thickness_outer``), by the words around it. What may well be a
+        variable, beside other code, is not corrected, nor denied.
+        """
         name = chain.attributes[-1] if chain.attributes else chain.root
         rows = [
             entry
@@ -349,10 +405,11 @@ class Expressions:
         ]
         rows = [entry for entry in rows if entry.name == name] or rows  # before the same letters
         lone = not chain.attributes or len(name) >= _LONG
-        if not rows and lone and not name.isupper() and (correction := self._corrector.member(name)):
+        lone = lone and not name.isupper() and not is_variable
+        if not rows and lone and (correction := self._corrector.member(name)):
             recognition.corrections.append(correction)
             rows = [entry for entry in self._reader.by_name(correction.meant) if entry.group != "ui"]
-        if not rows and not prose and not chain.steps:
+        if not (rows or prose or chain.steps or is_variable):
             self._parts(chain, recognition)
         if chain.attributes and len(rows) > _FEW:
             return  # a common name that its owner in the query does not have

@@ -126,9 +126,9 @@ class Recogniser:
             called = bool(chain.steps) and chain.steps[-1].kind == "call"
             if not (called or chain.values):
                 continue
-            end = f".{_name(chain)}"
-            path = next((m.id for m in recognition.matches if m.sure >= _SURE and m.id.endswith(end)), "")
-            symbol = self._reader.symbol(path or self._successor(chain, recognition))
+            symbol = self._reader.symbol(
+                self._read_as(chain, recognition) or self._successor(chain, recognition)
+            )
             if symbol is None:
                 continue
             recognition.notes += filter(
@@ -141,6 +141,16 @@ class Recogniser:
             recognition.notes += notes
             if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.85, "error message")
+
+    @staticmethod
+    def _read_as(chain: Chain, recognition: Recognition) -> str:
+        """What a chain was read as, or else a match of its last name that no other was read as; empty for none."""
+        if (path := recognition.readings.get(chain.source)) is not None:
+            return path
+        end = f".{_name(chain)}"
+        others = set(recognition.readings.values())
+        found = (match.id for match in recognition.matches if match.sure >= _SURE and match.id not in others)
+        return next((path for path in found if path.endswith(end)), "")
 
     @staticmethod
     def _successor(chain: Chain, recognition: Recognition) -> str:

@@ -39,6 +39,7 @@ class Recognition:
     """What was recognised: ``matches``, and what was wrong with the names in the query.
 
     ``arguments``: function or operator → those of its arguments that are named beside it.
+    ``readings``: expression as written → the symbol that it leads to.
     ``doubted``: variable → what the class lacks that it is named after, where another class has it.
     ``notes`` are further sentences for the caller. ``alike`` are the members of the surest one's name that other things
     have for which the query's variable may stand. ``is_open`` tells that the query does not say which of several
@@ -50,6 +51,7 @@ class Recognition:
     corrections: list[Correction] = field(default_factory=list)
     removed: list[RemovedSymbol] = field(default_factory=list)
     arguments: dict[str, list[str]] = field(default_factory=dict[str, "list[str]"])
+    readings: dict[str, str] = field(default_factory=dict[str, str])
     doubted: dict[str, MissingName] = field(default_factory=dict[str, MissingName])
     notes: list[str] = field(default_factory=list)
     alike: list[str] = field(default_factory=list)

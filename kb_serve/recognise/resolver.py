@@ -12,6 +12,7 @@ from kb_build.index.analysis import key, words
 from kb_serve.reader import COLLECTION, PROPERTIES, STRUCT, TYPES, BaseReader, SymbolEntry
 from kb_serve.recognise.owners import Owners
 from kb_serve.recognise.subscripts import CustomProperties
+from kb_serve.recognise.values import SEQUENCES, VALUES
 from kb_serve.recognise.variables import Variables
 
 if TYPE_CHECKING:
@@ -31,21 +32,26 @@ ROOTS = {
     "ops": "bpy.ops",
     "types": "bpy.types",
 }
-_IMPORTED = ("mathutils.", "bmesh.types.")  # whose classes scripts import by name
+# Whose classes and modules scripts import by name.
+_IMPORTED = ("mathutils.", "bmesh.types.", "bpy_extras.")
 _OBJECT_DATA = f"{TYPES}Object.data"
 # What every class and instance tells of itself, and what that is.
 _RNA, _STRUCT_OF_ALL = ("bl_rna", "rna_type"), f"{TYPES}Struct"
 _ARRAY = f"{TYPES}bpy_prop_array"
 _MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
+_ROWS = {f"{_MATRIX}.col", f"{_MATRIX}.row"}
+_PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
 _GROUP, _GROUPS = f"{TYPES}PropertyGroup", f"{TYPES}bpy_prop_collection_idprop"
 _INSTANCE = "self"  # of a class of the script's own, whose attributes are like variables
 _ELEMENT, _LAYERS = "bmesh.types.BM", "bmesh.types.BMLayerAccess"
 _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _NUMBERED = re.compile(r"\.\d{3}$")
-_QUOTED = re.compile(r"""(["'])(\w+)\1""")
+_QUOTED = re.compile(r"""(["'])([\w.]+)\1""")
+_SEQUENCE = re.compile(r"(?:list|set|tuple)\[(?:bpy\.types\.)?([A-Z]\w*)(?:, \.\.\.)?\]")
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
+_MODULE_THAT_LACKS = 0.6  # … of a module that lacks what is read, by its last name
 _COLLECTION_FIT = 0.7  # of an indexed variable with the name of a collection property
 _USUAL = 0.05
 _MAX_BRANCHES = 60
@@ -95,6 +101,12 @@ class ResolvedChain:
         return bool(self.symbols) and not self.missing
 
 
+def _of_python(entry: SymbolEntry) -> re.Match[str] | None:
+    """The class of what a property holds that gives a list or tuple of Python's."""
+    text = entry.type if entry.kind == "property" else ""
+    return _SEQUENCE.fullmatch(SEQUENCES.get(entry.path) or SEQUENCES.get(text, text))
+
+
 def _first_name(chain: Chain) -> str:
     return next(iter(chain.attributes), "")
 
@@ -140,12 +152,13 @@ class Resolver:
         if self._is_of_the_instance(chain):
             own = replace(chain, root=chain.steps[0].text, steps=chain.steps[1:])
             yield from ((value, used + 1, fit) for value, used, fit in self._starts(own))
-        elif exact := self._rooted(chain):
-            named = self._named_like_a_module(chain.root, _first_name(chain), exact[0].symbol)
-            for rank, cls in enumerate(named):
+        elif (exact := self._rooted(chain)) and self._may_be_variable(chain, exact[0].symbol):
+            for rank, cls in enumerate(self._named_like_a_module(chain.root, _first_name(chain))):
                 yield ChainValue(cls, cls), 0, _NAMED_LIKE_A_MODULE - 0.001 * rank
-            if not named:
-                yield exact
+            yield from ((value, 0, fit) for value, fit in self._of_variable(chain))
+            yield exact[0], exact[1], _MODULE_THAT_LACKS
+        elif exact:
+            yield exact
         else:
             yield from ((value, 0, fit) for value, fit in self._of_variable(chain))
 
@@ -178,19 +191,22 @@ class Resolver:
                 seen.add(cls)
                 yield ChainValue(cls, cls), fit
 
-    def _named_like_a_module(self, variable: str, member: str, module: str) -> list[str]:
-        """The classes that a variable may hold which is called like a module that scripts import by its last name, if
-        that lacks the member: ``noise.outputs`` is of a noise texture.
-        """
+    def _may_be_variable(self, chain: Chain, module: str) -> bool:
+        """Whether a root is called like a module that scripts import by its last name, and that lacks what is read."""
         entry = self._reader.entry(module)
-        short = entry is not None and entry.kind == "module" and module != variable
-        if not (member and short and module.endswith(f".{variable}")) or module.startswith("bpy."):
-            return []
-        if self._reader.entry(f"{module}.{member}"):
-            return []
+        short = entry is not None and entry.kind == "module" and module != chain.root
+        if not (chain.attributes and short and module.endswith(f".{chain.root}")) or module.startswith(
+            "bpy."
+        ):
+            return False
+        name = _first_name(chain)
+        return bool(self._reader.by_name(name)) and self._reader.entry(f"{module}.{name}") is None
+
+    def _named_like_a_module(self, variable: str, member: str) -> list[str]:
+        """The classes that have a member and are called like a variable: ``noise.outputs`` is of a noise texture."""
         owners = {entry.owner for entry in self._reader.by_name(member)[:_MAX_BRANCHES]}
-        below = (cls for owner in owners for cls in self._reader.descendants(owner))
-        named = {cls.path for cls in below if variable in words(cls.path.rpartition(".")[2])}
+        below = (cls.path for owner in owners for cls in self._reader.descendants(owner))
+        named = {path for path in (*owners, *below) if variable in words(path.rpartition(".")[2])}
         return sorted(named, key=lambda path: (len(path), path))
 
     def _is_used_as(self, value: ChainValue, chain: Chain) -> bool:
@@ -224,6 +240,9 @@ class Resolver:
             return ChainValue(entry.path, entry.path)
         if entry.kind == "socket":
             return ChainValue(entry.path, self._socket_class(entry))
+        if (sequence := _of_python(entry)) or entry.path in VALUES:
+            cls = TYPES + sequence[1] if sequence else VALUES[entry.path]
+            return ChainValue(entry.path, cls, many=bool(sequence))
         if entry.type == "collection":
             container = TYPES + entry.collection if entry.collection else COLLECTION
             return ChainValue(entry.path, TYPES + entry.target, many=True, container=container)
@@ -318,7 +337,8 @@ class Resolver:
             yield from self._item(value, step)
         elif step.kind == "index":
             yield from self._in_layers(value.cls)
-            yield replace(value, cls=_ROW if value.cls == _MATRIX else "")  # an element of a vector
+            is_matrix = value.cls == _MATRIX or value.symbol in _ROWS
+            yield replace(value, cls=_ROW if is_matrix else "")  # an element of a vector
         elif not value.cls:
             yield value
         else:
@@ -327,7 +347,9 @@ class Resolver:
 
     def _attribute(self, value: ChainValue, name: str) -> Iterator[ChainValue]:
         if value.many:
-            if entry := self._of_collection(value, name):
+            if not value.container and hasattr(list, name):
+                yield value
+            elif entry := self._of_collection(value, name):
                 yield self._value_of(entry, value.cls)
             return
         if name in _RNA and value.cls.startswith(TYPES):
@@ -336,10 +358,14 @@ class Resolver:
         if name in _OPERATOR_METHODS and value.symbol.startswith("bpy.ops."):
             yield value
             return
-        socket = value.symbol if "puts[" in value.symbol else ""
+        if value.cls.startswith("bpy.ops.") and self._has_parameter(value.cls, name):
+            yield ChainValue(value.cls)
+            return
         own = self.member(value.cls, name) if value.cls else self._reader.member((value.symbol,), name)
         if own:
-            yield replace(self._value_of(own, value.cls), symbol=socket or own.path, origin=value.cls)
+            after = self._value_of(own, value.cls)
+            is_of_socket = "puts[" in value.symbol and not after.cls.startswith(TYPES)
+            yield replace(after, symbol=value.symbol if is_of_socket else own.path, origin=value.cls)
             return
         if not value.cls and hasattr(list, name) and self._is_list(value.symbol):
             yield value
@@ -353,6 +379,10 @@ class Resolver:
                 below = [entry for entry in below if self._reader.is_object_data(entry.owner)] or below
             for entry in self._owners.heaviest(below):
                 yield self._value_of(entry, entry.owner)
+
+    def _has_parameter(self, path: str, name: str) -> bool:
+        symbol = self._reader.symbol(path)
+        return symbol is not None and any(parameter.name == name for parameter in symbol.parameters)
 
     def _of_collection(self, value: ChainValue, name: str) -> SymbolEntry | None:
         """A member of a collection: of its own class, of all collections, or of those of property groups."""
@@ -430,6 +460,8 @@ class Resolver:
                 if maker == value.symbol:
                     return ChainValue(value.symbol, cls)
         returned = self._returned(value.symbol)
+        if returned == _PROPERTIES_OF_OPERATORS and (operator := self._operator_in(arguments)):
+            return ChainValue(value.symbol, operator)
         if (
             value.container
             and returned
@@ -437,6 +469,11 @@ class Resolver:
         ):
             returned = value.container
         return ChainValue(value.symbol, returned)
+
+    def _operator_in(self, arguments: str) -> str:
+        """The path of the operator that is called by its name in a text: ``layout.operator("mesh.delete")``."""
+        paths = (f"bpy.ops.{name}" for _, name in _QUOTED.findall(arguments) if "." in name)
+        return next((path for path in paths if self._reader.entry(path)), "")
 
     def _returned_class(self, path: str) -> str:
         symbol = self._reader.symbol(path)

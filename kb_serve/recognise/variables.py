@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 USUAL = 0.95  # fit of a name that scripts use for a class
-_OTHERWISE = 0.92  # … and of the further classes that they use it for
+OTHERWISE = 0.92  # … and of the further classes that they use it for
 _POINTER = 0.8  # … of what a pointer of that name leads to, or what begins so: a member may tell otherwise
 _LETTER = 0.4  # … of a single letter that a class begins with: it may be anything
 _NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|selected|cur|current)_(?=\w)")
@@ -188,7 +188,7 @@ class Variables:
         for path in usual_classes(name):
             if self._reader.entry(path):
                 yield path, fit
-                fit = _OTHERWISE
+                fit = OTHERWISE
         pointed = {entry.target for entry in named if entry.kind == "property" and entry.type == "pointer"}
         for entry in named:
             if entry.target and entry.kind == "property" and entry.type == "pointer":

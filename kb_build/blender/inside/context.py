@@ -11,6 +11,11 @@ import bpy
 from .rna import describe
 
 MODES = ("EDIT", "POSE", "OBJECT")
+# What names of members begin with, besides the class: all, and those of members that hold several things.
+OF_SEVERAL = ("selected_", "editable_", "visible_", "selectable_")
+PREFIXES = ("active_", "edit_", *OF_SEVERAL)
+# The bones of the context are those of an armature in Edit Mode.
+NAMED_OTHERWISE = {"bone": "EditBone"}
 # Of the class Context, what an area gives. Nothing else of it is read: where more was, four of ten runs of Blender 4.2
 # ended later, in the poll of some operator.
 OF_AREAS = ("area", "space_data", "region", "region_data")
@@ -106,12 +111,14 @@ def probe(names):
 def guess(name):
     """A class whose name the member bears (``node_tree``… ``texture_slot`` → TextureSlot), as Blender names them."""
     stem = name
-    for prefix in ("active_", "edit_", "selected_", "editable_", "visible_", "selectable_"):
+    for prefix in PREFIXES:
         stem = stem[len(prefix) :] if stem.startswith(prefix) else stem
     stem = stem.replace("editable_", "")
-    plural = stem.endswith("s")
-    for candidate, kind in ((stem, "pointer"), (stem[:-1] if plural else stem, "collection")):
-        camel = "".join(part.title() for part in candidate.split("_"))
+    forms = [(stem, "pointer")]
+    if stem.endswith("s"):
+        forms.insert(0 if name.startswith(OF_SEVERAL) else 1, (stem[:-1], "collection"))
+    for candidate, kind in forms:
+        camel = NAMED_OTHERWISE.get(candidate) or "".join(part.title() for part in candidate.split("_"))
         if hasattr(bpy.types, camel):
             return kind, camel
     return "", ""
