@@ -27,7 +27,8 @@ if TYPE_CHECKING:
 
 _FIRST = 10
 _CORPORA = Path(__file__).parents[1] / "corpora"
-_SYMBOLS = _CORPORA / "words" / "query_expansions.txt"
+# Where symbols have their phrases; new ones come into the last.
+_SYMBOLS = tuple(_CORPORA / "words" / name for name in ("query_expansions.txt", "plain_questions.txt"))
 _PAGES = _CORPORA / "summaries"
 
 
@@ -42,8 +43,12 @@ def add(*files: str) -> None:
         return [*phrases, *(phrase for told, phrase in new.items() if told and told not in known)]
 
     _change_pages(added)
-    _change_symbols(added)
-    write_whole(_SYMBOLS, _SYMBOLS.read_text("utf-8") + "".join(_rows(written, added)))
+    shipped = _read([str(file) for file in _SYMBOLS])
+    rows: list[str] = []
+    for ref in sorted(written):
+        known = shipped.get(ref, [])
+        rows.append(_row(ref, added(ref, known)[len(known) :]))
+    write_whole(_SYMBOLS[-1], _SYMBOLS[-1].read_text("utf-8") + "".join(rows))
 
 
 def keep(base: str, *files: str) -> None:
@@ -66,12 +71,12 @@ def keep(base: str, *files: str) -> None:
 
 
 def _read(files: Sequence[str]) -> dict[str, list[str]]:
+    found: dict[str, list[str]] = {}
     rows = (line.partition(": ") for file in files for line in Path(file).read_text("utf-8").splitlines())
-    return {
-        ref: [phrase.strip() for phrase in phrases.split(";")]
-        for ref, _, phrases in rows
-        if phrases.strip(" -")
-    }
+    for ref, _, phrases in rows:
+        if phrases.strip(" -") and not ref.startswith("#"):
+            found.setdefault(ref, []).extend(phrase.strip() for phrase in phrases.split(";"))
+    return found
 
 
 def _labelled() -> Iterator[str]:
@@ -96,8 +101,9 @@ def _change_pages(change: _Change) -> None:
 
 
 def _change_symbols(change: _Change) -> None:
-    lines = _SYMBOLS.read_text("utf-8").splitlines()
-    write_whole(_SYMBOLS, "".join(_changed(line, change) for line in lines))
+    for file in _SYMBOLS:
+        lines = file.read_text("utf-8").splitlines()
+        write_whole(file, "".join(_changed(line, change) for line in lines))
 
 
 def _changed(line: str, change: _Change) -> str:
@@ -109,11 +115,6 @@ def _changed(line: str, change: _Change) -> str:
 
 def _row(ref: str, phrases: Sequence[str]) -> str:
     return f"{ref}: {'; '.join(phrases)}\n" if phrases else ""
-
-
-def _rows(written: dict[str, list[str]], change: _Change) -> Iterator[str]:
-    for ref in sorted(written):
-        yield _row(ref, change(ref, ()))
 
 
 if __name__ == "__main__":

@@ -72,3 +72,22 @@ def by_place_up_to(call: str, most: int) -> str:
     if len(arguments) <= most or "/" in arguments or any(text.startswith("*") for text in arguments):
         return call
     return f"{head}({', '.join([*arguments[:most], '*', *arguments[most:]])})"
+
+
+def by_name_too(call: str, name: str) -> str:
+    """A call's text without the mark of arguments that are given by their places alone, if a name is among them."""
+    head, _, given = call.rstrip(")").partition("(")
+    arguments = [text.strip() for text in split_arguments(given)]
+    first = arguments[: arguments.index("/")] if "/" in arguments else []
+    if name not in {text.partition("=")[0].partition(":")[0].strip() for text in first}:
+        return call
+    return f"{head}({', '.join(text for text in arguments if text != '/')})"
+
+
+def all_optional(call: str) -> str:
+    """A call's text in which no argument is required."""
+    head, _, given = call.rstrip(")").partition("(")
+    arguments = [text.strip() for text in split_arguments(given)]
+    return (
+        f"{head}({', '.join(text if '=' in text or text == '*' else f'{text}=None' for text in arguments)})"
+    )

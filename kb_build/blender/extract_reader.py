@@ -8,7 +8,14 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from kb_build.blender.call_texts import by_place, by_place_up_to, call_text, with_sets
+from kb_build.blender.call_texts import (
+    all_optional,
+    by_name_too,
+    by_place,
+    by_place_up_to,
+    call_text,
+    with_sets,
+)
 from kb_build.blender.context_members import name_classes
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.manual_links import manual_links
@@ -40,7 +47,8 @@ _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
 _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
 _LISTED_NAME = re.compile(r"^\*\*`([A-Z][A-Z0-9_]*)`\*\*", re.MULTILINE)
-_NO_KEYWORDS, _BY_PLACE = "no-keywords", "by-place:"  # as ``inside/keywords.py`` marks it
+# How ``inside/keywords.py`` marks what it finds.
+_NO_KEYWORDS, _BY_PLACE, _BY_NAME, _OPTIONAL = "no-keywords", "by-place:", "by-name:", "all-optional"
 _METHOD_FLAGS = {"classmethod": ("classmethod",), "staticmethod": ("static",)}
 # RNA calls each of these a NodeTree; Blender accepts one kind of tree only, which decides the nodes below.
 _TREES = {
@@ -192,6 +200,11 @@ def _symbol(row: dict[str, Any]) -> Symbol:
         call = by_place(call) if _NO_KEYWORDS in flags else call
         if most := next((flag.removeprefix(_BY_PLACE) for flag in flags if flag.startswith(_BY_PLACE)), ""):
             call = by_place_up_to(call, int(most))
+        for name in (flag.removeprefix(_BY_NAME) for flag in flags if flag.startswith(_BY_NAME)):
+            call = by_name_too(call, name)
+        if _OPTIONAL in flags:
+            call = all_optional(call)
+            parsed = replace(parsed, parameters=tuple(replace(p, required=False) for p in parsed.parameters))
         fields["signature"] = last_name(path) + call[call.index("(") :] if "(" in call else ""
         fields["parameters"] = _completed(parsed.parameters, parameters)
         fields["returns"] = parsed.returns

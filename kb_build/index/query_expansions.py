@@ -10,6 +10,9 @@ if TYPE_CHECKING:
 
     from kb_build.summaries.types import PageSummary
 
+# By people who do not know Blender's words, and by those who do.
+_FILES = ("query_expansions.txt", "plain_questions.txt")
+
 
 def query_expansions(summaries: Mapping[str, PageSummary]) -> dict[str, str]:
     """Page slug or symbol path → phrases, separated by semicolons: the pages' come with their summaries."""
@@ -22,9 +25,11 @@ def query_expansions(summaries: Mapping[str, PageSummary]) -> dict[str, str]:
 
 def load_query_expansions() -> dict[str, str]:
     """The table of phrases for symbols; {} where the package came without it."""
-    source = files("corpora").joinpath("words", "query_expansions.txt")
-    if not source.is_file():
-        return {}
-    lines = source.read_text(encoding="utf-8").splitlines()
-    rows = (line.partition(": ") for line in lines if not line.startswith("#"))
-    return {topic: phrases for topic, _, phrases in rows if phrases}
+    table: dict[str, str] = {}
+    for name in _FILES:
+        source = files("corpora").joinpath("words", name)
+        lines = source.read_text(encoding="utf-8").splitlines() if source.is_file() else []
+        for topic, _, phrases in (line.partition(": ") for line in lines if not line.startswith("#")):
+            if phrases:
+                table[topic] = f"{table[topic]}; {phrases}" if topic in table else phrases
+    return table

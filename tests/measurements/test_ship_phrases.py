@@ -26,7 +26,9 @@ def corpora(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     (tmp_path / "summaries" / "5.1.a-l.page-2.jsonl").write_text(json.dumps(page) + "\n")
     (tmp_path / "queries" / "dev.jsonl").write_text(json.dumps({"query": "How heavy is my textile?"}) + "\n")
     monkeypatch.setattr(ship_phrases, "_CORPORA", tmp_path)
-    monkeypatch.setattr(ship_phrases, "_SYMBOLS", tmp_path / "words" / "query_expansions.txt")
+    (tmp_path / "words" / "plain_questions.txt").write_text("# More.\n")
+    names = ("query_expansions.txt", "plain_questions.txt")
+    monkeypatch.setattr(ship_phrases, "_SYMBOLS", tuple(tmp_path / "words" / name for name in names))
     monkeypatch.setattr(ship_phrases, "_PAGES", tmp_path / "summaries")
     return tmp_path
 
@@ -40,8 +42,9 @@ def test_only_what_says_something_new_is_added(corpora: Path) -> None:
         "bpy.types.ClothSettings.pin_stiffness: -\n"
     )
     ship_phrases.add(str(written))
-    assert (corpora / "words" / "query_expansions.txt").read_text() == (
-        f"# Phrases.\n{QUALITY}: fabric shakes; finer solver steps\n{MASS}: wool drapes down\n"
+    assert (corpora / "words" / "query_expansions.txt").read_text() == f"# Phrases.\n{QUALITY}: fabric shakes\n"
+    assert (corpora / "words" / "plain_questions.txt").read_text() == (
+        f"# More.\n{MASS}: wool drapes down\n{QUALITY}: finer solver steps\n"
     )
     (page,) = (corpora / "summaries" / "5.1.a-l.page-2.jsonl").read_text().splitlines()
     assert json.loads(page)[4] == ["flag in the wind", "tablecloth falls"]
@@ -56,6 +59,6 @@ def test_what_does_not_find_its_symbol_goes_again(
     monkeypatch.setattr(ship_phrases, "finds", lambda _base, phrase, _ref: phrase.startswith("finer"))
     monkeypatch.setattr(ship_phrases, "KnowledgeBase", lambda _path: nullcontext())
     ship_phrases.keep("no.sqlite", str(written))
-    table = (corpora / "words" / "query_expansions.txt").read_text()
-    assert table == f"# Phrases.\n{QUALITY}: fabric shakes; finer solver steps\n"
+    table = (corpora / "words" / "plain_questions.txt").read_text()
+    assert table == f"# More.\n{QUALITY}: finer solver steps\n"
     assert capsys.readouterr().out.startswith("1 of 2 phrases")

@@ -15,7 +15,7 @@ MODES = ("EDIT", "POSE", "OBJECT")
 OF_SEVERAL = ("selected_", "editable_", "visible_", "selectable_")
 PREFIXES = ("active_", "edit_", *OF_SEVERAL)
 # The bones of the context are those of an armature in Edit Mode.
-NAMED_OTHERWISE = {"bone": "EditBone"}
+SEVERAL_OF = {"Bone": "EditBone"}
 # Of the class Context, what an area gives. Nothing else of it is read: where more was, four of ten runs of Blender 4.2
 # ended later, in the poll of some operator.
 OF_AREAS = ("area", "space_data", "region", "region_data")
@@ -118,7 +118,8 @@ def guess(name):
     if stem.endswith("s"):
         forms.insert(0 if name.startswith(OF_SEVERAL) else 1, (stem[:-1], "collection"))
     for candidate, kind in forms:
-        camel = NAMED_OTHERWISE.get(candidate) or "".join(part.title() for part in candidate.split("_"))
+        camel = "".join(part.title() for part in candidate.split("_"))
+        camel = SEVERAL_OF.get(camel, camel) if kind == "collection" else camel
         if hasattr(bpy.types, camel):
             return kind, camel
     return "", ""

@@ -17,13 +17,17 @@ from mathutils import bvhtree, kdtree
 
 NO_KEYWORDS = "no-keywords"
 BY_PLACE = "by-place:"  # and how many arguments are taken so
+BY_NAME = "by-name:"  # and one that is taken so, though its documentation says that it is not
+OPTIONAL = "all-optional"
 REFUSED = "takes no keyword arguments"
 TAKES = re.compile(r"takes at most (\d+) arguments?")
+MISSING = re.compile(r"missing required argument '(\w+)' \(pos 1\)")
 TAKES_BY_PLACE = re.compile(r"takes (?:at most|exactly) (\d+) positional|takes (no|0) positional")
 # What definitions of properties say of what is given by its place, the first of which is a class.
 PROPERTIES = "bpy.props"
 NONE_BY_PLACE, ONE_BY_PLACE = "all args must be keywords", "expected one positional arg"
 NO_TEXT = "argument 1 must be str"
+LOOKUPS = ("file_path_map", "user_map")  # of bpy.data, which change nothing
 NO_NAME = {"no argument's name": None}
 MANY = (object(),) * 30
 CALL = re.compile(r"\w\(([^)\n]+)\)")
@@ -93,17 +97,23 @@ def lacks_marks(function):
     return call is not None and "*" not in call[1] and "/" not in call[1]
 
 
-def flags_of(value):
-    """The flag of a function, or of a class's method, that tells how it takes arguments; none for what is no other
-    than its documentation says, and for what cannot be asked.
+def of_names(function, said):
+    """The flag of a function that takes its first argument by its name, though its documentation says that it does not;
+    ``said``: what Blender says of a call with another name.
     """
-    function = callable_of(value)
-    if function is None:
-        return []
-    if function.__module__ == PROPERTIES:
-        return of_property(function)
-    if REFUSED in refusal(function, **NO_NAME):
-        return [NO_KEYWORDS]
+    call = CALL.search(inspect.getdoc(function) or "")
+    named = MISSING.search(said)
+    is_told = call is not None and named is not None and "/" in call[1]
+    return [BY_NAME + named[1]] if is_told and named[1] in call[1].partition("/")[0] else []
+
+
+def of_lookups(function):
+    """The flag of a function that only looks something up, and needs no arguments, whatever is documented."""
+    return [OPTIONAL] if function.__name__ in LOOKUPS and not refusal(function) else []
+
+
+def of_places(function):
+    """The flag of a function that takes only its first few arguments by their places."""
     takes = TAKES.search(refusal(function, *MANY)) if lacks_marks(function) else None
     if takes is None:
         return []
@@ -113,3 +123,18 @@ def flags_of(value):
         said = refusal(function, "no name", *given[1:])
     by_place = TAKES_BY_PLACE.search(said)
     return [f"{BY_PLACE}{by_place[1] or 0}"] if by_place else []
+
+
+def flags_of(value):
+    """The flags of a function, or of a class's method, that tell how it takes arguments; none for what is no other
+    than its documentation says, and for what cannot be asked.
+    """
+    function = callable_of(value)
+    if function is None:
+        return []
+    if function.__module__ == PROPERTIES:
+        return of_property(function)
+    said = refusal(function, **NO_NAME)
+    if REFUSED in said:
+        return [NO_KEYWORDS]
+    return of_names(function, said) or of_lookups(function) or of_places(function)
