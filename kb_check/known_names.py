@@ -7,9 +7,10 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
-from kb_check.likely_names import by_first_word, by_label, of_same_sense, without_opposites
+from kb_check.likely_names import by_first_word, by_label
 from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.corrections import is_misspelling, nearest
+from kb_serve.recognise.likely_values import likely_values
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.operator_words import OPERATORS, OperatorWords
 from kb_serve.recognise.removed_symbols import RemovedSymbolLookup, for_reading
@@ -141,7 +142,7 @@ class KnownNames:
         if removed := self._lookup.of_part(whole, part) or self._of_former(whole, part):
             return self._removed(removed)
         values = list(values)
-        similar = of_same_sense(value, values) or self._alike(value, without_opposites(value, values))
+        similar = likely_values(value, values)
         return self._no_part(
             owner, value, values, f"{value!r} is not a value of `{owner}`", "It takes", similar
         )

@@ -7,12 +7,11 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import stem, words
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping
+    from collections.abc import Iterable, Mapping
 
 _MOST = 3
 # Words that say how a thing is used, and not what it is.
 _EMPTY_WORDS = frozenset({"use", "is", "has", "show", "do", "set", "get"})
-_OPPOSITE = "negative"
 _SHORTEST = 4
 
 
@@ -38,24 +37,6 @@ def by_first_word(written: str, names: Iterable[str]) -> list[str]:
         return []
     found = [name for name in names if words(name)[:1] == [first]]
     return found if len(found) <= _MOST else []
-
-
-def of_same_sense(written: str, values: Iterable[str]) -> list[str]:
-    """The values that have all words of one but the first, and say as it does whether the opposite is meant.
-
-    ``TRACK_NEGATIVE_Z`` for ``FORWARD_NEGATIVE_Z``.
-    """
-    mine = words(written)
-    if _OPPOSITE not in mine:
-        return []
-    wanted = {*mine[1:], _OPPOSITE}
-    return [value for value in values if wanted <= set(words(value))][:_MOST]
-
-
-def without_opposites(written: str, values: Iterable[str]) -> Iterator[str]:
-    """Values without those that mean the opposite of one."""
-    is_opposite = _OPPOSITE in words(written)
-    return (value for value in values if (_OPPOSITE in words(value)) == is_opposite)
 
 
 def _last(text: str) -> str:

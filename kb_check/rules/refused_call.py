@@ -27,6 +27,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.types import ClassObject, Instance
 from kb_build.records import ENDS_WITHOUT, last_name
 from kb_build.symbol_lines import with_article
@@ -55,6 +56,8 @@ if TYPE_CHECKING:
 _WITH_PROPERTIES = ("bpy.types.", "mathutils.", "bmesh.types.")
 _OBJECT = "bpy.types.Object"
 _LIGHT = "bpy.types.Light"
+# Until Blender 4.2, which has modifiers of their own for them, of objects of type GPENCIL.
+_GREASE_PENCIL, _FORMER_MODIFIERS = "GreasePencil", f"{T}GpencilModifier"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
@@ -257,7 +260,14 @@ def _labels(script: Script, thing: ast.expr) -> Iterator[str]:
     elif isinstance(data, Instance) and data.sure:
         # A light is of a class for its type; curves of several classes are of several types.
         cls = _LIGHT if script.api.descends(data.cls, _LIGHT) else data.cls
-        yield f"{last_name(cls).upper()} object"
+        yield f"{_type_of_object(script, last_name(cls))} object"
+
+
+def _type_of_object(script: Script, data: str) -> str:
+    """The type of an object whose data is of a class."""
+    if data == _GREASE_PENCIL and not script.api.is_class(_FORMER_MODIFIERS):
+        return data.upper()
+    return next((kind for kind, cls in OBJECT_DATA.items() if cls == data), data.upper())
 
 
 def _has_no_data(script: Script, node: ast.expr) -> bool:

@@ -48,7 +48,10 @@ def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
     """A sentence for each of ``names`` that is not a parameter of ``symbol``, with the most similar parameters."""
     known = [parameter.name for parameter in symbol.parameters]
     for name in names:
-        if not known or name in known or any(other.startswith("*") for other in known):
+        if name in known or any(other.startswith("*") for other in known):
+            continue
+        if not known:
+            yield f"`{symbol.path}` takes no arguments, and no `{name}`."
             continue
         similar = [other for other in known if sorted(other.split("_")) == sorted(name.split("_"))]
         similar = similar or [other for other, _ in nearest(name, known)]
@@ -74,7 +77,7 @@ def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ())
         yield from _by_place(symbol, text)
     for _ in range(_DEPTH):
         text = _NESTED.sub("0", text)
-    if symbol.kind == "operator" or symbol.path.startswith("bmesh.ops."):
+    if symbol.kind == "operator" or symbol.path.startswith("bmesh.ops.") or places_of(symbol) is not None:
         names = [name for name in _KEYWORD.findall(text) if f"{symbol.path}({name})" not in removed]
         yield from unknown_keywords(symbol, names)
 

@@ -16,6 +16,7 @@ from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
 from kb_serve.recognise.corrections import Corrector, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
+from kb_serve.recognise.given_values import wrong_values
 from kb_serve.recognise.message_patterns import (
     is_message,
     without_callers_names,
@@ -137,8 +138,9 @@ class Recogniser:
             old = list(self._old.in_values(chain, symbol))
             for removed in old:
                 recognition.add_removed(removed)
-            notes = list(wrong_arguments(chain, symbol, {removed.path for removed in old}))
-            recognition.notes += notes
+            gone = {removed.path for removed in (*old, *recognition.removed)}
+            notes = list(wrong_arguments(chain, symbol, gone))
+            recognition.notes += (*notes, *wrong_values(chain, symbol, gone))
             if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.85, "error message")
 

@@ -126,7 +126,8 @@ def further_arguments(function, things):
         if item.is_required or item.is_output:
             continue
         if item.type == "INT" and not item.is_array and not item.default:
-            yield item.identifier, plain_argument(item)
+            # Beyond the plain one: an end lies behind its start.
+            yield item.identifier, min(plain_argument(item) + 1, item.hard_max)
         elif item.type == "POINTER":
             cls = getattr(bpy.types, item.fixed_type.identifier, ())
             fitting = next((thing for thing in left if isinstance(thing, cls)), None)

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, words
+from kb_build.index.analysis import key
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.likely_values import likely_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -18,8 +18,6 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
-_LONG = 4  # letters of an item that a wrong one begins with
-_SHORT = 3  # … of a wrong one that an item begins with
 _FEW = 3
 _MOST_OWNERS = 8  # that are compared
 _NO_ITEM = "`{name}` is not an item of this enum; closest: {similar}."
@@ -28,18 +26,7 @@ _OF_CLASSES = "validating class"  # what Blender says of classes that it is give
 
 
 def _closest(name: str, items: Sequence[str]) -> str:
-    """The items that a wrong one may mean: those that are most like it, those that it begins with, or the other way
-    round, or else those that it is made of and more.
-    """
-    similar = [item for item, _ in nearest(name, items)]
-    if not similar:
-        said = name.upper()
-        similar = [item for item in items if len(item) >= _LONG and said.startswith(item)]
-        similar = similar or [item for item in items if len(said) >= _SHORT and item.startswith(said)]
-    if not similar:
-        said = set(words(name))
-        similar = sorted((item for item in items if set(words(item)) <= said), key=len, reverse=True)[:1]
-    return ", ".join(f"`{item}`" for item in similar)
+    return ", ".join(f"`{item}`" for item in likely_values(name, items))
 
 
 class Values:

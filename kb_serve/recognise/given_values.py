@@ -1,0 +1,62 @@
+"""Says which values in code an enumeration does not take: assigned to a property, or given to a function."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.flow.facts import MORE_VALUES
+from kb_serve.recognise.calls import arguments, places_of, texts_in
+from kb_serve.recognise.likely_values import likely_values
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator, Sequence
+
+    from kb_build.records import EnumItem, Parameter, Symbol
+    from kb_serve.recognise.chains import Chain
+
+_FEWEST = 2  # items: of fewer, Blender tells but a stand-in
+_MOST = 8  # items that are all named
+_OPEN = frozenset({"bpy.types.RenderSettings.engine"})  # to which add-ons add
+_CLASS = re.compile(r"[A-Z]\w*[a-z]")  # ``GeometryNodeTree``
+
+
+def wrong_values(chain: Chain, symbol: Symbol, removed: Collection[str]) -> Iterator[str]:
+    """Sentences on what a chain gives that is no item; but on ``removed`` items, given by path."""
+    if symbol.kind == "property":
+        for value in chain.values:
+            if not symbol.enum_computed and f"{symbol.path}:{value}" not in removed:
+                yield from _wrong(symbol.path, value, symbol.enum_items)
+    elif chain.steps and chain.steps[-1].kind == "call" and symbol.kind in {"function", "operator"}:
+        for parameter, value in _given(symbol, chain.steps[-1].text):
+            owner = f"{symbol.path}({parameter.name})"
+            if f"{owner}:{value}" not in removed:
+                yield from _wrong(owner, value, parameter.enum_items)
+
+
+def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str]]:
+    """(argument, text) of the texts that a call gives to enumerations."""
+    by_name = {parameter.name: parameter for parameter in symbol.parameters}
+    places = places_of(symbol) if symbol.kind == "function" else None
+    left = iter(places[0] if places else ())
+    for name, given in arguments(text):
+        parameter = by_name.get(name or next(left, ""))
+        if parameter and not parameter.is_open:
+            yield from ((parameter, value) for value in texts_in(given))
+
+
+def _wrong(owner: str, value: str, items: Sequence[EnumItem]) -> Iterator[str]:
+    names = [item.identifier for item in items]
+    if len(names) < _FEWEST or value in names or value in MORE_VALUES.get(owner, ()) or owner in _OPEN:
+        return
+    if all(_CLASS.match(name) for name in names):  # those of add-ons are taken as well
+        return
+    if closest := likely_values(value, names):
+        told = f"Closest: {_listed(closest)}."
+    else:
+        told = f"It takes {_listed(names[:_MOST])}{' …' if len(names) > _MOST else ''}."
+    yield f"`'{value}'` is not a value of `{owner}`. {told}"
+
+
+def _listed(names: Sequence[str]) -> str:
+    return ", ".join(f"`'{name}'`" for name in names)

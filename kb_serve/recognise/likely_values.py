@@ -1,0 +1,59 @@
+"""Which items of an enumeration may be meant by a value that it lacks."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import words
+from kb_serve.recognise.corrections import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+_MOST = 3
+_LONG = 4  # letters of an item that a wrong one begins with
+_SHORT = 3  # … of a wrong one that an item begins with
+_OPPOSITES = frozenset({"neg", "negative"})
+_MINUS = re.compile(r"-(?=[XYZ]$)")
+
+
+def likely_values(written: str, items: Sequence[str]) -> list[str]:
+    """The items that a wrong one may mean: of those that point the same way, ``NEGATIVE_Z`` for ``-Z``, those that are
+    most like it, those that it begins with, or the other way round, or else those that it is made of and more.
+    """
+    written = _MINUS.sub("NEGATIVE_", written)
+    if same := of_same_sense(written, items):
+        return same
+    items = [*without_opposites(written, items)]
+    if similar := [item for item, _ in nearest(written, items)]:
+        return similar
+    said = written.upper()
+    similar = [item for item in items if len(item) >= _LONG and said.startswith(item)]
+    similar = similar or [item for item in items if len(said) >= _SHORT and item.startswith(said)]
+    if similar:
+        return similar
+    own = set(words(written))
+    return sorted((item for item in items if set(words(item)) <= own), key=len, reverse=True)[:1]
+
+
+def of_same_sense(written: str, values: Iterable[str]) -> list[str]:
+    """The values that have all words of one but the first, and say as it does that the opposite is meant.
+
+    ``TRACK_NEGATIVE_Z`` for ``FORWARD_NEGATIVE_Z``.
+    """
+    mine = words(written)
+    if _OPPOSITES.isdisjoint(mine):
+        return []
+    wanted = set(mine[1:]) - _OPPOSITES
+    return [value for value in values if wanted <= set(words(value)) and _is_opposite(value)][:_MOST]
+
+
+def without_opposites(written: str, values: Iterable[str]) -> Iterator[str]:
+    """Values without those that mean the opposite of one."""
+    is_opposite = _is_opposite(written)
+    return (value for value in values if _is_opposite(value) == is_opposite)
+
+
+def _is_opposite(value: str) -> bool:
+    return not _OPPOSITES.isdisjoint(words(value))
