@@ -130,6 +130,7 @@ class Expressions:
     def _expressions(self, chains: list[Chain], recognition: Recognition) -> None:
         code = [chain for chain in chains if chain.is_code and _is_api(chain)]
         prose = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
+        is_script = len(code) > 1 and any(chain.steps or chain.assigned for chain in code)
         for position, chain in enumerate(code):
             later = 0.02 * min(position, 5)
             readings = self._resolver.resolve(chain)
@@ -159,7 +160,7 @@ class Expressions:
                 if broken:
                     self._broken_off(chain, broken, later, recognition)
                 is_own = not chain.steps or chain.steps[0].kind == "call"
-                self._loose_name(chain, prose, recognition, is_variable=is_own and len(code) > 1)
+                self._loose_name(chain, prose, recognition, is_variable=is_own and is_script)
 
     def _is_argument(self, chain: Chain, recognition: Recognition) -> bool:
         """Adds a name that stands behind an operator or function as an argument of it; whether it is one."""
@@ -283,10 +284,10 @@ class Expressions:
         called = bool(behind) and behind[0].kind == "call"
         if called and not is_element:
             self._tell_elsewhere(resolved, later, recognition)
-        missing = MissingName(resolved.missing, resolved.owner, assigned, sure, called)
-        if not _is_clear(chain, resolved):
-            recognition.doubted.setdefault(chain.root, missing)
-        elif not is_element and not self._is_told(resolved, recognition):
+        if not is_element and not self._is_told(resolved, recognition):
+            variable = "" if _is_clear(chain, resolved) else chain.root
+            told = resolved.fit >= _LIKELY
+            missing = MissingName(resolved.missing, resolved.owner, assigned, sure, called, variable, told)
             recognition.missing.append(missing)
         for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
@@ -299,8 +300,7 @@ class Expressions:
         owner = self._reader.entry(resolved.owner)
         is_definition = chain.assigned and resolved.steps_left == 1
         return (
-            resolved.fit < _LIKELY
-            or (resolved.fit < 1.0 and is_guess(chain.root))
+            (resolved.fit < 1.0 and is_guess(chain.root))
             or resolved.missing.startswith("__")  # every class and module has such names
             or self._is_indexed(chain, resolved)
             # ``bl_idname = "object.my_operator"``

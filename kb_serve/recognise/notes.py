@@ -58,6 +58,11 @@ def as_code(path: str) -> str:
     return path
 
 
+def _if(variable: str) -> str:
+    """Begins a sentence on a class that a variable's name suggests; "" for no variable."""
+    return f"If `{variable}` is one of these: " if variable else ""
+
+
 class Notes:
     """Words what was recognised, for one base."""
 
@@ -132,7 +137,7 @@ class Notes:
         similar = [match.id for match in recognition.matches if match.why == SIMILAR]
         closest = f" Closest: {_list(similar)}." if similar else ""
         for missing in recognition.missing:
-            if recognition.removed and not missing.sure:
+            if (recognition.removed and not missing.sure) or not missing.told:
                 continue
             if not missing.owner and (similar or not recognition.matches):
                 found = closest or " What follows was found by its words."
@@ -140,10 +145,10 @@ class Notes:
             elif missing.owner and missing.name.startswith("["):
                 yield f"`{missing.owner}` takes no custom properties: `{missing.name}` fails.{closest}"
             elif missing.owner and missing.name not in removed_names:
-                yield f"{self._lacks(missing)}{closest}"
+                yield f"{_if(missing.variable)}{self._lacks(missing)}{closest}"
         if not recognition.removed:
             for variable, missing in recognition.doubted.items():
-                yield f"If `{variable}` is one of these: {self._lacks(missing)}"
+                yield f"{_if(variable)}{self._lacks(missing)}"
 
     def _lacks(self, missing: MissingName) -> str:
         """A sentence on what a class does not have, and whether it ever had it."""

@@ -24,7 +24,8 @@ class MissingName:
     """A name that does not exist on the class (or in the module) ``owner``; ``owner`` may be empty.
 
     ``assigned`` tells whether the query assigns to it, ``called`` whether it calls it, ``sure`` whether the owner is
-    certain.
+    certain. Where the owner is what a variable's name suggests, ``variable`` is that name; where it hardly does,
+    ``told`` is false: what resembles the name may help, but nothing is denied.
     """
 
     name: str
@@ -32,6 +33,8 @@ class MissingName:
     assigned: bool = False
     sure: bool = False
     called: bool = False
+    variable: str = ""
+    told: bool = True
 
 
 @dataclass(slots=True)
