@@ -15,7 +15,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 8
+SCHEMA_VERSION = 9
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -76,7 +76,11 @@ CREATE TABLE sections (
 );
 
 -- source and target are ids; a manual link's target may carry an anchor.
-CREATE TABLE links (source TEXT NOT NULL, target TEXT NOT NULL, kind TEXT NOT NULL);
+-- ``place``: of all links, in the order in which they were found.
+CREATE TABLE links (
+    source TEXT NOT NULL, kind TEXT NOT NULL, place INTEGER NOT NULL, target TEXT NOT NULL,
+    PRIMARY KEY (source, kind, place)
+) WITHOUT ROWID;
 
 -- The place in the manual that is about a symbol: a section's number and a line of its text, -1 for the heading.
 CREATE TABLE passages (
@@ -173,7 +177,6 @@ CREATE INDEX symbols_base ON symbols (base) WHERE base != '';
 CREATE INDEX panel_conditions_gate ON panel_conditions (gate);
 CREATE INDEX removed_name ON removed (name);
 CREATE INDEX sections_slug ON sections (slug, position);
-CREATE INDEX links_source ON links (source, kind, target);
 CREATE INDEX pages_parent ON pages (parent, position);
 """
 

@@ -230,7 +230,7 @@ class BaseReader:
 
     def _manual_links(self, sources: Sequence[str]) -> dict[str, tuple[str, ...]]:
         sql = "SELECT source, target FROM links WHERE kind = 'manual' AND source"
-        return _grouped(self.rows_of(sql, sources, "rowid"))
+        return _grouped(self.rows_of(sql, sources, "place"))
 
     def _label_names(self, slugs: Sequence[str]) -> dict[str, dict[tuple[int, int], str]]:
         rows = self.rows_of("SELECT slug, section, line, names FROM label_names WHERE slug", slugs)

@@ -7,7 +7,7 @@ WEIGHTS: dict[str, float] = {
     "text": 1.0,
     "asked": 0.85,
     "counts": 0.1,
-    "code": 0.5,
+    "code": 0.3,
     "operator": 0.1,
     "called": 1.0,
     "code of an error": 0.25,

@@ -82,7 +82,7 @@ def test_pages_that_blender_names_and_the_manual_lacks_are_listed_without_being_
         ),
         ("DELETE FROM names WHERE id = 'bpy.ops.mesh.bevel'", "names", "bpy.ops.mesh.bevel"),
         ("UPDATE pages SET parent = 'nowhere' WHERE slug = 'physics/index'", "pages", "nowhere"),
-        ("INSERT INTO links VALUES ('bpy.types.Mesh', 'bpy.types.Nobody', 'pointer')", "links", "Nobody"),
+        ("INSERT INTO links VALUES ('bpy.types.Mesh', 'pointer', -1, 'bpy.types.Nobody')", "links", "Nobody"),
         ("UPDATE levels SET refs = 'nothing' || refs WHERE level = 0", "index", "names nothing"),
         ("UPDATE phrases SET targets = x'ffffff7f'", "index", "asks for document 2147483647"),
         ("UPDATE postings SET data = substr(data, 2) WHERE stem = 'mesh'", "index", "'mesh' are cut off"),
