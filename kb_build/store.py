@@ -271,7 +271,9 @@ def _write(part: Path, contents: Contents) -> None:
             _insert(connection, "refusals", _refusals(contents.symbols), 2)
             _insert(connection, "explained", _explained(contents.symbols, contents.links), 2)
             links = enumerate(contents.links)
-            _insert(connection, "links", ((one.source, one.kind, place, one.target) for place, one in links), 4)
+            _insert(
+                connection, "links", ((one.source, one.kind, place, one.target) for place, one in links), 4
+            )
             tables = contents.tables() if contents.tables else symbol_tables(contents.symbols, contents.pages)
             _write_symbols(connection, tables)
             _write_usage(connection, tables.uses)

@@ -90,7 +90,8 @@ NODES_WITH_SOCKETS_OF_THEIR_OWN = (
     "Group", "GroupInput", "GroupOutput", "SimulationInput", "SimulationOutput", "RepeatInput", "RepeatOutput",
     "ForeachGeometryElementInput", "ForeachGeometryElementOutput", "Bake", "CaptureAttribute", "MenuSwitch",
     "IndexSwitch", "GeometryNodeViewer", "OutputFile", "Script", "CombineBundle", "SeparateBundle", "EvaluateClosure",
-    "ClosureInput", "ClosureOutput", "FormatString", "CryptomatteV2", "RLayers", "Image", "Reroute", "Custom",
+    "ClosureInput", "ClosureOutput", "ClosureToList", "FieldToGrid", "FieldToList", "ShaderNodeRaycast",
+    "FormatString", "CryptomatteV2", "RLayers", "Image", "Reroute", "Custom",
 )  # fmt: skip
 
 # Modules whose base classes and imported names the symbols do not tell (Iterator has what Interface0DIterator has).

@@ -87,11 +87,13 @@ class Successors:
         until = version_key(version)
         table = list(table)
         rows = [row for row in table if version_key(row.version) <= until]
-        # What was only renamed later: the new name → its row; and (how such a name is written, the row).
-        renamed = [
-            row for row in table if version_key(row.version) > until and len(row.new) == 1 and not row.how
-        ]
-        self._renamed = {row.new[0]: row for row in reversed(renamed) if self._exists(row.old)}
+        # What took a place later: the new name → its row, those first that were only renamed; and of these (how such a
+        # name is written, the row).
+        later = [row for row in table if version_key(row.version) > until and row.new]
+        renamed = [row for row in later if len(row.new) == 1 and not row.how]
+        others = [row for row in later if row not in renamed and self._exists(row.old)]
+        self._renamed = {new: row for row in reversed(others) for new in row.new}
+        self._renamed |= {row.new[0]: row for row in reversed(renamed) if self._exists(row.old)}
         self._renamed_alike = [(_pattern(row.new[0]), row) for row in renamed if "*" in row.new[0]]
         self._rows = {row.old: row for row in rows if "*" not in row.old}
         # By what precedes the star, each with its place in the table.
@@ -165,7 +167,7 @@ class Successors:
             yield Succession(path, (), ends[0].how, ends[0].version, ends[0].source)
 
     def _earlier(self, path: str) -> Succession | None:
-        """What a name of later versions is called here; None where it was not only renamed."""
+        """What is here in place of a name of later versions; None where nothing is known to be."""
         if row := self._renamed.get(path):
             return Succession(path, (row.old,), "", row.version, row.source)
         for pattern, row in self._renamed_alike:

@@ -21,6 +21,10 @@ _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _WHOLE = re.compile(r"(['\"])([^'\"\n]{2,60})\1")
 # What an element is looked up by, as ``objects["Cube"]``, which is its name.
 _SUBSCRIPT = re.compile(r"""(?<=[\w)\]])\[(['"])([^'"\n]{2,60})\1\]""")
+_LABELS = frozenset(
+    {"label", "name", "title"}
+)  # why something was recognised that is called as the whole query
+_WHOLE_LABEL = 0.82  # … and how sure it is
 _CAPITALS = re.compile(r"(?<![\w.])(?=[0-9]*[A-Z])[A-Z0-9_]{3,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
@@ -56,6 +60,11 @@ def _is_of_icons(owner: str) -> bool:
     return _ICON in terms(owner.rpartition(".")[2].replace("(", " "))
 
 
+def _is_a_label(recognition: Recognition) -> bool:
+    """Whether something is called as the whole query: "mesh to SDF grid" asks for a node, and not for ``SDF``."""
+    return any(match.why in _LABELS and match.sure >= _WHOLE_LABEL for match in recognition.matches)
+
+
 class EnumValues:
     """Recognises enum values against one base."""
 
@@ -87,6 +96,7 @@ class EnumValues:
         for rank, (owner, share) in enumerate(islice(told, _MOST_TOLD)):
             least = max(_FITTING_WORD, _SHARE * len(around)) if self._is_word(owner, values) else _FITTING
             fits = alone or quoted or self._owner_fit(owner, around) >= least
+            fits = fits and (bool(quoted) or not _is_a_label(recognition))
             sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
             recognition.add(owner.partition("(")[0], sure, "enum item")
 

@@ -17,6 +17,7 @@ _MOST_WORDS = 5  # with more of them it is a question, in which the class is one
 _MOST_FOUND = 3  # more members than these are not told apart
 _SHORTEST = 4  # letters of a word that may be a beginning, or misspelt
 _MOST_COMPARED = 20_000  # pairs of words whose likeness is remembered
+_SOCKETS = frozenset({"socket", "sockets"})
 _SLIP = 0.79  # similarity of a word with two letters exchanged
 
 
@@ -26,6 +27,8 @@ def members_by_words(cls: str, beside: Collection[str], reader: BaseReader) -> l
     None where too many do.
     """
     asked = [word for text in beside for word in words(text) if word not in STOP_WORDS]
+    if _SOCKETS.issuperset(asked) and reader.descends(cls, f"{TYPES}Node"):
+        return []  # all of them, which the class lists
     if not 0 < len(asked) <= _MOST_WORDS:
         return []
     own = list(_members(cls, reader))

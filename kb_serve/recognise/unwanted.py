@@ -29,8 +29,15 @@ _RUN = re.compile(
     r"|(?:without|with\sno)\s(?:an?\s|the\s|any\s)?(?:ui|gui|display|screen|window))(?=\W*$|,|\s(?:and|from|in|to|with)\b)",
     re.I,
 )
+# The version that is asked for, beside other words: the base is that of one.
+_VERSION = re.compile(
+    r"\s(?:(?:in|for|with|on|using)\s)?blender\s(?:version\s)?v?\d+\.\d+(?:\.\d+)?(?=\W*$)", re.I
+)
 _BLENDER = re.compile(r"\bblender\b", re.I)  # of whose own start the question may be
 _LEAST_WORDS = 3
+_ABOUT_VERSIONS = re.compile(
+    r"\b(?:changed?|changes|gone|missing|new|news|notes|removed|renamed|replace[ds]?|since)\b", re.I
+)
 
 
 class Wanted(NamedTuple):
@@ -44,13 +51,19 @@ def without_unwanted(query: str) -> Wanted:
     """A question, its blanks single, as it would be asked by who only knows what is wanted."""
     if is_message(query) or _WHY.match(query):
         return Wanted(query)
-    asked = _without_run(query)
+    asked = _without_run(_without_version(query))
     found = _UNWANTED.search(asked)
     if found is not None:
         asked = " ".join((asked[: found.start()] + asked[found.end() :]).split())
     code = f" {_CODE}" if asked != query else ""
     are_unwanted = found is not None and _OF_OPERATORS.search(found[0]) is not None and _NAMED not in asked
     return Wanted(asked + code, operators=not are_unwanted)
+
+
+def _without_version(query: str) -> str:
+    """A question without the Blender at its end, unless that is what it is about: "what is new in Blender 5.1"."""
+    text = _VERSION.sub("", query)
+    return query if _ABOUT_VERSIONS.search(text) or len(text.split()) < _LEAST_WORDS else text
 
 
 def _without_run(query: str) -> str:

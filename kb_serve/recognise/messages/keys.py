@@ -17,6 +17,7 @@ if TYPE_CHECKING:
 
 _OF_PROPERTIES = (f"{STRUCT}.get", f"{TYPES}ID.bl_system_properties_get")  # where they are read
 
+_LOOKED_INTO = r"""\.(\w+)\[['"]{}['"]\]"""
 _EDIT_BONES = re.compile(r"\bedit_bones\b")
 _IN_EDIT_MODE = (
     "`edit_bones` are empty unless the armature is in Edit Mode: make its object active, then "
@@ -45,6 +46,10 @@ class Keys:
             )
             if _EDIT_BONES.search(query):
                 recognition.notes.append(_IN_EDIT_MODE)
+            # What was looked into is there.
+            within = re.findall(_LOOKED_INTO.format(re.escape(name)), query)
+            gone = [one for one in recognition.removed if one.path.rpartition(".")[2] in within]
+            recognition.removed = [one for one in recognition.removed if one not in gone]
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return
         if collection != "bpy_prop_collection":

@@ -24,6 +24,23 @@ ANIMATION = (
         "The object must have the action: `obj.animation_data_create().action = action`.",
     ),
     NamelessMessage(
+        ("Cannot set slot without an assigned Action",),
+        (f"{_T}AnimData.action", f"{_T}AnimData.action_slot"),
+        "Assign the action first: `obj.animation_data.action = action`, then the slot.",
+    ),
+    NamelessMessage(
+        ("This slot (", "is not suitable for this data-block type"),
+        (f"{_T}AnimData.action_suitable_slots", f"{_T}ActionSlots.new"),
+        "A slot is for one type of data-block, its `target_id_type`: take one of the "
+        "`animation_data.action_suitable_slots`, or make one: `action.slots.new(obj.id_type, obj.name)`.",
+    ),
+    NamelessMessage(
+        ("'list' object has no attribute 'driver'",),
+        (f"{_T}bpy_struct.driver_add", f"{_T}FCurve.driver"),
+        "Of a property with several numbers `driver_add` returns a list, an F-curve each, unless an index is given: "
+        '`obj.driver_add("location", 0).driver`.',
+    ),
+    NamelessMessage(
         ("keyframe_insert() path includes index",),
         (f"{_T}bpy_struct.keyframe_insert",),
         'One number of several is keyed by its index: `obj.keyframe_insert("location", index=0)`.',
