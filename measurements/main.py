@@ -33,6 +33,7 @@ PARTS = (
         "old_code",
         "usage",
         "expressions",
+        "denials",
     ),
     *("steps", "check_blender", "check_truth", "check_versions", "planted", "pyright", "migrate"),
     *("latency", "server", "schemas", "builds", "blender", "verifier", "audits"),

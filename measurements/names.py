@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from measurements.retrieval import Query
     from measurements.setting import Setting
 
-SETS = ("names", "names_kept")
+SETS = ("names", "names_kept", "names_third")
 LIMIT = 8
 SHORT_TOKENS = 600
 _TYPES = "bpy.types."
@@ -51,7 +51,7 @@ def is_told(path: str, text: str) -> bool:
 
 
 def measure(setting: Setting) -> ReportPart:
-    """Asks every question of both sets."""
+    """Asks every question of all sets."""
     sets = {name: read_queries(QUERIES / f"{name}.jsonl") for name in SETS}
     say("names: asking plain questions")
     found = {name: _ask(setting.base, queries) for name, queries in sets.items()}

@@ -1,0 +1,123 @@
+"""Whether answers deny what is right: statements of Blender's own scripts, asked as they stand.
+
+Only statements count of which every attribute is known, by the types that flow through the whole script, to be one of
+Blender's: whatever is denied of them is denied wrongly.
+"""
+
+from __future__ import annotations
+
+import ast
+import json
+import random
+import re
+from contextlib import closing
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from bench.markdown_tables import Table
+from kb_build.base_file import read_meta
+from kb_build.flow.analysis import analyse
+from kb_build.flow.api import Api
+from kb_build.flow.symbols import BaseSymbols
+from kb_build.usage.scripts import blender_scripts, read_script
+from kb_serve.knowledge_base import KnowledgeBase
+from measurements.report import ReportPart, TargetFigure
+from measurements.setting import say
+from simworlds.releases import version_key
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_build.flow.analysis import Analysis
+    from measurements.setting import Setting
+
+_SEED = 12
+_ASKED = {1: 2_000, 3: 1_000}  # so many runs of so many statements
+_QUICKLY = 10  # one of so many
+_LONGEST = 400  # letters
+_DENIES = re.compile(
+    r"has no `|takes (?:no|\d+|`)|does not exist|is not a value of|never had|by name only|Nothing is called"
+)
+_IF = "If `"  # what a denial begins with that holds only if a variable is what its name suggests
+_PLAIN = (ast.Assign, ast.AugAssign, ast.Expr, ast.Return)
+_HEADER = (
+    "statements of Blender's own scripts",
+    "asked",
+    "denied something",
+    "… if a variable is something else",
+)
+_NOTE = (
+    "Statements whose every attribute is one of Blender's, as types that flow through the whole script say. They are "
+    f"asked without the lines around them, and drawn at random with seed {_SEED}."
+)
+
+
+def measure(setting: Setting) -> ReportPart:
+    """Reads Blender's own scripts in this process, and asks for the statements drawn; ``quick`` asks fewer."""
+    folder = json.loads(read_meta(setting.base)["runtime"]).get("scripts", "")
+    if not folder or not Path(folder).is_dir():
+        return ReportPart("denials", skipped=(f"Blender's scripts are not there ({folder or 'unknown'})",))
+    say("denials: reading Blender's own scripts")
+    found: dict[int, set[str]] = {length: set() for length in _ASKED}
+    version = version_key(read_meta(setting.base)["blender"])
+    with closing(BaseSymbols(setting.base)) as symbols:
+        api = Api(symbols)
+        for script in blender_scripts(Path(folder)):
+            analysis = analyse(read_script(script.path), api, version)
+            for length, texts in found.items():
+                texts.update(_runs(analysis, length))
+    say("denials: asking")
+    rows: list[tuple[str, str, str, str]] = []
+    figures: list[TargetFigure] = []
+    data: dict[str, list[str]] = {}
+    with KnowledgeBase(setting.base) as knowledge:
+        for length, texts in found.items():
+            most = _ASKED[length] // (_QUICKLY if setting.quick else 1)
+            drawn = random.Random(_SEED).sample(sorted(texts), min(len(texts), most))
+            flat, doubted = _denied(knowledge, drawn)
+            rows.append((_name(length), f"{len(drawn):,}", str(len(flat)), str(len(doubted))))
+            share = len(flat) / max(1, len(drawn))
+            figures.append(TargetFigure(f"denied{length}", share, f"{len(flat)} of {len(drawn):,}"))
+            data[_name(length)] = flat
+    return ReportPart(
+        "denials", tuple(figures), (Table("Right code denied", _HEADER, tuple(rows), _NOTE),), (), data
+    )
+
+
+def _name(length: int) -> str:
+    return "one alone" if length == 1 else f"{length} in a row"
+
+
+def _runs(analysis: Analysis, length: int) -> Iterator[str]:
+    """Every so many plain statements in a row that are known to be right."""
+    for node in ast.walk(analysis.tree) if analysis.tree else ():
+        body = getattr(node, "body", None)
+        for start in range(len(body) - length + 1) if isinstance(body, list) else ():
+            run = body[start : start + length]
+            if all(isinstance(statement, _PLAIN) and _is_known(statement, analysis) for statement in run):
+                text = "\n".join(map(ast.unparse, run))
+                if "." in text and len(text) <= _LONGEST:
+                    yield text
+
+
+def _is_known(statement: ast.stmt, analysis: Analysis) -> bool:
+    """Whether all attributes of a statement are Blender's."""
+    for node in ast.walk(statement):
+        if isinstance(node, ast.Attribute):
+            resolution = analysis.resolutions.get(node)
+            if resolution is None or not resolution.symbols or resolution.missing:
+                return False
+    return True
+
+
+def _denied(knowledge: KnowledgeBase, texts: Sequence[str]) -> tuple[list[str], list[str]]:
+    """The statements of which something is denied, and those of which it is only if a variable is something else."""
+    flat: list[str] = []
+    doubted: list[str] = []
+    for text in texts:
+        notes = [note for note in knowledge.query(text).notes if _DENIES.search(note)]
+        if any(not note.startswith(_IF) for note in notes):
+            flat.append(text)
+        elif notes:
+            doubted.append(text)
+    return flat, doubted
