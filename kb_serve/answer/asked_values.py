@@ -20,6 +20,9 @@ _COMMON = frozenset(
     """type mode data object name valu index key file path use none default auto all custom action other set new
     add""".split()  # noqa: SIM905
 )
+# Of arguments of those that have very many, what is hardly said with the rest: ``use_selection``, ``bake_anim``.
+_UNSAID = frozenset({"bake", "export", "import", "object", "only", "use"})
+_VERY_MANY = 20
 _CALLED = {"operator", "function"}
 _CUT = "|…"
 _OF_DIALOGS = "ui_"
@@ -98,7 +101,9 @@ class _Told:
             if parameter.name.startswith(_OF_DIALOGS):
                 continue
             values = [*self.values(parameter.enum_items, parameter.name)]
-            yield from values or self._asked(parameter.name, parameter.name, parameter.name, parameter.label)
+            unsaid = _UNSAID if len(symbol.parameters) > _VERY_MANY else frozenset[str]()
+            names = (parameter.name, parameter.label)
+            yield from values or self._asked(parameter.name, parameter.name, *names, unsaid=unsaid)
 
     def values(self, items: tuple[EnumItem, ...], argument: str) -> Iterator[AskedValue]:
         for item in items:
@@ -107,10 +112,12 @@ class _Told:
                 text = f"{argument}={value}" if argument else value
                 yield from self._asked(text, argument, item.name, item.identifier)
 
-    def _asked(self, text: str, argument: str, *names: str) -> Iterator[AskedValue]:
-        """One, if all words of one of its names are asked for, and one that is not the symbol's own."""
+    def _asked(
+        self, text: str, argument: str, *names: str, unsaid: frozenset[str] = frozenset()
+    ) -> Iterator[AskedValue]:
+        """One, if all words of one of its names are asked for, but ``unsaid`` ones; one is not the symbol's."""
         for name in names:
-            own = terms(name)
+            own = [word for word in terms(name) if word not in unsaid]
             places = [self._places.get(word, -1) for word in own]
             if places and min(places) >= 0 and not self._left.isdisjoint(own):
                 yield AskedValue(text, argument, len(places), places == sorted(places))

@@ -214,7 +214,7 @@ class Expressions:
             if resolved.complete:
                 recognition.add(resolved.symbols[-1], _BEHIND - later, "behind the successor")
                 return
-            further = self._old.behind(resolved, old.rest)
+            further = self._old.behind(old.removed.path, resolved, old.rest)
             if further is None:
                 return
             old = further

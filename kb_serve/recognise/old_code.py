@@ -106,9 +106,18 @@ class OldCode:
         """Whether a class, or one below it, had a member of that name in another version."""
         return bool(self._removed.of_member(owner, name) or self._removed.paths_below(owner, name))
 
-    def behind(self, resolved: ResolvedChain, steps: tuple[ChainStep, ...]) -> OldName | None:
-        """The removed name at which a chain breaks off that was followed from a successor."""
-        removed = self._removed.of_member(resolved.owner, resolved.missing) if resolved.missing else None
+    def behind(self, before: str, resolved: ResolvedChain, steps: tuple[ChainStep, ...]) -> OldName | None:
+        """The removed name at which a chain breaks off that was followed from the successor of a removed one.
+
+        What was removed ``before`` may have been a collection with a class of its own: NodeTree.outputs of
+        NodeTreeOutputs.
+        """
+        owner, _, name = before.rpartition(".")
+        removed = (
+            self._removed.of_path(f"{owner}{name.title()}.{resolved.missing}") if resolved.missing else None
+        )
+        if removed is None and resolved.missing:
+            removed = self._removed.of_member(resolved.owner, resolved.missing)
         return OldName(removed, steps[len(steps) - resolved.steps_left + 1 :]) if removed else None
 
     def _likelier(self, chain: Chain, readings: Sequence[ResolvedChain]) -> list[ResolvedChain]:
