@@ -41,6 +41,16 @@ _MAKING = re.compile(
     r"(?:\s(?:from|by|in|via|with|using|through)\s(?:an?\s|the\s)?(?:python|script|code|bpy|api))?",
     re.I,
 )
+# Nodes of one name are told apart by where they are.
+_WHERE = re.compile(
+    r"\s(?:in|of|for)\s(?:the\s)?(?:composit(?:or|ing)|geometry\snodes?|shaders?(?:\s(?:nodes?|editor))?)\b",
+    re.I,
+)
+_CHAPTERS = {
+    "composit": "compositing/",
+    "geometry": "modeling/geometry_nodes/",
+    "shader": "render/shader_nodes/",
+}
 _MAX_WORDS = 4
 _CALLED_SO = 4  # pages
 _CHAPTER = 100  # pages and symbols of what is meant before a single page
@@ -104,10 +114,16 @@ class Topics:
         made = (
             _MAKING.fullmatch(plain) if "bone" not in plain.lower() else None
         )  # which has constraints of its own
-        return self._called(plain) or (self._called(made["made"]) if made else "")
+        asked = made["made"] if made else plain
+        if where := _WHERE.search(plain):
+            node = made["made"] if made else plain[: where.start()]
+            chapter = next(chapter for word, chapter in _CHAPTERS.items() if word in where[0].lower())
+            if node.lower().endswith(" node") and (slug := self._called(node, chapter)):
+                return slug
+        return self._called(plain) or (self._called(asked) if made else "")
 
-    def _called(self, plain: str) -> str:
-        """The page of a topic that is called so, without more words."""
+    def _called(self, plain: str, chapter: str = "") -> str:
+        """The page of a topic that is called so, without more words; of a chapter alone, if one is given."""
         if not key(plain) or len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
             return ""
         if plain != plain.lower() and self._is_class(plain):
@@ -116,6 +132,7 @@ class Topics:
         self._reader.by_key.load((*keys, key(plain)))
         titled = [{slug for _, slug in self._reader.by_key(title)} for title in keys]
         titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._children(slug)}
+        titled = [{slug for slug in slugs if slug.startswith(chapter)} for slugs in titled]
         for slugs in titled:
             if sizes := {slug: self._size(slug) for slug in slugs if self._is_topic(slug)}:
                 return self._best(sizes, slugs, plain)
