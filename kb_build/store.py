@@ -27,7 +27,7 @@ from kb_build.index.postings import (
     phrase_postings,
     vocabulary,
 )
-from kb_build.index.query_expansions import query_expansions
+from kb_build.index.query_expansions import load_query_expansions, query_expansions
 from kb_build.index.stem_numbers import StemNumbers
 from kb_build.index.value_names import find_value_names
 from kb_build.index.weights import symbol_weights
@@ -277,7 +277,9 @@ def _write(part: Path, contents: Contents) -> None:
             tables = contents.tables() if contents.tables else symbol_tables(contents.symbols, contents.pages)
             _write_symbols(connection, tables)
             _write_usage(connection, tables.uses)
-            weights = symbol_weights(contents.symbols, passages, expansions, tables.uses)
+            # How often people ask who do not know the name; some areas have more plain questions than others.
+            asked = load_query_expansions(plain=False)
+            weights = symbol_weights(contents.symbols, passages, asked, tables.uses)
             _insert(connection, "weights", weights.items(), 2)
             _insert(connection, "meta", contents.meta.items(), 2)
         connection.executescript(f"{INDEXES} ANALYZE;")

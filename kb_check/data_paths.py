@@ -10,8 +10,9 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES, SOMETIMES, T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES, T
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, Type, members
+from kb_build.unlisted import SOMETIMES
 from kb_check.calls import calls
 from kb_check.conversions import CHANGING_ARRAYS
 from kb_check.made_here import is_new

@@ -92,7 +92,8 @@ def _runs(analysis: Analysis, length: int) -> Iterator[str]:
     """Every so many plain statements in a row that are known to be right."""
     for node in ast.walk(analysis.tree) if analysis.tree else ():
         body = getattr(node, "body", None)
-        for start in range(len(body) - length + 1) if isinstance(body, list) else ():
+        body = body if isinstance(body, list) else []
+        for start in range(len(body) - length + 1):
             run = body[start : start + length]
             if all(isinstance(statement, _PLAIN) and _is_known(statement, analysis) for statement in run):
                 text = "\n".join(map(ast.unparse, run))

@@ -62,7 +62,11 @@ RULES = (
     Rule("simworlds", others("simworlds"), through=True),
     Rule("kb_build", others("simworlds", "kb_build"), through=True),
     # How code is read needs to know what a symbol is and where a base keeps it; both are leaves.
-    Rule("kb_build.flow", ("kb_build",), ("kb_build.flow", "kb_build.records", "kb_build.schema")),
+    Rule(
+        "kb_build.flow",
+        ("kb_build",),
+        ("kb_build.flow", "kb_build.records", "kb_build.schema", "kb_build.unlisted"),
+    ),
     # Checking words its findings as the knowledge base words its answers. The server loads the tool by its name.
     Rule("kb_check", others("simworlds", "kb_check", "kb_build", "kb_serve"), through=True),
     Rule(
@@ -74,10 +78,12 @@ RULES = (
             "kb_build.schema",
             "kb_build.symbol_lines",
             "kb_build.index.analysis",
+            "kb_build.unlisted",
         ),
     ),
     Rule("kb_build.records", ("kb_build", "kb_check")),
     Rule("kb_build.schema", ("kb_build", "kb_check")),
+    Rule("kb_build.unlisted", ("kb_build", "kb_check")),
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
     Rule("kb_build.index.analysis", ("kb_build",)),
     Rule("kb_serve", others("simworlds", "kb_build", "kb_serve"), through=True),
@@ -90,6 +96,7 @@ RULES = (
             "kb_build.schema",
             "kb_build.index.analysis",
             "kb_build.symbol_lines",
+            "kb_build.unlisted",
             "kb_build.pipeline",
         ),
     ),

@@ -8,7 +8,7 @@ import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, MORE_VALUES, PRODUCTS, SUMS, VERSION, T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, SUMS, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import chain_text, name_doubt
 from kb_build.flow.trees import children
@@ -38,6 +38,7 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
+from kb_build.unlisted import MORE_VALUES
 
 if TYPE_CHECKING:
     from collections.abc import Callable

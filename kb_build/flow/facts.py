@@ -98,30 +98,6 @@ NODES_WITH_SOCKETS_OF_THEIR_OWN = (
 HALF_KNOWN = ("freestyle",)
 # Modules that are attributes of their packages once something imports them, which Blender itself does not.
 UNLOADED = ("bpy.utils.previews", "gpu_extras.batch", "gpu_extras.presets")
-# Names that are there at times, which no base can tell: owner → patterns. An official build has the 3D mouse, the bpy
-# package has not; only Windows has a console to toggle; a layout gives its buttons pointers by context_pointer_set, in
-# Blender's own scripts and in C.
-SOMETIMES = {
-    "bpy.types.PreferencesInput": ("ndof_*",),
-    "bpy.ops.wm": ("console_toggle",),
-    "bpy.types.Context": (
-        "animated_id", "asset_shelf", "button_operator", "button_pointer", "button_prop", "collection", "constraint",
-        "exporter", "extension_repo", "freestyle_module", "gpencil_modifier", "grease_pencil", "id", "keyconfig",
-        "keymap", "material_slot", "modifier", "nla_strip", "point_cache", "pointcloud", "shaderfx", "socket", "state",
-        "tool", "viewer_path",
-    ),
-}  # fmt: skip
-
-# Values that work and are not listed: batch_for_shader hands its type on to gpu.types.GPUBatch, which has two more; the
-# display without a colour configuration is called NONE; a liquid's domain makes particles of types of their own.
-MORE_VALUES = {
-    "bpy.types.ParticleSettings.type": (
-        "FLIP", "SPRAY", "FOAM", "BUBBLE", "TRACER", "SPRAYFOAM", "SPRAYBUBBLE", "FOAMBUBBLE", "SPRAYFOAMBUBBLE",
-    ),
-    "gpu_extras.batch.batch_for_shader(type)": ("LINE_LOOP", "TRI_FAN"),
-    "bpy.types.ColorManagedDisplaySettings.display_device": ("NONE",),
-}  # fmt: skip
-
 # Names that new things have otherwise than their labels: a modifier of nodes is called after its group, and Blender
 # brings one of this name.
 CALLED = {"NodesModifier": "Array"}

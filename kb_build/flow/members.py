@@ -14,7 +14,6 @@ from kb_build.flow.facts import (
     LAYER_ITEM,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
-    SOMETIMES,
     VERSION,
     T,
 )
@@ -46,6 +45,7 @@ from kb_build.flow.types import (
     union,
     unsure,
 )
+from kb_build.unlisted import SOMETIMES
 
 if TYPE_CHECKING:
     import ast

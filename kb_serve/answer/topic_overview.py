@@ -268,10 +268,10 @@ class Topics:
         title = _without_place(title)
         words = dict.fromkeys((frozenset(terms(title)), frozenset(terms(last))))
         names = TopicNames(
-            key(title),
             frozenset({key(title), key(last)}),
             tuple(filter(None, words)),
             frozenset() if self._children(slug) else frozenset(self._reader.symbols_of_page(slug)),
+            title=key(title),
         )
         nearness: dict[str, float] = {}
         for below, depth in self._subtree(slug).items():

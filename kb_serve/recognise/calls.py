@@ -51,7 +51,7 @@ def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
         if name in known or any(other.startswith("*") for other in known):
             continue
         if not known:
-            yield f"`{symbol.path}` takes no arguments, and no `{name}`."
+            yield f"`{symbol.path}` takes no arguments."
             continue
         similar = [other for other in known if sorted(other.split("_")) == sorted(name.split("_"))]
         similar = similar or [other for other, _ in nearest(name, known)]

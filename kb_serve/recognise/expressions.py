@@ -16,11 +16,11 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import SOMETIMES
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
+from kb_build.unlisted import SOMETIMES
 from kb_serve.reader import TYPES
-from kb_serve.recognise.elements import elsewhere, meant_by_key
+from kb_serve.recognise.elements import ADDING, elsewhere, meant_by_key
 from kb_serve.recognise.members_by_words import members_by_words
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
@@ -286,7 +286,7 @@ class Expressions:
             self._tell_elsewhere(resolved, later, recognition)
         if not is_element and not self._is_told(resolved, recognition):
             variable = "" if _is_clear(chain, resolved) else chain.root
-            told = resolved.fit >= _LIKELY
+            told = resolved.fit >= _LIKELY or (called and resolved.missing in ADDING)
             missing = MissingName(resolved.missing, resolved.owner, assigned, sure, called, variable, told)
             recognition.missing.append(missing)
         for step, symbol in enumerate(reversed(resolved.symbols)):

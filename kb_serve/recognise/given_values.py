@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import MORE_VALUES
+from kb_build.unlisted import MORE_VALUES
 from kb_serve.recognise.calls import arguments, places_of, texts_in
 from kb_serve.recognise.likely_values import likely_values
 

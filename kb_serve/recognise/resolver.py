@@ -39,6 +39,7 @@ _OBJECT_DATA = f"{TYPES}Object.data"
 _RNA, _STRUCT_OF_ALL = ("bl_rna", "rna_type"), f"{TYPES}Struct"
 _ARRAY = f"{TYPES}bpy_prop_array"
 _MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
+_LINKS = "links"  # of a socket, which lead elsewhere
 _ROWS = {f"{_MATRIX}.col", f"{_MATRIX}.row"}
 _PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
 _GROUP, _GROUPS = f"{TYPES}PropertyGroup", f"{TYPES}bpy_prop_collection_idprop"
@@ -153,9 +154,11 @@ class Resolver:
             own = replace(chain, root=chain.steps[0].text, steps=chain.steps[1:])
             yield from ((value, used + 1, fit) for value, used, fit in self._starts(own))
         elif (exact := self._rooted(chain)) and self._may_be_variable(chain, exact[0].symbol):
-            for rank, cls in enumerate(self._named_like_a_module(chain.root, _first_name(chain))):
+            named = self._named_like_a_module(chain.root, _first_name(chain))
+            for rank, cls in enumerate(named):
                 yield ChainValue(cls, cls), 0, _NAMED_LIKE_A_MODULE - 0.001 * rank
-            yield from ((value, 0, fit) for value, fit in self._of_variable(chain))
+            if not named:
+                yield from ((value, 0, fit) for value, fit in self._of_variable(chain))
             yield exact[0], exact[1], _MODULE_THAT_LACKS
         elif exact:
             yield exact
@@ -364,7 +367,7 @@ class Resolver:
         own = self.member(value.cls, name) if value.cls else self._reader.member((value.symbol,), name)
         if own:
             after = self._value_of(own, value.cls)
-            is_of_socket = "puts[" in value.symbol and not after.cls.startswith(TYPES)
+            is_of_socket = "puts[" in value.symbol and not after.many and name != _LINKS
             yield replace(after, symbol=value.symbol if is_of_socket else own.path, origin=value.cls)
             return
         if not value.cls and hasattr(list, name) and self._is_list(value.symbol):

@@ -42,7 +42,9 @@ def test_only_what_says_something_new_is_added(corpora: Path) -> None:
         "bpy.types.ClothSettings.pin_stiffness: -\n"
     )
     ship_phrases.add(str(written))
-    assert (corpora / "words" / "query_expansions.txt").read_text() == f"# Phrases.\n{QUALITY}: fabric shakes\n"
+    assert (
+        corpora / "words" / "query_expansions.txt"
+    ).read_text() == f"# Phrases.\n{QUALITY}: fabric shakes\n"
     assert (corpora / "words" / "plain_questions.txt").read_text() == (
         f"# More.\n{MASS}: wool drapes down\n{QUALITY}: finer solver steps\n"
     )

@@ -22,12 +22,12 @@ class TopicNames:
     symbols that its page explains, if there are none below it.
     """
 
-    title: str
     keys: frozenset[str]
     words: tuple[frozenset[str], ...]
     explained: frozenset[str] = frozenset()
     classes: dict[str, float] = field(default_factory=dict[str, float])
     operators: dict[str, float] = field(default_factory=dict[str, float])
+    title: str = ""
 
     def names(self, name: str) -> bool:
         """Whether a name holds the topic's words."""

@@ -164,7 +164,6 @@ def test_candidates_show_the_best_and_list_the_others(kb: KnowledgeBase) -> None
 @pytest.mark.parametrize(
     ("query", "name"),
     [
-        ("check if two meshes overlap", "**Nearest**\n- `overlap("),
         ("keep the foot above the ground", "**Nearest**\n- `offset` float"),
         ("higher detail voxels in the water sim", "Fluid simulation modifier — nearest: `.fluid_type`"),
     ],

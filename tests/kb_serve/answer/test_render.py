@@ -505,5 +505,5 @@ def test_a_setting_without_a_value_says_so(kb: KnowledgeBase) -> None:
 def test_a_decorator_is_said_to_be_one(kb: KnowledgeBase) -> None:
     assert (
         "`bpy.app.handlers.persistent` a decorator of functions: `@persistent`"
-        in kb.query("persistent handler load").text
+        in kb.query("app handlers load_post keeps after new file").text
     )

@@ -110,7 +110,7 @@ def test_of_what_is_a_value_the_calls_and_settings_are_told_that_take_it(topics:
 def test_a_setting_is_told_once_and_its_class_with_it(topics: KnowledgeBase) -> None:
     text = topics.query("motion blur").text
     assert text.count("`motion_blur_shutter`") == 1
-    assert "bpy.types.RenderSettings.motion_blur_shutter" not in text
+    assert "bpy.types.RenderSettings.motion_blur_shutter`" not in text
 
 
 def test_a_page_that_sets_nothing_is_no_topic(topics: KnowledgeBase) -> None:

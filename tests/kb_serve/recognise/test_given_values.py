@@ -1,0 +1,56 @@
+"""Wrong values and arguments in lines of code are told, right ones are not."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.recognise.likely_values import likely_values
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+
+
+@pytest.mark.parametrize(
+    ("query", "said"),
+    [
+        ("obj.display_type = 'WIREFRAME'", "Closest: `'WIRE'`"),
+        ("mesh.attributes.new('x', 'FLOAT3', 'POINT')", "`'FLOAT3'` is not a value of"),
+        ("bpy.ops.wm.obj_export(filepath='x', forward_axis='-Z')", "Closest: `'NEGATIVE_Z'`"),
+        ("constraint.track_axis = 'TRACK_-Z'", "Closest: `'TRACK_NEGATIVE_Z'`"),
+        ("bpy.data.lights.new('L', type='POINT', energy=5)", "takes no `energy`"),
+        ("bpy.ops.object.join(target=1)", "takes no arguments"),
+    ],
+)
+def test_what_is_none_is_told(kb: KnowledgeBase, query: str, said: str) -> None:
+    assert any(said in note for note in kb.query(query).notes)
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "obj.display_type = 'WIRE'",
+        "scene.render.engine = 'LUXCORE'",  # an add-on's
+        "mesh = bpy.data.meshes.new('M')\nob = bpy.data.objects.new('O', mesh)",
+        "nodes.new('ShaderNodeMath'); links.new(a, b)",
+        "track = obj.animation_data.nla_tracks.new()\nstrip = track.strips.new('s', 1, action)",
+        "bm = bmesh.new()\nlayer = bm.edges.layers.float.new('crease_edge')",
+        "node.inputs[0].links[0].from_node",
+        "key_block.data[0].co = (0, 0, 0)",
+        "noise.noise_dimensions = '4D'",
+        "layout.operator('object.select_all').action = 'SELECT'",
+        "importlib.reload(sys.modules[name])",
+        "obj.keyframe_insert(data_path='location', frame=1)",
+        "prop = PointerProperty(type=Object, poll=lambda self, obj: obj.type == 'MESH')",
+    ],
+)
+def test_what_is_right_is_not_denied(kb: KnowledgeBase, query: str) -> None:
+    denied = ("has no", "takes", "not a value", "does not exist")
+    assert [note for note in kb.query(query).notes if any(words in note for words in denied)] == []
+
+
+def test_the_likeliest_value_points_the_same_way() -> None:
+    axes = ("X", "Y", "Z", "NEGATIVE_X", "NEGATIVE_Y", "NEGATIVE_Z")
+    assert likely_values("-Y", axes) == ["NEGATIVE_Y"]
+    assert likely_values("FORWARD_NEGATIVE_Z", ("TRACK_Z", "TRACK_NEGATIVE_Z")) == ["TRACK_NEGATIVE_Z"]
