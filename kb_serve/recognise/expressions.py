@@ -18,22 +18,25 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
-from kb_build.unlisted import SOMETIMES
 from kb_serve.reader import TYPES
-from kb_serve.recognise.elements import ADDING, elsewhere, meant_by_key
+from kb_serve.recognise.broken_expressions import (
+    CLEAR,
+    LEAST,
+    LIKELY,
+    BrokenExpressions,
+    is_clear,
+    likeliest_broken,
+)
 from kb_serve.recognise.members_by_words import members_by_words
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
-from kb_serve.recognise.resolver import ROOTS
 from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.subscripts import CustomProperties
-from kb_serve.recognise.variables import OTHERWISE, USUAL, is_guess, usual_classes
+from kb_serve.recognise.variables import USUAL, usual_classes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable
-
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.chains import Chain
     from kb_serve.recognise.corrections import Corrector
@@ -51,13 +54,6 @@ _LONG = 12  # letters from which on a name is corrected without knowing what it 
 _CALLED = 0.9  # from here on, a named operator's or function's arguments may stand behind it
 _BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
-_CLEAR = 0.85  # fit of a variable's name that hardly means another class
-_LEAST = 0.1  # fit below which neither the variable's name nor its member tells the class
-_LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
-
-# Classes whose members are defined by scripts and add-ons.
-_OF_OPERATORS = "OperatorProperties"
-_OPEN = frozenset({_OF_OPERATORS, "Operator", "PropertyGroup", "AddonPreferences", "Context"})
 
 _CALLED_OR_SET = frozenset({"property", "function", "operator"})
 
@@ -82,28 +78,6 @@ def _is_file_name(chain: Chain) -> bool:
     return len(chain.steps) == 1 and set(chain.attributes) <= _FILE_ENDINGS and chain.steps[0].kind == "attr"
 
 
-def _is_clear(chain: Chain, resolved: ResolvedChain) -> bool:
-    """Whether it is as good as certain what a chain begins with: a path, or a variable that all scripts call so."""
-    named = resolved.symbols[0].rpartition(".")[2] == chain.root or chain.root in {"bpy", *ROOTS}
-    return resolved.fit >= OTHERWISE and (named or bool(usual_classes(chain.root)))
-
-
-def _likeliest_broken(chain: Chain, readings: Iterable[ResolvedChain]) -> ResolvedChain | None:
-    """Of the readings that break off, of those that suit the variable best the one that leads furthest.
-
-    Where those lack the first name already, one that leads further is likelier.
-    """
-    broken = [resolved for resolved in readings if resolved.missing]
-    best = max((resolved.fit for resolved in broken), default=0.0)
-    likely = [resolved for resolved in broken if resolved.fit >= _CLEAR * best]
-    further = [
-        resolved for resolved in broken if resolved.steps_left < len(chain.steps) and resolved.fit >= _LEAST
-    ]
-    if further and all(resolved.steps_left == len(chain.steps) for resolved in likely):
-        likely = further
-    return min(likely, key=lambda resolved: (resolved.steps_left, -resolved.fit), default=None)
-
-
 class Expressions:
     """Recognises code against one base."""
 
@@ -121,6 +95,7 @@ class Expressions:
         self._corrector = corrector
         self._old = old
         self._custom = CustomProperties(reader)
+        self._broken = BrokenExpressions(reader, resolver, old)
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
@@ -143,22 +118,22 @@ class Expressions:
                     old = replace(old, removed=for_reading(old.removed))
                 self._old_name(old, later, recognition)
                 continue
-            broken = _likeliest_broken(chain, readings)
+            broken = likeliest_broken(chain, readings)
             if (
                 readings
                 and self._trusted(chain, readings[0], broken)
                 and not self._misspelt(chain, readings[0])
             ):
                 self._reading(chain, readings, later, recognition)
-                if broken and not later and broken.fit >= _CLEAR and readings[0].fit < _LIKELY:
-                    self._tell_if(chain, broken, recognition)
+                if broken and not later and broken.fit >= CLEAR and readings[0].fit < LIKELY:
+                    self._broken.tell_if(chain, broken, recognition)
             elif operator := self._reader.entry(f"bpy.ops.{chain.dotted}") if chain.steps else None:
                 recognition.add(operator.path, 0.97 - later, "expression")
             elif _is_file_name(chain) or self._is_argument(chain, recognition):
                 continue
             elif not self._corrected(chain, readings, later, recognition):
                 if broken:
-                    self._broken_off(chain, broken, later, recognition)
+                    self._broken.tell(chain, broken, later, recognition)
                 is_own = not chain.steps or chain.steps[0].kind == "call"
                 self._loose_name(chain, prose, recognition, is_variable=is_own and is_script)
 
@@ -177,25 +152,18 @@ class Expressions:
         A variable clearly named after a class that lacks the attribute is one, not of another class that has it, if the
         class calls something so. So is one of a class that has it and lacks what follows.
         """
-        if not resolved.complete or (_is_file_name(chain) and resolved.fit < _LIKELY):
+        if not resolved.complete or (_is_file_name(chain) and resolved.fit < LIKELY):
             return False
-        if broken and len(chain.attributes) == 1 and broken.fit >= _CLEAR and resolved.fit < _LIKELY:
+        if broken and len(chain.attributes) == 1 and broken.fit >= CLEAR and resolved.fit < LIKELY:
             missing = MissingName(broken.missing, broken.owner, called=chain.steps[-1].kind == "call")
             has_member = broken.steps_left < len(chain.steps)
             if has_member or said_otherwise(missing, self._operators, self._reader):
                 return False
-        if resolved.keyed and resolved.fit >= _CLEAR:
+        if resolved.keyed and resolved.fit >= CLEAR:
             return True
-        if 'puts["' in resolved.symbols[-1] and (broken is None or broken.fit < _CLEAR):
+        if 'puts["' in resolved.symbols[-1] and (broken is None or broken.fit < CLEAR):
             return True  # what is in brackets tells it, whatever the variable is called
-        return resolved.fit >= 1.0 or (bool(chain.attributes) and resolved.fit >= _LEAST)
-
-    def _tell_if(self, chain: Chain, broken: ResolvedChain, recognition: Recognition) -> None:
-        """Notes what the class lacks that a variable is named after, where another one has what is read."""
-        owner = self._reader.entry(broken.owner)
-        if owner and owner.kind == "class" and not is_guess(chain.root):
-            missing = MissingName(broken.missing, broken.owner, sure=self._is_sure(chain, broken))
-            recognition.doubted[chain.root] = missing
+        return resolved.fit >= 1.0 or (bool(chain.attributes) and resolved.fit >= LEAST)
 
     def _misspelt(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether a root is a misspelt class: ``PoimtLight`` is hardly a variable that holds a light."""
@@ -223,12 +191,12 @@ class Expressions:
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
     ) -> None:
         """Adds the best readings of a chain, and the symbols on the way to the first."""
-        recognition.readings[chain.source] = readings[0].symbols[-1] if _is_clear(chain, readings[0]) else ""
+        recognition.readings[chain.source] = readings[0].symbols[-1] if is_clear(chain, readings[0]) else ""
         bare = not chain.attributes and not readings[0].keyed  # a class with a call or an index behind it
         likely = [
             resolved
             for resolved in readings[:4]
-            if resolved.complete and resolved.fit >= _LIKELY * readings[0].fit
+            if resolved.complete and resolved.fit >= LIKELY * readings[0].fit
         ]
         for rank, resolved in enumerate(likely):
             sure = 0.78 if bare and chain.steps else 0.97
@@ -262,7 +230,7 @@ class Expressions:
             return False
         resolved, corrections = corrected
         recognition.corrections += corrections
-        recognition.readings[chain.source] = resolved.symbols[-1] if _is_clear(chain, resolved) else ""
+        recognition.readings[chain.source] = resolved.symbols[-1] if is_clear(chain, resolved) else ""
         alike = min(correction.similarity for correction in corrections) ** 0.25
         # What is wrong in code is what is asked for, before what is right.
         sure = 0.93 * alike if resolved.fit < USUAL else 1.0 - 0.1 * (1 - alike)
@@ -270,126 +238,6 @@ class Expressions:
         for step, symbol in enumerate(reversed(resolved.symbols[:-1])):
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
         return True
-
-    def _broken_off(
-        self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition
-    ) -> None:
-        """Adds a chain as far as it could be resolved, and its missing name."""
-        is_element = self._is_element(chain, resolved, later, recognition)
-        if self._says_nothing(chain, resolved) or (not is_element and self._is_custom(chain, resolved)):
-            return
-        assigned = chain.assigned and resolved.steps_left == 1
-        sure = self._is_sure(chain, resolved)
-        behind = chain.steps[len(chain.steps) - resolved.steps_left + 1 :]
-        called = bool(behind) and behind[0].kind == "call"
-        if called and not is_element:
-            self._tell_elsewhere(resolved, later, recognition)
-        if not is_element and not self._is_told(resolved, recognition):
-            variable = "" if _is_clear(chain, resolved) else chain.root
-            told = resolved.fit >= _LIKELY or (called and resolved.missing in ADDING)
-            missing = MissingName(resolved.missing, resolved.owner, assigned, sure, called, variable, told)
-            recognition.missing.append(missing)
-        for step, symbol in enumerate(reversed(resolved.symbols)):
-            socket = step == 0 and symbol.endswith(
-                '"]'
-            )  # one that takes no value of its own is still what was meant
-            recognition.add(symbol, (0.93 if socket else 0.45 - 0.05 * step) - later, "on the way")
-
-    def _says_nothing(self, chain: Chain, resolved: ResolvedChain) -> bool:
-        """Whether a name may be right that was not found: no class is known, or it has what a script gives it."""
-        owner = self._reader.entry(resolved.owner)
-        is_definition = chain.assigned and resolved.steps_left == 1
-        return (
-            (resolved.fit < 1.0 and is_guess(chain.root))
-            or resolved.missing.startswith("__")  # every class and module has such names
-            or self._is_indexed(chain, resolved)
-            # ``bl_idname = "object.my_operator"``
-            or (chain.quoted and chain.root != "bpy")
-            # ``bpy.types.Scene.my_property = …``
-            or (
-                is_definition
-                and chain.dotted.startswith(("bpy.types.", "types."))
-                and len(resolved.symbols) == 1
-            )
-            # A variable called ``context`` may hold a dictionary.
-            or (resolved.missing.startswith("[") and len(resolved.symbols) == 1 and chain.root != "bpy")
-            # ``obj.name.startswith``, what a function or an operator that is not said gives, what panels written in
-            # Python have of their own
-            or (
-                owner is not None
-                and (
-                    owner.name == _OF_OPERATORS
-                    or (owner.kind == "module" and resolved.missing.startswith("_"))
-                    or resolved.missing in SOMETIMES.get(owner.path, ())
-                    or (owner.group == "ui" and owner.path.rpartition(".")[2] == chain.root)
-                    or owner.kind == "function"
-                    or (owner.kind == "property" and hasattr(str, resolved.missing))
-                )
-            )
-        )
-
-    @staticmethod
-    def _is_custom(chain: Chain, resolved: ResolvedChain) -> bool:
-        """Whether a name is read of a custom property, which may hold anything: ``strip["files"].sort()``."""
-        place = len(chain.steps) - resolved.steps_left - 1
-        if resolved.missing.startswith("[") or place < 0 or chain.steps[place].kind != "key":
-            return False
-        return resolved.owner == resolved.symbols[-1]
-
-    def _is_indexed(self, chain: Chain, resolved: ResolvedChain) -> bool:
-        """Whether a variable is no instance of the class that its name tells, as it is indexed or called."""
-        root = self._reader.entry(resolved.symbols[0])
-        is_class = root is not None and root.kind == "class" and len(resolved.symbols) == 1
-        return is_class and chain.root[:1].islower() and chain.steps[0].kind in {"index", "call"}
-
-    def _is_element(
-        self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition
-    ) -> bool:
-        """Adds what a chain leads to that looks up an element in what only has the collection of them."""
-        holder = self._reader.entry(resolved.symbols[-1])
-        place = len(chain.steps) - resolved.steps_left - (not resolved.missing.startswith("["))
-        if holder is None or place < 0 or chain.steps[place].kind != "key":
-            return False
-        collection = meant_by_key(f"{TYPES}{holder.target}" if holder.target else holder.path, self._reader)
-        meant = self._resolver.onward(collection.path, chain.steps[place:]) if collection else None
-        if collection is None or meant is None or not meant.complete:
-            return False
-        key_of = f'["{chain.steps[place].text}"]'
-        recognition.notes.append(
-            f"`{key_of}` is none of the {collection.label.lower()} of a `{collection.owner}`: those are in its "
-            f"`{collection.name}`, `.{collection.name}{key_of}`."
-        )
-        recognition.add(meant.symbols[-1], 0.96 - later, "expression")
-        return True
-
-    def _tell_elsewhere(self, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
-        """Adds what does what a collection lacks a function for."""
-        if other := elsewhere(resolved.symbols[-1], resolved.missing, self._reader):
-            recognition.notes.append(other.how)
-            recognition.add(other.path, 0.96 - later, "expression")
-
-    def _is_told(self, resolved: ResolvedChain, recognition: Recognition) -> bool:
-        """Whether the message beside the code says already that the name is missing, on a kind of the class."""
-        return any(
-            missing.name == resolved.missing and self._reader.descends(missing.owner, resolved.owner)
-            for missing in recognition.missing
-        )
-
-    def _is_sure(self, chain: Chain, resolved: ResolvedChain) -> bool:
-        """Whether the owner of a missing name is certain, and has no members that only exist at run time."""
-        entry = self._reader.entry(resolved.owner)
-        if entry is None or (entry.kind == "class" and (entry.group != "data" or entry.name in _OPEN)):
-            return False
-        if entry.kind == "context" or self._old.had(resolved.owner, resolved.missing):
-            return False
-        before = chain.steps[: len(chain.steps) - resolved.steps_left]
-        if (
-            "[" in resolved.missing
-            or resolved.missing.startswith(("bl_", "_"))
-            or any(step.kind in {"key", "index"} for step in before)
-        ):
-            return False
-        return resolved.fit >= 1.0 or (resolved.fit >= USUAL and len(usual_classes(chain.root)) <= 1)
 
     def _loose_name(
         self, chain: Chain, prose: set[str], recognition: Recognition, *, is_variable: bool
