@@ -127,7 +127,7 @@ def further_arguments(function, things):
             continue
         if item.type == "INT" and not item.is_array and not item.default:
             # Beyond the plain one: an end lies behind its start.
-            yield item.identifier, min(plain_argument(item) + 1, item.hard_max)
+            yield item.identifier, int(min(NUMBER + 1, item.hard_max))
         elif item.type == "POINTER":
             cls = getattr(bpy.types, item.fixed_type.identifier, ())
             fitting = next((thing for thing in left if isinstance(thing, cls)), None)
