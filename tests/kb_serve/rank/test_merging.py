@@ -132,7 +132,7 @@ def test_a_page_that_was_found_as_a_whole_is_opened_at_the_section_that_is_asked
 
 
 def test_what_takes_the_place_of_a_deprecated_property_comes_before_it(ranker: QueryRanker) -> None:
-    ids = [row.id for row in ranker.rank("final frame duration of a strip").ranked]
+    ids = [row.id for row in ranker.rank("how long a strip is").ranked]
     old, new = "bpy.types.Strip.frame_final_duration", "bpy.types.Strip.duration"
     assert ids.index(new) + 1 == ids.index(old)
     assert ranker.rank(old).ranked[0].id == old  # whoever names it wants it
