@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
+from kb_build.records import last_name
 from kb_check.literals import times_bound
 from kb_check.made_here import bindings
 from kb_check.script import once_per_script
@@ -144,7 +145,8 @@ def _called(script: Script, kind: Type) -> Symbol | None:
 
 def callee_of(symbol: Symbol) -> Callee:
     """What calls of an operator, a function or a class can give."""
-    parameters = tuple(p for p in symbol.parameters if p.name not in {"self", "cls"})
+    own = {"self", "cls"} if last_name(symbol.owner)[:1].isupper() else set[str]()
+    parameters = tuple(p for p in symbol.parameters if p.name not in own)
     names = tuple(parameter.name for parameter in parameters)
     if symbol.kind == "operator":
         return Callee(symbol, parameters, (), names, is_open=False, is_rna=True)

@@ -42,6 +42,7 @@ if TYPE_CHECKING:
 _TYPES = "bpy.types."
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
+_CLASS = re.compile(r"(?:py)?[A-Z]")
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
@@ -183,7 +184,12 @@ def _completed(parameters: Iterable[Parameter], known: Iterable[Parameter]) -> t
 
 def read_docstring(row: Mapping[str, Any]) -> Docstring:
     """What the docstring of a line of the extract says; it is kept."""
-    return parse_docstring(row.get("docstring", ""), _BOUND.sub("(", row.get("signature", ""), count=1))
+    docstring, signature = row.get("docstring", ""), row.get("signature", "")
+    if _CLASS.match(last_name(row.get("owner", ""))) or not _BOUND.match(signature):
+        return parse_docstring(docstring, _BOUND.sub("(", signature, count=1))
+    # A function of a module that panels call with themselves: it takes what is called so as any other argument.
+    parsed = parse_docstring(docstring, signature)
+    return replace(parsed, parameters=(Parameter("self", required=True), *parsed.parameters))
 
 
 def _symbol(row: dict[str, Any]) -> Symbol:
