@@ -42,7 +42,10 @@ if TYPE_CHECKING:
 _TYPES = "bpy.types."
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
-_CLASS = re.compile(r"(?:py)?[A-Z]")
+_OF_MODULE, _SELF = (
+    "of_module",
+    "(self",
+)  # how ``inside/modules.py`` marks functions of modules written in Python
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
 _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
@@ -185,7 +188,7 @@ def _completed(parameters: Iterable[Parameter], known: Iterable[Parameter]) -> t
 def read_docstring(row: Mapping[str, Any]) -> Docstring:
     """What the docstring of a line of the extract says; it is kept."""
     docstring, signature = row.get("docstring", ""), row.get("signature", "")
-    if _CLASS.match(last_name(row.get("owner", ""))) or not _BOUND.match(signature):
+    if not row.get(_OF_MODULE) or not signature.startswith(_SELF):
         return parse_docstring(docstring, _BOUND.sub("(", signature, count=1))
     # A function of a module that panels call with themselves: it takes what is called so as any other argument.
     parsed = parse_docstring(docstring, signature)
@@ -197,6 +200,7 @@ def _symbol(row: dict[str, Any]) -> Symbol:
     parsed = read_docstring(row) if row.get("docstring") or row.get("signature") else None
     fields = symbol_fields(row)
     fields.pop("docstring", None)
+    fields.pop(_OF_MODULE, None)
     path, kind, parameters = row["path"], row["kind"], fields.get("parameters", ())
     if parsed is not None:
         call = with_sets(parsed.signature, parameters)

@@ -290,6 +290,7 @@ class Walk:
             signature=signature(value),
             parameters=parameters,
             flags=flags_of(value),
+            **({"of_module": True} if isinstance(value, types.FunctionType) else {}),
         )
 
     def data(self, path, owner, module, attribute, value):
