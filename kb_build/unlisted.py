@@ -25,3 +25,5 @@ MORE_VALUES = {
     "gpu_extras.batch.batch_for_shader(type)": ("LINE_LOOP", "TRI_FAN"),
     "bpy.types.ColorManagedDisplaySettings.display_device": ("NONE",),
 }  # fmt: skip
+
+FEWEST_VALUES = 2  # of an enumeration that can be judged: of fewer, Blender tells but a stand-in

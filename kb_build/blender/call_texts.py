@@ -67,8 +67,8 @@ def by_place(call: str) -> str:
 
 def by_place_up_to(call: str, most: int) -> str:
     """A call's text with the mark before the arguments that are given by their names alone: all but the first few."""
-    head, _, given = call.rstrip(")").partition("(")
-    arguments = [text.strip() for text in split_arguments(given) if text.strip() not in {"", "*"}]
+    head, arguments = _parts(call)
+    arguments = [text for text in arguments if text not in {"", "*"}]
     if len(arguments) <= most or "/" in arguments or any(text.startswith("*") for text in arguments):
         return call
     return f"{head}({', '.join([*arguments[:most], '*', *arguments[most:]])})"
@@ -76,8 +76,7 @@ def by_place_up_to(call: str, most: int) -> str:
 
 def by_name_too(call: str, name: str) -> str:
     """A call's text without the mark of arguments that are given by their places alone, if a name is among them."""
-    head, _, given = call.rstrip(")").partition("(")
-    arguments = [text.strip() for text in split_arguments(given)]
+    head, arguments = _parts(call)
     first = arguments[: arguments.index("/")] if "/" in arguments else []
     if name not in {text.partition("=")[0].partition(":")[0].strip() for text in first}:
         return call
@@ -86,8 +85,13 @@ def by_name_too(call: str, name: str) -> str:
 
 def all_optional(call: str) -> str:
     """A call's text in which no argument is required."""
-    head, _, given = call.rstrip(")").partition("(")
-    arguments = [text.strip() for text in split_arguments(given)]
+    head, arguments = _parts(call)
     return (
         f"{head}({', '.join(text if '=' in text or text == '*' else f'{text}=None' for text in arguments)})"
     )
+
+
+def _parts(call: str) -> tuple[str, list[str]]:
+    """A call's text as (what is called, the text of each argument)."""
+    head, _, given = call.rstrip(")").partition("(")
+    return head, [text.strip() for text in split_arguments(given)]

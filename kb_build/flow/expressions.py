@@ -38,7 +38,7 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
-from kb_build.unlisted import MORE_VALUES
+from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -68,7 +68,6 @@ _COMPARISONS: dict[type[ast.cmpop], Callable[[list[int], list[int]], bool]] = {
     ast.Lt: op.lt, ast.LtE: op.le, ast.Gt: op.gt, ast.GtE: op.ge, ast.Eq: op.eq, ast.NotEq: op.ne,
 }  # fmt: skip
 _MINOR = 2  # numbers of a version that tell what its API is
-_FEWEST_VALUES = 2  # of an enumeration that can be judged
 
 
 class Expressions(Members):
@@ -441,8 +440,7 @@ class Expressions(Members):
             return
         symbols = [self.api.symbols.symbol(path) for path in paths]
         if all(
-            symbol and symbol.type == "enum" and len(symbol.enum_items) >= _FEWEST_VALUES
-            for symbol in symbols
+            symbol and symbol.type == "enum" and len(symbol.enum_items) >= FEWEST_VALUES for symbol in symbols
         ):
             for constant in filter(self.types.__contains__, constants(node)):
                 self.resolve_value(constant, tuple(paths))
@@ -483,7 +481,7 @@ class Expressions(Members):
             are_classes = bool(items) and all(self.api.is_class(T + item.identifier) for item in items)
             # Of classes, those of add-ons are taken as well.
             is_listed = is_listed or (are_classes and not self.api.is_class(T + value))
-            if len(items) < _FEWEST_VALUES or is_listed:
+            if len(items) < FEWEST_VALUES or is_listed:
                 having.append(name)
             elif are_classes or not computed:
                 lacking.append(name)

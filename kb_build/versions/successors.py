@@ -90,10 +90,9 @@ class Successors:
         # What took a place later: the new name → its row, those first that were only renamed; and of these (how such a
         # name is written, the row).
         later = [row for row in table if version_key(row.version) > until and row.new]
-        renamed = [row for row in later if len(row.new) == 1 and not row.how]
-        others = [row for row in later if row not in renamed and self._exists(row.old)]
-        self._renamed = {new: row for row in reversed(others) for new in row.new}
-        self._renamed |= {row.new[0]: row for row in reversed(renamed) if self._exists(row.old)}
+        renamed = [row for row in later if _only_renames(row)]
+        by_weight = sorted((row for row in reversed(later) if self._exists(row.old)), key=_only_renames)
+        self._replaced_later = {new: row for row in by_weight for new in row.new}
         self._renamed_alike = [(_pattern(row.new[0]), row) for row in renamed if "*" in row.new[0]]
         self._rows = {row.old: row for row in rows if "*" not in row.old}
         # By what precedes the star, each with its place in the table.
@@ -168,7 +167,7 @@ class Successors:
 
     def _earlier(self, path: str) -> Succession | None:
         """What is here in place of a name of later versions; None where nothing is known to be."""
-        if row := self._renamed.get(path):
+        if row := self._replaced_later.get(path):
             return Succession(path, (row.old,), "", row.version, row.source)
         for pattern, row in self._renamed_alike:
             match = pattern.fullmatch(path)
@@ -212,6 +211,10 @@ class Successors:
             path = self._bases.get(path, "")
             if not path:
                 return
+
+
+def _only_renames(row: Succession) -> bool:
+    return len(row.new) == 1 and not row.how
 
 
 def _pattern(path: str) -> re.Pattern[str]:

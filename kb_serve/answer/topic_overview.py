@@ -111,16 +111,15 @@ class Topics:
             page = self._reader.page_entry(slug)
             if page is not None and " to " in page.title:
                 return slug
-        made = (
-            _MAKING.fullmatch(plain) if "bone" not in plain.lower() else None
-        )  # which has constraints of its own
-        asked = made["made"] if made else plain
+        # Bones have constraints of their own.
+        making = _MAKING.fullmatch(plain) if "bone" not in plain.lower() else None
+        made = making["made"] if making else ""
         if where := _WHERE.search(plain):
-            node = made["made"] if made else plain[: where.start()]
+            node = made or plain[: where.start()]
             chapter = next(chapter for word, chapter in _CHAPTERS.items() if word in where[0].lower())
             if node.lower().endswith(" node") and (slug := self._called(node, chapter)):
                 return slug
-        return self._called(plain) or (self._called(asked) if made else "")
+        return self._called(plain) or self._called(made)
 
     def _called(self, plain: str, chapter: str = "") -> str:
         """The page of a topic that is called so, without more words; of a chapter alone, if one is given."""

@@ -71,8 +71,8 @@ class Steps:
         for part in (self._make, self._there) if is_made else (self._there, self._make):
             yield from part()
         is_cached = POINT_CACHE in self._scene.shown
-        is_made = is_made and any(map(self._has_title, self._classes[:1]))
-        yield from runs(self._names, self._reader, is_cached=is_cached, is_made=is_made)
+        has_its_title = any(map(self._has_title, self._classes[:1]))
+        yield from runs(self._names, self._reader, is_cached=is_cached, is_made=is_made and has_its_title)
         yield from self._reached.waiting
 
     def _main_classes(self) -> list[str]:

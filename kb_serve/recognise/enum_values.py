@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.records import NOT_TAKEN
+from kb_serve.recognise.recognition import WHOLE_LABEL
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -21,10 +22,8 @@ _QUOTED = re.compile(r"'([^'\n]{2,60})'|\"([^\"\n]{2,60})\"")
 _WHOLE = re.compile(r"(['\"])([^'\"\n]{2,60})\1")
 # What an element is looked up by, as ``objects["Cube"]``, which is its name.
 _SUBSCRIPT = re.compile(r"""(?<=[\w)\]])\[(['"])([^'"\n]{2,60})\1\]""")
-_LABELS = frozenset(
-    {"label", "name", "title"}
-)  # why something was recognised that is called as the whole query
-_WHOLE_LABEL = 0.82  # … and how sure it is
+# Why something was recognised that is called as the whole query.
+_LABELS = frozenset({"label", "name", "title"})
 _CAPITALS = re.compile(r"(?<![\w.])(?=[0-9]*[A-Z])[A-Z0-9_]{3,}(?![\w.(])")
 _ERROR = re.compile(r"\b[A-Z]\w*(?:Error|Exception|Warning)\b:?")
 _MOST_VALUES = 40
@@ -62,7 +61,7 @@ def _is_of_icons(owner: str) -> bool:
 
 def _is_a_label(recognition: Recognition) -> bool:
     """Whether something is called as the whole query: "mesh to SDF grid" asks for a node, and not for ``SDF``."""
-    return any(match.why in _LABELS and match.sure >= _WHOLE_LABEL for match in recognition.matches)
+    return any(match.why in _LABELS and match.sure >= WHOLE_LABEL for match in recognition.matches)
 
 
 class EnumValues:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.unlisted import MORE_VALUES
+from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
 from kb_serve.recognise.calls import arguments, places_of, texts_in
 from kb_serve.recognise.likely_values import likely_values
 
@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from kb_build.records import EnumItem, Parameter, Symbol
     from kb_serve.recognise.chains import Chain
 
-_FEWEST = 2  # items: of fewer, Blender tells but a stand-in
 _MOST = 8  # items that are all named
 _OPEN = frozenset({"bpy.types.RenderSettings.engine"})  # to which add-ons add
 _CLASS = re.compile(r"[A-Z]\w*[a-z]")  # ``GeometryNodeTree``
@@ -47,7 +46,7 @@ def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str]]:
 
 def _wrong(owner: str, value: str, items: Sequence[EnumItem]) -> Iterator[str]:
     names = [item.identifier for item in items]
-    if len(names) < _FEWEST or value in names or value in MORE_VALUES.get(owner, ()) or owner in _OPEN:
+    if len(names) < FEWEST_VALUES or value in names or value in MORE_VALUES.get(owner, ()) or owner in _OPEN:
         return
     if all(_CLASS.match(name) for name in names):  # those of add-ons are taken as well
         return

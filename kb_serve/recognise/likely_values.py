@@ -23,9 +23,9 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
     most like it, those that it begins with, or the other way round, or else those that it is made of and more.
     """
     written = _MINUS.sub("NEGATIVE_", written)
-    if same := of_same_sense(written, items):
+    if same := _of_same_sense(written, items):
         return same
-    items = [*without_opposites(written, items)]
+    items = [*_without_opposites(written, items)]
     if similar := [item for item, _ in nearest(written, items)]:
         return similar
     said = written.upper()
@@ -37,7 +37,7 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
     return sorted((item for item in items if set(words(item)) <= own), key=len, reverse=True)[:1]
 
 
-def of_same_sense(written: str, values: Iterable[str]) -> list[str]:
+def _of_same_sense(written: str, values: Iterable[str]) -> list[str]:
     """The values that have all words of one but the first, and say as it does that the opposite is meant.
 
     ``TRACK_NEGATIVE_Z`` for ``FORWARD_NEGATIVE_Z``.
@@ -49,7 +49,7 @@ def of_same_sense(written: str, values: Iterable[str]) -> list[str]:
     return [value for value in values if wanted <= set(words(value)) and _is_opposite(value)][:_MOST]
 
 
-def without_opposites(written: str, values: Iterable[str]) -> Iterator[str]:
+def _without_opposites(written: str, values: Iterable[str]) -> Iterator[str]:
     """Values without those that mean the opposite of one."""
     is_opposite = _is_opposite(written)
     return (value for value in values if _is_opposite(value) == is_opposite)

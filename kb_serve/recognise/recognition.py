@@ -9,6 +9,8 @@ if TYPE_CHECKING:
     from kb_serve.recognise.corrections import Correction
     from kb_serve.recognise.removed_symbols import RemovedSymbol
 
+WHOLE_LABEL = 0.82  # how sure something is that is called as the whole query
+
 
 @dataclass(frozen=True, slots=True)
 class RecognisedName:

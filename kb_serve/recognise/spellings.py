@@ -11,6 +11,7 @@ from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
 from kb_serve.reader import PROPERTIES, TYPES
 from kb_serve.recognise.addresses import find_page
 from kb_serve.recognise.enum_values import is_quoted_value, is_value
+from kb_serve.recognise.recognition import WHOLE_LABEL
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -23,7 +24,6 @@ _MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
 _FEW = 3
 _NEAR = 2  # dots in the path of a module that a bare word may mean
 _LONG_LABEL = 3  # words, which no question has by chance
-_WHOLE_LABEL = 0.82  # how sure what is called so is then
 _MOST_WORDS = 9  # of a question in which labels are looked for
 _LABEL_WORDS = (3, 2)
 _LABEL_WITHIN = (
@@ -125,12 +125,12 @@ class Spellings:
                 recognition.add(identifier, _OTHERWISE if typed and strange[identifier] > 1 else 1.0, "exact")
             elif form in {FORM_NAME, FORM_LABEL} and not dotted:
                 same = self._last_part(identifier) == text
-                sure = 0.9 if same and plain and "_" in text else _WHOLE_LABEL if is_long else 0.7
+                sure = 0.9 if same and plain and "_" in text else WHOLE_LABEL if is_long else 0.7
                 if same and len(strange) == 1 and self._is_main_module(identifier):
                     sure = 1.0
                 recognition.add(identifier, sure, "name")
             else:
-                recognition.add(identifier, _WHOLE_LABEL if is_long else 0.75, "title")
+                recognition.add(identifier, WHOLE_LABEL if is_long else 0.75, "title")
 
     def _labelled(self, text: str, recognition: Recognition) -> None:
         """Adds classes and operators with exactly this label; for modifiers, Blender's default name will do."""
