@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.index.analysis import STOP_WORDS, words
 from kb_serve.rank.deprecated import replacement
 from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
@@ -28,6 +29,7 @@ _TOO_FAR = 0.25  # share of the best hit's score below which a symbol does not h
 SCRIPT_WORDS = frozenset({"bpy", "programmatically", "python", "script", "scripts"})  # of who writes a script
 _HARDLY_WORSE = 0.85  # share of the best page's score from which on a name comes before it
 _NEAR = 8  # of the best ids
+_LEAST_BESIDE = 3  # words beside code that are a question of their own
 _MARKS = ".,:;?!()'\""
 _OPERATORS = "bpy.ops"
 _LEAST_HITS = 20  # of the search, so that it also finds alternatives to a named class, and names beside pages
@@ -79,6 +81,20 @@ class Ranking:
         return [*first, *(row for row in rest if row.id in chosen)]
 
 
+def _without_code(prose: str, recognition: Recognition) -> tuple[str, str]:
+    """(a question without the code in it that was recognised, that code): words beside code say what is wanted of it.
+
+    A question that is little else stays whole.
+    """
+    code = [source for source in recognition.readings if source in prose]
+    rest = prose
+    for source in code:
+        rest = rest.replace(source, " ")
+    if sum(word not in STOP_WORDS for word in words(rest)) < _LEAST_BESIDE:
+        return prose, ""
+    return rest, " ".join(code)
+
+
 class QueryRanker:
     """Ranks the ids that a query names or describes."""
 
@@ -106,7 +122,10 @@ class QueryRanker:
             ranked = [RankedId(m.id, m.sure, m.why) for m in recognition.matches if m.sure >= SURE]
             return Ranking(ranked, recognition, named=False, notes=self._notes.on(recognition))
         prose = prose_of(query)
-        hits = self.searcher.search(prose, max(limit, _LEAST_HITS), failed=is_message(query), about=about)
+        asked, code = _without_code(prose, recognition)
+        hits = self.searcher.search(
+            asked, max(limit, _LEAST_HITS), failed=is_message(query), about=f"{about} {code}".strip()
+        )
         ranked = self._replaced(self._merged(recognition, hits))
         if not SCRIPT_WORDS.isdisjoint(word.strip(_MARKS) for word in query.lower().split()):
             ranked = self._name_first(ranked)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import re
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from kb_serve.recognise.chains import MAX_STEPS, Chain, ChainStep
 
@@ -21,33 +21,45 @@ _SEQUENCE = re.compile(r"(?:(?:enumerate|list|reversed|sorted|tuple)\()*")  # in
 _GOES_ON = re.compile(r"\s*(?:[-+*/%@|&^<>!,.\[(]|(?:and|or|in|is|not)\b|if\b[^:]*\belse\b)")
 
 
+class _Binding(NamedTuple):
+    """The expression that a variable stands for, and its place among all of a text."""
+
+    value: Chain
+    place: int
+
+
 def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
-    """The chains of a text; those that begin with a variable which was bound before begin with what it was bound to."""
-    bound: dict[str, Chain] = {}
-    elements: dict[str, Chain] = {}
+    """The chains of a text; those that begin with a variable which was bound before begin with what it was bound to,
+    and this leads on.
+    """
+    bound: dict[str, _Binding] = {}
+    elements: dict[str, _Binding] = {}
     found: list[Chain] = []
+    leading: set[int] = set()
     end = 0
-    for chain in chains:
+    for place, chain in enumerate(chains):
         start = text.find(chain.source, end)
         gap = "".join(text[end:start].split())
         end = start + len(chain.source)
         is_assigned = gap == "=" and _is_single(found, text)
         rest = _without(found, bound)
-        own = _from(chain, bound if is_assigned else rest)
+        own = _from(chain, bound if is_assigned else rest, leading)
         is_whole = own.steps and not _GOES_ON.match(text, end)
         bound = rest
         if is_whole and is_assigned:
-            bound[found[-1].root] = own
+            bound[found[-1].root] = _Binding(own, place)
         elif is_whole and (name := _iterated(found)) and _SEQUENCE.fullmatch(gap):
-            elements[name] = bound[name] = replace(own, steps=(*own.steps, _ELEMENT))
+            element = replace(own, steps=(*own.steps, _ELEMENT))
+            elements[name] = bound[name] = _Binding(element, place)
         elif not own.steps and len(found) > 1 and found[-1].root == "as" and found[-2].steps:
-            bound[own.root] = found[-2]
+            bound[own.root] = _Binding(found[-2], place - 2)
         found.append(own)
     # ``[v.co for v in …]``: used before it is bound.
-    return [_from(chain, elements) for chain in found]
+    found = [_from(chain, elements, leading) for chain in found]
+    return [replace(chain, leads_on=place in leading) for place, chain in enumerate(found)]
 
 
-def _without(found: Sequence[Chain], bound: dict[str, Chain]) -> dict[str, Chain]:
+def _without(found: Sequence[Chain], bound: dict[str, _Binding]) -> dict[str, _Binding]:
     """What is bound, without the variable that is assigned to at the end."""
     if not found or not found[-1].assigned or found[-1].steps:
         return bound
@@ -65,9 +77,10 @@ def _iterated(found: Sequence[Chain]) -> str:
     return names[-2] if len(names) > 2 and names[-1] == "in" and "for" in names[:-2] else ""
 
 
-def _from(chain: Chain, bound: Mapping[str, Chain]) -> Chain:
-    """A chain from what its variable was bound to, if it goes on from there."""
-    value = bound.get(chain.root) if chain.steps else None
-    if value is None or len(value.steps) + len(chain.steps) > MAX_STEPS:
+def _from(chain: Chain, bound: Mapping[str, _Binding], leading: set[int]) -> Chain:
+    """A chain from what its variable was bound to, if it goes on from there; that place is added to the leading."""
+    binding = bound.get(chain.root) if chain.steps else None
+    if binding is None or len(binding.value.steps) + len(chain.steps) > MAX_STEPS:
         return chain
-    return replace(chain, root=value.root, steps=(*value.steps, *chain.steps))
+    leading.add(binding.place)
+    return replace(chain, root=binding.value.root, steps=(*binding.value.steps, *chain.steps))

@@ -40,7 +40,8 @@ class Chain:
     """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed.
 
     ``assigned`` tells whether it stands left of an assignment; ``values`` are the texts that it is set to or
-    compared with; ``quoted``: whether it is a text in the code, as an operator's ``bl_idname``.
+    compared with; ``quoted``: whether it is a text in the code, as an operator's ``bl_idname``; ``leads_on``: whether
+    a later expression begins with what it gives.
     """
 
     root: str
@@ -49,6 +50,7 @@ class Chain:
     assigned: bool = False
     values: tuple[str, ...] = ()
     quoted: bool = False
+    leads_on: bool = False
 
     @property
     def dotted(self) -> str:

@@ -8,6 +8,28 @@ _CONTEXT = (
 )
 _ACTIVATED = f"{_T}LayerObjects.active", "Write `bpy.context.view_layer.objects.active = obj`."
 _FILLED = f"{_T}Mesh.from_pydata", "`mesh.from_pydata([(x, y, z), …], edges, faces)` fills a new mesh."
+_POSED = (
+    f"{_T}PoseBone.matrix",
+    "A pose moves it by the bone's `location`, `rotation_quaternion`, `scale` or `matrix`.",
+)
+# What a Bone shows and an EditBone sets, with an example of a value.
+_OF_EDIT_BONES = {
+    "head": "(0, 0, 1)",
+    "tail": "(0, 0, 2)",
+    "matrix": "matrix",
+    "length": "2",
+    "parent": 'armature.edit_bones["Parent"]',
+    "use_connect": "True",
+}
+
+
+def _of_edit_bone(name: str, value: str) -> tuple[str, str]:
+    return f"{_T}EditBone.{name}", (
+        "A bone is built in edit mode, with its object active: `bpy.ops.object.mode_set(mode='EDIT')`, then "
+        f'`armature.edit_bones["Bone"].{name} = {value}`.'
+    )
+
+
 # Property → (what changes it, how).
 CHANGED_BY = {
     f"{_T}Paint.brush": (
@@ -74,6 +96,12 @@ CHANGED_BY = {
         f"{_T}CollectionObjects.link",
         "`scene.collection.objects.link(obj)` adds one.",
     ),
+    **{f"{_T}Bone.{name}": _of_edit_bone(name, value) for name, value in _OF_EDIT_BONES.items()},
+    f"{_T}Bone.head_local": _of_edit_bone("head", "(0, 0, 1)"),
+    f"{_T}Bone.tail_local": _of_edit_bone("tail", "(0, 0, 2)"),
+    f"{_T}Bone.matrix_local": _of_edit_bone("matrix", "matrix"),
+    f"{_T}PoseBone.head": _POSED,
+    f"{_T}PoseBone.tail": _POSED,
     f"{_T}Mesh.vertices": _FILLED,
     f"{_T}Mesh.edges": _FILLED,
     f"{_T}Mesh.polygons": _FILLED,

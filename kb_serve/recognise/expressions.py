@@ -14,11 +14,12 @@ import re
 import sys
 import time
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
-from kb_serve.reader import TYPES
+from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.broken_expressions import (
     CLEAR,
     LEAST,
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _FEW = 3
+_OF = frozenset({"a", "an", "from", "in", "of", "on", "the", "to"})
 _DEPRECATED = "Deprecated"  # in the description of what is on its way out, not of what it leads to
 _FILE_ENDINGS = frozenset(
     "abc avi blend exr fbx glb gltf hdr jpg json mkv mov mp4 obj ply png py stl tif usd usdc vdb wav zip".split()  # noqa: SIM905
@@ -100,10 +102,13 @@ class Expressions:
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
         self._expressions(chains, recognition)
+        self._asked_of(chains, recognition)
+        self._module_with_member(chains, recognition)
         self._class_with_member(chains, recognition)
 
     def _expressions(self, chains: list[Chain], recognition: Recognition) -> None:
         code = [chain for chain in chains if chain.is_code and _is_api(chain)]
+        code.sort(key=lambda chain: chain.leads_on)
         prose = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
         is_script = len(code) > 1 and any(chain.steps or chain.assigned for chain in code)
         for position, chain in enumerate(code):
@@ -119,15 +124,13 @@ class Expressions:
                 self._old_name(old, later, recognition)
                 continue
             broken = likeliest_broken(chain, readings)
-            if (
-                readings
-                and self._trusted(chain, readings[0], broken)
-                and not self._misspelt(chain, readings[0])
-            ):
+            # ``wm.append`` is an operator rather than whatever else can be appended to.
+            told = readings and not (readings[0].fit < LIKELY and self._operator(chain))
+            if told and self._trusted(chain, readings[0], broken) and not self._misspelt(chain, readings[0]):
                 self._reading(chain, readings, later, recognition)
                 if broken and not later and broken.fit >= CLEAR and readings[0].fit < LIKELY:
                     self._broken.tell_if(chain, broken, recognition)
-            elif operator := self._reader.entry(f"bpy.ops.{chain.dotted}") if chain.steps else None:
+            elif operator := self._operator(chain):
                 recognition.add(operator.path, 0.97 - later, "expression")
             elif _is_file_name(chain) or self._is_argument(chain, recognition):
                 continue
@@ -136,6 +139,10 @@ class Expressions:
                     self._broken.tell(chain, broken, later, recognition)
                 is_own = not chain.steps or chain.steps[0].kind == "call"
                 self._loose_name(chain, prose, recognition, is_variable=is_own and is_script)
+
+    def _operator(self, chain: Chain) -> SymbolEntry | None:
+        """The operator that a chain names without ``bpy.ops``: ``wm.append``."""
+        return self._reader.entry(f"bpy.ops.{chain.dotted}") if chain.steps else None
 
     def _is_argument(self, chain: Chain, recognition: Recognition) -> bool:
         """Adds a name that stands behind an operator or function as an argument of it; whether it is one."""
@@ -198,6 +205,7 @@ class Expressions:
             for resolved in readings[:4]
             if resolved.complete and resolved.fit >= LIKELY * readings[0].fit
         ]
+        recognition.guesses[chain.source] = [resolved.symbols[-1] for resolved in likely]
         for rank, resolved in enumerate(likely):
             sure = 0.78 if bare and chain.steps else 0.97
             recognition.add(resolved.symbols[-1], sure - 0.04 * rank - later, "expression")
@@ -298,6 +306,51 @@ class Expressions:
         usual = 0.2 if entry.group != "ui" and entry.kind in {"property", "function", "operator"} else 0.0
         return len(about & prose) - 0.05 * len(about) + usual
 
+    def _asked_of(self, chains: list[Chain], recognition: Recognition) -> None:
+        """Adds what words ask of an expression: ``f-curves of obj.action``, ``add a driver to obj.location``."""
+        said = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
+        for place, chain in enumerate(chains):
+            certain = recognition.readings.get(chain.source, "")
+            path = certain or next(iter(recognition.guesses.get(chain.source, ())), "")
+            entry = self._reader.entry(path) if path and chain.steps else None
+            if entry is None or entry.kind not in {"property", "context"}:
+                continue
+            for name in self._functions_of_all:
+                if said.issuperset(map(stem, words(name))):
+                    recognition.add(f"{STRUCT}.{name}", 0.975, "asked of it")
+            if certain and entry.type == "pointer" and entry.target:
+                self._member_before(chains[:place], TYPES + entry.target, recognition)
+
+    def _member_before(self, before: list[Chain], cls: str, recognition: Recognition) -> None:
+        """Adds the member of a class that the words before an expression name, ``f-curves of``."""
+        roots = [chain.root for chain in before if not chain.steps]
+        while roots and roots[-1] in _OF:
+            roots.pop()
+        for name in ("".join(roots[-2:]), *roots[-1:]):
+            if name in STOP_WORDS:
+                continue
+            if member := self._resolver.member(cls, name):
+                recognition.add(member.path, 0.98, "asked of it")
+            elif gone := self._old.member(cls, name):
+                recognition.add_removed(gone)
+
+    @cached_property
+    def _functions_of_all(self) -> list[str]:
+        """The functions of everything in Blender whose names have several words: ``keyframe_insert``."""
+        return [name for name in self._reader.members(STRUCT) if "_" in name.strip("_")]
+
+    def _module_with_member(self, chains: list[Chain], recognition: Recognition) -> None:
+        """Adds a module's member that stands beside the module, ``from bpy_extras.object_utils import
+        world_to_camera_view``: it comes before the module.
+        """
+        names = [chain.root for chain in chains if chain.is_code]
+        for chain in chains:
+            module = self._reader.entry(chain.dotted) if chain.steps else None
+            if module and module.kind == "module":
+                for name in names:
+                    if self._reader.entry(f"{module.path}.{name}"):
+                        recognition.add(f"{module.path}.{name}", 0.98, "module and member")
+
     def _class_with_member(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds a class's member that stands beside the class, ``SoftBodySettings goal_spring``.
 
@@ -314,6 +367,8 @@ class Expressions:
                 member = self._resolver.member(cls.path, root)
                 if member and ("_" in root or root not in STOP_WORDS):
                     recognition.add(member.path, 0.98 if "_" in root else 0.96, "class and member")
+                elif not member and "_" in root and (gone := self._old.member(cls.path, root)):
+                    recognition.add_removed(gone)
             if len(bare) == len(chains):
                 beside = [root for root in bare if root != cls.name]
                 meant = members_by_words(cls.path, beside, self._reader)

@@ -16,12 +16,15 @@ _TRACEBACK = re.compile(r"Traceback \(most recent call last\):|File \"[^\"]*\", 
 _QUOTED = re.compile(r"(?<!\w)(['\"])[^'\"\n]{0,60}\1")
 
 # Who types a message from memory leaves its quotes out.
-HAS_NO = re.compile(r"(?<![\w.])(?P<owner>[\w.]++)['\"]? object has no attribute ['\"]?(?P<name>\w+)")
+HAS_NO = re.compile(
+    r"(?<![\w.])(?P<owner>NoneType|[\w.]++(?=['\"]? object\b))['\"]?(?: object)? has no attribute ['\"]?(?P<name>\w+)"
+)
 TYPE_HAS_NO = re.compile(r"\btype object ['\"](?P<owner>[\w.]++)['\"] has no attribute ['\"](?P<name>\w+)")
 MODULE_HAS_NO = re.compile(r"module ['\"]?(?P<owner>[\w.]++)['\"]? has no attribute ['\"]?(?P<name>\w+)")
 NOT_IN_COLLECTION = re.compile(r"\bbpy_prop_collection: attribute \"(?P<name>\w+)\" not found")
 NO_KEY = re.compile(r"\b(?P<on>bpy_\w+)\[key\]: key \"(?P<name>[^\"]+)\" not found")
 NO_INDEX = re.compile(r"\w+\[index\](?: = value)?: index (?P<index>-?\d+) out of range, size (?P<size>\d+)")
+OUTDATED = re.compile(r"\boutdated internal index table")  # of a BMesh
 SUBSCRIPTED = re.compile(r"\b([a-z]\w*)\[-?\d+\]")
 BAD_ENUM = re.compile(r"(?P<quote>['\"])(?P<name>[^'\"]*)(?P=quote) not found in \((?P<items>[^)]*)\)?")
 ENUM_VALUE = re.compile(r"\benum (?P<quote>['\"])[^'\"\n]*(?P=quote)(?= not found in )")

@@ -102,9 +102,13 @@ class OldCode:
         taken = [self._reader.still_works(path) for path in fitting]
         return taken[0] if all(taken) and taken else ""
 
+    def member(self, owner: str, name: str) -> RemovedSymbol | None:
+        """The member of that name which a class had in another version."""
+        return self._removed.of_member(owner, name)
+
     def had(self, owner: str, name: str) -> bool:
         """Whether a class, or one below it, had a member of that name in another version."""
-        return bool(self._removed.of_member(owner, name) or self._removed.paths_below(owner, name))
+        return bool(self.member(owner, name) or self._removed.paths_below(owner, name))
 
     def behind(self, before: str, resolved: ResolvedChain, steps: tuple[ChainStep, ...]) -> OldName | None:
         """The removed name at which a chain breaks off that was followed from the successor of a removed one.

@@ -5,6 +5,7 @@ enum value or URL. Descriptions are left to the search.
 from __future__ import annotations
 
 import re
+from itertools import islice
 
 from kb_build.index.analysis import terms
 from kb_serve.reader import TYPES, BaseReader
@@ -131,6 +132,12 @@ class Recogniser:
                 self._read_as(chain, recognition) or self._successor(chain, recognition)
             )
             if symbol is None:
+                # A value that what it may be read as once took tells that it is meant.
+                for guess in filter(
+                    None, map(self._reader.symbol, recognition.guesses.get(chain.source, ()))
+                ):
+                    for removed in islice(self._old.in_values(chain, guess), 1):
+                        recognition.add_removed(removed)
                 continue
             recognition.notes += filter(
                 None, (self._enum_values.condition(symbol.path, value) for value in chain.values)
@@ -142,7 +149,7 @@ class Recogniser:
             notes = list(wrong_arguments(chain, symbol, gone))
             recognition.notes += (*notes, *wrong_values(chain, symbol, gone))
             if any(note.startswith(NO_OVERRIDE) for note in notes):
-                recognition.add(OVERRIDE, 0.85, "error message")
+                recognition.add(OVERRIDE, 0.98, "error message")  # before the operator that does not take it
 
     @staticmethod
     def _read_as(chain: Chain, recognition: Recognition) -> str:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
 from kb_serve.reader import COLLECTION, PROPERTIES, STRUCT, TYPES, BaseReader, SymbolEntry
+from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.owners import Owners
 from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.values import SEQUENCES, VALUES
@@ -18,7 +19,7 @@ from kb_serve.recognise.variables import Variables
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_serve.recognise.chains import Chain, ChainStep
+    from kb_serve.recognise.chains import Chain
 
 _MATH = {
     "TRANSLATION": "Vector", "XYZ": "Vector", "DIRECTION": "Vector", "VELOCITY": "Vector", "ACCELERATION": "Vector",
@@ -50,6 +51,7 @@ _NUMBERED = re.compile(r"\.\d{3}$")
 _QUOTED = re.compile(r"""(["'])([\w.]+)\1""")
 _SEQUENCE = re.compile(r"(?:list|set|tuple)\[(?:bpy\.types\.)?([A-Z]\w*)(?:, \.\.\.)?\]")
 _CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
+_GET, _KEY = ChainStep("attr", "get"), re.compile(r"""\s*(["'])([^"']+)\1\s*""")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
 _MODULE_THAT_LACKS = 0.6  # … of a module that lacks what is read, by its last name
@@ -106,6 +108,18 @@ def _of_python(entry: SymbolEntry) -> re.Match[str] | None:
     """The class of what a property holds that gives a list or tuple of Python's."""
     text = entry.type if entry.kind == "property" else ""
     return _SEQUENCE.fullmatch(SEQUENCES.get(entry.path) or SEQUENCES.get(text, text))
+
+
+def _with_keys(steps: tuple[ChainStep, ...]) -> tuple[ChainStep, ...]:
+    """The same steps, in which an element that is got by its name is one by its key: ``nodes.get("Mix").inputs``."""
+    found: list[ChainStep] = []
+    for place, step in enumerate(steps):
+        key_of = _KEY.fullmatch(step.text) if step.kind == "call" and place + 1 < len(steps) else None
+        if key_of and found and found[-1] == _GET:
+            found[-1] = ChainStep("key", key_of[2])
+        else:
+            found.append(step)
+    return tuple(found)
 
 
 def _first_name(chain: Chain) -> str:
@@ -308,7 +322,7 @@ class Resolver:
         symbols = [value.symbol]
         values = [value]
         alike: tuple[str, ...] = ()
-        for number, step in enumerate(steps):
+        for number, step in enumerate(steps := _with_keys(steps)):
             branches = (after for before in values for after in self._step(before, step))
             following = list(islice(branches, _MAX_BRANCHES))
             if not following:

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
+_BMESH = "bmesh.types.BMesh"
+_SEQUENCES = ("verts", "edges", "faces")
 _ADD = ("new", "append", "add", "link")  # functions of collections
 
 
@@ -27,6 +29,20 @@ class Indices:
         for match in forms.first_matches(forms.NO_INDEX, query):
             recognition.notes.append(self._index(match["index"], int(match["size"]), query, recognition))
             recognition.add(COLLECTION, 0.81, "error message")
+        if forms.OUTDATED.search(query):
+            self._outdated(query, recognition)
+
+    def _outdated(self, query: str, recognition: Recognition) -> None:
+        """What makes elements of a BMesh available by index, of the sequence that the code indexes, else of each."""
+        members = self._reader.members(_BMESH)
+        indexed = [name for name in _SEQUENCES if f".{name}[" in query]
+        for rank, name in enumerate(indexed or _SEQUENCES):
+            if entry := self._reader.member_of(members[name].type, "ensure_lookup_table"):
+                recognition.add(entry.path, 0.98 - 0.01 * rank, "error message")
+        written = (indexed or _SEQUENCES)[0]
+        recognition.notes.append(
+            f"Elements were added or removed since: `bm.{written}.ensure_lookup_table()`, then `bm.{written}[index]`."
+        )
 
     def _index(self, index: str, size: int, query: str, recognition: Recognition) -> str:
         """How many elements a collection has that lacks one, and, where the query names it, what adds one."""

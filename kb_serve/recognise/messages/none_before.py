@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
 _FEW = 3
+_IS_READ = 0.98  # how sure what may be None is that the code reads the name of: before what it then lacks
 _OFTEN = 6.0  # the weight from which on scripts use a pointer often
 _MANY = 8  # where more properties may be None, none is likely enough to be named
 _IS_NONE = "The object before `.{name}`{of} is None: it does not exist (yet), or was not found."
@@ -74,7 +75,8 @@ class NoneBefore:
             return
         self._tell(name, owners, holders, recognition)
         for rank, entry in enumerate(self._reader.heaviest(likely)[:_FEW]):
-            recognition.add(entry.path, 0.86 - 0.01 * rank, "may be None")
+            is_read = f"{entry.name}.{name}" in query  # in the code beside the message
+            recognition.add(entry.path, _IS_READ if is_read else 0.86 - 0.01 * rank, "may be None")
             if not gone:
                 recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")
             if (few or entry in told) and (calls := self._fillers(entry)):

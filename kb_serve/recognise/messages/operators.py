@@ -51,7 +51,7 @@ class Operators:
             recognition.notes.append(_READS_ONLY)
         if forms.POSITIONAL.search(query):
             recognition.notes.append(NO_OVERRIDE)
-            recognition.add(OVERRIDE, 0.9, "error message")
+            recognition.add(OVERRIDE, 0.98, "error message")
             add_guide(ON_OPERATORS, self._reader, recognition)
         for match in forms.first_matches(forms.NOT_AN_OPERATOR, query):
             names = self._reader.members("bpy.ops").keys() | self._reader.members("bmesh.ops").keys()

@@ -97,6 +97,32 @@ _TRIED = {
         "new.name in scene.objects",
     ),
     **{
+        f"Bone.{name}": (
+            f"bone.{name} = None",
+            f"edit(); armature.edit_bones['Bone'].{name.removesuffix('_local')} = {value}; end()",
+            test,
+        )
+        for name, value, test in (
+            ("head", "(0, 0, -1)", "near(bone.head, (0, 0, -1))"),
+            ("tail", "(0, 0, 2)", "near(bone.tail, (0, 0, 2))"),
+            ("head_local", "(0, 0, -1)", "near(bone.head_local, (0, 0, -1))"),
+            ("tail_local", "(0, 0, 2)", "near(bone.tail_local, (0, 0, 2))"),
+            ("matrix", "turned", "bone.vector.y < -0.9"),
+            ("matrix_local", "turned", "bone.vector.y < -0.9"),
+            ("length", "3", "abs(bone.length - 3) < 1e-4"),
+            ("parent", "armature.edit_bones['Parent']", "bone.parent is not None"),
+            ("use_connect", "True", "bone.use_connect"),
+        )
+    },
+    **{
+        f"PoseBone.{name}": (
+            f"posed.{name} = (1, 0, 0)",
+            "posed.location = (1, 0, 0); bpy.context.view_layer.update()",
+            f"posed.{name}.x > 0.9",
+        )
+        for name in ("head", "tail")
+    },
+    **{
         f"Mesh.{name}": (
             f"mesh.{name} = []",
             "empty.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])",
@@ -108,6 +134,20 @@ _TRIED = {
 _RUN = """
 import json, sys
 import bpy
+from mathutils import Matrix, Vector
+
+def near(vector, other):
+    return (vector - Vector(other)).length < 1e-4
+
+def edit():
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+
+def end():
+    global bone
+    bpy.ops.object.mode_set(mode="OBJECT")
+    bone = armature.bones["Bone"]
+    bpy.context.view_layer.objects.active = ob
 
 def paint():
     if ob.mode != "TEXTURE_PAINT":
@@ -128,6 +168,17 @@ for name, (refused, change, test) in json.load(open(sys.argv[-1])).items():
     text.data.body = "A"
     scene.collection.objects.link(text)
     text.select_set(True)
+    armature = bpy.data.armatures.new("Armature")
+    rig = bpy.data.objects.new("Rig", armature)
+    scene.collection.objects.link(rig)
+    turned = Matrix.Rotation(3.14159265, 4, "X")
+    edit()
+    for one in ("Bone", "Parent"):
+        armature.edit_bones.new(one).tail = (0, 1, 0)
+    if name.endswith("use_connect"):
+        armature.edit_bones["Bone"].parent = armature.edit_bones["Parent"]
+    end()
+    bone, posed = armature.bones["Bone"], rig.pose.bones["Bone"]
     image = bpy.data.images.new("i", 8, 8)
     layer = bpy.data.grease_pencils.new("g").layers.new("l")
     layer.frames.new(1)

@@ -1,0 +1,111 @@
+"""Of code and the words around it, what is asked comes first: not what leads there."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+
+T = "bpy.types."
+
+
+@pytest.mark.parametrize(
+    ("query", "first"),
+    [
+        # A member that is named beside its module.
+        (
+            "from bpy_extras.mesh_utils import mesh_linked_triangles",
+            "bpy_extras.mesh_utils.mesh_linked_triangles",
+        ),
+        ("what does recalc_face_normals of bmesh.ops take", "bmesh.ops.recalc_face_normals"),
+        ("the save_post list of bpy.app.handlers", "bpy.app.handlers.save_post"),
+        # What a variable was bound to leads on to what is done with it.
+        ("spl = curve.splines[0]; spl.use_cyclic_u = True", f"{T}Spline.use_cyclic_u"),
+        ("for kp in fcurve.keyframe_points: kp.handle_left_type", f"{T}Keyframe.handle_left_type"),
+        # What is got by its name is what the name tells.
+        ('nodes.get("Mix Shader").inputs', f"{T}Node.inputs"),
+        (
+            'n = tree.nodes.get("Noise Texture"); n.inputs["Detail"].default_value = 3',
+            f'{T}ShaderNodeTexNoise.inputs["Detail"]',
+        ),
+        ('obj.modifiers.get("Wave").height', f"{T}WaveModifier.height"),
+        # What the words ask of an expression.
+        ("insert a keyframe on cam.data.lens", f"{T}bpy_struct.keyframe_insert"),
+        ("rotation_euler of bpy.context.object", f"{T}Object.rotation_euler"),
+        ("copy of obj.active_material", f"{T}ID.copy"),
+        ("name of bpy.context.scene.camera", f"{T}ID.name"),
+        # An operator without ``bpy.ops``, whatever else has a function of that name.
+        ("wm.link of one collection", "bpy.ops.wm.link"),
+        ("text.save()", "bpy.ops.text.save"),
+    ],
+)
+def test_what_is_asked_comes_first(kb: KnowledgeBase, query: str, first: str) -> None:
+    assert kb.query(query).hits[0].id == first
+
+
+@pytest.mark.parametrize(
+    ("query", "removed", "first"),
+    [
+        ("SceneEEVEE use_ssr is missing", "SceneEEVEE.use_ssr", f"{T}SceneEEVEE.use_raytracing"),
+        ("groups of bpy.context.active_action", "Action.groups", f"{T}ActionChannelbag.groups"),
+        ('modifiers.new("s", "SMOKE")', "ObjectModifiers.new(type='SMOKE')", f"{T}ObjectModifiers.new"),
+    ],
+)
+def test_removed_names_are_told_beside_what_had_them(
+    kb: KnowledgeBase, query: str, removed: str, first: str
+) -> None:
+    answer = kb.query(query)
+    assert f"`bpy.types.{removed}` does not exist in Blender 5.1" in answer.text
+    assert answer.hits[0].id == first
+
+
+@pytest.mark.parametrize(
+    ("message", "first", "note"),
+    [
+        (
+            "    if ob.animation_data.action is None:\nAttributeError: 'NoneType' object has no attribute 'action'",
+            f"{T}Object.animation_data",
+            "is None before",
+        ),
+        (
+            "ob.rigid_body.friction: NoneType has no attribute friction",
+            f"{T}Object.rigid_body",
+            "is None before",
+        ),
+        (
+            "    e = bm.edges[i]\nIndexError: BMElemSeq[index]: outdated internal index table, run "
+            "ensure_lookup_table() first",
+            "bmesh.types.BMEdgeSeq.ensure_lookup_table",
+            "`bm.edges.ensure_lookup_table()`, then `bm.edges[index]`",
+        ),
+        (
+            "BMElemSeq[index]: outdated internal index table, run ensure_lookup_table() first",
+            "bmesh.types.BMVertSeq.ensure_lookup_table",
+            "`bm.verts.ensure_lookup_table()`",
+        ),
+        (
+            "why does bpy.ops.object.duplicate(override, linked=True) fail",
+            f"{T}Context.temp_override",
+            "temp_override",
+        ),
+        (
+            "ValueError: 1-2 args execution context is supported\nbpy.ops.mesh.dissolve_edges(ctx)",
+            f"{T}Context.temp_override",
+            "temp_override",
+        ),
+    ],
+)
+def test_what_a_message_is_about_comes_before_what_it_stopped_at(
+    kb: KnowledgeBase, message: str, first: str, note: str
+) -> None:
+    answer = kb.query(message)
+    assert answer.hits[0].id == first
+    assert any(note in one for one in answer.notes)
+
+
+def test_words_beside_code_are_searched_for_by_themselves(kb: KnowledgeBase) -> None:
+    answer = kb.query('write an fbx file, with obj.data.shape_keys.key_blocks["A"].value in it')
+    assert "bpy.ops.export_scene.fbx" in [hit.id for hit in answer.hits]
