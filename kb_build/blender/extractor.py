@@ -38,8 +38,8 @@ _MAKING = re.compile(rb'\{"record":"making","maker":"(\w+)"\}')
 def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: Progress = silent) -> Path:
     """Returns the file in ``home`` that describes this Blender's API (see extract_reader.read_extract).
 
-    Starts Blender if there is no such file yet, or if ``again``. Raises ExtractError,
-    naming the log with Blender's output.
+    Starts Blender if there is no such file yet, if the Blender that it was made with has moved since, or if ``again``.
+    Raises ExtractError, naming the log with Blender's output.
     """
     digests = Digests(cache_folder(home) / "digests.json")
     identity = runtime_digest(runtime, digests)
@@ -47,7 +47,7 @@ def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: 
     folder = extracts_folder(home)
     name = f"blender-{runtime.version}-{identity[:12]}-{extractor_digest()[:12]}.jsonl"
     target = folder / name
-    if target.is_file() and not again:
+    if target.is_file() and not again and not _has_moved(target):
         return target
     progress(f"Asking Blender {runtime.version} for its API", 0, None)
     try:
@@ -61,6 +61,16 @@ def extract_api(runtime: Runtime, *, home: Path, again: bool = False, progress: 
         ) from error
     _remove_older(target, minor_of(runtime.version))
     return target
+
+
+def _has_moved(extract: Path) -> bool:
+    """Whether the scripts of the Blender that an extract was made with, which a build reads, are no longer there."""
+    with extract.open("rb") as file:
+        try:
+            scripts = json.loads(file.readline()).get("scripts", "")
+        except ValueError:
+            return True
+    return bool(scripts) and not Path(scripts).is_dir()
 
 
 def former_nodes(history: ApiHistory) -> dict[str, dict[str, list[str]]]:

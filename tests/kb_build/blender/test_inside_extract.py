@@ -781,6 +781,19 @@ def test_extracting_for_another_user_gives_the_same_bytes(
     assert not [line for line in ours if " at 0x" in line]
 
 
+def test_a_blender_that_has_moved_is_asked_again(base: Path, tmp_path: Path) -> None:
+    runtime = find_runtime(None, home=tmp_path)
+    first = next((base.parent.parent / "extracts").glob("*.jsonl"))
+    kept = tmp_path / "extracts" / first.name
+    kept.parent.mkdir()
+    moved = first.read_text(encoding="utf-8").replace('"scripts":"', '"scripts":"/moved', 1)
+    kept.write_text(moved, encoding="utf-8")
+    assert extract_api(runtime, home=tmp_path) == kept
+    assert kept.read_bytes() == first.read_bytes()
+    before = kept.stat().st_mtime_ns
+    assert extract_api(runtime, home=tmp_path).stat().st_mtime_ns == before
+
+
 def test_a_thing_is_as_it_was_after_edit_mode_was_tried(tmp_path: Path) -> None:
     lines = [
         "import bpy",
