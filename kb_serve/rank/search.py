@@ -46,6 +46,8 @@ _DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
 _WORDS_OF_A_NAME = 2  # of an operator's name that a query hardly says by chance
 _NEAREST = 100  # units by their texts, among which such an operator is looked for
+_ADDING = 1.5  # the power in which phrases of one document add up: with more of it, the nearest counts most
+_OTHERS = 0.4  # share of what these add to the nearest phrase that counts
 _MEMBERS = 3  # of a class that are told with it
 _NEAR = 0.35  # share of the best member's score below which another one is not told
 _INDEX = DOCUMENT_KINDS.index("index")
@@ -231,13 +233,20 @@ class Searcher:
         return known
 
     def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
-        """How nearly the query is, word by word, what units or their topics are asked for, 0…1."""
+        """How nearly the query is, word by word, what units or their topics are asked for, from 0: nothing.
+
+        The nearest phrase counts, and in part the others of the same: a question often mixes the words of a few.
+        """
         units, documents, _ = self.index.ends
         phrases = np.flatnonzero(found.coverage[documents:] > 0)
         shares, coverage = found.scores[documents:][phrases], found.coverage[documents:][phrases]
-        best = np.zeros(documents + 1, np.float32)  # the last: of the units that have no topic
-        np.maximum.at(best, self.index.asked[phrases], np.sqrt(np.minimum(shares, 1) * coverage))
-        return np.maximum(best[numbers], best[np.where(topic >= 0, units + topic, documents)])
+        near, asked = np.sqrt(np.minimum(shares, 1) * coverage), self.index.asked[phrases]
+        nearest = np.zeros(documents + 1, np.float32)  # the last: of the units that have no topic
+        np.maximum.at(nearest, asked, near)
+        sums = np.bincount(asked, near**_ADDING, documents + 1)
+        places = np.stack((numbers, np.where(topic >= 0, units + topic, documents)))
+        best = nearest[places]
+        return _float32((best + _OTHERS * (sums[places] ** (1 / _ADDING) - best)).max(axis=0))
 
     def _varied(self, order: Iterable[int], ranked: _Ranked, limit: int) -> list[int]:
         """Of the places of ranked units each ref's first, and the first member of a name before other members of that

@@ -46,11 +46,10 @@ _FEEDBACK_POWER = 3  # the weaker half of the feedback units hardly votes
 class Evidence:
     """What is known of the units that speak of a query, as arrays in one order.
 
-    ``texts``: BM25F of the unit and of the topic around it. ``asked``: how nearly the query is a phrase that the unit
-    or its topic is asked for by, 0…1. ``counts``, ``areas``, ``chapters`` and ``kinds`` are as in the index;
-    ``symbols`` and ``operators`` are 1 for those; ``called``: which share of the query, by rarity, an operator's name
-    is that the query says whole; None if it says none. ``words`` are the query's; it is an error's message if
-    ``failed``.
+    ``texts``: BM25F of the unit and of the topic around it. ``asked``: how nearly the query is what the unit or its
+    topic is asked for by, from 0. ``counts``, ``areas``, ``chapters`` and ``kinds`` are as in the index; ``symbols``
+    and ``operators`` are 1 for those; ``called``: which share of the query, by rarity, an operator's name is that the
+    query says whole; None if it says none. ``words`` are the query's; it is an error's message if ``failed``.
     """
 
     words: frozenset[str]
@@ -76,7 +75,7 @@ def text(evidence: Evidence) -> Scores:
 
 
 def asked(evidence: Evidence) -> Scores:
-    """How nearly the query is one of the phrases that the unit is asked for by."""
+    """How nearly the query is what the unit is asked for by."""
     return evidence.asked
 
 

@@ -5,7 +5,7 @@ Chosen by hand, near what ``python -m measurements.fit_weights`` finds; ``make b
 
 WEIGHTS: dict[str, float] = {
     "text": 1.0,
-    "asked": 0.85,
+    "asked": 0.6,
     "counts": 0.1,
     "code": 0.3,
     "operator": 0.1,

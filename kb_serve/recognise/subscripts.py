@@ -11,6 +11,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 NODES_MODIFIER = f"{TYPES}NodesModifier"
+NEW_INPUT = f"{TYPES}NodeTreeInterface.new_socket"
 # The classes whose instances, and whose subclasses' instances, take custom properties.
 _TAKING = frozenset(
     {
@@ -47,7 +48,9 @@ _MENU = f"{TYPES}NodeTreeInterfaceSocketMenu"
 _SAID = frozenset(map(stem, ("geometry", "nodes")))
 _INPUT = frozenset(map(stem, ("input", "value", "property", "socket", "slider", "attribute", "setting")))
 _OUTSIDE = frozenset(map(stem, ("parameter", "exposed")))
+_PARTS = frozenset(map(stem, ("input", "socket", "slider", "parameter")))
 _MODIFIER = stem("modifier")
+_NEW = frozenset(map(stem, ("add", "new", "create")))
 _MAKING = frozenset(map(stem, ("add", "new", "create", "remove", "delete", "interface", "field")))
 
 
@@ -56,6 +59,12 @@ def asks_for_inputs(query: str) -> bool:
     stems = set(map(stem, words(query)))
     said = _OUTSIDE | _INPUT if _MODIFIER in stems else _OUTSIDE
     return stems >= _SAID and not stems.isdisjoint(said) and stems.isdisjoint(_MAKING)
+
+
+def asks_for_new_inputs(query: str) -> bool:
+    """Whether a query in plain words asks to make an input of a geometry-nodes modifier, which is one of its group."""
+    stems = set(map(stem, words(query)))
+    return stems >= _SAID | {_MODIFIER} and not stems.isdisjoint(_PARTS) and not stems.isdisjoint(_NEW)
 
 
 class CustomProperties:

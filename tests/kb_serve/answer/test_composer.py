@@ -239,6 +239,6 @@ def test_each_part_of_a_question_is_answered_in_brief_and_no_name_twice(kb: Know
 
 
 def test_an_operator_of_which_blender_says_nothing_is_listed_with_its_call(kb: KnowledgeBase) -> None:
-    lines = kb.query("file path of the rendered picture python").text.splitlines()
+    lines = kb.query("which camera is rendered python").text.splitlines()
     (line,) = (line for line in lines if line.startswith("- `bpy.ops.render.render`"))
     assert line.startswith("- `bpy.ops.render.render` `render(animation=False, write_still=False, ")

@@ -51,6 +51,16 @@ def test_inputs_are_not_told_of_where_others_are_asked_for(kb: KnowledgeBase, qu
 
 
 @pytest.mark.parametrize(
+    "query",
+    ["add an input to a geometry nodes modifier", "create a new slider on my geometry nodes modifier"],
+)
+def test_new_inputs_of_a_geometry_nodes_modifier_are_those_of_its_group(
+    kb: KnowledgeBase, query: str
+) -> None:
+    assert kb.query(query).hits[0].id == "bpy.types.NodeTreeInterface.new_socket"
+
+
+@pytest.mark.parametrize(
     ("query", "cls"),
     [
         ('scene["my_prop"] = 3', "Scene"),
