@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from kb_serve.rank.scoring import Scored
     from kb_serve.reader import BaseReader
 
-COVERAGE = 1.0  # exponent of the share of the query that a document speaks of
+COVERAGE = True  # whether a document counts by the share of the query that it speaks of
 TOPIC_WEIGHT = 0.4
 ALONE = 0.5  # what stands in for the topic of a unit that has none
 UNKNOWN_IDF = 6.0
@@ -46,8 +46,7 @@ _DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
 _WORDS_OF_A_NAME = 2  # of an operator's name that a query hardly says by chance
 _NEAREST = 100  # units by their texts, among which such an operator is looked for
-_ADDING = 1.5  # the power in which phrases of one document add up: with more of it, the nearest counts most
-_OTHERS = 0.4  # share of what these add to the nearest phrase that counts
+_OTHERS = 0.4  # share of what further phrases add to the nearest that counts
 _MEMBERS = 3  # of a class that are told with it
 _NEAR = 0.35  # share of the best member's score below which another one is not told
 _INDEX = DOCUMENT_KINDS.index("index")
@@ -235,7 +234,8 @@ class Searcher:
     def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
         """How nearly the query is, word by word, what units or their topics are asked for, from 0: nothing.
 
-        The nearest phrase counts, and in part the others of the same: a question often mixes the words of a few.
+        The nearest phrase counts, and in part what all of the same add up to, in the power of 1.5: a question often
+        mixes the words of a few.
         """
         units, documents, _ = self.index.ends
         phrases = np.flatnonzero(found.coverage[documents:] > 0)
@@ -243,10 +243,10 @@ class Searcher:
         near, asked = np.sqrt(np.minimum(shares, 1) * coverage), self.index.asked[phrases]
         nearest = np.zeros(documents + 1, np.float32)  # the last: of the units that have no topic
         np.maximum.at(nearest, asked, near)
-        sums = np.bincount(asked, near**_ADDING, documents + 1)
+        sums = np.bincount(asked, near * np.sqrt(near), documents + 1)
         places = np.stack((numbers, np.where(topic >= 0, units + topic, documents)))
         best = nearest[places]
-        return _float32((best + _OTHERS * (sums[places] ** (1 / _ADDING) - best)).max(axis=0))
+        return _float32((best + _OTHERS * (np.cbrt(np.square(sums[places])) - best)).max(axis=0))
 
     def _varied(self, order: Iterable[int], ranked: _Ranked, limit: int) -> list[int]:
         """Of the places of ranked units each ref's first, and the first member of a name before other members of that
@@ -289,7 +289,8 @@ class Searcher:
 
 def _told(found: Scored, numbers: NDArray[np.intp] | slice) -> Scores:
     """How much documents speak of the query."""
-    return _float32(found.scores[numbers] * found.coverage[numbers] ** COVERAGE)
+    scores = found.scores[numbers]
+    return _float32(scores * found.coverage[numbers]) if COVERAGE else scores
 
 
 def _float32(values: NDArray[Any]) -> Scores:
@@ -326,5 +327,5 @@ def _with_text_first(places: Iterable[int], kinds: Sequence[int]) -> Iterator[in
 def _top(scores: Scores, count: int) -> NDArray[np.intp]:
     """The places of the ``count`` highest scores, highest first, equal ones in their order."""
     count = min(count, len(scores))
-    best = np.sort(np.argpartition(-scores, count - 1)[:count])
+    best = np.sort(np.argpartition(scores, len(scores) - count)[-count:])
     return best[np.argsort(-scores[best], kind="stable")]

@@ -54,9 +54,11 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
         elif not own.steps and len(found) > 1 and found[-1].root == "as" and found[-2].steps:
             bound[own.root] = _Binding(found[-2], place - 2)
         found.append(own)
-    # ``[v.co for v in …]``: used before it is bound.
-    found = [_from(chain, elements, leading) for chain in found]
-    return [replace(chain, leads_on=place in leading) for place, chain in enumerate(found)]
+    if elements:  # ``[v.co for v in …]``: used before it is bound
+        found = [_from(chain, elements, leading) for chain in found]
+    for place in leading:
+        found[place] = replace(found[place], leads_on=True)
+    return found
 
 
 def _without(found: Sequence[Chain], bound: dict[str, _Binding]) -> dict[str, _Binding]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING
 
@@ -108,6 +109,7 @@ def first_matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str
     return islice(pattern.finditer(query), _MOST_MATCHES)
 
 
+@lru_cache(maxsize=8)  # asked of one query several times
 def is_message(query: str) -> bool:
     """Whether a query holds an error message."""
     return bool(_EXCEPTION.search(query) or _REPORT.search(query) or _WORDING.search(query))
