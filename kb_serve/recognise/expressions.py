@@ -28,6 +28,7 @@ from kb_serve.recognise.broken_expressions import (
     is_clear,
     likeliest_broken,
 )
+from kb_serve.recognise.enum_values import is_value
 from kb_serve.recognise.members_by_words import members_by_words
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
@@ -259,7 +260,8 @@ class Expressions:
             for form, identifier in self._reader.by_key(key(name))
             if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
         ]
-        rows = [entry for entry in rows if entry.name == name] or rows  # before the same letters
+        same = [entry for entry in rows if entry.name == name]  # before the same letters
+        rows = same or ([] if name.isupper() and is_value(name, self._reader) else rows)
         lone = not chain.attributes or len(name) >= _LONG
         lone = lone and not name.isupper() and not is_variable
         if not rows and lone and (correction := self._corrector.member(name)):

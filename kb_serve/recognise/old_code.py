@@ -80,6 +80,7 @@ class OldCode:
             or self._class(chain)
             or self._member(chain, readings)
             or self._socket(chain)
+            or self._of_last_part(chain, readings)
             or self._of_fitting_class(chain, readings)
             or self._of_any_class(chain, readings)
         )
@@ -189,6 +190,23 @@ class OldCode:
                     named = number == 0 and (node in nodes or key(chain.root) in key(node))
                     if named and (removed := self._removed.of_path(path)):
                         return OldName(removed, chain.steps[number + 2 :])
+        return None
+
+    def _of_last_part(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
+        """A removed member of what the last part of a variable's name tells: ``title_strip.align_x`` is a strip's.
+
+        None where a class of that kind has the member today.
+        """
+        _, mark, last = chain.root.rpartition("_")
+        if not (mark and chain.steps and chain.steps[0].kind == "attr"):
+            return None
+        for cls in usual_classes(last):
+            if any(
+                self._reader.descends(reading.symbols[0], cls) for reading in readings if reading.complete
+            ):
+                return None
+            if removed := self._removed.below(cls, chain.steps[0].text, chain.root):
+                return OldName(removed, chain.steps[1:])
         return None
 
     def _of_fitting_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:

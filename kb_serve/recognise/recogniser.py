@@ -193,6 +193,10 @@ class Recogniser:
             later = 0.03 * place
             for rank, target in enumerate(removed.targets[:_FEW]):
                 recognition.add(plain_path(target), 1.0 - 0.01 * rank - later, "successor")
+                _, is_argument, item = target.partition("):")
+                for cls, maker in self._reader.made_by_choice(item) if is_argument else ():
+                    if maker == plain_path(target):
+                        recognition.add(cls, 0.985 - 0.01 * rank - later, "made with the successor")
             if not removed.targets:
                 for owner in self._owners(removed):
                     recognition.add(owner, _OWNER_OF_REMOVED - later, "owner")

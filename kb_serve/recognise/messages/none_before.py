@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from collections import defaultdict
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
 from kb_build.records import FILLED_BY
 from kb_build.symbol_lines import empty_when_new, fillers
 from kb_serve.reader import TYPES
+from kb_serve.recognise.bindings import with_bindings
+from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
 
 if TYPE_CHECKING:
@@ -50,6 +53,11 @@ class NoneBefore:
         for removed in gone:
             recognition.add_removed(removed)
             owners.add(removed.path.rpartition(".")[0].removeprefix(TYPES))
+        read = {
+            (first.text, second.text)
+            for chain in with_bindings(query, find_chains(query))
+            for first, second in pairwise(chain.steps)
+        }
         around = set(terms(query))
         named_first = sorted(owners, key=lambda owner: (not around.issuperset(terms(owner)), owner))
         holders = [entry for owner in named_first[:_MANY] for entry in self._holders(owner)]
@@ -75,7 +83,7 @@ class NoneBefore:
             return
         self._tell(name, owners, holders, recognition)
         for rank, entry in enumerate(self._reader.heaviest(likely)[:_FEW]):
-            is_read = f"{entry.name}.{name}" in query  # in the code beside the message
+            is_read = (entry.name, name) in read  # in the code beside the message
             recognition.add(entry.path, _IS_READ if is_read else 0.86 - 0.01 * rank, "may be None")
             if not gone:
                 recognition.add(f"{TYPES}{entry.target}.{name}", 0.81 - 0.01 * rank, "attribute of None")

@@ -52,6 +52,8 @@ def test_what_is_asked_comes_first(kb: KnowledgeBase, query: str, first: str) ->
         ("SceneEEVEE use_ssr is missing", "SceneEEVEE.use_ssr", f"{T}SceneEEVEE.use_raytracing"),
         ("groups of bpy.context.active_action", "Action.groups", f"{T}ActionChannelbag.groups"),
         ('modifiers.new("s", "SMOKE")', "ObjectModifiers.new(type='SMOKE')", f"{T}ObjectModifiers.new"),
+        # The last part of a variable's name tells what it is.
+        ("title_strip.align_y = 'TOP'", "TextSequence.align_y", f"{T}TextStrip.anchor_y"),
     ],
 )
 def test_removed_names_are_told_beside_what_had_them(
@@ -73,6 +75,12 @@ def test_removed_names_are_told_beside_what_had_them(
         (
             "ob.rigid_body.friction: NoneType has no attribute friction",
             f"{T}Object.rigid_body",
+            "is None before",
+        ),
+        (
+            "    w = scene.rigidbody_world\n    w.enabled = True\n"
+            "AttributeError: 'NoneType' object has no attribute 'enabled'",
+            f"{T}Scene.rigidbody_world",
             "is None before",
         ),
         (
@@ -104,6 +112,17 @@ def test_what_a_message_is_about_comes_before_what_it_stopped_at(
     answer = kb.query(message)
     assert answer.hits[0].id == first
     assert any(note in one for one in answer.notes)
+
+
+def test_what_a_new_value_makes_follows_it(kb: KnowledgeBase) -> None:
+    hits = kb.query('obj.modifiers.new("s", "SMOKE")').hits
+    assert [hit.id for hit in hits[:2]] == [f"{T}ObjectModifiers.new", f"{T}FluidModifier"]
+
+
+def test_a_value_in_capitals_is_no_name_in_other_letters(kb: KnowledgeBase) -> None:
+    hits = kb.query("HIDE_HEADER DEFAULT_CLOSED of a panel").hits
+    assert hits[0].id == f"{T}Panel.bl_options"
+    assert f"{T}NodeTreeInterfacePanel.default_closed" not in [hit.id for hit in hits[:3]]
 
 
 def test_words_beside_code_are_searched_for_by_themselves(kb: KnowledgeBase) -> None:

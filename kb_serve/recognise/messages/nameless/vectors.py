@@ -10,6 +10,11 @@ _NO_FACTOR = (
 )
 VECTORS = (
     NamelessMessage(
+        ("Vector is not frozen (mutable), call freeze first",),
+        ("mathutils.Vector.freeze", "mathutils.Vector.is_frozen"),
+        "A vector that can change is no key: `d[v.copy().freeze()]`, or `d[tuple(v)]`.",
+    ),
+    NamelessMessage(
         ("Vector ", "vectors must have the same dimensions for this operation"),
         ("mathutils.Vector.to_3d", "mathutils.Vector.to_2d", "mathutils.Vector.resized"),
         "One vector has more numbers than the other: `v.to_3d()` adds what lacks, `v.to_2d()` drops what is too much.",
