@@ -181,5 +181,5 @@ class BrokenExpressions:
         """Notes what the class lacks that a variable is named after, where another one has what is read."""
         owner = self._reader.entry(broken.owner)
         if owner and owner.kind == "class" and not is_guess(chain.root):
-            missing = MissingName(broken.missing, broken.owner, sure=self._is_sure(chain, broken))
-            recognition.doubted[chain.root] = missing
+            sure = self._is_sure(chain, broken)
+            recognition.doubted = MissingName(broken.missing, broken.owner, sure=sure, variable=chain.root)
