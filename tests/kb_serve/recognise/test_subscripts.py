@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
+from told_by_blender import told_by_blender
 
 from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.subscripts import CustomProperties
@@ -110,10 +108,7 @@ def reader(base: Path) -> Iterator[BaseReader]:
 
 
 def test_classes_take_custom_properties_where_blender_does(reader: BaseReader, tmp_path: Path) -> None:
-    file = tmp_path / "takes.json"
-    run = [sys.executable, "-P", "-c", _INSTANCES, str(file)]
-    subprocess.run(run, check=True, timeout=120, capture_output=True)
-    takes: dict[str, bool] = json.loads(file.read_text())
+    takes: dict[str, bool] = told_by_blender(_INSTANCES, tmp_path)
     assert {True, False} == set(takes.values())
     custom = CustomProperties(reader)
     known = {name for name in takes if reader.entry(TYPES + name)}
