@@ -49,6 +49,7 @@ from kb_build.symbol_lines import (
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.calls_before import calls_before
+from kb_serve.answer.makers_of_instances import told_makers
 from kb_serve.answer.own_classes import asked_of_classes, definition
 from kb_serve.answer.panel_lines import panel_lines
 from kb_serve.answer.shown_uses import use_text
@@ -547,6 +548,7 @@ class MarkdownRenderer:
         if symbol.kind == "class" and (creation := self.reader.creations([symbol.path]).get(symbol.path)):
             calls = [*calls_before(self.reader, symbol.path, creation.call), creation.call]
             yield "made by " + ", then ".join(f"`{call}`" for call in calls)
+        yield from told_makers(symbol, self.reader)
         if target := self._assigned(symbol):
             yield f"assign `{target}`"
         if symbol.type == "collection" and (key := self._key_of(TYPES + symbol.target)):

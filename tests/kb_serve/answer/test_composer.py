@@ -174,6 +174,12 @@ def test_a_class_that_was_found_is_told_with_the_members_that_were(
     assert name in kb.query(query).text
 
 
+def test_a_method_that_was_found_is_told_with_what_makes_its_instance(kb: KnowledgeBase) -> None:
+    answer = kb.query("check if two meshes overlap")
+    assert answer.hits[0].id == "mathutils.bvhtree.BVHTree.overlap"
+    assert "`mathutils.bvhtree.BVHTree.FromObject(object, depsgraph)`" in answer.text
+
+
 def test_an_argument_that_is_named_comes_first(kb: KnowledgeBase) -> None:
     answer = kb.query("bpy.ops.wm.usd_export selected_objects_only")
     assert answer.text.startswith(
