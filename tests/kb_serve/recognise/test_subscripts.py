@@ -48,6 +48,13 @@ def test_inputs_are_not_told_of_where_others_are_asked_for(kb: KnowledgeBase, qu
     assert not any("Inputs of a geometry-nodes modifier" in note for note in kb.query(query).notes)
 
 
+def test_inputs_are_told_of_where_the_modifier_is_the_answer(kb: KnowledgeBase) -> None:
+    answer = kb.query("geometry nodes")  # the manual would tell more of it, but is not in this base
+    assert answer.hits[0].id == f"{TYPES}NodesModifier"
+    assert any("Inputs of a geometry-nodes modifier" in note for note in answer.notes)
+    assert "bpy.types.GeometryNodeTree" in [hit.id for hit in answer.hits]
+
+
 @pytest.mark.parametrize(
     ("query", "cls"),
     [
