@@ -10,7 +10,7 @@ from itertools import zip_longest
 from typing import TYPE_CHECKING, Literal
 
 from kb_build.records import PAGE_SOURCES
-from kb_build.symbol_lines import written
+from kb_build.symbol_lines import first_sentence, written
 from kb_serve.answer.asked_values import (
     ASKED_NOTHING,
     asked_of,
@@ -21,8 +21,9 @@ from kb_serve.answer.asked_values import (
 from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
 from kb_serve.answer.made_things import made_with
 from kb_serve.answer.next_call import next_call
+from kb_serve.answer.pages import load_manual_pages, manual_page, page_blocks, said_of
 from kb_serve.answer.practice import Practice
-from kb_serve.answer.render import MarkdownRenderer, first_sentence, said_of
+from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
 from kb_serve.rank.merging import SURE, QueryRanker, RankedId, Ranking
@@ -236,7 +237,7 @@ class AnswerComposer:
         symbols = [row.id for row in rows if row.id not in pages]
         self._reader.page_entry.load(pages)
         self._reader.entry.load(symbols)
-        self._renderer.load_manual_pages(symbols)
+        load_manual_pages(symbols, self._reader)
         return tuple(self._hit(row) for row in rows)
 
     def _hit(self, row: RankedId) -> Hit:
@@ -248,13 +249,13 @@ class AnswerComposer:
         entry = self._reader.entry(row.id)
         if entry is None:
             return Hit(row.id, "unknown", row.id, score)
-        return Hit(row.id, entry.kind, entry.label or entry.name, score, self._renderer.manual_page(row.id))
+        return Hit(row.id, entry.kind, entry.label or entry.name, score, manual_page(row.id, self._reader))
 
     # The text
 
     def _whole(self, hit: Hit, row: RankedId, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
         if self._reader.is_page(hit.id):
-            yield from self._renderer.page(hit.id, row.anchor)
+            yield from page_blocks(hit.id, self._reader, row.anchor)
         elif symbol := self._reader.symbol(hit.id):
             yield from self._renderer.symbol(symbol, asked)
 

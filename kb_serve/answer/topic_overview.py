@@ -8,8 +8,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
+from kb_build.symbol_lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock, clip, tokens
-from kb_serve.answer.render import first_sentence, own_summary, said_of
+from kb_serve.answer.pages import own_summary, said_of
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.topic_settings import TopicSettings
 from kb_serve.answer.topic_steps import Steps

@@ -9,8 +9,10 @@ from asking import classes, of_data, paths
 
 from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Section, Symbol
 from kb_build.symbol_lines import is_stand_in, usual_default, written
-from kb_serve.answer import render
-from kb_serve.answer.render import MarkdownRenderer, facts, outline, said_of, with_names
+from kb_serve.answer import pages
+from kb_serve.answer.pages import manual_page, outline, page_blocks, said_of, with_names
+from kb_serve.answer.property_facts import facts
+from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:
@@ -348,29 +350,31 @@ def test_a_label_of_the_manual_has_its_python_name_beside_it(kb: KnowledgeBase) 
     ]
 
 
-def test_names_beside_labels_do_not_count_for_what_is_shown(renderer: MarkdownRenderer) -> None:
-    block = next(block for block in renderer.page("physics/cloth/settings/index") if block.plain)
+def test_names_beside_labels_do_not_count_for_what_is_shown(reader: BaseReader) -> None:
+    block = next(block for block in page_blocks("physics/cloth/settings/index", reader) if block.plain)
     assert "`ClothSettings.quality`" in block.text
     assert block.plain == block.text.replace(" · `ClothSettings.quality`", "")
 
 
-def test_the_section_asked_for_comes_first(renderer: MarkdownRenderer, kb: KnowledgeBase) -> None:
+def test_the_section_asked_for_comes_first(reader: BaseReader, kb: KnowledgeBase) -> None:
     page = kb.page("physics/cloth/settings/collisions")
     assert page is not None
     last = page.sections[-1]
-    blocks = list(renderer.page(page.slug, last.anchor))
+    blocks = list(page_blocks(page.slug, reader, last.anchor))
     assert blocks[1].text.endswith(last.text)
-    assert sorted(block.text for block in blocks) == sorted(block.text for block in renderer.page(page.slug))
+    assert sorted(block.text for block in blocks) == sorted(
+        block.text for block in page_blocks(page.slug, reader)
+    )
 
 
-def test_an_unknown_page_renders_nothing(renderer: MarkdownRenderer) -> None:
-    assert list(renderer.page("nowhere")) == []
-    assert renderer.manual_page("bpy.types.Nothing") == ""
+def test_an_unknown_page_renders_nothing(reader: BaseReader) -> None:
+    assert list(page_blocks("nowhere", reader)) == []
+    assert manual_page("bpy.types.Nothing", reader) == ""
 
 
 def test_a_passage_of_an_engines_page_names_the_engine(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(
-        render, "ENGINES", {"physics/cloth/": "An Engine"}
+        pages, "ENGINES", {"physics/cloth/": "An Engine"}
     )  # the miniature manual has no engine's page
     with KnowledgeBase(base) as kb:
         assert "**In the manual** (An Engine › Settings)" in kb.query("ClothSettings.quality").text
