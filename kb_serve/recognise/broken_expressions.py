@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.unlisted import SOMETIMES
 from kb_serve.reader import TYPES
+from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.elements import ADDING, elsewhere, meant_by_key
 from kb_serve.recognise.recognition import MissingName
-from kb_serve.recognise.resolver import ROOTS
 from kb_serve.recognise.variables import OTHERWISE, USUAL, is_guess, usual_classes
 
 if TYPE_CHECKING:
