@@ -15,7 +15,7 @@ from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
 
 if TYPE_CHECKING:
-    from kb_serve.answer.composer import DocsAnswer
+    from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
