@@ -8,7 +8,6 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
-from kb_build.records import last_name
 from kb_check.literals import times_bound
 from kb_check.made_here import bindings
 from kb_check.script import once_per_script
@@ -42,13 +41,17 @@ class Callee:
     """
 
     symbol: Symbol
-    parameters: tuple[Parameter, ...]
     positional: tuple[str, ...]
     keyword_only: tuple[str, ...]
     is_open: bool
     is_rna: bool
     is_variadic: bool = False
     place_only: tuple[str, ...] = ()
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """What is known of each of them."""
+        return self.symbol.parameters
 
 
 @dataclass(frozen=True, slots=True)
@@ -145,11 +148,9 @@ def _called(script: Script, kind: Type) -> Symbol | None:
 
 def callee_of(symbol: Symbol) -> Callee:
     """What calls of an operator, a function or a class can give."""
-    own = {"self", "cls"} if last_name(symbol.owner)[:1].isupper() else set[str]()
-    parameters = tuple(p for p in symbol.parameters if p.name not in own)
-    names = tuple(parameter.name for parameter in parameters)
+    names = tuple(parameter.name for parameter in symbol.parameters)
     if symbol.kind == "operator":
-        return Callee(symbol, parameters, (), names, is_open=False, is_rna=True)
+        return Callee(symbol, (), names, is_open=False, is_rna=True)
     arguments = signature_arguments(symbol.signature)
     is_open = (
         arguments is None
@@ -161,12 +162,12 @@ def callee_of(symbol: Symbol) -> Callee:
     placed = (argument.arg for argument in (*arguments.posonlyargs, *arguments.args)) if arguments else names
     positional = tuple(name for name in placed if name in names)
     is_variadic = is_open and (arguments is None or arguments.kwarg is None or arguments.vararg is not None)
-    is_rna = _is_rna(symbol, parameters)
+    is_rna = _is_rna(symbol)
     place_only = tuple(argument.arg for argument in arguments.posonlyargs) if arguments else ()
-    return Callee(symbol, parameters, positional, only, is_open, is_rna, is_variadic, place_only)
+    return Callee(symbol, positional, only, is_open, is_rna, is_variadic, place_only)
 
 
-def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
+def _is_rna(symbol: Symbol) -> bool:
     """Whether a function is RNA's own: only those spell the types of their parameters so."""
     owner = symbol.owner.removeprefix("bpy.types.")
     if (
@@ -177,5 +178,5 @@ def _is_rna(symbol: Symbol, parameters: tuple[Parameter, ...]) -> bool:
     ):
         return False
     return "/" not in symbol.signature and all(
-        _RNA_TYPE.fullmatch(parameter.plain_type) for parameter in parameters
+        _RNA_TYPE.fullmatch(parameter.plain_type) for parameter in symbol.parameters
     )

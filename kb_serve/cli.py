@@ -16,7 +16,7 @@ from simworlds.errors import UserError
 from simworlds.settings import home_folder
 
 if TYPE_CHECKING:
-    from kb_serve.answer.composer import DocsAnswer
+    from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.bases import Bases
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.service import Service

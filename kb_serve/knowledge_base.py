@@ -5,7 +5,7 @@ from __future__ import annotations
 from threading import Lock
 from typing import TYPE_CHECKING, Self
 
-from kb_serve.answer.composer import LIMIT, MAX_TOKENS, AnswerComposer, DocsAnswer
+from kb_serve.answer.composer import LIMIT, MAX_TOKENS, AnswerComposer
 from kb_serve.locate import find_base
 from kb_serve.reader import BaseReader
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from kb_build.records import Page, Symbol
+    from kb_serve.answer.docs_answer import DocsAnswer
 
 
 # Look-ups and rows of a query. The labelled queries take up to 11,000, and the first one loads 20,000 names more.

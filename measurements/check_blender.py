@@ -27,6 +27,7 @@ from bench.markdown_tables import Table
 from kb_build.base_file import read_meta
 from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
+from measurements.blender_scripts import scripts_folder
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import REPO, say
 from simworlds.releases import version_key
@@ -188,8 +189,7 @@ def measure(setting: Setting) -> ReportPart:
     for base in bases:
         meta = read_meta(base)
         runtime: Mapping[str, str] = json.loads(meta["runtime"])
-        folder = Path(runtime.get("scripts", ""))
-        if not runtime.get("scripts") or not folder.is_dir():
+        if (folder := scripts_folder(base)) is None:
             skipped.append(f"Blender {meta['minor']}: its scripts are not there")
             continue
         say(f"check_blender: checking the scripts of Blender {meta['blender']}")

@@ -12,24 +12,23 @@ its class is found where the line is reported from which the script has the inst
 from __future__ import annotations
 
 import ast
-import json
 from collections import defaultdict
 from dataclasses import dataclass, field
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
-from kb_build.base_file import read_meta
 from kb_build.flow.types import Instance
 from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
 from kb_check.migrate.place import version_of
+from measurements.blender_scripts import scripts_folder
 from measurements.check_blender import packages
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterator
+    from pathlib import Path
 
     from kb_build.flow.types import Resolution
     from kb_check.checker import Read
@@ -146,9 +145,7 @@ def measure(setting: Setting) -> ReportPart:
             else f"there is no base of Blender {OLDER} beside the measured one"
         )
         return ReportPart("check_versions", skipped=(why,))
-    runtime: Mapping[str, str] = json.loads(read_meta(base)["runtime"])
-    folder = Path(runtime.get("scripts", ""))
-    if not runtime.get("scripts") or not folder.is_dir():
+    if (folder := scripts_folder(base)) is None:
         return ReportPart("check_versions", skipped=(f"the scripts of Blender {OLDER} are not there",))
     say(f"check_versions: checking the scripts of Blender {OLDER}")
     with Checker(base) as older, Checker(setting.base) as newer:

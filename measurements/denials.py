@@ -7,23 +7,15 @@ Blender's: whatever is denied of them is denied wrongly.
 from __future__ import annotations
 
 import ast
-import json
 import random
 import re
-from contextlib import closing
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
-from kb_build.base_file import read_meta
-from kb_build.flow.analysis import analyse
-from kb_build.flow.api import Api
-from kb_build.flow.symbols import BaseSymbols
-from kb_build.usage.scripts import blender_scripts, read_script
 from kb_serve.knowledge_base import KnowledgeBase
+from measurements.blender_scripts import read_all, scripts_folder, why_none
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
-from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -54,18 +46,13 @@ _NOTE = (
 
 def measure(setting: Setting) -> ReportPart:
     """Reads Blender's own scripts in this process, and asks for the statements drawn; ``quick`` asks fewer."""
-    folder = json.loads(read_meta(setting.base)["runtime"]).get("scripts", "")
-    if not folder or not Path(folder).is_dir():
-        return ReportPart("denials", skipped=(f"Blender's scripts are not there ({folder or 'unknown'})",))
+    if (folder := scripts_folder(setting.base)) is None:
+        return ReportPart("denials", skipped=(why_none(setting.base),))
     say("denials: reading Blender's own scripts")
     found: dict[int, set[str]] = {length: set() for length in _ASKED}
-    version = version_key(read_meta(setting.base)["blender"])
-    with closing(BaseSymbols(setting.base)) as symbols:
-        api = Api(symbols)
-        for script in blender_scripts(Path(folder)):
-            analysis = analyse(read_script(script.path), api, version)
-            for length, texts in found.items():
-                texts.update(_runs(analysis, length))
+    for analysis in read_all(setting.base, folder):
+        for length, texts in found.items():
+            texts.update(_runs(analysis, length))
     say("denials: asking")
     rows: list[tuple[str, str, str, str]] = []
     figures: list[TargetFigure] = []

@@ -8,26 +8,19 @@ the line that gave that variable its value.
 from __future__ import annotations
 
 import ast
-import json
 import random
-from contextlib import closing
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
-from kb_build.base_file import read_meta
-from kb_build.flow.analysis import analyse
-from kb_build.flow.api import Api
-from kb_build.flow.symbols import BaseSymbols
-from kb_build.usage.scripts import blender_scripts, read_script
 from kb_serve.knowledge_base import KnowledgeBase
+from measurements.blender_scripts import read_all, scripts_folder, why_none
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
-from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
+    from pathlib import Path
 
     from kb_build.flow.analysis import Analysis
     from measurements.setting import Setting
@@ -62,13 +55,10 @@ class Expression:
 
 def measure(setting: Setting) -> ReportPart:
     """Reads Blender's own scripts in this process, and asks for the expressions drawn; ``quick`` asks fewer."""
-    folder = json.loads(read_meta(setting.base)["runtime"]).get("scripts", "")
-    if not folder or not Path(folder).is_dir():
-        return ReportPart(
-            "expressions", skipped=(f"Blender's scripts are not there ({folder or 'unknown'})",)
-        )
+    if (folder := scripts_folder(setting.base)) is None:
+        return ReportPart("expressions", skipped=(why_none(setting.base),))
     say("expressions: reading Blender's own scripts")
-    found = sorted(_expressions(setting.base, Path(folder)), key=lambda each: each.source)
+    found = sorted(_expressions(setting.base, folder), key=lambda each: each.source)
     drawn = random.Random(_SEED).sample(found, min(len(found), _ASKED_QUICKLY if setting.quick else _ASKED))
     say("expressions: asking")
     asked = {
@@ -97,15 +87,10 @@ def measure(setting: Setting) -> ReportPart:
 def _expressions(base: Path, folder: Path) -> set[Expression]:
     symbols_of: dict[tuple[str, str], set[str]] = {}
     bound: dict[tuple[str, str], str] = {}
-    version = version_key(read_meta(base)["blender"])
-    with closing(BaseSymbols(base)) as symbols:
-        api = Api(symbols)
-        for script in blender_scripts(folder):
-            for source, nameless, binding, paths in _of_variables(
-                analyse(read_script(script.path), api, version)
-            ):
-                symbols_of.setdefault((source, nameless), set()).update(paths)
-                bound[source, nameless] = bound.get((source, nameless)) or binding
+    for analysis in read_all(base, folder):
+        for source, nameless, binding, paths in _of_variables(analysis):
+            symbols_of.setdefault((source, nameless), set()).update(paths)
+            bound[source, nameless] = bound.get((source, nameless)) or binding
     return {
         Expression(*texts, f"{bound[texts]}\n    {texts[1]}" if bound[texts] else "", frozenset(paths))
         for texts, paths in symbols_of.items()

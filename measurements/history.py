@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
 
-    from kb_serve.answer.composer import DocsAnswer
+    from kb_serve.answer.docs_answer import DocsAnswer
     from measurements.setting import Setting
 
 LIST = QUERIES / "removed.jsonl"

@@ -12,7 +12,6 @@ finds no error where a run comes by.
 from __future__ import annotations
 
 import ast
-import json
 import shutil
 import tempfile
 from collections import Counter
@@ -30,12 +29,13 @@ from kb_check.migrate.plan import Migrator
 from kb_check.migrate.trial import run_in, runtime_at_hand
 from kb_check.package import paths_in_package
 from kb_check.run_reach import RunReach
+from measurements.blender_scripts import scripts_folder
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_check.checker import Read
     from kb_check.migrate.plan import FileMigration
@@ -179,11 +179,9 @@ def _errors(pool: ThreadPoolExecutor, runtime: Runtime, paths: Iterable[Path]) -
 def source_of(bases: Sequence[Path]) -> tuple[str, Path] | None:
     """The oldest Blender, among those of some bases, that brings add-ons of many authors: version, scripts."""
     for base in sorted(bases, key=lambda path: version_key(path.stem)):
-        meta = read_meta(base)
-        runtime: Mapping[str, str] = json.loads(meta["runtime"])
-        scripts = Path(runtime.get("scripts", ""))
-        if runtime.get("scripts") and (scripts / _ADDONS).is_dir():
-            return meta["minor"], scripts
+        scripts = scripts_folder(base)
+        if scripts is not None and (scripts / _ADDONS).is_dir():
+            return read_meta(base)["minor"], scripts
     return None
 
 

@@ -13,27 +13,26 @@ planted exists where it stands, nor in a class below.
 from __future__ import annotations
 
 import ast
-import json
 import random
 import time
 from collections import Counter, defaultdict
 from contextlib import closing
 from dataclasses import dataclass
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
-from kb_build.base_file import read_meta
 from kb_build.flow.symbols import BaseSymbols
 from kb_build.usage.scripts import blender_scripts, read_script
 from kb_check.checker import Checker
 from kb_check.salvage import parses
+from measurements.blender_scripts import scripts_folder, why_none
 from measurements.planted_places import Place, Places
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
+    from pathlib import Path
 
     from kb_build.records import Parameter
     from kb_check.findings import Finding
@@ -327,9 +326,8 @@ def _key(finding: Finding) -> tuple[str, str]:
 
 def measure(setting: Setting) -> ReportPart:
     """Plants and checks; ``quick`` plants fewer."""
-    folder = json.loads(read_meta(setting.base)["runtime"]).get("scripts", "")
-    if not folder or not Path(folder).is_dir():
-        return ReportPart("planted", skipped=(f"Blender's scripts are not there ({folder or 'unknown'})",))
+    if (folder := scripts_folder(setting.base)) is None:
+        return ReportPart("planted", skipped=(why_none(setting.base),))
     say("planted: planting mistakes in Blender's own scripts")
     planted: Counter[str] = Counter()
     seen: Counter[str] = Counter()
@@ -337,9 +335,9 @@ def measure(setting: Setting) -> ReportPart:
     before: dict[str, Counter[tuple[str, str]]] = {}
     began = time.perf_counter()
     with Checker(setting.base) as checker:
-        for mistake in plant(setting.base, Path(folder), _QUICK if setting.quick else MISTAKES):
+        for mistake in plant(setting.base, folder, _QUICK if setting.quick else MISTAKES):
             if mistake.script not in before:
-                findings = checker.check(read_script(Path(folder) / mistake.script))
+                findings = checker.check(read_script(folder / mistake.script))
                 before[mistake.script] = Counter(_key(finding) for finding in findings)
             planted[mistake.kind] += 1
             if found(checker, mistake, before[mistake.script]):

@@ -21,13 +21,13 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
-from kb_build.base_file import read_meta
 from kb_build.usage.scripts import read_script
 from kb_check.checker import Checker
 from kb_check.files import find_files
 from kb_check.project import check_group
 from kb_check.run import load
 from kb_check.stubs.package import write_folder
+from measurements.blender_scripts import scripts_folder, why_none
 from measurements.check_blender import broken_rows, proof_of
 from measurements.planted import MISTAKES, plant
 from measurements.report import ReportPart
@@ -195,9 +195,8 @@ def measure(setting: Setting) -> ReportPart:
     """Compares them; ``quick`` leaves it out."""
     if setting.quick:
         return ReportPart("pyright", skipped=("left out by --quick",))
-    scripts = Path(json.loads(read_meta(setting.base)["runtime"]).get("scripts", ""))
-    if not (scripts / "templates_py").is_dir():
-        return ReportPart("pyright", skipped=(f"Blender's scripts are not there ({scripts})",))
+    if (scripts := scripts_folder(setting.base)) is None:
+        return ReportPart("pyright", skipped=(why_none(setting.base),))
     rows: list[tuple[str, ...]] = []
     planted = list(plant(setting.base, scripts, MISTAKES))
     originals = {mistake.script: read_script(scripts / mistake.script) for mistake in planted}

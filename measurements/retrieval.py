@@ -26,7 +26,7 @@ from measurements.setting import corpora, percentile, say
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator, Sequence
 
-    from kb_serve.answer.composer import DocsAnswer
+    from kb_serve.answer.docs_answer import DocsAnswer
     from measurements.setting import Setting
 
 LIMIT = 8

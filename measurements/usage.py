@@ -3,26 +3,22 @@
 from __future__ import annotations
 
 import ast
-import json
 import time
 from collections import Counter
 from contextlib import closing
-from pathlib import Path
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
-from kb_build.base_file import read_meta
-from kb_build.flow.analysis import analyse
-from kb_build.flow.api import Api
-from kb_build.flow.symbols import BaseSymbols
 from kb_build.flow.types import UNKNOWN
 from kb_build.schema import open_read_only
 from kb_build.usage.scripts import blender_scripts, read_script
+from measurements.blender_scripts import reading, scripts_folder, why_none
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
-from simworlds.releases import version_key
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from kb_build.flow.analysis import Analysis
     from measurements.setting import Setting
 
@@ -40,26 +36,20 @@ _RESOLVED, _POSSIBLE, _MISSING, _PYTHON, _UNKNOWN = (
 
 def measure(setting: Setting) -> ReportPart:
     """Reads every script that the base's Blender brings, in this process; ``quick`` reads the templates alone."""
-    meta = read_meta(setting.base)
-    folder = json.loads(meta["runtime"]).get("scripts", "")
     say("usage: reading Blender's own scripts")
     figures, tables = _examples(setting.base)
-    if not folder or not Path(folder).is_dir():
-        return ReportPart(
-            "usage", figures, tables, (f"Blender's scripts are not there ({folder or 'unknown'})",)
-        )
+    if (folder := scripts_folder(setting.base)) is None:
+        return ReportPart("usage", figures, tables, (why_none(setting.base),))
     counts: Counter[str] = Counter()
     lines, took = 0, 0.0
-    version = version_key(meta["blender"])
-    with closing(BaseSymbols(setting.base)) as symbols:
-        api = Api(symbols)
-        analyse("import bpy\nbpy.context.object.modifiers.new('x', 'CLOTH').settings", api, version)
-        for script in blender_scripts(Path(folder)):
+    with reading(setting.base) as read:
+        read("import bpy\nbpy.context.object.modifiers.new('x', 'CLOTH').settings")
+        for script in blender_scripts(folder):
             if setting.quick and not script.name.startswith("templates_py"):
                 continue
             code = read_script(script.path)
             began = time.process_time()
-            analysis = analyse(code, api, version)
+            analysis = read(code)
             took += time.process_time() - began
             lines += code.count("\n")
             counts += _attributes(analysis)

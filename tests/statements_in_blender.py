@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING
+
+from told_by_blender import told_by_blender
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -36,13 +35,4 @@ def run_statements(folder: Path, lines: list[str], watched: dict[int, str] | Non
 
     ``watched`` has the expressions, by the place of their statement.
     """
-    file = folder / "statements.json"
-    file.write_text(json.dumps([lines, watched or {}]))
-    subprocess.run(
-        [sys.executable, "-P", "-c", _RUN, str(file)],
-        check=True,
-        timeout=240,
-        capture_output=True,
-        cwd=folder,
-    )
-    return json.loads(file.read_text())
+    return told_by_blender(_RUN, folder, [lines, watched or {}], seconds=240)

@@ -4,25 +4,19 @@ from __future__ import annotations
 
 import json
 import re
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import zip_longest
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING
 
-from kb_build.records import PAGE_SOURCES
-from kb_build.symbol_lines import written
-from kb_serve.answer.asked_values import (
-    ASKED_NOTHING,
-    asked_of,
-    asked_values,
-    asked_words,
-    may_have_more,
-)
-from kb_serve.answer.budget import AnswerBlock, AnswerPart, clip, cut, names_of, shown, tokens
+from kb_serve.answer.asked_values import ASKED_NOTHING, asked_of, asked_words
+from kb_serve.answer.budget import AnswerBlock, tokens
+from kb_serve.answer.docs_answer import DocsAnswer, Draft, draft_of, paged
+from kb_serve.answer.hit_lines import NAMES, HitLines
+from kb_serve.answer.hits import hits_of
 from kb_serve.answer.made_things import made_with
-from kb_serve.answer.next_call import next_call
+from kb_serve.answer.pages import page_blocks
 from kb_serve.answer.practice import Practice
-from kb_serve.answer.render import MarkdownRenderer, first_sentence, said_of
+from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
 from kb_serve.rank.merging import SURE, QueryRanker, RankedId, Ranking
@@ -30,74 +24,25 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator, Sequence
+    from collections.abc import Iterator, Sequence
 
-    from kb_serve.answer.asked_values import AskedOf, AskedValue
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.answer.asked_values import AskedOf
+    from kb_serve.answer.hits import Hit
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.several import QuestionPart
 
-AnswerKind = Literal["schema", "page", "candidates", "none"]
 LIMIT = 8
 MAX_LIMIT = 50
 MAX_TOKENS = 1_500
 LEAST_TOKENS = 150
-_FOOTER_TOKENS = 70
-_NOTES_TOKENS = 500
 _EXCERPT_TOKENS = 300  # of the best of several candidates
 _LEAST_SAID = 30
-_LINE_TOKENS = 60
 _KNOWN_OF = 3  # hits for a description among which what one has to know of them is looked for
 _NAMES_OF_A_PART, _PAGES_OF_A_PART, _STEPS_OF_A_PART = 3, 2, 3
-_NAMES = "further names"
 _SETTINGS = 2  # of a topic that are hits before its classes
 _LONGEST_WORD = 100  # no name of Blender's has as many letters
 _COMMENT = re.compile(r"(?:^|(?<=\s))#\s[^\n]*\n", re.MULTILINE)  # of code, of which lines are joined
 _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
-
-
-@dataclass(frozen=True, slots=True)
-class Hit:
-    """A symbol or page that the answer is about. ``id`` is a symbol path or a page slug."""
-
-    id: str
-    kind: str
-    title: str
-    score: float
-    url: str = ""
-
-
-@dataclass(frozen=True, slots=True)
-class DocsAnswer:
-    """What ``blender_docs`` returns. ``text`` is Markdown: what fits of the ``parts``, from ``part`` on, within the
-    token budget; ``next_part`` is the one to go on with, 0 at the end.
-    """
-
-    kind: AnswerKind
-    text: str
-    hits: tuple[Hit, ...] = ()
-    notes: tuple[str, ...] = ()
-    part: int = 1
-    parts: int = 1
-    next_part: int = 0
-
-
-@dataclass(frozen=True, slots=True)
-class _Draft:
-    """The whole answer."""
-
-    kind: AnswerKind
-    hits: tuple[Hit, ...]
-    notes: tuple[str, ...]
-    parts: Sequence[AnswerPart]
-
-
-def _draft(
-    kind: AnswerKind, hits: tuple[Hit, ...], notes: Sequence[str], blocks: Iterable[AnswerBlock]
-) -> _Draft:
-    """Notes stand above the answer."""
-    above = clip("\n".join(f"> {note}" for note in notes), _NOTES_TOKENS)
-    lead = (AnswerBlock(above, "notes"),) if above else ()
-    return _Draft(kind, hits, tuple(notes), cut((*lead, *blocks)))
 
 
 class AnswerComposer:
@@ -107,6 +52,7 @@ class AnswerComposer:
         self._reader = reader
         self._ranker = QueryRanker(reader)
         self._renderer = MarkdownRenderer(reader)
+        self._lines = HitLines(reader)
         self._topics = Topics(reader)
         self._practice = Practice(reader)
         self._draft = lru_cache(maxsize=64)(self._make_draft)
@@ -131,9 +77,9 @@ class AnswerComposer:
                 f"max_tokens={max_tokens} is too small for an answer. Set it to {LEAST_TOKENS} or more."
             )
         draft = self._draft(text, min(limit, MAX_LIMIT))
-        return _paged(text, draft, max_tokens, part, command)
+        return paged(text, draft, max_tokens, part, command)
 
-    def _make_draft(self, text: str, limit: int) -> _Draft:
+    def _make_draft(self, text: str, limit: int) -> Draft:
         ranking = self._ranker.rank(text, limit)
         is_name = (" " not in text or "[" in text) and self._reader.entry(text)
         topic = "" if is_name else self._topics.find(text)
@@ -144,45 +90,45 @@ class AnswerComposer:
         if not is_named and (parts := parts_of(text)):
             return self._answer_each(parts, ranking, limit)
         rows = self._listed(ranking, limit)
-        hits = self._hits(rows)
+        hits = hits_of(rows, self._reader)
         known = () if ranking.notes else self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF])
         told = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
         notes = tuple(dict.fromkeys(filter(None, told)))
         if not hits:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
             told = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
-            return _draft("none", (), notes, (told,))
+            return draft_of("none", (), notes, (told,))
         if ranking.named:
             names = ranking.recognition.arguments.get(hits[0].id, ())
             asked = [*self._renderer.arguments(hits[0].id, names)]
             sockets = self._renderer.sockets(hits[0].id, text)
             whole = self._whole(hits[0], rows[0], asked_of((), names if asked else ()))
-            blocks = (*asked, *sockets, *whole, *self._others(hits[1:], rows[1:]))
-            return _draft("page" if _is_page(hits[0]) else "schema", hits, notes, blocks)
-        return _draft("candidates", hits, notes, self._found(hits, rows, asked_words(text)))
+            blocks = (*asked, *sockets, *whole, *self._lines.further(hits[1:], rows[1:]))
+            return draft_of("page" if hits[0].is_page else "schema", hits, notes, blocks)
+        return draft_of("candidates", hits, notes, self._found(hits, rows, asked_words(text)))
 
     def _known(self, hits: Sequence[Hit]) -> Iterator[str]:
         """What one has to know of the first hits, up to the first name: code needs that, behind pages that tell how."""
         for hit in hits:
             yield from self._practice.of(hit.id)
-            if not _is_page(hit):
+            if not hit.is_page:
                 return
 
     def _found(
         self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str]
     ) -> Iterator[AnswerBlock]:
         """The best hit in brief, and the others. A page says how, but code needs names: they follow its heading."""
-        found = self._asked(hits[0], asked)
+        found = self._lines.asked(hits[0], asked)
         names = {value.argument for value in found if value.argument}
         told = [*self._renderer.arguments(hits[0].id, names, unless_all_fit=True)]
         excerpt = self._excerpt(hits[0], rows[0], asked_of(found, names if told else ()))
-        others = [*self._others(hits[1:], rows[1:], asked)]
+        others = [*self._lines.further(hits[1:], rows[1:], asked)]
         yield next(excerpt)
         yield from told
         yield from self._made(hits[0], asked_of(found))
-        if _is_page(hits[0]):
-            yield from (block for block in others if block.name == _NAMES)
-            others = [block for block in others if block.name != _NAMES]
+        if hits[0].is_page:
+            yield from (block for block in others if block.name == NAMES)
+            others = [block for block in others if block.name != NAMES]
         yield from excerpt
         yield from others
 
@@ -191,7 +137,7 @@ class AnswerComposer:
         symbol = self._reader.symbol(hit.id) if asked.values else None
         return made_with(symbol, asked.values, self._reader) if symbol else iter(())
 
-    def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> _Draft:
+    def _answer_each(self, parts: Sequence[QuestionPart], ranking: Ranking, limit: int) -> Draft:
         """The names and the page for each part of a question, in brief."""
         blocks: list[AnswerBlock] = []
         found: list[list[RankedId]] = []
@@ -199,19 +145,23 @@ class AnswerComposer:
             told = {row.id for rows in found for row in rows}
             ranked = self._ranker.rank(part.text, limit, part.about)
             rows = [row for row in self._listed(ranked, limit) if row.id not in told]
-            hits = self._hits(rows)
-            are_pages = [_is_page(hit) for hit in hits]
+            hits = hits_of(rows, self._reader)
+            are_pages = [hit.is_page for hit in hits]
             chosen = [place for place, is_page in enumerate(are_pages) if not is_page][:_NAMES_OF_A_PART]
             chosen += [place for place, is_page in enumerate(are_pages) if is_page][:_PAGES_OF_A_PART]
-            lines = [f"- {self._line(hits[place], rows[place])}" for place in chosen]
+            lines = [f"- {self._lines.line(hits[place], rows[place])}" for place in chosen]
             lines = [*self._topics.first_steps(part.text, _STEPS_OF_A_PART), *lines]
             blocks.append(AnswerBlock("\n".join((f"**{number}. {part.text}**", *lines)), part.text))
             found.append([rows[place] for place in sorted(chosen)])
         # In turns, as each part is one of several answers.
         ids = dict.fromkeys(row.id for rows in zip_longest(*found) for row in rows if row)
-        hits = self._hits([RankedId(i, 1.0 - 0.02 * n, "part") for n, i in enumerate(list(ids)[:limit])])
+        hits = hits_of(
+            [RankedId(i, 1.0 - 0.02 * n, "part") for n, i in enumerate(list(ids)[:limit])], self._reader
+        )
         note = f"The question has {len(parts)} parts, each answered in brief. Ask one alone for all of its answer."
-        return _draft("candidates", hits, (note, *ranking.notes, *self._source_notes(ranking, hits)), blocks)
+        return draft_of(
+            "candidates", hits, (note, *ranking.notes, *self._source_notes(ranking, hits)), blocks
+        )
 
     def _listed(self, ranking: Ranking, limit: int) -> list[RankedId]:
         """The ids that the answer lists. Whoever asks for more than usual wants what is far, too."""
@@ -223,7 +173,7 @@ class AnswerComposer:
         """Notes on the documentation behind the answer: pages of other versions, missing sources."""
         meta = self._reader.meta
         minor = meta.get("minor", "")
-        pages = [page for hit in hits if _is_page(hit) and (page := self._reader.page_entry(hit.id))]
+        pages = [page for hit in hits if hit.is_page and (page := self._reader.page_entry(hit.id))]
         for version in sorted({page.version for page in pages} - {minor, ""}):
             yield f"These pages are from the documentation of Blender {version}, not {minor}."
         missing = [row["role"] for row in json.loads(meta.get("missing", "[]"))]
@@ -231,30 +181,11 @@ class AnswerComposer:
             without = " and the ".join(missing)
             yield f"This base was built without the {without}; `simworlds kb info {minor}` says why."
 
-    def _hits(self, rows: Sequence[RankedId]) -> tuple[Hit, ...]:
-        pages = [row.id for row in rows if self._reader.is_page(row.id)]
-        symbols = [row.id for row in rows if row.id not in pages]
-        self._reader.page_entry.load(pages)
-        self._reader.entry.load(symbols)
-        self._renderer.load_manual_pages(symbols)
-        return tuple(self._hit(row) for row in rows)
-
-    def _hit(self, row: RankedId) -> Hit:
-        score = round(row.score, 3)
-        page = self._reader.page_entry(row.id) if self._reader.is_page(row.id) else None
-        if page:
-            url = page.url + (f"#{row.anchor}" if row.anchor else "")
-            return Hit(row.id, page.source, page.title, score, url)
-        entry = self._reader.entry(row.id)
-        if entry is None:
-            return Hit(row.id, "unknown", row.id, score)
-        return Hit(row.id, entry.kind, entry.label or entry.name, score, self._renderer.manual_page(row.id))
-
     # The text
 
     def _whole(self, hit: Hit, row: RankedId, asked: AskedOf = ASKED_NOTHING) -> Iterator[AnswerBlock]:
         if self._reader.is_page(hit.id):
-            yield from self._renderer.page(hit.id, row.anchor)
+            yield from page_blocks(hit.id, self._reader, row.anchor)
         elif symbol := self._reader.symbol(hit.id):
             yield from self._renderer.symbol(symbol, asked)
 
@@ -271,92 +202,28 @@ class AnswerComposer:
             said += size if number and not _is_box(block.text) else 0
             yield block
             if number == 0 and row.members:
-                yield AnswerBlock("**Nearest**\n" + "\n".join(self._members(row)), "nearest members")
+                yield AnswerBlock("**Nearest**\n" + "\n".join(self._lines.members(row)), "nearest members")
 
-    def _members(self, row: RankedId) -> Iterator[str]:
-        """A line for each of the members that were found with their class."""
-        self._reader.entry.load(f"{row.id}.{name}" for name in row.members)
-        for name in row.members:
-            entry = self._reader.entry(f"{row.id}.{name}")
-            yield f"- {entry.line if entry else f'`{name}`'}"
-
-    def _others(
-        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str] = ()
-    ) -> Iterator[AnswerBlock]:
-        """A line for each further hit: symbols, then pages. ``asked`` are the question's words."""
-        further = list(zip(hits, rows, strict=True))
-        for title, name, are_pages in (
-            ("In Python", _NAMES, False),
-            ("Pages", "further pages", True),
-        ):
-            lines = [
-                f"- {self._line(hit, row)}{self._values(hit, asked)}"
-                for hit, row in further
-                if _is_page(hit) == are_pages
-            ]
-            if lines:
-                yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), name)
-
-    def _line(self, hit: Hit, row: RankedId) -> str:
-        entry = None if _is_page(hit) else self._reader.entry(hit.id)
-        if entry is not None:
-            owner = f"{entry.owner}." if entry.kind != "socket" else ""
-            text = (
-                entry.line.partition(" — ")[2]
-                if entry.kind in {"operator", "function", "class"}
-                else entry.line
-            )
-            path = self._written(hit.id) if entry.kind == "socket" else hit.id
-            name = path[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
-            if entry.kind == "operator" and text == entry.label:  # which its name says already
-                text = ""
-            text = text.removeprefix(f"`{name}`").strip(", ·") or self._instead_of_words(entry)
-            nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
-            return clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS) + nearest
-        page = self._reader.page_entry(hit.id)
-        text = first_sentence(said_of(page, self._reader)) if page else ""
-        return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
-
-    def _written(self, path: str) -> str:
-        symbol = self._reader.symbol(path)
-        return written(symbol) if symbol else path
-
-    def _asked(self, hit: Hit, asked: Sequence[str]) -> list[AskedValue]:
-        """The arguments and values of a hit that the question speaks of."""
-        entry = None if not asked or _is_page(hit) else self._reader.entry(hit.id)
-        if entry is None or not may_have_more(entry.kind, entry.line):
-            return []
-        symbol = self._reader.symbol(hit.id)
-        return asked_values(symbol, asked) if symbol else []
-
-    def _values(self, hit: Hit, asked: Sequence[str]) -> str:
-        values = [f"`{value.text}`" for value in self._asked(hit, asked)]
-        return f" — asked for: {', '.join(values)}" if values else ""
-
-    def _instead_of_words(self, entry: SymbolEntry) -> str:
-        """What is said of a symbol without a description: its call, or how many members it has."""
-        if entry.kind != "class":
-            return entry.head if "(" in entry.line else ""
-        members = self._reader.members(entry.path)
-        uses = [] if members else self._reader.uses(entry.path)
-        if uses and uses[0].code.startswith("@"):
-            return f"a decorator of functions: `{uses[0].code.splitlines()[0]}`"
-        label = f"{entry.label}, " if entry.label not in {"", entry.name} else ""
-        return f"{label}a class with {len(members)} members"
-
-    def _overview(self, topic: str, ranking: Ranking, limit: int) -> _Draft:
+    def _overview(self, topic: str, ranking: Ranking, limit: int) -> Draft:
         overview = self._topics.overview(topic)
         lead = overview.settings[:_SETTINGS]
         ids = dict.fromkeys((topic, *lead, *overview.members, *(row.id for row in ranking.ranked)))
-        hits = self._hits([RankedId(i, 1.0 - 0.02 * n, "topic") for n, i in enumerate(list(ids)[:limit])])
+        hits = hits_of(
+            [RankedId(i, 1.0 - 0.02 * n, "topic") for n, i in enumerate(list(ids)[:limit])], self._reader
+        )
         notes = tuple(self._source_notes(ranking, hits))
         if not overview.is_single:
-            return _draft("page", hits, notes, overview.blocks)
+            return draft_of("page", hits, notes, overview.blocks)
         told = "".join(block.text for block in overview.first)
         rows = [row for row in self._listed(ranking, limit) if row.id != topic and not _is_told(row.id, told)]
         page = () if overview.says_how else [*self._excerpt(hits[0], RankedId(topic, 1.0, "topic"))][1:]
-        blocks = (*overview.first, *page, *self._others(self._hits(rows), rows), *overview.more)
-        return _draft("page", hits, notes, blocks)
+        blocks = (
+            *overview.first,
+            *page,
+            *self._lines.further(hits_of(rows, self._reader), rows),
+            *overview.more,
+        )
+        return draft_of("page", hits, notes, blocks)
 
 
 def _is_told(path: str, text: str) -> bool:
@@ -369,30 +236,3 @@ def _is_box(text: str) -> bool:
     """Whether a section holds nothing below its heading but a box, as the one that names its panel."""
     body = text.partition("\n\n")[2]
     return all(line.startswith(">") for line in body.split("\n") if line)
-
-
-def _is_page(hit: Hit) -> bool:
-    return hit.kind in PAGE_SOURCES
-
-
-def _paged(query: str, draft: _Draft, max_tokens: int, part: int, command: str) -> DocsAnswer:
-    """As many parts of a draft as fit, from ``part`` on; what is left, and how to get it. Raises BadQuery."""
-    parts = draft.parts
-    if part > len(parts):
-        raise BadQuery(f"part={part} does not exist: this answer has {len(parts)} part(s).")
-    text, after = shown(parts, part - 1, max_tokens)
-    if after == len(parts):
-        return DocsAnswer(draft.kind, text, draft.hits, draft.notes, part, len(parts))
-    text, after = shown(parts, part - 1, max_tokens - _FOOTER_TOKENS)
-    call = next_call(query, after + 1, command)
-    footer = _footer(call, range(part, after + 1), len(parts), names_of(parts[after:]))
-    return DocsAnswer(draft.kind, f"{text}\n\n{footer}", draft.hits, draft.notes, part, len(parts), after + 1)
-
-
-def _footer(call: str, seen: range, parts: int, left: Sequence[str]) -> str:
-    """What is left, and the call that gets it; with a blank line above it within ``_FOOTER_TOKENS``."""
-    span = f"Part {seen[0]}" if len(seen) == 1 else f"Parts {seen[0]} to {seen[-1]}"
-    head = f"_{span} of {parts}. Left: "
-    tail = f". Next: {call}_"
-    names = clip(", ".join(left), _FOOTER_TOKENS - 1 - tokens(head + tail))
-    return head + names + tail

@@ -6,9 +6,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.unlisted import SOMETIMES
 from kb_serve.reader import TYPES
+from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.elements import ADDING, elsewhere, meant_by_key
 from kb_serve.recognise.recognition import MissingName
-from kb_serve.recognise.resolver import ROOTS
 from kb_serve.recognise.variables import OTHERWISE, USUAL, is_guess, usual_classes
 
 if TYPE_CHECKING:
@@ -181,5 +181,5 @@ class BrokenExpressions:
         """Notes what the class lacks that a variable is named after, where another one has what is read."""
         owner = self._reader.entry(broken.owner)
         if owner and owner.kind == "class" and not is_guess(chain.root):
-            missing = MissingName(broken.missing, broken.owner, sure=self._is_sure(chain, broken))
-            recognition.doubted[chain.root] = missing
+            sure = self._is_sure(chain, broken)
+            recognition.doubted = MissingName(broken.missing, broken.owner, sure=sure, variable=chain.root)

@@ -146,9 +146,8 @@ class Notes:
                 yield f"`{missing.owner}` takes no custom properties: `{missing.name}` fails.{closest}"
             elif missing.owner and missing.name not in removed_names:
                 yield f"{_if(missing.variable)}{self._lacks(missing)}{closest}"
-        if not recognition.removed:
-            for variable, missing in recognition.doubted.items():
-                yield f"{_if(variable)}{self._lacks(missing)}"
+        if (doubted := recognition.doubted) and not recognition.removed:
+            yield f"{_if(doubted.variable)}{self._lacks(doubted)}"
 
     def _lacks(self, missing: MissingName) -> str:
         """A sentence on what a class does not have, and whether it ever had it."""

@@ -10,9 +10,9 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import key, words
 from kb_serve.reader import TYPES
 from kb_serve.recognise.calls import arguments, texts_in
+from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.removed_symbols import socket_node
-from kb_serve.recognise.resolver import ROOTS
 from kb_serve.recognise.variables import USUAL, usual_classes, variable_fit
 
 if TYPE_CHECKING:

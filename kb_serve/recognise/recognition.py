@@ -46,7 +46,8 @@ class Recognition:
     ``arguments``: function or operator → those of its arguments that are named beside it.
     ``readings``: expression as written → the symbol that it leads to.
     ``guesses``: expression as written, where that is not certain → the symbols that it may lead to, likeliest first.
-    ``doubted``: variable → what the class lacks that it is named after, where another class has it.
+    ``doubted`` is what the class lacks that the first expression's variable is named after, where another class has
+    it: unlike the ``missing`` names it is right as likely as not, and nothing else is looked for.
     ``notes`` are further sentences for the caller. ``alike`` are the members of the surest one's name that other things
     have for which the query's variable may stand. ``is_open`` tells that the query does not say which of several
     operators it is about.
@@ -59,7 +60,7 @@ class Recognition:
     arguments: dict[str, list[str]] = field(default_factory=dict[str, "list[str]"])
     readings: dict[str, str] = field(default_factory=dict[str, str])
     guesses: dict[str, list[str]] = field(default_factory=dict[str, "list[str]"])
-    doubted: dict[str, MissingName] = field(default_factory=dict[str, MissingName])
+    doubted: MissingName | None = None
     notes: list[str] = field(default_factory=list)
     alike: list[str] = field(default_factory=list)
     is_open: bool = False

@@ -8,74 +8,34 @@ from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, words
-from kb_serve.reader import COLLECTION, PROPERTIES, STRUCT, TYPES, BaseReader, SymbolEntry
+from kb_build.index.analysis import key
+from kb_serve.reader import COLLECTION, STRUCT, TYPES, BaseReader, SymbolEntry
+from kb_serve.recognise.chain_starts import ChainStarts
+from kb_serve.recognise.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.owners import Owners
 from kb_serve.recognise.subscripts import CustomProperties
-from kb_serve.recognise.values import SEQUENCES, VALUES
-from kb_serve.recognise.variables import Variables
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.recognise.chains import Chain
 
-_MATH = {
-    "TRANSLATION": "Vector", "XYZ": "Vector", "DIRECTION": "Vector", "VELOCITY": "Vector", "ACCELERATION": "Vector",
-    "XYZ_LENGTH": "Vector", "EULER": "Euler", "QUATERNION": "Quaternion", "MATRIX": "Matrix", "COLOR": "Color",
-    "COLOR_GAMMA": "Color",
-}  # fmt: skip
-ROOTS = {
-    "C": "bpy.context",
-    "D": "bpy.data",
-    "context": "bpy.context",
-    "ops": "bpy.ops",
-    "types": "bpy.types",
-}
-# Whose classes and modules scripts import by name.
-_IMPORTED = ("mathutils.", "bmesh.types.", "bpy_extras.")
 _OBJECT_DATA = f"{TYPES}Object.data"
 # What every class and instance tells of itself, and what that is.
 _RNA, _STRUCT_OF_ALL = ("bl_rna", "rna_type"), f"{TYPES}Struct"
-_ARRAY = f"{TYPES}bpy_prop_array"
 _MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
 _LINKS = "links"  # of a socket, which lead elsewhere
 _ROWS = {f"{_MATRIX}.col", f"{_MATRIX}.row"}
 _PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
 _GROUP, _GROUPS = f"{TYPES}PropertyGroup", f"{TYPES}bpy_prop_collection_idprop"
-_INSTANCE = "self"  # of a class of the script's own, whose attributes are like variables
 _ELEMENT, _LAYERS = "bmesh.types.BM", "bmesh.types.BMLayerAccess"
-_INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _NUMBERED = re.compile(r"\.\d{3}$")
 _QUOTED = re.compile(r"""(["'])([\w.]+)\1""")
-_SEQUENCE = re.compile(r"(?:list|set|tuple)\[(?:bpy\.types\.)?([A-Z]\w*)(?:, \.\.\.)?\]")
-_CLASS_NAME = re.compile(r"\b(?:\w+\.)*[A-Z]\w+")
 _GET, _KEY = ChainStep("attr", "get"), re.compile(r"""\s*(["'])([^"']+)\1\s*""")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
-_NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
-_MODULE_THAT_LACKS = 0.6  # … of a module that lacks what is read, by its last name
-_COLLECTION_FIT = 0.7  # of an indexed variable with the name of a collection property
-_USUAL = 0.05
 _MAX_BRANCHES = 60
-_MOST_NAMES = 8  # in the longest path
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
-
-
-@dataclass(frozen=True, slots=True)
-class ChainValue:
-    """What a chain stands for up to a step: an instance of ``cls``, a collection of it, a module or a function.
-
-    ``origin`` is the class that the last attribute was read from, which may inherit it; ``keyed`` the class whose
-    custom property this is.
-    """
-
-    symbol: str
-    cls: str = ""
-    many: bool = False
-    container: str = ""
-    origin: str = ""
-    keyed: str = ""
 
 
 @dataclass(frozen=True, slots=True)
@@ -104,12 +64,6 @@ class ResolvedChain:
         return bool(self.symbols) and not self.missing
 
 
-def _of_python(entry: SymbolEntry) -> re.Match[str] | None:
-    """The class of what a property holds that gives a list or tuple of Python's."""
-    text = entry.type if entry.kind == "property" else ""
-    return _SEQUENCE.fullmatch(SEQUENCES.get(entry.path) or SEQUENCES.get(text, text))
-
-
 def _with_keys(steps: tuple[ChainStep, ...]) -> tuple[ChainStep, ...]:
     """The same steps, in which an element that is got by its name is one by its key: ``nodes.get("Mix").inputs``."""
     found: list[ChainStep] = []
@@ -122,19 +76,15 @@ def _with_keys(steps: tuple[ChainStep, ...]) -> tuple[ChainStep, ...]:
     return tuple(found)
 
 
-def _first_name(chain: Chain) -> str:
-    return next(iter(chain.attributes), "")
-
-
 class Resolver:
     """Resolves chains against one base."""
 
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
-        self._variables = Variables(reader)
         self._owners = Owners(reader)
+        self._values = ChainValues(reader)
+        self._starts = ChainStarts(reader, self._values, self._owners)
         self._custom = CustomProperties(reader)
-        self._returned = lru_cache(maxsize=500)(self._returned_class)
         self._named = lru_cache(maxsize=64)(self._named_classes)
 
     def member(self, cls: str, name: str) -> SymbolEntry | None:
@@ -145,7 +95,7 @@ class Resolver:
         """Every reading of a chain, best first: most steps resolved, then the likelier class for a variable."""
         readings = [
             replace(self._follow(value, chain.steps[used:]), fit=fit)
-            for value, used, fit in self._starts(chain)
+            for value, used, fit in self._starts.of(chain)
         ]
         unique = {
             (resolved.symbols[-1:], resolved.missing): resolved
@@ -156,166 +106,11 @@ class Resolver:
     def onward(self, path: str, steps: tuple[ChainStep, ...]) -> ResolvedChain:
         """Follows steps from a symbol, as if an expression had led there."""
         entry = self._reader.entry(path)
-        return self._follow(self._value_of(entry), steps) if entry else ResolvedChain(())
+        return self._follow(self._values.of(entry), steps) if entry else ResolvedChain(())
 
     @staticmethod
     def _ranked(readings: Iterable[ResolvedChain]) -> list[ResolvedChain]:
         return sorted(readings, key=lambda reading: (reading.steps_left, -reading.fit, -len(reading.symbols)))
-
-    def _starts(self, chain: Chain) -> Iterator[tuple[ChainValue, int, float]]:
-        """(value, steps used, fit) for everything that the chain's root can stand for."""
-        if self._is_of_the_instance(chain):
-            own = replace(chain, root=chain.steps[0].text, steps=chain.steps[1:])
-            yield from ((value, used + 1, fit) for value, used, fit in self._starts(own))
-        elif (exact := self._rooted(chain)) and self._may_be_variable(chain, exact[0].symbol):
-            named = self._named_like_a_module(chain.root, _first_name(chain))
-            for rank, cls in enumerate(named):
-                yield ChainValue(cls, cls), 0, _NAMED_LIKE_A_MODULE - 0.001 * rank
-            if not named:
-                yield from ((value, 0, fit) for value, fit in self._of_variable(chain))
-            yield exact[0], exact[1], _MODULE_THAT_LACKS
-        elif exact:
-            yield exact
-        else:
-            yield from ((value, 0, fit) for value, fit in self._of_variable(chain))
-
-    def _is_of_the_instance(self, chain: Chain) -> bool:
-        """Whether a chain goes on from an attribute that only a script's own class can have: ``self.obj.location``."""
-        if chain.root != _INSTANCE or not chain.steps[1:] or chain.steps[0].kind != "attr":
-            return False
-        return not any(entry.group == "ui" for entry in self._reader.by_name(_first_name(chain)))
-
-    def _of_variable(self, chain: Chain) -> Iterator[tuple[ChainValue, float]]:
-        """(value, fit) for everything that a variable can stand for: by its name, then by the member that it has."""
-        seen: set[str] = set()
-        for cls, fit in self._variables.classes(chain.root):
-            if cls not in seen:
-                seen.add(cls)
-                yield ChainValue(cls, cls), fit
-        if not chain.steps:
-            return
-        for entry in self._reader.by_name(chain.root)[:_MAX_BRANCHES]:
-            if (
-                entry.kind == "property"
-                and (value := self._value_of(entry)).many
-                and self._is_used_as(value, chain)
-            ):
-                # An Object's modifiers are likelier than an FCurve's.
-                is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
-                yield value, _COLLECTION_FIT + (_USUAL if is_usual else 0.0)
-        for cls, fit in self._owners.of(chain):
-            if cls not in seen:
-                seen.add(cls)
-                yield ChainValue(cls, cls), fit
-
-    def _may_be_variable(self, chain: Chain, module: str) -> bool:
-        """Whether a root is called like a module that scripts import by its last name, and that lacks what is read."""
-        entry = self._reader.entry(module)
-        short = entry is not None and entry.kind == "module" and module != chain.root
-        if not (chain.attributes and short and module.endswith(f".{chain.root}")) or module.startswith(
-            "bpy."
-        ):
-            return False
-        name = _first_name(chain)
-        return bool(self._reader.by_name(name)) and self._reader.entry(f"{module}.{name}") is None
-
-    def _named_like_a_module(self, variable: str, member: str) -> list[str]:
-        """The classes that have a member and are called like a variable: ``noise.outputs`` is of a noise texture."""
-        owners = {entry.owner for entry in self._reader.by_name(member)[:_MAX_BRANCHES]}
-        below = (cls.path for owner in owners for cls in self._reader.descendants(owner))
-        named = {path for path in (*owners, *below) if variable in words(path.rpartition(".")[2])}
-        return sorted(named, key=lambda path: (len(path), path))
-
-    def _is_used_as(self, value: ChainValue, chain: Chain) -> bool:
-        """Whether a variable with a collection's name is used as one: indexed, or with a member of the collection."""
-        step = chain.steps[0]
-        return step.kind in {"key", "index"} or (
-            step.kind == "attr" and self.member(value.container, step.text) is not None
-        )
-
-    def _rooted(self, chain: Chain) -> tuple[ChainValue, int, float] | None:
-        """The longest leading part that is a path itself: a module, a class, ``bpy.context``."""
-        names = chain.dotted.split(".")
-        names[:1] = ROOTS.get(names[0], names[0]).split(".")
-        extra = len(names) - len(chain.dotted.split("."))
-        paths = [".".join(names[:length]) for length in range(min(len(names), _MOST_NAMES), 0, -1)]
-        packages = ("", PROPERTIES, TYPES, *_IMPORTED)
-        self._reader.entry.load(package + path for path in paths for package in packages)
-        for length, path in zip(range(len(paths), 0, -1), paths, strict=True):
-            for package in packages:
-                entry = self._reader.entry(package + path)
-                is_imported = package or length > 1
-                if entry and (is_imported or entry.kind in {"module", "class"}):
-                    return self._value_of(entry), max(0, length - 1 - extra), 1.0
-        return None
-
-    def _value_of(self, entry: SymbolEntry, came_from: str = "") -> ChainValue:  # noqa: PLR0911 - one return a kind
-        """What a step to ``entry`` leads to."""
-        if entry.path in _INSTANCES:
-            return ChainValue(entry.path, _INSTANCES[entry.path])
-        if entry.kind in {"module", "class"}:
-            return ChainValue(entry.path, entry.path)
-        if entry.kind == "socket":
-            return ChainValue(entry.path, self._socket_class(entry))
-        if (sequence := _of_python(entry)) or entry.path in VALUES:
-            cls = TYPES + sequence[1] if sequence else VALUES[entry.path]
-            return ChainValue(entry.path, cls, many=bool(sequence))
-        if entry.type == "collection":
-            container = TYPES + entry.collection if entry.collection else COLLECTION
-            return ChainValue(entry.path, TYPES + entry.target, many=True, container=container)
-        if entry.target and entry.kind != "operator":
-            return ChainValue(entry.path, TYPES + entry.target)
-        if entry.kind == "function":
-            return ChainValue(entry.path, container=came_from)
-        if classes := self._classes_in(entry.type, entry.path, whole=True):
-            return self._sequence(entry.path, classes)
-        return ChainValue(entry.path, self._value_class(entry))
-
-    def _socket_class(self, entry: SymbolEntry) -> str:
-        """A socket's own class: the target in its record may be the data-block that it takes."""
-        own = f"{TYPES}NodeSocket{entry.type.title()}"
-        return (
-            own
-            if not entry.target.startswith("NodeSocket") and self._reader.entry(own)
-            else TYPES + entry.target
-        )
-
-    def _value_class(self, entry: SymbolEntry) -> str:
-        """The class of a plain property's value: mathutils for coordinates and colours."""
-        symbol = self._reader.symbol(entry.path)
-        if symbol and symbol.subtype in _MATH:
-            return f"mathutils.{_MATH[symbol.subtype]}"
-        return _ARRAY if symbol and symbol.array else ""
-
-    def _classes_in(self, text: str, path: str, *, whole: bool = False) -> list[str]:
-        """The classes in the text of a type, ``BMElemSeq[BMEdge]``; each the nearest to ``path`` of that name.
-
-        With ``whole`` the type must be a class itself, not Python's list or tuple of one.
-        """
-        paths: list[str] = []
-        if whole and not _CLASS_NAME.match(text):
-            return paths
-        for name in _CLASS_NAME.findall(text):
-            scopes = [path[:at] for at in range(len(path), 0, -1) if path[at : at + 1] == "."]
-            last = name.rpartition(".")[2]
-            candidates = (name, *(f"{scope}.{last}" for scope in scopes), TYPES + last)
-            classes = (
-                entry
-                for candidate in candidates
-                if (entry := self._reader.entry(candidate)) and entry.kind == "class"
-            )
-            if first := next(classes, None):
-                paths.append(first.path)
-        return paths
-
-    def _sequence(self, symbol: str, classes: list[str]) -> ChainValue:
-        """An instance of the first class; of a sequence, the elements are of the class that it names or creates."""
-        first, *others = classes
-        if first.endswith(("Seq", "Slice")):
-            makes = self.member(first, "new")
-            element = others[0] if others else self._returned(makes.path) if makes else ""
-            return ChainValue(symbol, element, many=True, container=first)
-        return ChainValue(symbol, first)
 
     def _follow(self, value: ChainValue, steps: tuple[ChainStep, ...]) -> ResolvedChain:
         """Resolves step after step; a base class is tried as each of its descendants."""
@@ -367,7 +162,7 @@ class Resolver:
             if not value.container and hasattr(list, name):
                 yield value
             elif entry := self._of_collection(value, name):
-                yield self._value_of(entry, value.cls)
+                yield self._values.of(entry, value.cls)
             return
         if name in _RNA and value.cls.startswith(TYPES):
             yield ChainValue(_STRUCT_OF_ALL, _STRUCT_OF_ALL)
@@ -380,7 +175,7 @@ class Resolver:
             return
         own = self.member(value.cls, name) if value.cls else self._reader.member((value.symbol,), name)
         if own:
-            after = self._value_of(own, value.cls)
+            after = self._values.of(own, value.cls)
             is_of_socket = "puts[" in value.symbol and not after.many and name != _LINKS
             yield replace(after, symbol=value.symbol if is_of_socket else own.path, origin=value.cls)
             return
@@ -395,7 +190,7 @@ class Resolver:
             if value.symbol == _OBJECT_DATA:
                 below = [entry for entry in below if self._reader.is_object_data(entry.owner)] or below
             for entry in self._owners.heaviest(below):
-                yield self._value_of(entry, entry.owner)
+                yield self._values.of(entry, entry.owner)
 
     def _has_parameter(self, path: str, name: str) -> bool:
         symbol = self._reader.symbol(path)
@@ -431,7 +226,7 @@ class Resolver:
         if not cls.startswith(_ELEMENT):
             return
         for layers in self._reader.members(f"{_LAYERS}{cls.removeprefix(_ELEMENT)}").values():
-            for held in self._classes_in(layers.type.partition("[")[2], layers.path):
+            for held in self._values.classes_in(layers.type.partition("[")[2], layers.path):
                 yield ChainValue(held, held)
 
     def _in_tree(self, nodes: Sequence[str], tree: str) -> Sequence[str]:
@@ -463,7 +258,7 @@ class Resolver:
         for entry in self._reader.by_name(name):
             on_side = entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}[")
             if on_side and self._reader.descends(entry.owner, owner):
-                yield self._value_of(entry)
+                yield self._values.of(entry)
 
     def _call(self, value: ChainValue, arguments: str) -> ChainValue:
         """What a call returns; a function that returns a base class of its owner returns the owner's class, and one
@@ -476,7 +271,7 @@ class Resolver:
             for cls, maker in self._reader.made_by_choice(choice):
                 if maker == value.symbol:
                     return ChainValue(value.symbol, cls)
-        returned = self._returned(value.symbol)
+        returned = self._values.returned(value.symbol)
         if returned == _PROPERTIES_OF_OPERATORS and (operator := self._operator_in(arguments)):
             return ChainValue(value.symbol, operator)
         if (
@@ -491,10 +286,3 @@ class Resolver:
         """The path of the operator that is called by its name in a text: ``layout.operator("mesh.delete")``."""
         paths = (f"bpy.ops.{name}" for _, name in _QUOTED.findall(arguments) if "." in name)
         return next((path for path in paths if self._reader.entry(path)), "")
-
-    def _returned_class(self, path: str) -> str:
-        symbol = self._reader.symbol(path)
-        for result in symbol.returns if symbol else ():
-            if classes := self._classes_in(result.type, path):
-                return classes[0]
-        return ""

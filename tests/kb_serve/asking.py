@@ -16,7 +16,7 @@ from kb_serve.answer.topic_steps import Steps
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from kb_serve.answer.composer import DocsAnswer
+    from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader, SymbolEntry
 

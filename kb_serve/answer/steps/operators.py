@@ -68,11 +68,17 @@ def runs(names: TopicNames, reader: BaseReader, *, is_cached: bool, is_made: boo
 def _is_beside(path: str, names: TopicNames, reader: BaseReader) -> bool:
     """Whether neither an operator nor its module is called as the topic is, or it waits for a window."""
     _, _, module, name = path.split(".")
-    symbol = reader.symbol(path)
     if names.has_title(name) or names.title.removesuffix("s") in key(name) or _BAKE in name.split("_"):
         return False
-    waits = symbol and (operator_areas(symbol) or not (operator_needs(symbol) or refused_nothing(symbol)))
-    return bool(waits) or key(module) != names.title
+    if key(module) != names.title:
+        return True
+    symbol = reader.symbol(path)
+    return symbol is not None and (bool(operator_areas(symbol)) or _never_ran(symbol))
+
+
+def _never_ran(operator: Symbol) -> bool:
+    """Whether an operator's poll said no wherever it was tried, without a window."""
+    return not (operator_needs(operator) or refused_nothing(operator))
 
 
 def asked(operator: Symbol, reader: BaseReader) -> str:
@@ -83,7 +89,7 @@ def asked(operator: Symbol, reader: BaseReader) -> str:
 def _asked(operator: Symbol, reader: BaseReader) -> Iterator[str]:
     if needs := operator_needs(operator):
         yield f"takes {needs}"
-    elif not refused_nothing(operator):
+    elif _never_ran(operator):
         yield "not seen to run without a window"
     yield from panel_lines(operator, reader)
 

@@ -304,3 +304,14 @@ def test_symbols_without_a_docstring_keep_what_rna_says(tmp_path: Path) -> None:
         "bpy.types.A.f", "function", "bpy.types.A", description="Does.", signature="f(a)",
         parameters=(Parameter("a", required=True),),
     )  # fmt: skip
+
+
+def test_what_the_dot_gives_to_a_method_is_none_of_its_arguments(extract: Extract) -> None:
+    kinds = {row.path: row.kind for row in extract.symbols}
+    taking = {
+        row.path: kinds.get(row.owner)
+        for row in extract.symbols
+        if any(parameter.name in {"self", "cls"} for parameter in row.parameters)
+    }
+    assert set(taking.values()) == {"module"}
+    assert "nodeitems_utils.draw_node_categories_menu" in taking  # a panel gives itself to it

@@ -211,3 +211,10 @@ def test_one_item_of_several_becomes_a_set_by_the_fix(rule_checker: Checker) -> 
     (found,) = rule_checker.check(code, rules=["positional-argument"])
     assert found.fix is not None
     assert [edit.text for edit in found.fix.edits] == ["options={'FAST'}"]
+
+
+def test_a_function_of_a_module_takes_what_it_calls_self(rule_checker: Checker) -> None:
+    code = "import nodeitems_utils\ndef draw(self, context):\n    nodeitems_utils.draw_node_categories_menu({})\n"
+    assert rule_checker.check(code.format("self, context")) == []
+    (found,) = rule_checker.check(code.format("self, context, 1"), rules=["positional-argument"])
+    assert found.span.line == 3

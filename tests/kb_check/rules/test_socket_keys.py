@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
+from told_by_blender import told_by_blender
 
 if TYPE_CHECKING:
     from kb_check.checker import Checker
@@ -70,11 +68,7 @@ _OWN = ("Group", "Switch", "Input", "Output", "Bake", "CaptureAttribute", "Forma
 def rows(
     tmp_path_factory: pytest.TempPathFactory,
 ) -> list[tuple[str, str, str, str, list[tuple[str, str, bool]]]]:
-    folder = tmp_path_factory.mktemp("keys")
-    file = folder / "keys.json"
-    done = [sys.executable, "-P", "-c", _ASK, str(file)]
-    subprocess.run(done, check=True, timeout=240, capture_output=True, cwd=folder)
-    return json.loads(file.read_text())
+    return told_by_blender(_ASK, tmp_path_factory.mktemp("keys"), seconds=240)
 
 
 def test_keys_that_blender_takes_are_no_finding_and_those_that_it_refuses_are(

@@ -5,11 +5,9 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
+from told_by_blender import told_by_blender
 from whole import IS_WHOLE
 
 if TYPE_CHECKING:
@@ -75,15 +73,7 @@ open(sys.argv[-1], "w").write(json.dumps(list(scripts())))
 
 
 def test_sockets_of_every_mode_are_no_finding(rule_checker: Checker, tmp_path: Path) -> None:
-    file = tmp_path / "scripts.json"
-    subprocess.run(
-        [sys.executable, "-P", "-c", _WRITE, str(file)],
-        check=True,
-        timeout=240,
-        capture_output=True,
-        cwd=tmp_path,
-    )
-    scripts: list[str] = json.loads(file.read_text())
+    scripts: list[str] = told_by_blender(_WRITE, tmp_path, seconds=240)
     assert sum(script.count("\n") for script in scripts) > 15_000
     if not IS_WHOLE:
         scripts = scripts[::3]

@@ -15,7 +15,7 @@ from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
 
 if TYPE_CHECKING:
-    from kb_serve.answer.composer import DocsAnswer
+    from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
@@ -172,6 +172,12 @@ def test_a_class_that_was_found_is_told_with_the_members_that_were(
     kb: KnowledgeBase, query: str, name: str
 ) -> None:
     assert name in kb.query(query).text
+
+
+def test_a_method_that_was_found_is_told_with_what_makes_its_instance(kb: KnowledgeBase) -> None:
+    answer = kb.query("check if two meshes overlap")
+    assert answer.hits[0].id == "mathutils.bvhtree.BVHTree.overlap"
+    assert "`mathutils.bvhtree.BVHTree.FromObject(object, depsgraph)`" in answer.text
 
 
 def test_an_argument_that_is_named_comes_first(kb: KnowledgeBase) -> None:

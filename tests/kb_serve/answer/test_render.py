@@ -1,4 +1,4 @@
-"""What an answer shows of a symbol or a page: everything that a coder needs in one look."""
+"""What an answer shows of a symbol: everything that a coder needs in one look."""
 
 from __future__ import annotations
 
@@ -7,16 +7,13 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import classes, of_data, paths
 
-from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Section, Symbol
+from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Symbol
 from kb_build.symbol_lines import is_stand_in, usual_default, written
-from kb_serve.answer import render
-from kb_serve.answer.render import MarkdownRenderer, facts, outline, said_of, with_names
-from kb_serve.knowledge_base import KnowledgeBase
+from kb_serve.answer.property_facts import facts
+from kb_serve.answer.render import MarkdownRenderer
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
-    from pathlib import Path
-
+    from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.reader import BaseReader
 
 ALL = 1_000_000
@@ -316,85 +313,6 @@ def test_the_sockets_of_a_class_come_before_what_all_nodes_say_of_them(kb: Knowl
     assert text.index("Value_001") < text.index("## `bpy.types.Node.inputs`")
 
 
-def test_a_page_shows_where_it_stands_and_every_section(kb: KnowledgeBase) -> None:
-    page = kb.page("physics/cloth/settings/collisions")
-    assert page is not None
-    text = kb.query(page.slug, max_tokens=ALL).text
-    assert "## Physics › Cloth › Settings › Collisions" in text
-    assert page.url in text
-    for section in page.sections:
-        assert section.title in text
-        assert section.text in text
-
-
-@pytest.mark.parametrize(
-    ("levels", "told"),
-    [
-        ((1, 2, 2), "S0, S1, S2"),
-        ((1, *[2] * 30, 1), "S0, S31, and 30 more"),
-        ([1] * 20, ", ".join(f"S{number}" for number in range(16)) + ", and 4 more"),
-    ],
-)
-def test_a_heading_lists_few_sections_all_and_of_many_the_highest(levels: Sequence[int], told: str) -> None:
-    sections = [Section("", f"S{number}", level, "") for number, level in enumerate(levels)]
-    assert outline(sections) == told
-
-
-def test_a_label_of_the_manual_has_its_python_name_beside_it(kb: KnowledgeBase) -> None:
-    text = kb.query("physics/cloth/settings/index", max_tokens=ALL).text
-    assert "**Quality Steps** · `ClothSettings.quality`\n  How many times" in text
-    assert [line for line in text.split("\n") if line.startswith("**") and " · `" in line] == [
-        "**Quality Steps** · `ClothSettings.quality`"
-    ]
-
-
-def test_names_beside_labels_do_not_count_for_what_is_shown(renderer: MarkdownRenderer) -> None:
-    block = next(block for block in renderer.page("physics/cloth/settings/index") if block.plain)
-    assert "`ClothSettings.quality`" in block.text
-    assert block.plain == block.text.replace(" · `ClothSettings.quality`", "")
-
-
-def test_the_section_asked_for_comes_first(renderer: MarkdownRenderer, kb: KnowledgeBase) -> None:
-    page = kb.page("physics/cloth/settings/collisions")
-    assert page is not None
-    last = page.sections[-1]
-    blocks = list(renderer.page(page.slug, last.anchor))
-    assert blocks[1].text.endswith(last.text)
-    assert sorted(block.text for block in blocks) == sorted(block.text for block in renderer.page(page.slug))
-
-
-def test_an_unknown_page_renders_nothing(renderer: MarkdownRenderer) -> None:
-    assert list(renderer.page("nowhere")) == []
-    assert renderer.manual_page("bpy.types.Nothing") == ""
-
-
-def test_a_passage_of_an_engines_page_names_the_engine(base: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(
-        render, "ENGINES", {"physics/cloth/": "An Engine"}
-    )  # the miniature manual has no engine's page
-    with KnowledgeBase(base) as kb:
-        assert "**In the manual** (An Engine › Settings)" in kb.query("ClothSettings.quality").text
-
-
-def test_pages_below_are_listed(kb: KnowledgeBase) -> None:
-    text = kb.query("physics/cloth/index", max_tokens=ALL).text
-    assert "**Pages below**" in text
-    assert "- `physics/cloth/introduction` (Introduction)" in text
-
-
-def test_a_symbol_has_the_manuals_words_from_its_own_place(kb: KnowledgeBase) -> None:
-    text = kb.query("ClothSettings.quality").text
-    assert "**In the manual** (Settings)\nHow many times each frame is solved." in text
-    assert "**In the manual**" not in kb.query("ClothSettings.air_damping").text
-
-
-def test_a_page_that_only_lists_others_says_which(kb: KnowledgeBase, reader: BaseReader) -> None:
-    page = reader.page_entry("physics/cloth/settings/index")
-    assert page is not None
-    assert said_of(page, reader).startswith("Contents: Collisions")
-    assert said_of(page._replace(summary="Of cloth."), reader) == "Of cloth."
-
-
 def test_no_symbol_of_any_kind_fails_to_be_shown(renderer: MarkdownRenderer, reader: BaseReader) -> None:
     for kind in ("module", "class", "property", "function", "operator", "socket", "data", "context", "enum"):
         for path in paths(reader, kind, 150):
@@ -434,21 +352,6 @@ def test_an_argument_shows_its_default_as_the_call_has_it(renderer: MarkdownRend
 def test_a_call_that_is_not_python_shows_the_known_defaults(renderer: MarkdownRenderer) -> None:
     symbol = Symbol("m.f", "function", "m", signature="f(a, [b])", parameters=(Parameter("b", default=1),))
     assert "- `b` (default `1`)" in shown(renderer, symbol)
-
-
-@pytest.mark.parametrize(
-    ("line", "expected"),
-    [
-        ("**Type**", "**Type** · `'X'`"),
-        ("  - **Replay:** As played.", "  - **Replay:** `'X'` · As played."),
-        ("  - **Replay**", "  - **Replay** · `'X'`"),
-        ("As the Final type.", "As the Final type. · `'X'`"),
-    ],
-)
-def test_names_stand_beside_the_term_that_they_are_of(line: str, expected: str) -> None:
-    assert with_names(f"Above.\n{line}\nBelow.", 3, {(3, 1): "`'X'`", (2, 0): "`'Y'`"}) == (
-        f"Above.\n{expected}\nBelow."
-    )
 
 
 @pytest.mark.parametrize(

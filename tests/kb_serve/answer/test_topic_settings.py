@@ -20,11 +20,13 @@ TYPES = "bpy.types."
 BLUR = "render/motion_blur"
 SCATTER = "nodes/volume_scatter"
 SWIRL = "physics/swirl"
+NODES = "modeling/geometry_nodes"
 HELD = {
     BLUR: ("RenderSettings.use_motion_blur", "RenderSettings.motion_blur_shutter"),
     SCATTER: ("ShaderNodeVolumeScatter",),
     "modifiers/mesh_to_volume": ("MeshToVolumeModifier",),
     "modifiers/volume_to_mesh": ("VolumeToMeshModifier",),
+    f"{NODES}/introduction": ("NodesModifier",),
     "physics/ocean": ("OceanModifier", "OceanModifier.damping", "OceanModifier.depth"),
 }
 PAGES = (
@@ -43,6 +45,14 @@ PAGES = (
         for title in ("Mesh to Volume", "Volume to Mesh")
     ),
     Page(SWIRL, "manual", "5.1", "Turbulence", (Section("t", "Turbulence", 1, "A force that whirls."),)),
+    Page(
+        f"{NODES}/index", "manual", "5.1", "Geometry Nodes", (Section("g", "Geometry Nodes", 1, "A system of nodes."),),
+        children=(f"{NODES}/introduction",),
+    ),
+    Page(
+        f"{NODES}/introduction", "manual", "5.1", "Introduction",
+        (Section("i", "Introduction", 1, "A modifier runs them."),), breadcrumbs=("Geometry Nodes",),
+    ),
     Page("render/film", "manual", "5.1", "Film", (Section("f", "Film", 1, "It says nothing of settings."),)),
 )  # fmt: skip
 
@@ -51,7 +61,7 @@ def _symbols(reader: BaseReader) -> list[Symbol]:
     """A few classes of Blender with their members and what they are derived from."""
     owners = (
         "RenderSettings", "ShaderNodeVolumeScatter", "ShaderNode", "Node", "NodeInternal", "OceanModifier", "Modifier",
-        "MeshToVolumeModifier", "VolumeToMeshModifier",
+        "NodesModifier",        "MeshToVolumeModifier", "VolumeToMeshModifier",
         "FieldSettings", "Material", "NodeTree", "ShaderNodeTree", "bpy_struct", "BlendData", "BlendDataMaterials",
         "Object", "ObjectModifiers", "Nodes", "NodeLinks", "Context", "ID",
     )  # fmt: skip
@@ -111,6 +121,14 @@ def test_a_setting_is_told_once_and_its_class_with_it(topics: KnowledgeBase) -> 
     text = topics.query("motion blur").text
     assert text.count("`motion_blur_shutter`") == 1
     assert "bpy.types.RenderSettings.motion_blur_shutter`" not in text
+
+
+def test_an_overview_is_not_headed_by_what_one_has_to_know_of_one_class(topics: KnowledgeBase) -> None:
+    answer = topics.query("geometry nodes")
+    assert (answer.kind, answer.hits[0].id) == ("page", f"{NODES}/index")
+    assert f"`{TYPES}NodesModifier`" in answer.text
+    assert answer.notes == ()
+    assert topics.query(f"{TYPES}NodesModifier").notes
 
 
 def test_a_page_that_sets_nothing_is_no_topic(topics: KnowledgeBase) -> None:

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
+from told_by_blender import told_by_blender
 
 from kb_serve.recognise.changed_by import CHANGED_BY, changed_by
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kb_serve.knowledge_base import KnowledgeBase
 
 # Property → (a statement that Blender refuses, statements that change it, what is true before and after them).
@@ -197,11 +193,7 @@ open(sys.argv[-1], "w").write(json.dumps(said))
 @pytest.fixture(scope="module")
 def tried(tmp_path_factory: pytest.TempPathFactory) -> dict[str, tuple[str, bool, bool]]:
     """Property → what Blender says to an assignment, and what is true before and after what changes it."""
-    file: Path = tmp_path_factory.mktemp("changed") / "tried.json"
-    file.write_text(json.dumps(_TRIED))
-    run = [sys.executable, "-P", "-c", _RUN, str(file)]
-    subprocess.run(run, check=True, timeout=120, capture_output=True, cwd=file.parent)
-    return json.loads(file.read_text())
+    return told_by_blender(_RUN, tmp_path_factory.mktemp("changed"), _TRIED)
 
 
 def test_each_is_refused_and_then_changed(

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
+from told_by_blender import told_by_blender
 
 from kb_serve.recognise.elements import ADDED_BY, REMOVED_BY
 
@@ -134,11 +132,8 @@ open(sys.argv[-1], "w").write(json.dumps(counts))
 
 def _tried(folder: Path, table: dict[str, tuple[str, str, int]]) -> list[tuple[list[str], int]]:
     """For each collection which functions it has, and by how many elements it grows."""
-    file = folder / "tried.json"
-    file.write_text(json.dumps([(collection, change) for collection, change, _ in table.values()]))
-    run = [sys.executable, "-P", "-c", _RUN, str(file)]
-    subprocess.run(run, check=True, timeout=120, capture_output=True, cwd=folder)
-    return [(own, grown) for own, grown in json.loads(file.read_text())]
+    asked = [(collection, change) for collection, change, _ in table.values()]
+    return [(own, grown) for own, grown in told_by_blender(_RUN, folder, asked)]
 
 
 @pytest.mark.parametrize("table", [_ADDED, _REMOVED], ids=["adds", "removes"])

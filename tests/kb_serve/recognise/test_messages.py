@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-import json
 import re
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
+from told_by_blender import told_by_blender
 
 from kb_serve.recognise.message_patterns import prose_of
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kb_serve.knowledge_base import KnowledgeBase
 
 SPHERE = "bpy.ops.mesh.primitive_uv_sphere_add"
@@ -400,10 +396,7 @@ def test_a_former_name_is_said_to_fail_only_where_it_does(
 @pytest.fixture(scope="module")
 def nodes_that_refuse_fac(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
     """The nodes of this environment's Blender with a socket `Factor` that one does not get as `Fac`."""
-    file: Path = tmp_path_factory.mktemp("nodes") / "nodes.json"
-    run = [sys.executable, "-P", "-c", _NODES, str(file)]
-    subprocess.run(run, check=True, timeout=120, capture_output=True)
-    return set(json.loads(file.read_text()))
+    return set(told_by_blender(_NODES, tmp_path_factory.mktemp("nodes")))
 
 
 _NODES = """

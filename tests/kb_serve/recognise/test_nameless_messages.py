@@ -2,20 +2,16 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
 from places import REPO
+from told_by_blender import told_by_blender
 
 from kb_build.summaries.shipped import ShippedSummary
 from kb_serve.recognise.messages.nameless_messages import NAMELESS_MESSAGES
 
 if TYPE_CHECKING:
-    from pathlib import Path
-
     from kb_serve.knowledge_base import KnowledgeBase
 
 _STATEMENTS = """\
@@ -221,12 +217,7 @@ open(sys.argv[-1], "w").write(json.dumps(messages))
 @pytest.fixture(scope="module")
 def messages(tmp_path_factory: pytest.TempPathFactory) -> list[str]:
     """What Blender says to each of the statements."""
-    folder: Path = tmp_path_factory.mktemp("messages")
-    file = folder / "messages.json"
-    file.write_text(json.dumps(_STATEMENTS))
-    run = [sys.executable, "-P", "-c", _RUN, str(file)]
-    subprocess.run(run, check=True, timeout=120, capture_output=True, cwd=folder)
-    return json.loads(file.read_text())
+    return told_by_blender(_RUN, tmp_path_factory.mktemp("messages"), _STATEMENTS)
 
 
 def test_blender_says_each_of_the_messages(messages: list[str]) -> None:

@@ -346,12 +346,26 @@ def test_a_lone_name_is_said_to_be_none_only_if_it_is_none(kb: KnowledgeBase, re
     for name in random.Random(SEED).sample(names, examples(100)):
         turned = "_".join(reversed(name.split("_"))).strip("_")
         is_none = not reader.by_key(key(turned)) and not turned.isupper() and "_" in turned
-        is_none = is_none and turned.isidentifier()
+        is_none = is_none and turned.isidentifier()  # what is none is read as words, not as a name
         for written, expected in ((name, False), (turned, is_none)):
             answer = kb.query(written, max_tokens=200)
             said = any(note.startswith(f"Nothing is called `{written}`") for note in answer.notes)
             assert said <= expected, (written, answer.notes)
             assert said or not expected or answer.notes, written
+
+
+@pytest.mark.parametrize(
+    ("query", "path"),
+    [
+        ("2d_pack_box", "mathutils.geometry.box_pack_2d"),
+        ("2d_circle_draw", "gpu_extras.presets.draw_circle_2d"),
+        ("75_undistorted_build", "bpy.types.MovieClipProxy.build_undistorted_75"),
+    ],
+)
+def test_what_can_be_no_name_is_found_by_its_words(kb: KnowledgeBase, query: str, path: str) -> None:
+    answer = kb.query(query)
+    assert path in [hit.id for hit in answer.hits[:3]]
+    assert answer.notes == ()
 
 
 def test_a_right_name_is_not_corrected(kb: KnowledgeBase, reader: BaseReader) -> None:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 
     from built_base import Built
 
-    from kb_serve.answer.composer import DocsAnswer
+    from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.service import Service
 
     MakeBase = Callable[..., Path]

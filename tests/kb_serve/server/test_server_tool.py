@@ -16,7 +16,8 @@ from mcp import Client
 from mcp.shared.exceptions import MCPError
 
 from kb_serve.answer.budget import tokens
-from kb_serve.answer.composer import DocsAnswer, Hit
+from kb_serve.answer.docs_answer import DocsAnswer
+from kb_serve.answer.hits import Hit
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.server import make_server
 from kb_serve.service import Service

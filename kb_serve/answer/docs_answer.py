@@ -1,0 +1,77 @@
+"""Answers as their caller gets them: as many parts of a draft as fit, and how to get the others."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
+
+from kb_serve.answer.budget import AnswerBlock, clip, cut, names_of, shown, tokens
+from kb_serve.answer.next_call import next_call
+from kb_serve.errors import BadQuery
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Sequence
+
+    from kb_serve.answer.budget import AnswerPart
+    from kb_serve.answer.hits import Hit
+
+AnswerKind = Literal["schema", "page", "candidates", "none"]
+_FOOTER_TOKENS = 70
+_NOTES_TOKENS = 500
+
+
+@dataclass(frozen=True, slots=True)
+class DocsAnswer:
+    """What ``blender_docs`` returns. ``text`` is Markdown: what fits of the ``parts``, from ``part`` on, within the
+    token budget; ``next_part`` is the one to go on with, 0 at the end.
+    """
+
+    kind: AnswerKind
+    text: str
+    hits: tuple[Hit, ...] = ()
+    notes: tuple[str, ...] = ()
+    part: int = 1
+    parts: int = 1
+    next_part: int = 0
+
+
+@dataclass(frozen=True, slots=True)
+class Draft:
+    """The whole answer."""
+
+    kind: AnswerKind
+    hits: tuple[Hit, ...]
+    notes: tuple[str, ...]
+    parts: Sequence[AnswerPart]
+
+
+def draft_of(
+    kind: AnswerKind, hits: tuple[Hit, ...], notes: Sequence[str], blocks: Iterable[AnswerBlock]
+) -> Draft:
+    """A draft of some blocks. Notes stand above the answer."""
+    above = clip("\n".join(f"> {note}" for note in notes), _NOTES_TOKENS)
+    lead = (AnswerBlock(above, "notes"),) if above else ()
+    return Draft(kind, hits, tuple(notes), cut((*lead, *blocks)))
+
+
+def paged(query: str, draft: Draft, max_tokens: int, part: int, command: str) -> DocsAnswer:
+    """As many parts of a draft as fit, from ``part`` on; what is left, and how to get it. Raises BadQuery."""
+    parts = draft.parts
+    if part > len(parts):
+        raise BadQuery(f"part={part} does not exist: this answer has {len(parts)} part(s).")
+    text, after = shown(parts, part - 1, max_tokens)
+    if after == len(parts):
+        return DocsAnswer(draft.kind, text, draft.hits, draft.notes, part, len(parts))
+    text, after = shown(parts, part - 1, max_tokens - _FOOTER_TOKENS)
+    call = next_call(query, after + 1, command)
+    footer = _footer(call, range(part, after + 1), len(parts), names_of(parts[after:]))
+    return DocsAnswer(draft.kind, f"{text}\n\n{footer}", draft.hits, draft.notes, part, len(parts), after + 1)
+
+
+def _footer(call: str, seen: range, parts: int, left: Sequence[str]) -> str:
+    """What is left, and the call that gets it; with a blank line above it within ``_FOOTER_TOKENS``."""
+    span = f"Part {seen[0]}" if len(seen) == 1 else f"Parts {seen[0]} to {seen[-1]}"
+    head = f"_{span} of {parts}. Left: "
+    tail = f". Next: {call}_"
+    names = clip(", ".join(left), _FOOTER_TOKENS - 1 - tokens(head + tail))
+    return head + names + tail

@@ -1,0 +1,100 @@
+"""A line for each symbol or page that was found beside the best one."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.symbol_lines import first_sentence, written
+from kb_serve.answer.asked_values import asked_values, may_have_more
+from kb_serve.answer.budget import AnswerBlock, clip
+from kb_serve.answer.pages import said_of
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_serve.answer.asked_values import AskedValue
+    from kb_serve.answer.hits import Hit
+    from kb_serve.rank.merging import RankedId
+    from kb_serve.reader import BaseReader, SymbolEntry
+
+NAMES = "further names"
+_LINE_TOKENS = 60
+
+
+class HitLines:
+    """Words what was found in one base, a line each."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def further(
+        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str] = ()
+    ) -> Iterator[AnswerBlock]:
+        """A line for each further hit: symbols, then pages. ``asked`` are the question's words."""
+        further = list(zip(hits, rows, strict=True))
+        for title, name, are_pages in (
+            ("In Python", NAMES, False),
+            ("Pages", "further pages", True),
+        ):
+            lines = [
+                f"- {self.line(hit, row)}{self._values(hit, asked)}"
+                for hit, row in further
+                if hit.is_page == are_pages
+            ]
+            if lines:
+                yield AnswerBlock(f"**{title}**\n" + "\n".join(lines), name)
+
+    def line(self, hit: Hit, row: RankedId) -> str:
+        """What a hit is, with the members that were found with it."""
+        entry = None if hit.is_page else self._reader.entry(hit.id)
+        if entry is not None:
+            owner = f"{entry.owner}." if entry.kind != "socket" else ""
+            text = (
+                entry.line.partition(" — ")[2]
+                if entry.kind in {"operator", "function", "class"}
+                else entry.line
+            )
+            path = self._written(hit.id) if entry.kind == "socket" else hit.id
+            name = path[len(entry.owner) + 1 :] if entry.kind == "socket" else entry.name
+            if entry.kind == "operator" and text == entry.label:  # which its name says already
+                text = ""
+            text = text.removeprefix(f"`{name}`").strip(", ·") or self._instead_of_words(entry)
+            nearest = f" — nearest: {', '.join(f'`.{name}`' for name in row.members)}" if row.members else ""
+            return clip(f"`{owner + entry.name if owner else path}` {text}", _LINE_TOKENS) + nearest
+        page = self._reader.page_entry(hit.id)
+        text = first_sentence(said_of(page, self._reader)) if page else ""
+        return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
+
+    def members(self, row: RankedId) -> Iterator[str]:
+        """A line for each of the members that were found with their class."""
+        self._reader.entry.load(f"{row.id}.{name}" for name in row.members)
+        for name in row.members:
+            entry = self._reader.entry(f"{row.id}.{name}")
+            yield f"- {entry.line if entry else f'`{name}`'}"
+
+    def asked(self, hit: Hit, asked: Sequence[str]) -> list[AskedValue]:
+        """The arguments and values of a hit that the question speaks of."""
+        entry = None if not asked or hit.is_page else self._reader.entry(hit.id)
+        if entry is None or not may_have_more(entry.kind, entry.line):
+            return []
+        symbol = self._reader.symbol(hit.id)
+        return asked_values(symbol, asked) if symbol else []
+
+    def _values(self, hit: Hit, asked: Sequence[str]) -> str:
+        values = [f"`{value.text}`" for value in self.asked(hit, asked)]
+        return f" — asked for: {', '.join(values)}" if values else ""
+
+    def _written(self, path: str) -> str:
+        symbol = self._reader.symbol(path)
+        return written(symbol) if symbol else path
+
+    def _instead_of_words(self, entry: SymbolEntry) -> str:
+        """What is said of a symbol without a description: its call, or how many members it has."""
+        if entry.kind != "class":
+            return entry.head if "(" in entry.line else ""
+        members = self._reader.members(entry.path)
+        uses = [] if members else self._reader.uses(entry.path)
+        if uses and uses[0].code.startswith("@"):
+            return f"a decorator of functions: `{uses[0].code.splitlines()[0]}`"
+        label = f"{entry.label}, " if entry.label not in {"", entry.name} else ""
+        return f"{label}a class with {len(members)} members"

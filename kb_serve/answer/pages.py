@@ -1,0 +1,140 @@
+"""Pages of the manual and of guides as Markdown, and what they say of symbols."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.symbol_lines import first_sentence, passage_text
+from kb_serve.answer.budget import AnswerBlock
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from kb_build.records import Section
+    from kb_serve.reader import BaseReader, PageEntry
+
+_SHORT_PAGE = 80  # letters
+_OUTLINE = 16  # sections that a heading lists
+# What the manual says of a setting may be true of one engine only.
+ENGINES = {"render/eevee/": "EEVEE", "render/cycles/": "Cycles", "render/workbench/": "Workbench"}
+_BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
+
+
+def page_blocks(slug: str, reader: BaseReader, anchor: str = "") -> Iterator[AnswerBlock]:
+    """A page of the manual or a guide; the section ``anchor`` comes first."""
+    page, entry = reader.page(slug), reader.page_entry(slug)
+    if page is None or entry is None:
+        return
+    names = reader.label_names(slug)
+    above = " › ".join((*page.breadcrumbs, page.title))
+    head = f"## {above}{_beside(names, 0, -1)}\n\n{page.url or slug}"
+    if len(page.sections) > 2:
+        head += f"\n\nSections: {outline(page.sections[1:])}"
+    yield AnswerBlock(head, "heading")
+    sections = sorted(enumerate(page.sections), key=lambda item: not _leads_to(anchor, item[1]))
+    for number, section in sections:
+        if section.text:
+            heading = f"{'#' * min(6, section.level + 2)} {section.title}"
+            plain = f"{heading}\n\n{section.text}"
+            if number:  # the page's own name stands in its head
+                heading += _beside(names, number, -1)
+            text = f"{heading}\n\n{with_names(section.text, number, names)}"
+            yield AnswerBlock(text, section.title, plain)
+    below = reader.page_children(slug)
+    if below:
+        yield AnswerBlock(
+            "**Pages below**\n" + "\n".join(_page_line(page, reader) for page in below), "pages below"
+        )
+    elif sum(len(section.text) for section in page.sections) < _SHORT_PAGE:  # it only says where to look
+        linked = [entry for link in page.links if (entry := reader.page_entry(link))]
+        if linked:
+            yield AnswerBlock("**See**\n" + "\n".join(_page_line(page, reader) for page in linked), "see")
+
+
+def _page_line(page: PageEntry, reader: BaseReader) -> str:
+    """A page on one line: its address, its title, and what it says."""
+    return f"- `{page.slug}` ({page.title}) {first_sentence(said_of(page, reader))}".rstrip()
+
+
+def passage_block(path: str, reader: BaseReader) -> Iterator[AnswerBlock]:
+    """What the manual says about a symbol."""
+    found = reader.passage(path)
+    page = reader.page(found[0]) if found else None
+    if found is None or page is None:
+        return
+    section = page.sections[found[1]]
+    engine = next((f"{name} › " for start, name in ENGINES.items() if page.slug.startswith(start)), "")
+    where = engine + (page.title if found[1] == 0 else f"{page.title} › {section.title}")
+    named = with_names(section.text, found[1], reader.label_names(page.slug))
+    if text := passage_text(named, found[2]):
+        yield AnswerBlock(f"**In the manual** ({where})\n{text}", "the manual's words")
+
+
+def manual_page(path: str, reader: BaseReader) -> str:
+    """The URL of a symbol's manual page, by Blender's own table; empty for none."""
+    for target in reader.manual_links(path):
+        slug, _, anchor = target.partition("#")
+        page = reader.page_entry(slug)
+        if page:
+            return page.url + (f"#{anchor}" if anchor else "")
+    return ""
+
+
+def load_manual_pages(paths: Iterable[str], reader: BaseReader) -> None:
+    """Reads what ``manual_page`` needs for some symbols, all at once."""
+    paths = list(paths)
+    reader.manual_links.load(paths)
+    targets = (target for path in paths for target in reader.manual_links(path))
+    reader.page_entry.load(target.partition("#")[0] for target in targets)
+
+
+def said_of(page: PageEntry, reader: BaseReader) -> str:
+    """A page's summary; of a page that only lists others, which these are."""
+    if summary := own_summary(page):
+        return summary
+    titles = ", ".join(child.title for child in reader.page_children(page.slug))
+    return f"Contents: {titles}" if titles else ""
+
+
+def own_summary(page: PageEntry) -> str:
+    """A page's summary; empty for a page that only lists others."""
+    said = page.summary.removeprefix(page.title).lstrip(". ")
+    return "" if not said or said.startswith("Contents: ") else page.summary
+
+
+def with_names(text: str, section: int, names: Mapping[tuple[int, int], str]) -> str:
+    """A section's text, the names that scripts have for its labels beside them."""
+    if not names:
+        return text
+    return "\n".join(
+        _named(line, name) if (name := names.get((section, number))) else line
+        for number, line in enumerate(text.split("\n"))
+    )
+
+
+def _beside(names: Mapping[tuple[int, int], str], section: int, line: int) -> str:
+    """What is added to a label: the names that scripts have for it."""
+    name = names.get((section, line))
+    return f" · {name}" if name else ""
+
+
+def _named(line: str, names: str) -> str:
+    """A line of a section with names: beside the term of a list, else at its end."""
+    bullet = _BULLET.match(line)
+    if bullet is None or bullet.end() == len(line):
+        return f"{line} · {names}"
+    return f"{bullet[0].rstrip()} {names} · {line[bullet.end() :]}"
+
+
+def outline(sections: Sequence[Section]) -> str:
+    """The titles of sections; of many, those of the highest level, as far as there is room for them."""
+    highest = min(section.level for section in sections)
+    many = len(sections) > _OUTLINE
+    titles = [section.title for section in sections if not many or section.level == highest]
+    left = len(sections) - len(titles[:_OUTLINE])
+    return ", ".join(titles[:_OUTLINE]) + (f", and {left} more" if left else "")
+
+
+def _leads_to(anchor: str, section: Section) -> bool:
+    return bool(anchor) and (section.anchor == anchor or any(name == anchor for name, _ in section.marks))

@@ -1,0 +1,121 @@
+"""How a symbol is reached and made, since when it is there, and where the manual tells of it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.records import EVALUATED, NAMES_ITEMS, WITHOUT_ACTIVE, WITHOUT_AREA
+from kb_build.symbol_lines import (
+    alike_nodes,
+    default_text,
+    empty_when_new,
+    fillers,
+    new_subscript,
+    of_evaluated,
+)
+from kb_serve.answer.calls_before import calls_before
+from kb_serve.answer.makers_of_instances import told_makers
+from kb_serve.answer.pages import manual_page
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Symbol
+    from kb_serve.reader import BaseReader
+
+_NODE = f"{TYPES}Node"
+_NONE_IN_CONTEXT = {
+    WITHOUT_ACTIVE: "`None` where no object is active",
+    WITHOUT_AREA: "`None` outside the areas of windows, as in a Blender without a window",
+}
+
+
+def place_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
+    """How to reach and to make the symbol, the version that introduced it, and its manual page."""
+    if reached := reached_as(symbol, reader):
+        if EVALUATED in symbol.flags:
+            yield "filled on evaluated objects only: the original's stays empty, or None"
+        cls = _owning_class(symbol, reader)
+        yield f"reached as `{reached}`" + (_empty_before(cls, reader) if cls else "")
+    elif symbol.kind == "context":
+        if origin := symbol.flagged("from:"):
+            yield f"provided by: {', '.join(origin)}"
+        yield from (text for flag, text in _NONE_IN_CONTEXT.items() if flag in symbol.flags)
+    if symbol.kind == "class" and (creation := reader.creations([symbol.path]).get(symbol.path)):
+        calls = [*calls_before(reader, symbol.path, creation.call), creation.call]
+        yield "made by " + ", then ".join(f"`{call}`" for call in calls)
+    yield from told_makers(symbol, reader)
+    if target := _assigned(symbol, reader):
+        yield f"assign `{target}`"
+    if symbol.type == "collection" and (key := _key_of(TYPES + symbol.target, reader)):
+        yield f'items by index, or by their `{key}`: `{symbol.name}["…"]`'
+    if symbol.trees:
+        yield "node of: " + ", ".join(symbol.trees)
+    elif symbol.kind == "class" and _is_node(symbol.path, reader):
+        alike = (reader.symbol(path) for path in alike_nodes(symbol.name))
+        taken = ", ".join(f"`{node.name}`" for node in alike if node and node.trees)
+        yield "no node tree takes it: `nodes.new` refuses it" + (f"; it takes {taken}" if taken else "")
+    version, lacked = reader.arrival(symbol.path)
+    if version:
+        yield f"since Blender {version}" + (f" or a little before ({lacked} lacks it)" if lacked else "")
+    if page := manual_page(symbol.path, reader):
+        yield f"manual: {page}"
+
+
+def reached_as(symbol: Symbol, reader: BaseReader) -> str:
+    """The expression that leads to a symbol from the context; empty where none is known."""
+    cls = _owning_class(symbol, reader)
+    reached = cls.reached if cls else ""
+    if not reached or symbol.kind not in {"class", "property", "socket", "function"}:
+        return ""
+    if symbol.is_called_back:  # by Blender, not by scripts
+        return ""
+    last = symbol.path[len(symbol.owner) :] if symbol.kind != "class" else ""
+    if symbol.kind == "socket" and (subscript := new_subscript(symbol)):
+        last = f".{subscript}"
+    if EVALUATED in symbol.flags:
+        reached = of_evaluated(reached)
+    return f"{reached}{last}" + ("(…)" if symbol.kind == "function" else "")
+
+
+def _owning_class(symbol: Symbol, reader: BaseReader) -> Symbol | None:
+    return symbol if symbol.kind == "class" else reader.symbol(symbol.owner)
+
+
+def _key_of(cls: str, reader: BaseReader) -> str:
+    """The property, not called ``name``, by whose value collections find instances of a class; empty for none."""
+    if reader.member_of(cls, "name"):
+        return ""
+    for ancestor in reader.lineage(cls):
+        for member in reader.members(ancestor.path).values():
+            symbol = reader.symbol(member.path) if member.type == "string" else None
+            if symbol and NAMES_ITEMS in symbol.flags:
+                return member.name
+    return ""
+
+
+def _is_node(path: str, reader: BaseReader) -> bool:
+    """Whether a class is one of nodes, below the class of all of them."""
+    return path != _NODE and any(base.path == _NODE for base in reader.lineage(path))
+
+
+def _empty_before(cls: Symbol, reader: BaseReader) -> str:
+    """Where a pointer that leads to instances of a class is None on new things: that, and what fills it."""
+    pointer = reader.symbol(cls.lacks) if cls.lacks else None
+    if pointer is None:
+        return ""
+    if tree := _assigned(pointer, reader):
+        return f"; `{pointer.name}` is {default_text(pointer)}: assign `{tree}`"
+    is_told = fillers(pointer) or pointer.type == "collection"
+    return f"; `{pointer.name}` is {default_text(pointer)}" if is_told else ""
+
+
+def _assigned(symbol: Symbol, reader: BaseReader) -> str:
+    """The call that makes the one kind of node tree that a pointer takes which is None on a new thing."""
+    is_tree = symbol.target.endswith("NodeTree") and "readonly" not in symbol.flags
+    if not is_tree or empty_when_new(symbol) is None:
+        return ""
+    target = TYPES + symbol.target
+    creation = reader.creations([target]).get(target)
+    return creation.call if creation else ""

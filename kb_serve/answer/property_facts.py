@@ -1,0 +1,98 @@
+"""What is told of a property or socket in a word or two each: type, default, range, unit."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.records import STOPS, UNBOUNDED
+from kb_build.symbol_lines import default_text, is_locked, locked_text, shown_when, subscripts_text, type_text
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_build.records import Symbol
+
+UNITS = {
+    "LENGTH": "metres", "ROTATION": "radians", "TIME": "frames", "TIME_ABSOLUTE": "seconds", "MASS": "kg",
+    "VELOCITY": "m/s", "ACCELERATION": "m/s²", "AREA": "m²", "VOLUME": "m³", "CAMERA": "mm", "POWER": "W",
+    "TEMPERATURE": "K", "WAVELENGTH": "nm", "COLOR_TEMPERATURE": "K", "FREQUENCY": "Hz",
+}  # fmt: skip
+_NO_NUMBERS = frozenset(
+    {"string", "pointer", "collection", "boolean", "enum"}
+)  # RNA gives some of them units
+_SHOWN_FLAGS = (
+    "readonly",
+    "animatable",
+    "enum-flag",
+    "static",
+    "classmethod",
+    "hidden-by-default",
+)
+_NEVER_NONE = "never-none"
+
+
+def facts(symbol: Symbol) -> Iterator[str]:
+    """The one-line facts of a property or socket."""
+    if symbol.type:
+        yield f"type: `{type_text(symbol)}`"
+    if symbol.kind == "socket" and (text := subscripts_text(symbol)):
+        yield text
+    if text := default_text(symbol):
+        yield f"default: {text}"
+    yield from _range_facts(symbol)
+    if symbol.unit and symbol.type not in _NO_NUMBERS:
+        yield f"unit: {UNITS.get(symbol.unit, symbol.unit.lower())}"
+    if symbol.subtype and symbol.subtype not in {"UNSIGNED"}:
+        yield f"subtype: {symbol.subtype}"
+    if flags := [flag for flag in symbol.flags if flag in _SHOWN_FLAGS and not symbol.is_called_back]:
+        yield ", ".join(flags)
+    if _NEVER_NONE in symbol.flags and symbol.type == "pointer" and not is_locked(symbol):
+        yield "cannot be set to `None`"
+    if text := locked_text(symbol):
+        yield text
+    if shown := shown_when(symbol):
+        yield f"shown when {shown}"
+
+
+def _range_facts(symbol: Symbol) -> Iterator[str]:
+    """What a number may be: its range as RNA has it, and as tried."""
+    if symbol.hard_min is not None or symbol.hard_max is not None:
+        text = f"range: {range_text(symbol.hard_min, symbol.hard_max, symbol.type)}"
+        if (symbol.soft_min, symbol.soft_max) not in {(symbol.hard_min, symbol.hard_max), (None, None)}:
+            text += f" (usual: {range_text(symbol.soft_min, symbol.soft_max, symbol.type)})"
+        yield text + _not_kept(symbol)
+    elif symbol.soft_min is not None or symbol.soft_max is not None:
+        usual = f"usual: {range_text(symbol.soft_min, symbol.soft_max, symbol.type)}"
+        yield usual if symbol.flagged(STOPS) else f"{usual}, no limit"
+    if text := _stops_text(symbol):
+        yield text
+
+
+def range_text(low: float | None, high: float | None, kind: str) -> str:
+    """The range of a number; ``kind`` is its type, as symbols have it: integers are written whole."""
+    digits = ".0f" if kind.startswith("int") else "g"
+    left = "−∞" if low is None else f"{low:{digits}}"
+    right = "∞" if high is None else f"{high:{digits}}"
+    return f"{left} … {right}"
+
+
+def _not_kept(symbol: Symbol) -> str:
+    """Which end of a range Blender does not keep to, as tried."""
+    ends = symbol.flagged(UNBOUNDED)
+    sides = {"min": "below", "max": "above"}
+    return f", not enforced: a value {' or '.join(sides[end] for end in ends)} stays" if ends else ""
+
+
+def _stops_text(symbol: Symbol) -> str:
+    """Where a number of a new thing stops before the end of its range, as tried."""
+    ends = dict(stop.split("=") for stop in symbol.flagged(STOPS))
+    match ends.get("min"), ends.get("max"):
+        case None, None:
+            return ""
+        case low, None:
+            kept = f"no less than {low}"
+        case None, high:
+            kept = f"no more than {high}"
+        case low, high:
+            kept = f"only {low}" if low == high else f"{low} … {high}"
+    return f"a new one keeps {kept} (what else is set decides)"

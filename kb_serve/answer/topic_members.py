@@ -1,0 +1,104 @@
+"""The classes and operators that belong to a topic, by what they weigh."""
+
+from __future__ import annotations
+
+import re
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, terms
+from kb_serve.answer.steps.topic_names import TopicNames
+from kb_serve.answer.topic_pages import subtree
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.reader import BaseReader
+
+_PARTS_OF_A_WINDOW = ("panel", "panels")
+_MEMBERS = 6
+_NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
+_ASIDE = 0.2
+_OWN_NAMES = re.compile(r"Node|\.Theme|ViewerPath")  # what is asked for by its own name
+_ON_ITS_MODULE = 2.0
+_UNUSUAL = 0.2  # presets, and what interface code calls
+
+
+class TopicMembers:
+    """Finds what belongs to the topics of one base."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def names(self, slug: str, title: str) -> TopicNames:
+        """The classes and operators of a topic: those that its pages explain, and those with its name."""
+        last = _without_place(slug.removesuffix("/index").rpartition("/")[2].replace("_", " "))
+        title = _without_place(title)
+        words = dict.fromkeys((frozenset(terms(title)), frozenset(terms(last))))
+        names = TopicNames(
+            frozenset({key(title), key(last)}),
+            tuple(filter(None, words)),
+            frozenset()
+            if self._reader.page_children(slug)
+            else frozenset(self._reader.symbols_of_page(slug)),
+            title=key(title),
+        )
+        nearness: dict[str, float] = {}
+        for below, depth in subtree(slug, self._reader).items():
+            for path in self._reader.symbols_of_page(below):
+                nearness.setdefault(path, _NEAR if depth < 2 else _FAR)
+        is_operated = any(
+            names.names(path.rpartition(".")[2]) for path in nearness if not path.startswith(TYPES)
+        )
+        for path, words in self._classes.items():
+            if is_operated and path not in nearness and _OWN_NAMES.search(path):
+                continue
+            if any(wanted <= words for wanted in names.words) and not self._is_elsewhere(
+                path, words, names, slug
+            ):
+                nearness[path] = _NAMED * nearness.get(path, _ASIDE if _OWN_NAMES.search(path) else _FAR)
+        for module in names.keys:
+            for path in self._reader.operators_of(module):
+                nearness[path] = _ON_ITS_MODULE * _NEAR
+        weights = self._weights(nearness)
+        for path, near in sorted(nearness.items(), key=lambda row: (-row[1] * weights[row[0]], row[0])):
+            entry = self._reader.entry(path)
+            if entry is not None and entry.kind == "operator":
+                names.operators[path] = near * weights[path] * (_UNUSUAL if "preset" in entry.name else 1)
+            elif entry is not None and entry.kind == "class" and entry.group == "data":
+                names.classes[path] = near * weights[path]
+        names.operators = dict(sorted(names.operators.items(), key=lambda row: -row[1]))
+        return names
+
+    def _is_elsewhere(self, path: str, words: frozenset[str], names: TopicNames, slug: str) -> bool:
+        """Whether a class has the words of a page's address and others, the page explains other classes, and those of
+        another part of the manual alone explain this one: the baking of textures is none of physics.
+        """
+        is_own = names.is_called(path) or any(wanted <= words for wanted in names.words[:1])
+        if is_own or names.explained.isdisjoint(self._classes):
+            return False
+        parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
+        return bool(parts) and slug.partition("/")[0] not in parts
+
+    @cached_property
+    def _classes(self) -> dict[str, frozenset[str]]:
+        """Every data class with the words of its name."""
+        return {path: frozenset(terms(name)) for path, name in self._reader.data_classes}
+
+    def _weights(self, paths: Iterator[str] | dict[str, float]) -> dict[str, float]:
+        """What symbols count: themselves, and of a class the heaviest of its members."""
+        own = self._reader.weights(list(paths))
+        totals: dict[str, float] = {}
+        for path in paths:
+            totals[path] = 0.5 + own.get(path, 0.0)
+        members = self._reader.member_weights([path for path in paths if path in self._classes])
+        for path, heaviest in members.items():
+            totals[path] += sum(sorted(heaviest, reverse=True)[:_MEMBERS]) / _MEMBERS
+        return totals
+
+
+def _without_place(title: str) -> str:
+    """A title without the part of Blender's window at its end, in which what it names is: Shape Keys of a panel."""
+    name, _, last = title.rpartition(" ")
+    return name if name and last.lower() in _PARTS_OF_A_WINDOW else title

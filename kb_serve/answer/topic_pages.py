@@ -1,0 +1,160 @@
+"""Which page of the manual a few words mean: ``cloth``, ``how do I add an array modifier``."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, topic_key
+from kb_serve.recognise.enum_values import is_quoted_value
+
+if TYPE_CHECKING:
+    from kb_serve.answer.topic_settings import TopicSettings
+    from kb_serve.reader import BaseReader, PageEntry
+
+_ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
+_SELDOM = (
+    "grease_pencil/",
+    "render/freestyle/",
+    "editors/texture_node/",
+)  # seldom meant by who does not say so
+_WHAT_IS = re.compile(r"(?:what(?:'s|\s(?:is|are))|explain)\s(?:an?\s|the\s)?", re.I)
+_MADE_FROM = re.compile(
+    r"(?:(?:make|get|create|build)\s+)?(?:an?\s+|the\s+)?(?P<made>\w.*?)\s+from\s+(?:an?\s+|the\s+)?(?P<source>\w.*)",
+    re.I,
+)
+# Who asks for one of these wants to know how it is made, whatever it is put on.
+_MAKING = re.compile(
+    r"(?:how\s(?:do\si|to|can\si)\s)?(?:add|create|make|put|insert|apply|use)\s(?:an?\s|the\s|new\s)*"
+    r"(?P<made>\w.*?\s(?:modifier|constraint|node|strip))"
+    r"(?:\s(?:to|on|onto|for|in|into)\s(?:an?\s|the\s|my\s|this\s)?(?:\w+\s?){1,3})?"
+    r"(?:\s(?:from|by|in|via|with|using|through)\s(?:an?\s|the\s)?(?:python|script|code|bpy|api))?",
+    re.I,
+)
+# Nodes of one name are told apart by where they are.
+_WHERE = re.compile(
+    r"\s(?:in|of|for)\s(?:the\s)?(?:composit(?:or|ing)|geometry\snodes?|shaders?(?:\s(?:nodes?|editor))?)\b",
+    re.I,
+)
+_CHAPTERS = {
+    "composit": "compositing/",
+    "geometry": "modeling/geometry_nodes/",
+    "shader": "render/shader_nodes/",
+}
+_MAX_WORDS = 4
+_CALLED_SO = 4  # pages
+_CHAPTER = 100  # pages and symbols of what is meant before a single page
+_KINDS = ("modifier", "constraint", "node")  # how titles of pages end
+_SHORT_FOR = _KINDS[:2]  # of these the name alone is used; nodes are mostly called as what else does the same
+
+
+class TopicPages:
+    """Finds the manual pages of topics in one base."""
+
+    def __init__(self, reader: BaseReader, settings: TopicSettings) -> None:
+        self._reader = reader
+        self._settings = settings
+
+    def find(self, text: str) -> str:
+        """The slug of the manual page that a few plain words name; empty for none.
+
+        Of several pages with that title, in singular or plural, the one with the most pages and symbols; of many single
+        pages none. A modifier's or a constraint's name is enough where nothing else is called so.
+        """
+        if is_quoted_value(text, self._reader):
+            return ""
+        plain = _WHAT_IS.sub("", text.strip().strip("`'\"?!."))
+        if turned := _MADE_FROM.fullmatch(plain):
+            slug = self._called(f"{turned['source']} to {turned['made']}")
+            page = self._reader.page_entry(slug)
+            if page is not None and " to " in page.title:
+                return slug
+        # Bones have constraints of their own.
+        making = _MAKING.fullmatch(plain) if "bone" not in plain.lower() else None
+        made = making["made"] if making else ""
+        if where := _WHERE.search(plain):
+            node = made or plain[: where.start()]
+            chapter = next(chapter for word, chapter in _CHAPTERS.items() if word in where[0].lower())
+            if node.lower().endswith(" node") and (slug := self._called(node, chapter)):
+                return slug
+        return self._called(plain) or self._called(made)
+
+    def _called(self, plain: str, chapter: str = "") -> str:
+        """The page of a topic that is called so, without more words; of a chapter alone, if one is given."""
+        if not key(plain) or len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
+            return ""
+        if plain != plain.lower() and self._is_class(plain):
+            return ""
+        keys = [topic_key(f"{plain} {kind}") for kind in ("", *_SHORT_FOR)]
+        self._reader.by_key.load((*keys, key(plain)))
+        titled = [{slug for _, slug in self._reader.by_key(title)} for title in keys]
+        titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._reader.page_children(slug)}
+        titled = [{slug for slug in slugs if slug.startswith(chapter)} for slugs in titled]
+        for slugs in titled:
+            if sizes := {slug: self._size(slug) for slug in slugs if self._is_topic(slug)}:
+                return self._best(sizes, slugs, plain)
+        # A page that explains nothing but settings, if no other may be meant.
+        alone = next((slugs for slugs in titled if len(slugs) == 1), set[str]())
+        return next((slug for slug in alone if self._sets_something(slug)), "")
+
+    def _best(self, sizes: dict[str, int], slugs: set[str], plain: str) -> str:
+        """The page that is meant of those called so: the one with the very title, or else the largest."""
+        seldom = [slug for slug in slugs if self._is_seldom(slug, plain)]
+        exact = [slug for slug in slugs if self._is_title(slug, plain)]
+        is_likely = not set(exact) & set(seldom) or len(seldom) == len(slugs)
+        if len(exact) == 1 and exact[0] in sizes and is_likely and max(sizes.values()) <= _CHAPTER:
+            return exact[0]
+        best = max(sizes, key=lambda slug: (slug not in seldom, sizes[slug], slug))
+        is_one_of_many = len(slugs) > _CALLED_SO and not self._reader.page_children(best)
+        return "" if is_one_of_many or (best in seldom and len(seldom) < len(slugs)) else best
+
+    @staticmethod
+    def _is_seldom(slug: str, plain: str) -> bool:
+        """Whether a page is of what is seldom meant by who does not say so."""
+        chapter = next((chapter for chapter in _SELDOM if slug.startswith(chapter)), "")
+        return chapter != "" and key(chapter.rstrip("/").rpartition("/")[2]) not in key(plain)
+
+    def _is_title(self, slug: str, text: str) -> bool:
+        """Whether several words are a page's title, small words included: Track To is none of Tracking Constraints."""
+        page = self._reader.page_entry(slug)
+        return page is not None and key(page.title) == key(text) and len(text.split()) > 1
+
+    def _is_class(self, text: str) -> bool:
+        """Whether a text in capitals may mean a class: ``Camera``, ``Particle System``, unlike ``Rigid Body``."""
+        entries = (self._reader.entry(identifier) for _, identifier in self._reader.by_key(key(text)))
+        return any(entry is not None and entry.kind == "class" for entry in entries)
+
+    def _is_topic(self, slug: str) -> bool:
+        return self._may_be_topic(slug) and bool(
+            self._reader.page_children(slug) or self._reader.symbols_of_page(slug)
+        )
+
+    def _sets_something(self, slug: str) -> bool:
+        page = self._reader.page_entry(slug)
+        if page is None or not self._may_be_topic(slug):
+            return False
+        return bool(self._settings.labelled(slug) or [*self._settings.as_value(plain_title(page))])
+
+    def _may_be_topic(self, slug: str) -> bool:
+        page = self._reader.page_entry(slug)
+        return page is not None and page.source == "manual" and not slug.startswith(_ASIDE_PAGES)
+
+    def _size(self, slug: str) -> int:
+        """The number of pages and symbols below a page: people rarely mean the smaller chapter."""
+        below = subtree(slug, self._reader)
+        return len(below) + sum(len(self._reader.symbols_of_page(child)) for child in below)
+
+
+def subtree(slug: str, reader: BaseReader, depth: int = 3) -> dict[str, int]:
+    """A page and those below it, each with its depth."""
+    slugs = {slug: 0}
+    for child in reader.page_children(slug) if depth else ():
+        for below, far in subtree(child.slug, reader, depth - 1).items():
+            slugs.setdefault(below, far + 1)
+    return slugs
+
+
+def plain_title(page: PageEntry) -> str:
+    """A page's title without the kind of what it explains."""
+    name, _, last = page.title.rpartition(" ")
+    return name if last.lower() in _KINDS else page.title
