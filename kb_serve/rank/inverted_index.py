@@ -55,13 +55,13 @@ class StemPostings:
     ``units``: how many of them are units; ``idf``: how much the stem tells, 0 if no unit has it.
     """
 
-    numbers: NDArray[np.intp]
+    numbers: NDArray[np.uint32]
     saturated: Scores
     units: int
     idf: float
 
 
-_NOWHERE = StemPostings(np.zeros(0, np.intp), np.zeros(0, np.float32), 0, 0.0)
+_NOWHERE = StemPostings(np.zeros(0, np.uint32), np.zeros(0, np.float32), 0, 0.0)
 
 
 class InvertedIndex:
@@ -184,13 +184,12 @@ class InvertedIndex:
         if not (len(numbers) == len(weight) and _within(numbers, 0, end) and np.isfinite(weight).all()):
             raise self._reader.damaged(f"the postings of {', '.join(stem for stem, *_ in rows)}")
         saturated = np.where(numbers < documents, weight * (K1 + 1) / (weight + K1), weight)
-        places = numbers.astype(np.intp)  # the type that numpy takes indices as
         found: dict[str, StemPostings] = {}
         last = 0
         # Parts of what is kept and forgotten together.
         for (stem, having, _), length in zip(rows, lengths, strict=True):
             first, last = last, last + length
-            found[stem] = StemPostings(places[first:last], saturated[first:last], having, idf(units, having))
+            found[stem] = StemPostings(numbers[first:last], saturated[first:last], having, idf(units, having))
         return found
 
 
