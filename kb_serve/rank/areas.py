@@ -17,7 +17,7 @@ AREAS: dict[str, frozenset[str]] = {
         "audio clip cut edit film footage movie sequence sequencer sound strip strips video vse".split()  # noqa: SIM905
     ),
     "movie_clip/": frozenset(
-        "clip footage marker markers mask masking movie track tracker tracking".split()  # noqa: SIM905
+        "clip footage marker markers mask masking matchmove movie shot tracker tracking video".split()  # noqa: SIM905
     ),
 }
 NO_AREA = len(AREAS)

@@ -45,6 +45,7 @@ _CANDIDATES = 400
 _DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
 _WORDS_OF_A_NAME = 2  # of an operator's name that a query hardly says by chance
+_KINDS = frozenset(map(stem, ("modifier", "constraint", "node")))  # who says one means no operator without it
 _NEAREST = 100  # units by their texts, among which such an operator is looked for
 _OTHERS = 0.4  # share of what further phrases add to the nearest that counts
 _MEMBERS = 3  # of a class that are told with it
@@ -219,7 +220,7 @@ class Searcher:
         called: Scores | None = None
         for place in are_operators[:_NEAREST].nonzero()[0].tolist():
             name = self._name_of(int(numbers[place]))
-            if len(name) >= _WORDS_OF_A_NAME and name <= said:
+            if len(name) >= _WORDS_OF_A_NAME and name <= said and name >= said & _KINDS:
                 called = np.zeros(len(numbers), np.float32) if called is None else called
                 called[place] = sum(asked[part] for part in name) / sum(asked.values())
         return are_operators, called

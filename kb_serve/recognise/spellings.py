@@ -30,6 +30,7 @@ _LABEL_WITHIN = (
     0.79  # how sure what a part of a question is called is: it comes after the first that the words find
 )
 _OF_A_LABEL = 2
+_KINDS = frozenset({"modifier", "constraint"})  # last words of labels, which may stand anywhere in a question
 _OTHERWISE = 0.85  # how sure a name is that shares only its key with the query
 
 
@@ -155,6 +156,11 @@ class Spellings:
             for length in _LABEL_WORDS
             for start in range(len(words) - length + 1)
             if length < len(words)
+        ]
+        # ``track to`` is a constraint, and so is ``copy location``; a modifier's name alone is mostly a plain word.
+        parts += [f"{part} constraint" for part in parts]
+        parts += [
+            f"{word} {kind}" for kind in _KINDS.intersection(words) for word in words if word not in _KINDS
         ]
         self._reader.by_key.load(map(key, parts))
         labelled = {

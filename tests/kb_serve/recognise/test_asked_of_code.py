@@ -114,6 +114,20 @@ def test_what_a_message_is_about_comes_before_what_it_stopped_at(
     assert any(note in one for one in answer.notes)
 
 
+@pytest.mark.parametrize(
+    ("query", "cls"),
+    [
+        ("limit distance between two objects", "LimitDistanceConstraint"),
+        ("let the eyes damped track a target", "DampedTrackConstraint"),
+        ("wave speed of that modifier", "WaveModifier"),
+    ],
+)
+def test_the_label_of_a_constraint_or_modifier_is_found_in_a_question(
+    kb: KnowledgeBase, query: str, cls: str
+) -> None:
+    assert f"{T}{cls}" in [hit.id.removesuffix(".speed") for hit in kb.query(query).hits[:5]]
+
+
 def test_what_a_new_value_makes_follows_it(kb: KnowledgeBase) -> None:
     hits = kb.query('obj.modifiers.new("s", "SMOKE")').hits
     assert [hit.id for hit in hits[:2]] == [f"{T}ObjectModifiers.new", f"{T}FluidModifier"]
