@@ -100,7 +100,10 @@ def _patterns_known() -> Callable[[Any, Any], None]:
             patterns = made["patterns"]
             # What begins inline markup or ends a reference; an address has a scheme, or a place.
             patterns.initial, uri = _Sought(patterns.initial, "*`_|"), _Sought(patterns.uri, ":@")
-            known[key] = made, [(uri if pattern is patterns.uri else pattern, name) for pattern, name in dispatch]
+            known[key] = (
+                made,
+                [(uri if pattern is patterns.uri else pattern, name) for pattern, name in dispatch],
+            )
         made, dispatch = known[key]
         vars(inliner).update(made)
         inliner.implicit_dispatch = [(pattern, getattr(inliner, name)) for pattern, name in dispatch]

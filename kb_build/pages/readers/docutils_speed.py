@@ -60,9 +60,9 @@ def _find(self: Node, cls: type[Node] | tuple[type[Node], ...]) -> Iterator[Node
     """
     if isinstance(self, cls):
         yield self
-    if isinstance(self, nodes.document) and not hasattr(self, _FROM_ELSEWHERE):
-        if not any(issubclass(used, cls) for used in _used):
-            return
+    is_of_here = isinstance(self, nodes.document) and not hasattr(self, _FROM_ELSEWHERE)
+    if is_of_here and not any(issubclass(used, cls) for used in _used):
+        return
     levels = [iter(self.children)]
     while levels:
         for node in levels[-1]:
