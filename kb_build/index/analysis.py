@@ -12,7 +12,7 @@ import snowballstemmer
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_WORD = re.compile(r"\d+[dD]\b|[A-Za-z]+|\d+(?:\.\d+)?|[^\W\d_]+")
+_WORD = re.compile(r"[A-Za-z]+|\d+(?:[dD]\b|\.\d+)?|[^\W\d_]+")
 _CAMEL = re.compile(r"[A-Z]{2,}s\b|[A-Z]{2,}(?=[A-Z][a-z])|[A-Z]{2}[a-z]+|[A-Z]?[a-z]+|[A-Z]+")
 _PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
 _NOT_KEY = re.compile(r"[\W_]+")
