@@ -63,12 +63,15 @@ _VECTORS = frozenset({"mathutils.Vector", "mathutils.Color", "mathutils.Euler", 
 
 @dataclass(slots=True)
 class Lookup:
-    """What an attribute was found to be, for each member of a union in turn (see types.Resolution)."""
+    """What an attribute was found to be, for each member of a union in turn (see types.Resolution).
 
-    types: list[Type] = field(default_factory=list[Type])
-    symbols: list[str] = field(default_factory=list[str])
-    missing: list[str] = field(default_factory=list[str])
-    possible: list[str] = field(default_factory=list[str])
+    One is made for each attribute that is read: ``list`` is called in a tenth of the time of ``list[Type]``.
+    """
+
+    types: list[Type] = field(default_factory=list)
+    symbols: list[str] = field(default_factory=list)
+    missing: list[str] = field(default_factory=list)
+    possible: list[str] = field(default_factory=list)
     sure: bool = True
 
     @property

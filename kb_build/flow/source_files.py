@@ -51,6 +51,11 @@ class SourceFile:
     complete: bool = True
 
     @cached_property
+    def nodes(self) -> Sequence[ast.AST]:
+        """All nodes of its tree."""
+        return [*walk(self.tree)] if self.tree else []
+
+    @cached_property
     def shared_names(self) -> Mapping[ast.AST, frozenset[str]]:
         """Module, function or lambda → the names there that functions bind or fill though they are not their own."""
         return shared_names(self.tree) if self.tree else {}
@@ -58,7 +63,7 @@ class SourceFile:
     @cached_property
     def computes_attributes(self) -> bool:
         """Whether it may set attributes of its own things whose names it does not write down."""
-        return any(map(_computes_attributes, walk(self.tree))) if self.tree else False
+        return any(map(_computes_attributes, self.nodes))
 
     @cached_property
     def moves_imports(self) -> bool:
@@ -68,7 +73,7 @@ class SourceFile:
             and node.attr in {"path", "modules"}
             and isinstance(node.value, ast.Name)
             and node.value.id == "sys"
-            for node in (walk(self.tree) if self.tree else ())
+            for node in self.nodes
         )
 
     @property
@@ -81,11 +86,10 @@ class SourceFile:
         """The texts that it may give as names, all that it has for more than to look an item up: with the expressions
         for the things that are given them, None for what is unknown.
         """
-        nodes = list(walk(self.tree)) if self.tree else []
-        sought = {key for node in nodes for key in _sought(node)}
-        things = {name: thing for node in nodes for name, thing in _naming(node)}
+        sought = {key for node in self.nodes for key in _sought(node)}
+        things = {name: thing for node in self.nodes for name, thing in _naming(node)}
         found: dict[str, list[ast.expr | None]] = {}
-        for node in nodes:
+        for node in self.nodes:
             if isinstance(node, ast.Constant) and isinstance(node.value, str) and node not in sought:
                 found.setdefault(node.value, []).append(things.get(node))
         return found
@@ -93,7 +97,7 @@ class SourceFile:
     @cached_property
     def sets_types(self) -> bool:
         """Whether it may set what a thing is of: an attribute that tells classes apart, or a computed one."""
-        return any(map(_sets_type, walk(self.tree))) if self.tree else False
+        return any(map(_sets_type, self.nodes))
 
     def imported(self, level: int, module: str) -> str:
         """The dotted name of what ``from ..module import`` means here, with ``level`` dots; empty for nothing."""

@@ -360,7 +360,7 @@ def literal_texts(kind: Type) -> Iterator[str]:
         yield from (text for text in found if text is not None)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(slots=True)
 class Resolution:
     """What a part of a script stands for in the API.
 

@@ -12,10 +12,11 @@ import snowballstemmer
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-_WORD = re.compile(r"\d+[dD]\b|[A-Za-z]+|\d+(?:\.\d+)?|[^\W\d_]+")
+_WORD = re.compile(r"[A-Za-z]+|\d+(?:[dD]\b|\.\d+)?|[^\W\d_]+")
 _CAMEL = re.compile(r"[A-Z]{2,}s\b|[A-Z]{2,}(?=[A-Z][a-z])|[A-Z]{2}[a-z]+|[A-Z]?[a-z]+|[A-Z]+")
 _PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
 _NOT_KEY = re.compile(r"[\W_]+")
+_KEY_OF = {code: chr(code).lower() if chr(code).isalnum() else None for code in range(128)}
 
 # Words that say nothing about Blender: they join sentences or frame a question.
 STOP_WORDS = frozenset(
@@ -86,7 +87,7 @@ def idf(documents: int, having: int) -> float:
 
 def key(text: str) -> str:
     """One key for all spellings of a name: ``quality_steps``, ``qualitySteps`` and ``Quality Steps``."""
-    return _NOT_KEY.sub("", text).lower()
+    return text.translate(_KEY_OF) if text.isascii() else _NOT_KEY.sub("", text).lower()
 
 
 def short_path(path: str) -> str:

@@ -125,7 +125,9 @@ def analysed_uses(analysis: Analysis, code: str, file: str, api: Api, cost: floa
     found: dict[str, Uses] = {}
     candidates: dict[str, list[tuple[float, ast.stmt]]] = defaultdict(list)
     for path, kind, share, resolution in _used(analysis, api):
-        uses = found.setdefault(path, Uses(files=1))
+        uses = found.get(path)
+        if uses is None:
+            uses = found[path] = Uses(files=1)
         if uses.count < _MOST_COUNTED and (
             kind not in {"derived", "decorates"} or not uses.count
         ):  # its base counts already

@@ -84,12 +84,16 @@ class Beside:
         write.flush()
         return True
 
-    def into(self, write):
-        """Waits for the records, and writes them. Raises RuntimeError where not all are there."""
+    def lines(self):
+        """Waits for the records, and returns them, a line each. Raises RuntimeError where not all are there."""
         status = os.waitpid(self.process, 0)[1]
         with self.file:
             self.file.seek(0)
             lines = self.file.read().splitlines()
         if status:
             raise RuntimeError(f"Blender ended, with status {status}")
-        write.lines(lines)
+        return lines
+
+    def into(self, write):
+        """Waits for the records, and writes them. Raises RuntimeError where not all are there."""
+        write.lines(self.lines())

@@ -76,10 +76,10 @@ def write_rna(write, found):
     found["structs"] = rna.write_all(write, modules.write_member)
 
 
-def start_refusals(_write, found):
+def start_beside(_write, found):
     """Begins with what takes longest, and needs nothing of the other steps."""
     if can_work_apart():
-        observer = found["observer"]
+        observer, skipped = found["observer"], found["skipped"]
 
         def tried(write):
             refusals.find_all(write, observer)
@@ -87,6 +87,7 @@ def start_refusals(_write, found):
             left_out.find_all(write)
 
         found["refusals"] = Beside("refusals", tried)
+        found["needs"] = Beside("needs", lambda write: operator_needs.find_alone(write, skipped))
 
 
 def write_refusals(write, found):
@@ -96,7 +97,7 @@ def write_refusals(write, found):
 
 
 STEPS = (
-    ("start of refusals", start_refusals),
+    ("start beside", start_beside),
     ("classes", write_rna),
     ("operators", lambda write, _found: operators.write_all(write)),
     ("names", lambda _write, found: own_names.look_at_start(found["observer"])),
@@ -125,7 +126,9 @@ STEPS = (
     ("own names", lambda write, found: own_names.find_all(write, found["observer"], found["skipped"])),
     (
         "needs",
-        lambda write, found: operator_needs.find_all(write, found["observer"], found["skipped"]),
+        lambda write, found: operator_needs.find_all(
+            write, found["observer"], found["skipped"], found.get("needs")
+        ),
     ),
     ("neighbours", lambda write, found: found["neighbours"].write(write)),
     ("instances", lambda write, found: found["observer"].write(write)),

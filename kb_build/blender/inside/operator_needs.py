@@ -6,6 +6,7 @@ are asked after everything was added to a mesh object and its scene that calls a
 then, after each of these calls alone. The others may want an area (see operator_areas).
 """
 
+import json
 import traceback
 
 import bpy
@@ -331,40 +332,72 @@ def added(path, calls):
     return f"{owner}what `{'`, then `'.join(best.split(THEN))}` adds"
 
 
-def find_all(write, observer, skipped):
-    """One ``operator_needs`` record for each operator of which it is known what it wants, if only nothing."""
+def with_objects(write, known, _observer):
+    """What operators want of which it is enough that an object is active, or nothing is: these leave ``known``."""
+    empty_scene()
+    no_sequencer_scene()
+    free = Objects()
+    free.ask({path: known.pop(path) for path in can_run(known)})
+    for path in free.passed:
+        write("operator_needs", path=path, needs=free.free_needs(path))
+    objects = Objects()
+    objects.ask(known)
+    for path in objects.passed:
+        write("operator_needs", path=path, needs=objects.needs(path))
+        del known[path]
+
+
+def with_parts(write, known, observer):
+    """What operators want that is added to an object: these leave ``known``."""
+    for path, calls in sorted(parts_needed(known, observer).items()):
+        write("operator_needs", path=path, needs=added(path, calls))
+        del known[path]
+
+
+def with_areas(write, known, _observer):
+    """What the others want."""
+    operator_areas.find_all(write, known, empty_scene())
+
+
+def find(write, finders, known, observer, skipped):
+    """Has finders ask the ``known`` operators, but for the ``skipped``, which crashed this Blender."""
     window = bpy.context.window
-    if window is None:
-        return
     scene = window.scene
     clear(scene)
-    known = operators()
-
-    def with_objects():
-        empty_scene()
-        no_sequencer_scene()
-        free = Objects()
-        free.ask({path: known.pop(path) for path in can_run(known)})
-        for path in free.passed:
-            write("operator_needs", path=path, needs=free.free_needs(path))
-        objects = Objects()
-        objects.ask(known)
-        for path in objects.passed:
-            write("operator_needs", path=path, needs=objects.needs(path))
-            del known[path]
-
-    def with_parts():
-        for path, calls in sorted(parts_needed(known, observer).items()):
-            write("operator_needs", path=path, needs=added(path, calls))
-            del known[path]
-
-    def with_areas():
-        operator_areas.find_all(write, known, empty_scene())
-
-    for find in attempts(write, (with_objects, with_parts, with_areas), skipped):
+    for ask in attempts(write, finders, skipped):
         try:
-            find()
+            ask(write, known, observer)
         except Exception:
             write("fault", step="operators", traceback=traceback.format_exc())
         finally:
             window.scene = scene
+
+
+def find_alone(write, skipped):
+    """The records that need nothing of what other steps find; for operators that want parts as well, too many."""
+    if bpy.context.window is not None:
+        find(write, (with_objects, with_areas), operators(), None, skipped)
+
+
+def find_all(write, observer, skipped, begun):
+    """One ``operator_needs`` record for each operator of which it is known what it wants, if only nothing.
+
+    ``begun`` does ``find_alone`` beside (see apart); without it, or where that ended Blender, all is done here.
+    """
+    if bpy.context.window is None:
+        return
+    known = operators()
+    try:
+        rows = [json.loads(line) for line in begun.lines()] if begun is not None else None
+    except RuntimeError:
+        rows = None
+    if rows is None:
+        find(write, (with_objects, with_parts, with_areas), known, observer, skipped)
+        return
+    for row in rows:
+        if row["record"] == "operator_needs":
+            del known[row["path"]]
+    find(write, (with_parts,), known, observer, skipped)
+    for row in rows:
+        if row["record"] != "operator_areas" or row["path"] in known:
+            write(**row)

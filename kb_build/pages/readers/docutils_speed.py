@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterator
 
 _REFERENCES = (nodes.reference, nodes.footnote_reference, nodes.citation_reference)
+_FROM_ELSEWHERE = "from_elsewhere"
+# The classes of all nodes that were put into trees in this process.
+_used: set[type[Node]] = set()
 
 
 @contextmanager
@@ -52,10 +55,14 @@ def less_repeated() -> Generator[None]:
 def _find(self: Node, cls: type[Node] | tuple[type[Node], ...]) -> Iterator[Node]:
     """This node and all below it that are of a class, in docutils' order.
 
-    Without a generator for every node, through which all that is found below it would pass.
+    Without a generator for every node, through which all that is found below it would pass. Most passes over a page
+    look for what no page has had yet.
     """
     if isinstance(self, cls):
         yield self
+    is_of_here = isinstance(self, nodes.document) and not hasattr(self, _FROM_ELSEWHERE)
+    if is_of_here and not any(issubclass(used, cls) for used in _used):
+        return
     levels = [iter(self.children)]
     while levels:
         for node in levels[-1]:
@@ -68,8 +75,14 @@ def _find(self: Node, cls: type[Node] | tuple[type[Node], ...]) -> Iterator[Node
             levels.pop()
 
 
+def from_elsewhere(document: nodes.document) -> None:
+    """Tells that a page's tree was put together by another process: what it has was not noted here."""
+    setattr(document, _FROM_ELSEWHERE, True)
+
+
 def _set_up_child(self: Any, child: Any) -> None:
     """What docutils does with a node's new child. It looks for the document, through all that is above, four times."""
+    _used.add(type(child))
     child.parent = above = self
     while above is not None and above._document is None:
         above = above.parent

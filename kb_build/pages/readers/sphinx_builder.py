@@ -25,6 +25,7 @@ from kb_build.pages.readers import blender_markup
 from kb_build.pages.readers import markdown as md
 from kb_build.pages.readers.assemble import PageText
 from kb_build.pages.readers.doctree import PAGE_SCHEME, DoctreeReader
+from kb_build.pages.readers.docutils_speed import from_elsewhere
 from kb_build.pages.readers.workers import PageBudget, PageWork, ReadPages, read_apart
 from kb_build.records import Section
 
@@ -198,6 +199,7 @@ class PagesBuilder(Builder):
 
     def _kept(self, docname: str) -> nodes.document:
         doctree: nodes.document = pickle.loads(self.trees[docname])  # noqa: S301 - from a process of ours
+        from_elsewhere(doctree)
         doctree.settings = self._settings
         doctree.reporter = LoggingReporter(str(self.env.doc2path(docname)))
         return doctree

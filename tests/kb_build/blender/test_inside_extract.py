@@ -663,6 +663,20 @@ for code, paths in claims:
 json.dump(answers, open(sys.argv[2], "w"))
 os._exit(0)
 """
+ASK_NEEDS = """
+import json, os, sys
+from kb_build.blender.inside import operator_needs
+from kb_build.blender.inside.apart import Beside
+from kb_build.blender.inside.instances.observer import Observer
+from kb_build.blender.inside.wire import Writer
+with open(sys.argv[2], "w") as file:
+    operator_needs.find_all(Writer(file), Observer(), [], Beside("needs", lambda _write: os.abort()))
+with open(sys.argv[2]) as file:
+    rows = [json.loads(line) for line in file]
+told = {row["path"]: row.get("needs") or row.get("areas") for row in rows if "path" in row}
+json.dump(told, open(sys.argv[2], "w"))
+os._exit(0)
+"""
 OBJECT, EDIT = "an active object", "an active object of type 'MESH' in mode 'EDIT'"
 OBJECT_MODE = "any active object or none in mode 'OBJECT'"
 ADDS = re.compile(r"an active object with what (.*) adds")
@@ -744,6 +758,17 @@ def test_operators_that_want_no_object_refuse_only_the_modes_that_they_are_said_
 )
 def test_an_operator_says_what_it_wants(symbols: dict[str, Symbol], operator: str, needs: str) -> None:
     assert operator_needs(symbols[f"bpy.ops.{operator}"]) == needs
+
+
+def test_operators_are_asked_here_where_asking_them_beside_ended_blender(
+    extract: Extract, tmp_path: Path
+) -> None:
+    told = ask_blender(ASK_NEEDS, tmp_path)
+    of_extract = {symbol.path: symbol for symbol in extract.symbols if symbol.kind == "operator"}
+    assert len(told) > 1_500
+    assert told.keys() <= of_extract.keys()
+    for path in ("object.duplicate", "object.vertex_group_remove", "view3d.view_selected"):
+        assert told[f"bpy.ops.{path}"]
 
 
 def test_a_choice_that_depends_on_the_instance_is_asked_of_instances(symbols: dict[str, Symbol]) -> None:

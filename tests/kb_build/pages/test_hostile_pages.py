@@ -78,7 +78,7 @@ def nested_grid_tables(depth: int) -> str:
         ),
         pytest.param(nested_grid_tables(200), "RecursionError", id="nested tables"),
         pytest.param(HEAD + "x" * 7 * MIB, "a line of more than 100,000 characters", id="endless line"),
-        pytest.param(HEAD + ":a" * 45_000, TOO_LONG, id="what may be a role"),
+        pytest.param(HEAD + ":a" * 45_000 + "`", TOO_LONG, id="what may be a role"),
         pytest.param(
             HEAD + ".. cpp:function:: " + "a<" * 2_000 + "b" + ">" * 2_000 + " f()\n",
             "",
@@ -94,6 +94,13 @@ def test_rst_beyond_the_budget_is_kept_as_plain_text(tmp_path: Path, text: str, 
     assert hostile.warnings[0].startswith("kept as plain text: ")
     assert reason in hostile.warnings[0]
     assert hostile.sections[0].text.startswith(f"```\n{text[:1_000].rstrip()}")
+
+
+def test_what_has_no_sign_of_markup_is_not_searched_for_any(tmp_path: Path) -> None:
+    pages = from_rst(tmp_path, HEAD + ":a" * 45_000, SHORT_RST)
+    check_the_kind_page(pages)
+    assert pages["hostile"].warnings == ()
+    assert pages["hostile"].sections[0].text == ":a" * 45_000
 
 
 def test_references_of_the_version_cost_what_their_number_says(tmp_path: Path) -> None:
