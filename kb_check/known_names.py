@@ -10,6 +10,7 @@ from kb_build.index.analysis import words
 from kb_check.likely_names import by_first_word, by_label
 from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.corrections import is_misspelling, nearest
+from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.likely_values import likely_values
 from kb_serve.recognise.notes import Notes
@@ -53,6 +54,7 @@ class KnownNames:
         self._lookup = RemovedSymbolLookup(reader)
         self._notes = Notes(reader)
         self._operators = OperatorWords(reader)
+        self._enum_values = EnumValues(reader)
         self._members: dict[tuple[str, str], RemovedSymbol | None] = {}
 
     @property
@@ -141,7 +143,7 @@ class KnownNames:
         if removed := self._lookup.of_part(whole, part) or self._of_former(whole, part):
             return self._removed(removed)
         values = list(values)
-        similar = likely_values(value, values)
+        similar = likely_values(value, values) or self._enum_values.explaining(owner, value)
         return self._no_part(
             owner, value, values, f"{value!r} is not a value of `{owner}`", "It takes", similar
         )

@@ -140,7 +140,7 @@ class Recogniser:
                 recognition.add_removed(removed)
             gone = {removed.path for removed in (*old, *recognition.removed)}
             notes = list(wrong_arguments(chain, symbol, gone))
-            recognition.notes += (*notes, *wrong_values(chain, symbol, gone))
+            recognition.notes += (*notes, *wrong_values(chain, symbol, gone, self._reader))
             if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.85, "error message")
 

@@ -18,6 +18,18 @@ if TYPE_CHECKING:
     [
         ("obj.display_type = 'WIREFRAME'", "Closest: `'WIRE'`"),
         ("mesh.attributes.new('x', 'FLOAT3', 'POINT')", "`'FLOAT3'` is not a value of"),
+        # Loops are said to be face corners. What is in no scene may be a mesh's, or a point cloud's: all take the same.
+        (
+            "mesh.attributes.new('x', 'FLOAT', 'LOOP')",
+            "AttributeGroupMesh.new(domain)`. Closest: `'CORNER'`.",
+        ),
+        ("obj.data.attributes.new(name='x', type='FLOAT', domain='LOOP')", "Closest: `'CORNER'`."),
+        ("attributes.new(name='x', type='FLOAT', domain='LOOP')", "AttributeGroupMesh.new(domain)`. Closest"),
+        (
+            'TypeError: AttributeGroupMesh.new(): error with argument 3, "domain" -  enum "LOOP" not found in '
+            "('POINT', 'EDGE', 'FACE', 'CORNER', 'CURVE', 'INSTANCE', 'LAYER')",
+            "closest: `CORNER`.",
+        ),
         ("bpy.ops.wm.obj_export(filepath='x', forward_axis='-Z')", "Closest: `'NEGATIVE_Z'`"),
         ("constraint.track_axis = 'TRACK_-Z'", "Closest: `'TRACK_NEGATIVE_Z'`"),
         ("bpy.data.lights.new('L', type='POINT', energy=5)", "takes no `energy`"),
@@ -47,6 +59,8 @@ def test_what_is_none_is_told(kb: KnowledgeBase, query: str, said: str) -> None:
         "key_block.data[0].co = (0, 0, 0)",
         "noise.noise_dimensions = '4D'",
         "layout.operator('object.select_all').action = 'SELECT'",
+        "attributes.new('x', 'FLOAT', 'CORNER')",
+        "modifiers.new('x', 'NOISE')",  # of an object or an F-curve: which do not take the same
         "importlib.reload(sys.modules[name])",
         "obj.keyframe_insert(data_path='location', frame=1)",
         "prop = PointerProperty(type=Object, poll=lambda self, obj: obj.type == 'MESH')",
