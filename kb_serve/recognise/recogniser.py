@@ -6,7 +6,7 @@ from __future__ import annotations
 
 import re
 
-from kb_build.index.analysis import terms
+from kb_build.index.analysis import terms, tokens
 from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.addresses import ids_in_urls
 from kb_serve.recognise.bindings import with_bindings
@@ -54,6 +54,9 @@ _LIKELY = 1.1
 _LIKELY_GUESS = 0.88
 _GUESS = 0.83
 _SOCKET_VALUE = "The value of a socket is its `default_value`: `node.inputs[…].default_value = …`."
+_UNKNOWN_MODULE = (
+    "The build of Blender {version} behind this base has no module `{module}`; other builds may have it."
+)
 _OF_STRINGS = frozenset({"enum item", "quoted name"})
 _GUESSES = _OF_STRINGS | {"name", "label", "title", "on the way"}
 
@@ -88,6 +91,10 @@ class Recogniser:
         """Everything that ``query`` names, surest first."""
         recognition = Recognition()
         chains = with_bindings(query, find_chains(query))
+        recognition.notes += (
+            _UNKNOWN_MODULE.format(version=self._reader.meta.get("minor", ""), module=module)
+            for module in sorted(self._reader.unknown_modules.intersection(tokens(query)))
+        )
         for identifier in ids_in_urls(query, self._reader):
             recognition.add(identifier, 1.0, "address")
         self._spellings.recognise(query, recognition)
