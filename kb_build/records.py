@@ -160,7 +160,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Deprecation:
-    """What Blender itself says of a property that is on its way out. Versions as ``"5.0"``."""
+    """What Blender itself, or its release notes, say of a property that is on its way out. Versions as ``"5.0"``."""
 
     note: str
     since: str = ""
