@@ -45,6 +45,8 @@ GIVEN = "given:"
 ALSO = "also:"
 # How a flag begins that says what must not be None: Blender ends when the function is called.
 ENDS_WITHOUT = "ends-without:"
+# How the flag of an operator begins that adds an object whose data RNA has no class for, before what to call instead.
+BARE_DATA = "bare-data:"
 # The flag of a switch that some panel shows the other way round.
 INVERTED = "inverted"
 # How a flag begins that names an end of a number's range that is not kept: ``min`` or ``max``.

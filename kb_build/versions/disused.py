@@ -1,7 +1,7 @@
-"""Properties that a version still lists, and that nothing in it uses any more: those of a render engine that is gone.
+"""What a version lists without using it: settings of a render engine that is gone, operators for what is to come.
 
-The table of successors tells of them: what took their place is in the release notes of a version before the one that
-lost them.
+The table of successors tells of the settings: what took their place is in the release notes of a version before the one
+that lost them. Of an operator that makes what this version has no class for, it tells what that takes the place of.
 """
 
 from __future__ import annotations
@@ -10,7 +10,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.records import Deprecation
+from kb_build.records import BARE_DATA, Deprecation
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
@@ -31,6 +31,29 @@ def without_effect(symbols: Iterable[Symbol], table: Iterable[Succession], versi
     return [
         replace(symbol, deprecation=disused[symbol.path])
         if symbol.kind == "property" and symbol.path in disused and symbol.deprecation is None
+        else symbol
+        for symbol in symbols
+    ]
+
+
+def with_present_ways(symbols: Iterable[Symbol], table: Iterable[Succession], version: str) -> list[Symbol]:
+    """The symbols of a version (minor); operators that make data without a class say what is called here instead."""
+    symbols = list(symbols)
+    known = {symbol.path for symbol in symbols}
+    later = {
+        new: row.old
+        for row in table
+        for new in row.new
+        if row.old in known and version_key(row.version) > version_key(version)
+    }
+    return [
+        replace(
+            symbol,
+            flags=tuple(
+                f"{flag}{later[symbol.path]}" if flag == BARE_DATA else flag for flag in symbol.flags
+            ),
+        )
+        if BARE_DATA in symbol.flags and symbol.path in later
         else symbol
         for symbol in symbols
     ]

@@ -10,6 +10,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.records import (
+    BARE_DATA,
     EVALUATED,
     NAMES_ITEMS,
     NOT_TAKEN,
@@ -97,6 +98,9 @@ _NONE_IN_CONTEXT = {
     WITHOUT_ACTIVE: "`None` where no object is active",
     WITHOUT_AREA: "`None` outside the areas of windows, as in a Blender without a window",
 }
+_BARE_DATA = (
+    "This Blender has no class for the data of the object that it adds: nothing in them can be read or set."
+)
 _PARAGRAPH = "\n\n"
 _BULLET = re.compile(r"\s*- \*\*.+?\*\*\s*")
 _FEW_PARAMETERS = 8
@@ -510,6 +514,8 @@ class MarkdownRenderer:
         lines.extend(asked_of_classes(symbol))
         if needs := operator_needs(symbol):
             lines.append(f"Of all that was tried, its poll takes {needs}.")
+        for instead in symbol.flagged(BARE_DATA):
+            lines.append(_BARE_DATA + (f" Use `{instead}`." if instead else ""))
         told = [*panel_lines(symbol, self.reader)] or [*switch_lines(symbol, self.reader)]
         if line := "; ".join(told):
             lines.append(line[0].upper() + line[1:] + ".")

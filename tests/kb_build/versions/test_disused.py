@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from kb_build.records import Deprecation, Symbol
-from kb_build.versions.disused import without_effect
+from kb_build.blender.tried_facts import ADDED
+from kb_build.records import BARE_DATA, Deprecation, Symbol
+from kb_build.versions.disused import with_present_ways, without_effect
 from kb_build.versions.successors import load_successors
 
 EEVEE = "bpy.types.SceneEEVEE"
@@ -48,3 +49,15 @@ def test_they_have_an_effect_before_and_are_gone_after() -> None:
 def test_what_blender_says_itself_stays() -> None:
     own = Deprecation("Blender says so.", "4.2", "5.0")
     assert _said("4.2", [Symbol(f"{EEVEE}.use_ssr", "property", EEVEE, deprecation=own)]) == {"use_ssr": own}
+
+
+def test_an_operator_that_makes_what_is_to_come_names_the_one_of_today() -> None:
+    row: dict[str, object] = {"flags": ["needs:"]}
+    ADDED["bare_data"](row, {"path": "bpy.ops.object.grease_pencil_add"})
+    assert row["flags"] == ["needs:", BARE_DATA]
+    bare = Symbol("bpy.ops.object.grease_pencil_add", "operator", flags=("needs:", BARE_DATA))
+    today = Symbol("bpy.ops.object.gpencil_add", "operator")
+    table = load_successors()
+    assert with_present_ways([bare, today], table, "4.2")[0].flags == ("needs:", f"{BARE_DATA}{today.path}")
+    assert with_present_ways([bare], table, "4.2") == [bare]
+    assert with_present_ways([bare, today], table, "4.3") == [bare, today]
