@@ -7,7 +7,7 @@ import json
 import threading
 import time
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from datetime import UTC, datetime
 from functools import partial
 from importlib import import_module
@@ -256,6 +256,8 @@ def _extract(work: _Build) -> Extract:
     runtime = work.runtime
     file = extract_api(runtime, home=work.home, again=work.options.force, progress=work.progress)
     from kb_build.blender.extract_reader import read_extract  # noqa: PLC0415 - loaded ahead
+    from kb_build.versions.disused import with_present_ways, without_effect  # noqa: PLC0415 - not when nothing changed
+    from kb_build.versions.successors import load_successors  # noqa: PLC0415 - likewise
 
     work.progress("Reading Blender's answer", 0, None)
     try:
@@ -277,7 +279,9 @@ def _extract(work: _Build) -> Extract:
         f"(step {fault.partition(':')[0]}; the whole traceback is in the base: simworlds kb info --json)"
         for fault in extract.faults
     ]
-    return extract
+    table, minor = load_successors(), minor_of(extract.version)
+    symbols = with_present_ways(without_effect(extract.symbols, table, minor), table, minor)
+    return replace(extract, symbols=tuple(symbols))
 
 
 @contextmanager

@@ -45,6 +45,8 @@ GIVEN = "given:"
 ALSO = "also:"
 # How a flag begins that says what must not be None: Blender ends when the function is called.
 ENDS_WITHOUT = "ends-without:"
+# How the flag of an operator begins that adds an object whose data RNA has no class for, before what to call instead.
+BARE_DATA = "bare-data:"
 # The flag of a switch that some panel shows the other way round.
 INVERTED = "inverted"
 # How a flag begins that names an end of a number's range that is not kept: ``min`` or ``max``.
@@ -160,7 +162,7 @@ class Parameter:
 
 @dataclass(frozen=True, slots=True)
 class Deprecation:
-    """What Blender itself says of a property that is on its way out. Versions as ``"5.0"``."""
+    """What Blender itself, or its release notes, say of a property that is on its way out. Versions as ``"5.0"``."""
 
     note: str
     since: str = ""

@@ -120,7 +120,11 @@ def _write_removed_symbols(connection: sqlite3.Connection, removed_symbols: Remo
     _insert(connection, "similar_names", removed_symbols.similar_names, 3)
     _insert(connection, "since", removed_symbols.since, 3)
     if removed_symbols.versions:
-        _insert(connection, "meta", [("history_versions", json.dumps(removed_symbols.versions))], 2)
+        facts = {
+            "history_versions": removed_symbols.versions,
+            "unknown_modules": removed_symbols.unknown_modules,
+        }
+        _insert(connection, "meta", [(name, json.dumps(value)) for name, value in facts.items()], 2)
 
 
 def _write_usage(connection: sqlite3.Connection, usage: Mapping[str, Uses]) -> None:

@@ -10,6 +10,8 @@ from kb_build.index.analysis import words
 from kb_check.likely_names import by_first_word, by_label
 from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.corrections import is_misspelling, nearest
+from kb_serve.recognise.enum_values import EnumValues
+from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.likely_values import likely_values
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.operator_words import OPERATORS, OperatorWords
@@ -52,6 +54,7 @@ class KnownNames:
         self._lookup = RemovedSymbolLookup(reader)
         self._notes = Notes(reader)
         self._operators = OperatorWords(reader)
+        self._enum_values = EnumValues(reader)
         self._members: dict[tuple[str, str], RemovedSymbol | None] = {}
 
     @property
@@ -119,11 +122,9 @@ class KnownNames:
         if removed := self._lookup.of_part(function, part) or self._of_former(function, part):
             return self._removed(removed)
         names = list(names)
-        similar = self._alike(name, names)
-        if not any(is_misspelling(name, found) for found in similar):
-            symbol = self.reader.symbol(function)
-            labels = {one.name: one.label for one in symbol.parameters if one.name in names} if symbol else {}
-            similar = _likely(name, similar, labels)
+        symbol = self.reader.symbol(function)
+        labels = {one.name: one.label for one in symbol.parameters} if symbol else {}
+        similar = likely_keywords(name, {one: labels.get(one, "") for one in names})
         return self._no_part(function, name, names, f"`{function}` takes no `{name}`", "It takes", similar)
 
     def changed_parameters(self, function: str) -> tuple[Lacking, ...]:
@@ -142,7 +143,7 @@ class KnownNames:
         if removed := self._lookup.of_part(whole, part) or self._of_former(whole, part):
             return self._removed(removed)
         values = list(values)
-        similar = likely_values(value, values)
+        similar = likely_values(value, values) or self._enum_values.explaining(owner, value)
         return self._no_part(
             owner, value, values, f"{value!r} is not a value of `{owner}`", "It takes", similar
         )

@@ -5,13 +5,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stem, words
+from kb_serve.recognise.likely_keywords import EMPTY_WORDS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
 _MOST = 3
-# Words that say how a thing is used, and not what it is.
-_EMPTY_WORDS = frozenset({"use", "is", "has", "show", "do", "set", "get"})
 _SHORTEST = 4
 
 
@@ -44,4 +43,4 @@ def _last(text: str) -> str:
 
 
 def _meaning(text: str) -> set[str]:
-    return {stem(word) for word in words(text)} - _EMPTY_WORDS
+    return {stem(word) for word in words(text)} - EMPTY_WORDS

@@ -340,6 +340,11 @@ class BaseReader:
         """All minor versions that the history knows, oldest first."""
         return json.loads(self.meta.get("history_versions", "[]"))
 
+    @cached_property
+    def unknown_modules(self) -> frozenset[str]:
+        """The modules of other Blenders that the build lacks which this base was made from."""
+        return frozenset(json.loads(self.meta.get("unknown_modules", "[]")))
+
     def removed(self, path: str) -> tuple[str, str, str] | None:
         """(first, last, gone) of a symbol that this version lacks: the versions that have it, the first without it.
 

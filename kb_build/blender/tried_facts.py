@@ -11,6 +11,7 @@ from kb_build.records import (
     ALSO,
     ANY,
     AREAS,
+    BARE_DATA,
     EMPTY,
     ENDS_WITHOUT,
     EVALUATED,
@@ -118,6 +119,12 @@ def _add_left_out(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
             parameter["description"] = f"{said}. {LEFT_OUT}{seen['value']}".removeprefix(". ")
 
 
+def _add_bare_data(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
+    """Adds that RNA has no class for the data of the object that an operator adds."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), BARE_DATA]
+
+
 def _add_limits(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     """Adds what Blender keeps otherwise than RNA tells: ends of ranges, items taken as others, lengths that vary."""
     if row is not None:
@@ -175,6 +182,7 @@ def _add_own_class(row: dict[str, Any] | None, tried: dict[str, Any]) -> None:
 
 ADDED = {
     "argument_items": _add_argument_items,
+    "bare_data": _add_bare_data,
     "choices": _add_choices,
     "new_values": _add_values,
     "new_pointer": _add_pointer,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
@@ -28,6 +29,7 @@ from kb_build.flow.types import (
     Mapping,
     Operator,
     Plain,
+    Resolution,
     Sequence,
     Tuple,
     Type,
@@ -43,7 +45,7 @@ from kb_build.flow.types import (
 )
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterable
 
     from kb_build.flow.definitions import FunctionDefinition
     from kb_build.records import Parameter, Symbol
@@ -81,6 +83,10 @@ _CONVERTING, _OBJECT = "bpy.ops.object.convert", f"{T}Object"
 _OPERATOR_RESULT = Sequence("set", STR)
 
 
+def _in_order(paths: Iterable[str]) -> tuple[str, ...]:
+    return tuple(dict.fromkeys(paths))
+
+
 class Calls(Narrowing):
     """Evaluates calls."""
 
@@ -91,12 +97,32 @@ class Calls(Narrowing):
         if callee is UNKNOWN:
             return self._made_by_class_name(node, arguments, keywords)
         if isinstance(callee, Union):
-            return union(
-                self._one_call(member, node, arguments, keywords)
-                for member in callee.members
-                if member is not NONE
-            )
+            return self._one_of_several(callee, node, arguments, keywords)
         return self._one_call(callee, node, arguments, keywords)
+
+    def _one_of_several(
+        self, callee: Union, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]
+    ) -> Type:
+        """A call of one of several: an argument is recorded for all of them, and is none where none takes it."""
+        parts = [*node.keywords, *(part for argument in node.args for part in constants(argument))]
+        parts += [part for keyword in node.keywords for part in constants(keyword.value)]
+        called = [member for member in callee.members if member is not NONE]
+        results: list[Type] = []
+        rows: dict[ast.AST, list[Resolution]] = defaultdict(list)
+        for member in called:
+            for part in parts:
+                self.resolutions.pop(part, None)
+            results.append(self._one_call(member, node, arguments, keywords))
+            for part in parts:
+                if row := self.resolutions.get(part):
+                    rows[part].append(row)
+        for part, found in rows.items():
+            symbols = _in_order(path for row in found for path in row.symbols)
+            missing = _in_order(path for row in found for path in row.missing)
+            # What tells nothing of an argument may take it.
+            is_sure = len(found) == len(called) and all(row.sure for row in found)
+            self.resolutions[part] = replace(found[-1], symbols=symbols, missing=missing, sure=is_sure)
+        return union(results)
 
     def _made_by_class_name(
         self, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]

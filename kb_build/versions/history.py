@@ -57,6 +57,11 @@ def paths_of(symbol: Symbol) -> Iterator[str]:
             yield f"{path}:{item.identifier}"
 
 
+def is_module(path: str) -> bool:
+    """Whether a path is that of a module which is in no other."""
+    return not {".", ":"}.intersection(path) and not path.startswith(SHARED)
+
+
 def is_from_stubs(patch: str) -> bool:
     """Whether a version of the file is known from stubs: ``2.79``, rather than ``4.2.23``."""
     return patch.count(".") == 1
@@ -161,6 +166,14 @@ class ApiHistory:
         if number is None:
             return
         yield from (path for path, mask, _ in self.symbols() if mask >> number & 1)
+
+    def unknown_modules(self, version: str) -> tuple[str, ...]:
+        """The modules of which it is not known whether the version has them: its build was made without."""
+        number = self._number(version)
+        if number is None:
+            return ()
+        unknown = (path for path, hidden in self.unknown.items() if hidden >> number & 1)
+        return tuple(path for path in unknown if is_module(path))
 
     def removed_from(self, version: str) -> Iterator[RemovedSpan]:
         """What other versions have and this one lacks: gone, or not there yet."""

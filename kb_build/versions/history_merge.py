@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
-from kb_build.versions.history import SHARED, ApiHistory, is_from_stubs
+from kb_build.versions.history import SHARED, ApiHistory, is_from_stubs, is_module
 from kb_build.versions.paths import split_path
 from simworlds.releases import minor_of, version_key
 
@@ -30,6 +30,8 @@ def merge_versions(paths: Mapping[str, Iterable[str]]) -> ApiHistory:
     stubs = sum(1 << number for number, version in enumerate(patches) if is_from_stubs(version))
     _fill_unbuilt(plain, len(patches), stubs)
     unknown = _unknown(plain, stubs)
+    for path, hidden in _left_out(plain, stubs).items():
+        unknown[path] |= hidden
     shared = _share(plain, unknown, stubs)
     unknown = {path: hidden for path, hidden in unknown.items() if hidden and path in plain}
     return ApiHistory(tuple(map(minor_of, patches)), patches, plain, shared, unknown)
@@ -37,7 +39,7 @@ def merge_versions(paths: Mapping[str, Iterable[str]]) -> ApiHistory:
 
 def _fill_unbuilt(masks: Masks, count: int, stubs: int) -> None:
     """A whole module missing between two versions that have it was left out of that build, not of Blender."""
-    for root in [path for path in masks if "." not in path and not path.startswith(SHARED)]:
+    for root in filter(is_module, masks):
         for number in range(1, count - 1):
             bit = 1 << number
             if (masks[root] | stubs) & bit or not masks[root] >> number + 1:
@@ -47,6 +49,18 @@ def _fill_unbuilt(masks: Masks, count: int, stubs: int) -> None:
             for path, mask in masks.items():
                 if (path == root or path.startswith(f"{root}.")) and mask & around and mask > bit:
                     masks[path] = mask | bit
+
+
+def _left_out(masks: Masks, stubs: int) -> Masks:
+    """Path → the versions that were asked before any had its module, where no stubs tell of that: their builds may have
+    left it out as a whole, which says nothing about Blender.
+    """
+    found: Masks = {}
+    for root in filter(is_module, masks):
+        before = (masks[root] & -masks[root]) - 1 & ~stubs
+        if before and not masks[root] & stubs:
+            found |= {path: before for path in masks if path == root or path.startswith(f"{root}.")}
+    return found
 
 
 def _unknown(masks: Masks, stubs: int) -> Masks:

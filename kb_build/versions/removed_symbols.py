@@ -36,7 +36,8 @@ _MEMBER = re.compile(r"(bpy\.types\.\w+)(\.\w+)(?!\w|\[)")  # not sockets
 class RemovedSymbols:
     """Rows of the tables removed, removed_names, successors, similar_names and since (see schema.DDL).
 
-    ``versions`` are all that the history knows, oldest first.
+    ``versions`` are all that the history knows, oldest first; ``unknown_modules`` those that the version's build lacks,
+    which says nothing about the version.
     """
 
     removed: tuple[tuple[str, str, str, str, str], ...] = ()
@@ -45,6 +46,7 @@ class RemovedSymbols:
     similar_names: tuple[tuple[str, str, float], ...] = ()
     since: tuple[tuple[str, str, str], ...] = ()
     versions: tuple[str, ...] = ()
+    unknown_modules: tuple[str, ...] = ()
 
 
 def is_asked_for(path: str, history: ApiHistory, version: str) -> bool:
@@ -130,4 +132,5 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
         since=tuple((symbol.path, *since[symbol.path]) for symbol in symbols if symbol.path in since),
         versions=history.versions,
+        unknown_modules=tuple(path for path in history.unknown_modules(version) if path not in known),
     )

@@ -1,6 +1,7 @@
 """A property that Blender is about to drop.
 
-Blender itself says so, since when, and what to use. The script still runs in this version.
+Blender itself says so, or its release notes do of what has no effect any more: since when, and what to use. The script
+still runs in this version.
 
 ```python
 strip.frame_final_start  # reported in 5.1: left_handle

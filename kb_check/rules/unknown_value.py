@@ -43,8 +43,12 @@ def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("value"):
         if _may_be_of_another(script, row):
             continue
-        # Of several classes that a thing may be of, the one with the value that may be meant.
-        owner = max(row.missing, key=lambda path: _likeness(script, path, row.value))
+        # Of several classes that a thing may be of, the one with the value that may be meant, or else the heaviest.
+        weights = script.names.reader.weights([_class_of(path) for path in row.missing])
+        owner = max(
+            row.missing,
+            key=lambda path: (_likeness(script, path, row.value), weights.get(_class_of(path), 0.0)),
+        )
         values = script.api.values_of(owner)
         yield lacking_finding(script, RULE.id, row, script.names.value(owner, row.value, values))
     yield from _of_classes(script)
@@ -100,6 +104,11 @@ def _of_classes(script: Script) -> Iterator[Finding]:
             if values and isinstance(value, str) and value not in values:
                 row = Resolution(node, "value", missing=(taker.path,), value=value)
                 yield lacking_finding(script, RULE.id, row, script.names.value(taker.path, value, values))
+
+
+def _class_of(owner: str) -> str:
+    """The class of the property, or of the function with the argument, that a value was given to."""
+    return owner.partition("(")[0].rpartition(".")[0]
 
 
 def _likeness(script: Script, owner: str, value: str) -> float:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import PAIRS
+from kb_build.records import BARE_DATA, PAIRS
 from kb_build.symbol_lines import is_stand_in, mode_needed, operator_needs, version_meant, written
 from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 
 _PUT_TOGETHER = (
     "put together while Blender runs, and not known here: the error for any other value lists them"
+)
+_BARE_DATA = (
+    "This Blender has no class for the data of the object that it adds: nothing in them can be read or set."
 )
 _FEW_PARAMETERS = 8
 _MACHINERY = {
@@ -154,6 +157,8 @@ class MarkdownRenderer:
         lines.extend(asked_of_classes(symbol))
         if needs := operator_needs(symbol):
             lines.append(f"Of all that was tried, its poll takes {needs}.")
+        for instead in symbol.flagged(BARE_DATA):
+            lines.append(_BARE_DATA + (f" Use `{instead}`." if instead else ""))
         told = [*panel_lines(symbol, self.reader)] or [*switch_lines(symbol, self.reader)]
         if line := "; ".join(told):
             lines.append(line[0].upper() + line[1:] + ".")

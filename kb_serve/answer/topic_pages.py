@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import re
+from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, topic_key
+from kb_build.index.analysis import key, terms, topic_key
+from kb_serve.reader import TYPES
 from kb_serve.recognise.enum_values import is_quoted_value
 
 if TYPE_CHECKING:
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, PageEntry
 
 _ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
+_PAGES_OF_NODES, _NODE = "interface/controls/nodes/types/", f"{TYPES}Node"
 _SELDOM = (
     "grease_pencil/",
     "render/freestyle/",
@@ -26,14 +29,27 @@ _MADE_FROM = re.compile(
 # Who asks for one of these wants to know how it is made, whatever it is put on.
 _MAKING = re.compile(
     r"(?:how\s(?:do\si|to|can\si)\s)?(?:add|create|make|put|insert|apply|use)\s(?:an?\s|the\s|new\s)*"
-    r"(?P<made>\w.*?\s(?:modifier|constraint|node|strip))"
+    r"(?P<made>\w.*?\s(?:modifier|constraint|node|strip|zone))"
     r"(?:\s(?:to|on|onto|for|in|into)\s(?:an?\s|the\s|my\s|this\s)?(?:\w+\s?){1,3})?"
     r"(?:\s(?:from|by|in|via|with|using|through)\s(?:an?\s|the\s)?(?:python|script|code|bpy|api))?",
     re.I,
 )
+# Who asks for the items of a node, or for how they are added, needs the node.
+_ITEM = r"(?:items?|slots?|entr(?:y|ies)|sockets?)"
+_ITEMS = re.compile(
+    rf"(?P<of>\w.*?\s(?:node|zone))(?:\s(?:add(?:ing)?|new|how\sto\sadd|composit(?:or|ing)))*\s{_ITEM}"
+    rf"|(?:how\s(?:do\si|to|can\si)\s)?(?:add|create|make|new)\s(?:an?\s|more\s|new\s)*{_ITEM}\s(?:to|on|in|of|for)\s"
+    r"(?:an?\s|the\s)?(?P<to>\w.*?\s(?:node|zone))",
+    re.I,
+)
+_OF_NODES = ("node", "zone")  # how titles of what is in trees end
 # Nodes of one name are told apart by where they are.
 _WHERE = re.compile(
     r"\s(?:in|of|for)\s(?:the\s)?(?:composit(?:or|ing)|geometry\snodes?|shaders?(?:\s(?:nodes?|editor))?)\b",
+    re.I,
+)
+_OF_A_PLACE = re.compile(
+    r"(?P<place>composit(?:or|ing)|geometry\snodes?|shaders?(?:\snodes?|\seditor)?)\s(?P<node>\w.*\s(?:node|zone))",
     re.I,
 )
 _CHAPTERS = {
@@ -72,17 +88,52 @@ class TopicPages:
         # Bones have constraints of their own.
         making = _MAKING.fullmatch(plain) if "bone" not in plain.lower() else None
         made = making["made"] if making else ""
+        if items := _ITEMS.fullmatch(plain):
+            plain = items["of"] or items["to"]
         if where := _WHERE.search(plain):
-            node = made or plain[: where.start()]
-            chapter = next(chapter for word, chapter in _CHAPTERS.items() if word in where[0].lower())
-            if node.lower().endswith(" node") and (slug := self._called(node, chapter)):
+            node, place = made or plain[: where.start()], where[0]
+        elif of_place := _OF_A_PLACE.fullmatch(plain):
+            node, place = of_place["node"], of_place["place"]
+        else:
+            node, place = "", ""
+        if node.lower().endswith(" node"):
+            chapter = next(chapter for word, chapter in _CHAPTERS.items() if word in place.lower())
+            if slug := self._called(node, chapter):
                 return slug
-        return self._called(plain) or self._called(made)
+        return (
+            self._called(plain)
+            or self._called(made)
+            or self._with_more_words(plain)
+            or self._with_more_words(made)
+        )
+
+    def _with_more_words(self, plain: str) -> str:
+        """The page of the one node or zone whose title has all of some words, or all but its kind; empty for none."""
+        name, _, kind = plain.rpartition(" ")
+        if kind.lower() not in _OF_NODES or not name:
+            return ""
+        if kind.lower() == _OF_NODES[1] and (slug := self._called(name)):
+            return slug
+        wanted = set(terms(plain))
+        fitting = [slug for slug, title in self._titles_of_nodes if wanted <= title]
+        return fitting[0] if len(fitting) == 1 and len(wanted) > 1 else ""
+
+    @cached_property
+    def _titles_of_nodes(self) -> list[tuple[str, frozenset[str]]]:
+        """The pages of nodes and zones that may be topics, each with the words of its title."""
+        pages = filter(None, map(self._reader.page_entry, self._reader.slugs))
+        return [
+            (page.slug, frozenset(terms(page.title)))
+            for page in pages
+            if page.title.lower().endswith(_OF_NODES) and self._is_topic(page.slug)
+        ]
 
     def _called(self, plain: str, chapter: str = "") -> str:
         """The page of a topic that is called so, without more words; of a chapter alone, if one is given."""
-        if not key(plain) or len(plain.split()) > _MAX_WORDS or any(char in plain for char in "._()[]=/"):
+        if not key(plain) or any(char in plain for char in "._()[]=/"):
             return ""
+        if len(plain.split()) > _MAX_WORDS:
+            return self._exactly(plain)
         if plain != plain.lower() and self._is_class(plain):
             return ""
         keys = [topic_key(f"{plain} {kind}") for kind in ("", *_SHORT_FOR)]
@@ -96,6 +147,11 @@ class TopicPages:
         # A page that explains nothing but settings, if no other may be meant.
         alone = next((slugs for slugs in titled if len(slugs) == 1), set[str]())
         return next((slug for slug in alone if self._sets_something(slug)), "")
+
+    def _exactly(self, plain: str) -> str:
+        """The page of a topic whose title is just these many words; empty for none."""
+        slugs = {slug for _, slug in self._reader.by_key(topic_key(plain)) if self._is_title(slug, plain)}
+        return next((slug for slug in slugs if self._is_topic(slug)), "") if len(slugs) == 1 else ""
 
     def _best(self, sizes: dict[str, int], slugs: set[str], plain: str) -> str:
         """The page that is meant of those called so: the one with the very title, or else the largest."""
@@ -137,7 +193,14 @@ class TopicPages:
 
     def _may_be_topic(self, slug: str) -> bool:
         page = self._reader.page_entry(slug)
-        return page is not None and page.source == "manual" and not slug.startswith(_ASIDE_PAGES)
+        if page is None or page.source != "manual":
+            return False
+        return not slug.startswith(_ASIDE_PAGES) or self._is_of_node(slug)
+
+    def _is_of_node(self, slug: str) -> bool:
+        """Whether a page explains a node that several kinds of trees take."""
+        symbols = self._reader.symbols_of_page(slug) if slug.startswith(_PAGES_OF_NODES) else ()
+        return any(self._reader.descends(path, _NODE) for path in symbols)
 
     def _size(self, slug: str) -> int:
         """The number of pages and symbols below a page: people rarely mean the smaller chapter."""

@@ -35,6 +35,7 @@ _MAKERS = 3
 _FUNCTIONS = 3
 _LEAST_SHARE = 0.25  # of the heaviest class's weight
 _MODIFIER = f"{TYPES}Modifier"  # of objects
+_IN_A_NODE = ".nodes["  # in a call that makes what a node holds
 _NOT_MADE = frozenset({NODE, *EMBEDDED_TREES})  # for themselves
 
 
@@ -139,9 +140,15 @@ class Steps:
 
     def _make(self) -> Iterator[str]:
         groups = [group for group in self._groups() if self._is_main(group)][:_MAKERS]
-        # What an operator makes that needs nothing comes first: a world, before what is in it makes one.
+        # What an operator makes that needs nothing comes first: a world, before what is in it makes one; nodes come
+        # before their items, which they are told with.
+        firsts = {id(group): next(iter(group.values())) for group in groups}
         for creations in sorted(
-            groups, key=lambda group: not self._needs_nothing(next(iter(group.values())))
+            groups,
+            key=lambda group: (
+                not self._needs_nothing(firsts[id(group)]),
+                _IN_A_NODE in firsts[id(group)].call,
+            ),
         ):
             if next(iter(creations)) not in self._scene.shown:
                 yield from self._make_one(creations, is_first=creations is groups[0])

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import split_arguments
 from kb_serve.recognise.contexts import NO_OVERRIDE, with_context
-from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.signatures import signature_arguments
 
 if TYPE_CHECKING:
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_serve.recognise.chains import Chain
 
-_FEW = 3
 _NESTED = re.compile(r"""\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}|'[^']*'|"[^"]*\"""")
 _KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
 _ARGUMENT = re.compile(r"\s*(?:(\w+)\s*=(?!=))?\s*(.*)", re.DOTALL)
@@ -53,10 +52,8 @@ def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
         if not known:
             yield f"`{symbol.path}` takes no arguments."
             continue
-        similar = [other for other in known if sorted(other.split("_")) == sorted(name.split("_"))]
-        similar = similar or [other for other, _ in nearest(name, known)]
-        similar = similar or [other for other in known if other.startswith(name[:3])]
-        closest = f"; closest: {', '.join(f'`{other}`' for other in similar[:_FEW])}" if similar else ""
+        similar = likely_keywords(name, {one.name: one.label for one in symbol.parameters})
+        closest = f"; closest: {', '.join(f'`{other}`' for other in similar)}" if similar else ""
         yield f"`{symbol.path}` takes no `{name}`{closest}."
 
 

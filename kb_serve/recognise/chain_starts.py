@@ -30,8 +30,10 @@ _IMPORTED = ("mathutils.", "bmesh.types.", "bpy_extras.")
 _INSTANCE = "self"  # of a class of the script's own, whose attributes are like variables
 _NAMED_LIKE_A_MODULE = 0.9  # fit of a class that a variable is named after, which is no module then
 _MODULE_THAT_LACKS = 0.6  # … of a module that lacks what is read, by its last name
-_COLLECTION_FIT = 0.7  # of an indexed variable with the name of a collection property
+_COLLECTION_FIT = 0.7  # of a variable with the name of a collection property that is used as one
 _USUAL = 0.05
+_LIGHTER = 0.0005  # for each that counts more
+LEAST_OF_COLLECTION = _COLLECTION_FIT - _USUAL
 _MOST_CALLED_SO = 60  # symbols of one name that are looked at
 _MOST_NAMES = 8  # in the longest path
 
@@ -77,7 +79,8 @@ class ChainStarts:
                 yield ChainValue(cls, cls), fit
         if not chain.steps:
             return
-        for entry in self._reader.by_name(chain.root)[:_MOST_CALLED_SO]:
+        named = self._owners.heaviest(self._reader.by_name(chain.root)[:_MOST_CALLED_SO])
+        for rank, entry in enumerate(named):
             if (
                 entry.kind == "property"
                 and (value := self._values.of(entry)).many
@@ -85,7 +88,7 @@ class ChainStarts:
             ):
                 # An Object's modifiers are likelier than an FCurve's.
                 is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
-                yield value, _COLLECTION_FIT + (_USUAL if is_usual else 0.0)
+                yield value, _COLLECTION_FIT + (_USUAL if is_usual else 0.0) - _LIGHTER * rank
         for cls, fit in self._owners.of(chain):
             if cls not in seen:
                 seen.add(cls)

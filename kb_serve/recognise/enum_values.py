@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.records import NOT_TAKEN
+from kb_serve.recognise.likely_values import explaining
 from kb_serve.recognise.recognition import WHOLE_LABEL
 
 if TYPE_CHECKING:
@@ -158,6 +159,10 @@ class EnumValues:
         labels = {item.identifier: set(terms(item.name)) for item in self._items(owner)}
         having = [identifier for identifier, label in labels.items() if said and said <= label]
         return sorted(having, key=lambda identifier: len(labels[identifier]))
+
+    def explaining(self, owner: str, value: str) -> list[str]:
+        """The item that says what things called as a value are, if there is one."""
+        return explaining(value, self._items(owner), self._reader)
 
     def condition(self, owner: str, value: str) -> str:
         """A sentence on where an enumeration takes a value; "" if everywhere, or nowhere."""

@@ -28,6 +28,7 @@ from kb_serve.recognise.broken_expressions import (
     is_clear,
     likeliest_broken,
 )
+from kb_serve.recognise.chain_starts import LEAST_OF_COLLECTION
 from kb_serve.recognise.enum_values import is_value
 from kb_serve.recognise.members_by_words import members_by_words
 from kb_serve.recognise.notes import SIMILAR
@@ -39,6 +40,9 @@ from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import USUAL, usual_classes
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kb_build.records import Symbol
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.chains import Chain
     from kb_serve.recognise.corrections import Corrector
@@ -79,6 +83,12 @@ def _is_api(chain: Chain) -> bool:
 def _is_file_name(chain: Chain) -> bool:
     """Whether a chain is a name and an ending that files have: ``file.blend``."""
     return len(chain.steps) == 1 and set(chain.attributes) <= _FILE_ENDINGS and chain.steps[0].kind == "attr"
+
+
+def _arguments_of(symbol: Symbol | None) -> tuple[tuple[str, tuple[str, ...]], ...]:
+    """The arguments that something takes, each with its values."""
+    parameters = symbol.parameters if symbol else ()
+    return tuple((one.name, tuple(item.identifier for item in one.enum_items)) for one in parameters)
 
 
 class Expressions:
@@ -199,7 +209,8 @@ class Expressions:
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition
     ) -> None:
         """Adds the best readings of a chain, and the symbols on the way to the first."""
-        recognition.readings[chain.source] = readings[0].symbols[-1] if is_clear(chain, readings[0]) else ""
+        is_sure = is_clear(chain, readings[0]) or self._agree(chain, readings)
+        recognition.readings[chain.source] = readings[0].symbols[-1] if is_sure else ""
         bare = not chain.attributes and not readings[0].keyed  # a class with a call or an index behind it
         likely = [
             resolved
@@ -227,6 +238,17 @@ class Expressions:
             symbol = self._reader.symbol(path)
             if symbol and _DEPRECATED in symbol.description:
                 recognition.notes.append(f"`{path}`: {symbol.description}")
+
+    def _agree(self, chain: Chain, readings: Sequence[ResolvedChain]) -> bool:
+        """Whether a variable is called and used as a collection is, and all that it may be takes the same arguments and
+        values: ``attributes.new(…)``, of a mesh or of a point cloud.
+        """
+        best = readings[0]
+        if best.fit < LEAST_OF_COLLECTION or best.symbols[0].rpartition(".")[2] != chain.root:
+            return False
+        likely = [one for one in readings if one.complete and one.fit >= LIKELY * best.fit]
+        symbols = (self._reader.symbol(one.symbols[-1]) for one in likely)
+        return len({_arguments_of(symbol) for symbol in symbols}) == 1
 
     def _corrected(
         self, chain: Chain, readings: list[ResolvedChain], later: float, recognition: Recognition

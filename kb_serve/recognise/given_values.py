@@ -7,12 +7,13 @@ from typing import TYPE_CHECKING
 
 from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
 from kb_serve.recognise.calls import arguments, places_of, texts_in
-from kb_serve.recognise.likely_values import likely_values
+from kb_serve.recognise.likely_values import likely_items
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
 
     from kb_build.records import EnumItem, Parameter, Symbol
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.chains import Chain
 
 _MOST = 8  # items that are all named
@@ -20,17 +21,17 @@ _OPEN = frozenset({"bpy.types.RenderSettings.engine"})  # to which add-ons add
 _CLASS = re.compile(r"[A-Z]\w*[a-z]")  # ``GeometryNodeTree``
 
 
-def wrong_values(chain: Chain, symbol: Symbol, removed: Collection[str]) -> Iterator[str]:
+def wrong_values(chain: Chain, symbol: Symbol, removed: Collection[str], reader: BaseReader) -> Iterator[str]:
     """Sentences on what a chain gives that is no item; but on ``removed`` items, given by path."""
     if symbol.kind == "property":
         for value in chain.values:
             if not symbol.enum_computed and f"{symbol.path}:{value}" not in removed:
-                yield from _wrong(symbol.path, value, symbol.enum_items)
+                yield from _wrong(symbol.path, value, symbol.enum_items, reader)
     elif chain.steps and chain.steps[-1].kind == "call" and symbol.kind in {"function", "operator"}:
         for parameter, value in _given(symbol, chain.steps[-1].text):
             owner = f"{symbol.path}({parameter.name})"
             if f"{owner}:{value}" not in removed:
-                yield from _wrong(owner, value, parameter.enum_items)
+                yield from _wrong(owner, value, parameter.enum_items, reader)
 
 
 def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str]]:
@@ -44,13 +45,13 @@ def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str]]:
             yield from ((parameter, value) for value in texts_in(given))
 
 
-def _wrong(owner: str, value: str, items: Sequence[EnumItem]) -> Iterator[str]:
+def _wrong(owner: str, value: str, items: Sequence[EnumItem], reader: BaseReader) -> Iterator[str]:
     names = [item.identifier for item in items]
     if len(names) < FEWEST_VALUES or value in names or value in MORE_VALUES.get(owner, ()) or owner in _OPEN:
         return
     if all(_CLASS.match(name) for name in names):  # those of add-ons are taken as well
         return
-    if closest := likely_values(value, names):
+    if closest := likely_items(value, items, reader):
         told = f"Closest: {_listed(closest)}."
     else:
         told = f"It takes {_listed(names[:_MOST])}{' …' if len(names) > _MOST else ''}."

@@ -5,14 +5,18 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import words
+from kb_build.index.analysis import terms, words
 from kb_serve.recognise.corrections import nearest
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from kb_build.records import EnumItem
+    from kb_serve.reader import BaseReader
+
 _MOST = 3
 _LONG = 4  # letters of an item that a wrong one begins with
+_TELLING = 2  # words of a label that other texts have
 _SHORT = 3  # … of a wrong one that an item begins with
 _OPPOSITES = frozenset({"neg", "negative"})
 _MINUS = re.compile(r"-(?=[XYZ]$)")
@@ -35,6 +39,27 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
         return similar
     own = set(words(written))
     return sorted((item for item in items if set(words(item)) <= own), key=len, reverse=True)[:1]
+
+
+def likely_items(written: str, items: Sequence[EnumItem], reader: BaseReader) -> list[str]:
+    """The same of items with their labels: where none is alike, what Blender says that things called so are."""
+    return likely_values(written, [item.identifier for item in items]) or explaining(written, items, reader)
+
+
+def explaining(written: str, items: Iterable[EnumItem], reader: BaseReader) -> list[str]:
+    """The one item with a label of several words that the text on a collection called so has: ``CORNER``, Face Corner,
+    for ``LOOP``, as the loops of a mesh are said to be face corners.
+    """
+    name = written.lower()
+    entries = [entry for one in (name, f"{name}s") for entry in reader.by_name(one)]
+    texts = [" ".join(terms(entry.line)) for entry in entries if entry.type == "collection"]
+    labels = {item.identifier: terms(item.name) for item in items}
+    found = [
+        identifier
+        for identifier, label in labels.items()
+        if len(label) >= _TELLING and any(f" {' '.join(label)} " in f" {text} " for text in texts)
+    ]
+    return found if len(found) == 1 else []
 
 
 def _of_same_sense(written: str, values: Iterable[str]) -> list[str]:

@@ -7,7 +7,7 @@ from __future__ import annotations
 import re
 from itertools import islice
 
-from kb_build.index.analysis import terms
+from kb_build.index.analysis import terms, tokens
 from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.addresses import ids_in_urls
 from kb_serve.recognise.bindings import with_bindings
@@ -55,6 +55,9 @@ _LIKELY = 1.1
 _LIKELY_GUESS = 0.88
 _GUESS = 0.83
 _SOCKET_VALUE = "The value of a socket is its `default_value`: `node.inputs[…].default_value = …`."
+_UNKNOWN_MODULE = (
+    "The build of Blender {version} behind this base has no module `{module}`; other builds may have it."
+)
 _OF_STRINGS = frozenset({"enum item", "quoted name"})
 _GUESSES = _OF_STRINGS | {"name", "label", "title", "on the way"}
 
@@ -89,6 +92,10 @@ class Recogniser:
         """Everything that ``query`` names, surest first."""
         recognition = Recognition()
         chains = with_bindings(query, find_chains(query))
+        recognition.notes += (
+            _UNKNOWN_MODULE.format(version=self._reader.meta.get("minor", ""), module=module)
+            for module in sorted(self._reader.unknown_modules.intersection(tokens(query)))
+        )
         for identifier in ids_in_urls(query, self._reader):
             recognition.add(identifier, 1.0, "address")
         self._spellings.recognise(query, recognition)
@@ -154,7 +161,7 @@ class Recogniser:
                 recognition.add_removed(removed)
             gone = {removed.path for removed in (*old, *recognition.removed)}
             notes = list(wrong_arguments(chain, symbol, gone))
-            recognition.notes += (*notes, *wrong_values(chain, symbol, gone))
+            recognition.notes += (*notes, *wrong_values(chain, symbol, gone, self._reader))
             if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.98, "error message")  # before the operator that does not take it
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_serve.reader import TYPES
-from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.variables import usual_classes
 
 if TYPE_CHECKING:
@@ -102,9 +102,9 @@ class RemovedSymbolLookup:
         symbol = self._reader.symbol(whole) if mark and argument.isidentifier() else None
         if symbol is None:
             return tuple(self._reader.similar_names(path))
-        names = [parameter.name for parameter in symbol.parameters]
-        alike = nearest(argument, names) if argument not in names else ()
-        return tuple((f"{whole}({name})", score) for name, score in alike)
+        labels = {parameter.name: parameter.label for parameter in symbol.parameters}
+        alike = likely_keywords(argument, labels) if argument not in labels else ()
+        return tuple((f"{whole}({name})", 1.0) for name in alike)
 
     def _of_same_items(self, path: str, span: tuple[str, str, str]) -> Iterator[Successor]:
         """What took the place of an item of an argument, where that is known of a property with the same items."""

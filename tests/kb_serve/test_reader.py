@@ -246,3 +246,15 @@ def test_a_path_with_odd_characters_is_opened(base: Path, tmp_path: Path) -> Non
 def test_the_file_says_whose_it_is(base: Path) -> None:
     with closing(sqlite3.connect(base)) as file:
         assert file.execute("PRAGMA application_id").fetchone() == (APPLICATION_ID,)
+
+
+def test_a_module_that_the_build_lacks_is_said_to_be_unknown(make_base: Callable[..., Path]) -> None:
+    with KnowledgeBase(make_base("4.2.0", unknown_modules=["aud"])) as kb:
+        told = "has no module `aud`; other builds may have it."
+        assert [note for note in kb.query("device = aud.Device()").notes if note.endswith(told)]
+        assert [
+            note
+            for note in kb.query("ModuleNotFoundError: No module named 'aud'").notes
+            if note.endswith(told)
+        ]
+        assert not [note for note in kb.query("bpy.ops.sound.open()").notes if note.endswith(told)]

@@ -8,14 +8,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.records import PAIRS
+from kb_build.records import NOT_TAKEN, PAIRS
 from kb_build.symbol_lines import written
+from kb_serve.answer.steps.node_items import EXTEND
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_serve.answer.steps.new_scene import NewScene
+    from kb_serve.answer.steps.node_items import NodeItems
 
 SHADER_TREE = f"{TYPES}ShaderNodeTree"
 OF_WORLDS = frozenset(
@@ -24,6 +26,7 @@ OF_WORLDS = frozenset(
 _END = "tree.get_output_node('ALL')"
 _END_NODE = f"{TYPES}ShaderNodeOutputMaterial"  # what that gives
 _GROUP_END = "group_output"
+_IDENTIFIER, _TYPED_BY = "identifier:", "type-by:"  # flags of sockets
 _PRINCIPLED = 'tree.nodes["Principled BSDF"]'
 _BACKGROUND = 'tree.nodes["Background"].inputs["Color"]'
 
@@ -40,6 +43,11 @@ class _Group(NamedTuple):
     taken: tuple[str, ...]
     source: tuple[str, str] = ("", "")
 
+    @property
+    def kind(self) -> str:
+        """The kind of sockets that it goes through."""
+        return self.given[0]
+
 
 _GROUPS = {
     f"{TYPES}GeometryNodeTree": _Group("Geometry", "NodeSocketGeometry", ("geometry",), ("geometry",)),
@@ -53,8 +61,9 @@ _GROUPS = {
 class NodeLinks:
     """The links of one list of steps."""
 
-    def __init__(self, scene: NewScene) -> None:
+    def __init__(self, scene: NewScene, items: NodeItems) -> None:
         self._scene = scene
+        self._items = items
         self._reader = scene.reader
         self._ended: set[str] = set()
         self._begun: set[str] = set()
@@ -72,41 +81,130 @@ class NodeLinks:
             yield from self._to_end(node, variable)
             return
         group = _GROUPS.get(tree)
-        taken = self._socket(node, "outputs", group.taken if group else ())
         if group is None:
-            if taken:
+            if taken := self._socket(node, "outputs", ()):
                 yield from self._ending(tree, None)
                 yield f"`tree.links.new({variable}.{taken}, {_GROUP_END}.inputs[0])`"
             return
-        given = self._socket(node, "inputs", group.given)
+        given, taken = self._socket(node, "inputs", group.given), self._socket(node, "outputs", group.taken)
+        if not (given or taken) and (switch := self._type_switch(node, group)):
+            yield f"`{variable}.{switch} = '{group.kind.upper()}'`"
+            given, taken = (self._typed(node, side, switch) for side in ("inputs", "outputs"))
+        by_items = self._items.may_extend(node, "inputs") or self._items.may_extend(node, "outputs")
+        own_end = self._socket(node, "outputs", ()) if by_items and given and not taken else ""
         source = ""
         if (given or not taken) and node.removeprefix(TYPES) not in group.source[0]:
             source = yield from self._beginning(tree, group)
+        into = [f"`tree.links.new({source}, {variable}.{given})`"] if given and source else []
+        if by_items and taken and not given:
+            into += self._from_group(node, variable)
+        if own_end:
+            yield from into
+            yield from self._to_group(tree, node, variable, own_end)
+            return
         yield from self._ending(tree, group)
-        if given and taken and source:
-            yield f"`tree.links.new({source}, {variable}.{given})`"
+        if taken or by_items:
+            yield from into
         if taken or source:
             told = f"{variable}.{taken}" if taken else source
             yield f"`tree.links.new({told}, {_GROUP_END}.inputs[0])`"
 
     def through_zone(self, tree: str, first: str, last: str) -> Iterator[str]:
-        """The steps that link the two paired ends of a zone into their tree."""
+        """The steps that link the two paired ends of a zone into their tree; of one that nothing comes into, as a
+        closure, what is in it and what it gives.
+        """
         group = _GROUPS.get(tree)
+        if group is None:
+            return
         sockets = [
-            self._socket(node, side, group.taken if group else ())
+            self._socket(node, side, group.taken)
             for node, side in ((first, "inputs"), (first, "outputs"), (last, "inputs"), (last, "outputs"))
         ]
-        if group is None or not all(sockets):
-            return
-        source = yield from self._beginning(tree, group)
-        yield from self._ending(tree, group)
         begin, end = self._scene.variables.of(first), self._scene.variables.of(last)
-        for left, right in (
-            (source, f"{begin}.{sockets[0]}"),
-            (f"{begin}.{sockets[1]}", f"{end}.{sockets[2]}"),
-            (f"{end}.{sockets[3]}", f"{_GROUP_END}.inputs[0]"),
-        ):
-            yield f"`tree.links.new({left}, {right})`"
+        inner = f"`tree.links.new({begin}.{sockets[1]}, {end}.{sockets[2]})`"
+        if all(sockets):
+            source = yield from self._beginning(tree, group)
+            yield from self._ending(tree, group)
+            yield f"`tree.links.new({source}, {begin}.{sockets[0]})`"
+            yield inner
+            yield f"`tree.links.new({end}.{self._given_out(last, sockets)}, {_GROUP_END}.inputs[0])`"
+        elif all(sockets[1:3]) and (own := self._socket(last, "outputs", ())):
+            yield inner
+            yield from self._to_group(tree, last, end, own)
+
+    def lacks(self, node: str, tree: str, partner: str = "") -> str:
+        """The kind of sockets that go through a tree, if a node, or a zone between it and its partner, has none where
+        it may get some; empty otherwise.
+        """
+        group = _GROUPS.get(tree)
+        if group is None:
+            return ""
+        ends = (partner, node) if partner else (node, node)
+        sides = [(ends[0], "outputs"), (ends[1], "inputs")]
+        open_sides = [(end, side) for end, side in sides if self._items.may_extend(end, side)]
+        has_one = any(self._socket(end, side, (group.kind,)) for end, side in open_sides)
+        return group.kind if open_sides and not has_one else ""
+
+    def name_in(self, tree: str) -> str:
+        """What goes through a tree is called."""
+        return _GROUPS[tree].name if tree in _GROUPS else ""
+
+    def _given_out(self, last: str, sockets: list[str]) -> str:
+        """The output of a zone for what comes in at its end: the one of the same identifier, if there is one."""
+        identifiers = self._identifiers(last, "inputs").get(sockets[2], "")
+        outputs = {name: socket for socket, name in self._identifiers(last, "outputs").items()}
+        return outputs.get(identifiers) or sockets[3]
+
+    def _identifiers(self, node: str, side: str) -> dict[str, str]:
+        """Socket as it is written → its identifier."""
+        found: dict[str, str] = {}
+        for name, entry in self._reader.members(node).items():
+            symbol = self._reader.symbol(entry.path) if name.startswith(f"{side}[") else None
+            if symbol is not None:
+                found[written(symbol)[len(node) + 1 :]] = next(iter(symbol.flagged(_IDENTIFIER)), "")
+        return found
+
+    def _type_switch(self, node: str, group: _Group) -> str:
+        """The property that makes sockets of the kind which goes through a tree; empty for none."""
+        for name, entry in self._reader.members(node).items():
+            symbol = self._reader.symbol(entry.path) if entry.type == "enum" else None
+            items = symbol.enum_items if symbol else ()
+            types = {item.identifier for item in items if item.where != NOT_TAKEN}
+            is_taken = group.kind.upper() in types
+            if is_taken and all(self._typed(node, side, name) for side in ("inputs", "outputs")):
+                return name
+        return ""
+
+    def _typed(self, node: str, side: str, switch: str) -> str:
+        """The first socket of a side whose type a property says; empty for none."""
+        for name, entry in self._reader.members(node).items():
+            symbol = self._reader.symbol(entry.path) if name.startswith(f"{side}[") else None
+            if symbol is not None and f"{_TYPED_BY}{switch}" in symbol.flags:
+                return written(symbol)[len(node) + 1 :]
+        return ""
+
+    def _from_group(self, node: str, variable: str) -> Iterator[str]:
+        """The steps that give a node what it takes apart: a group has an input of its kind."""
+        if own := self._socket(node, "inputs", ()):
+            yield from self._interface(node, own, "INPUT")
+            yield '`group_input = tree.nodes.new("NodeGroupInput")`'
+            yield f"`tree.links.new(group_input.outputs[0], {variable}.{own})`"
+
+    def _to_group(self, tree: str, node: str, variable: str, own: str) -> Iterator[str]:
+        """The steps that give out what a node puts together: a group has an output of its kind."""
+        yield from self._interface(node, own, "OUTPUT")
+        if tree not in self._ended:
+            self._ended.add(tree)
+            yield f'`{_GROUP_END} = tree.nodes.new("NodeGroupOutput")`'
+        yield f"`tree.links.new({variable}.{own}, {_GROUP_END}.inputs[0])`"
+
+    def _interface(self, node: str, socket: str, side: str) -> Iterator[str]:
+        """The step that makes a group's socket of the kind that a node's is of."""
+        entry = self._reader.members(node).get(socket)
+        cls = f"NodeSocket{entry.type.title()}" if entry else ""
+        if entry and self._reader.entry(f"{TYPES}{cls}"):
+            name = entry.label or entry.type.title()
+            yield f"`tree.interface.new_socket(\"{name}\", in_out='{side}', socket_type='{cls}')`"
 
     def _beginning(self, tree: str, group: _Group) -> Iterator[str]:
         """What comes into a tree; returns the expression for the socket that gives it."""
@@ -157,11 +255,11 @@ class NodeLinks:
         entries = [
             entry
             for name, entry in self._reader.members(node).items()
-            if entry.kind == "socket" and name.startswith(f"{side}[") and "__extend__" not in name
+            if entry.kind == "socket" and name.startswith(f"{side}[") and EXTEND not in name
         ]
         for kind in kinds or ("",):
             for entry in entries:
                 symbol = self._reader.symbol(entry.path) if not kind or entry.type == kind else None
                 if symbol is not None and "hidden-by-default" not in symbol.flags:
                     return written(symbol)[len(node) + 1 :]
-        return ""
+        return self._items.socket(node, side, kinds)

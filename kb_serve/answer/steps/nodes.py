@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.records import PAIRS
 from kb_serve.answer.render import is_machinery
 from kb_serve.answer.steps.members import call_of
+from kb_serve.answer.steps.node_items import NodeItems
 from kb_serve.answer.steps.node_links import NodeLinks
 from kb_serve.answer.steps.pointer_fills import stays_empty
 from kb_serve.reader import TYPES
@@ -36,7 +37,8 @@ class NodeSteps:
         self._reader = scene.reader
         self._calls = calls
         self._trees = trees
-        self._links = NodeLinks(scene)
+        self._items = NodeItems(scene)
+        self._links = NodeLinks(scene, self._items)
 
     def made(self, creations: Mapping[str, Creation]) -> Iterator[str]:
         """Nodes, in the tree that takes the first of them."""
@@ -86,6 +88,7 @@ class NodeSteps:
             first, last = sorted((main, partner))  # Input before Output
             yield from self._zone(first, last, tree)
         else:
+            yield from self._with_items(main, tree)
             yield from self._links.of(tree, main)
 
     def _zone(self, first: str, last: str, tree: str) -> Iterator[str]:
@@ -96,7 +99,13 @@ class NodeSteps:
                 yield from self._calls.making({node: known[node]})
         begin, end = self._scene.variables.of(first), self._scene.variables.of(last)
         yield f"`{begin}.{PAIRS}({end})`"
+        yield from self._with_items(last, tree, first)
         yield from self._links.through_zone(tree, first, last)
+
+    def _with_items(self, node: str, tree: str, partner: str = "") -> Iterator[str]:
+        """How a node gets sockets: what goes through the tree goes through the node, too, if that may have such."""
+        kind = self._links.lacks(node, tree, partner)
+        yield from self._items.added(node, tree, kind, self._links.name_in(tree), partner)
 
     def _functions(self, creations: Mapping[str, Creation]) -> Iterator[str]:
         """The functions that nodes themselves have, as those at the ends of zones do."""

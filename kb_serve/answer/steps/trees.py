@@ -42,7 +42,13 @@ class TreeSteps:
     def taking(self, node: str) -> TreeReady:
         """The tree that takes a node."""
         name = node.removeprefix(TYPES)
-        own = sorted(self._trees_of(node), key=lambda tree: not name.startswith(tree.removesuffix("Tree")))
+        own = sorted(
+            self._trees_of(node),
+            key=lambda tree: (
+                not name.startswith(tree.removesuffix("Tree")),
+                f"{TYPES}{tree}" != _USUAL_TREE,
+            ),
+        )
         tree = f"{TYPES}{own[0]}" if own else ""
         holder = _WORLD if node in OF_WORLDS else ""
         return TreeReady(tree, [] if tree in self._scene.shown else [*self._new(tree, holder)])

@@ -12,7 +12,7 @@ from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.removed_symbols import socket_node
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Iterator, Sequence
 
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
@@ -43,13 +43,52 @@ class FormerSockets:
         if len(taken) * 2 > len(paths):
             self._tell_still_taken(name, taken, recognition)
             return True
+        lost = [path for path in paths if path not in taken]
         fit = {path: len(around & set(terms(socket_node(path).removeprefix(TYPES)))) for path in paths}
         if not any(fit.values()):
+            said = len(recognition.notes)
             paths = self._lost_by_nobody_else(name, paths, recognition)
+            if not paths and said == len(recognition.notes):
+                return False  # so many have one that nothing tells which is meant
         paths.sort(key=lambda path: (-fit[path], not path.startswith(_USUAL_NODE)))
         for removed in islice(filter(None, map(self._removed.of_path, paths)), 1):
             recognition.add_removed(removed)
+        told = {socket_node(one.path) for one in recognition.removed}
+        others = [path for path in lost if socket_node(path) not in told]
+        recognition.notes += self._of_other_nodes(name, others)
         return False
+
+    def _of_other_nodes(self, name: str, lost: Sequence[str]) -> Iterator[str]:
+        """Sentences on the other nodes that had such a socket, those first that are still there, and on the few that
+        have one.
+        """
+        nodes: dict[str, str] = {}
+        for path in sorted(lost, key=lambda path: (self._reader.entry(socket_node(path)) is None, path)):
+            span = self._reader.removed(path)
+            if span is not None and span[2]:  # not of later versions alone
+                nodes.setdefault(socket_node(path), self._name_now(path))
+        if nodes:
+            named = [
+                f"`{node.removeprefix(TYPES)}`{now}" for node, now in islice(nodes.items(), _MOST_LISTED)
+            ]
+            more = f", and {len(nodes) - _MOST_LISTED} more" if len(nodes) > _MOST_LISTED else ""
+            yield f"Other versions had a socket `{name}` on {', '.join(named)}{more}."
+        sockets = [entry for entry in self._reader.by_name(name) if entry.kind == "socket"]
+        having = sorted({entry.owner.removeprefix(TYPES) for entry in sockets})
+        if 0 < len(having) <= _FEW:
+            yield f"Nodes that have one: {', '.join(f'`{node}`' for node in having)}."
+
+    def _name_now(self, path: str) -> str:
+        """What the node calls the socket now, or what takes the node's place, in brackets; empty for neither."""
+        target = next((successor.target for successor in self._reader.successors(path)), "")
+        if target and socket_node(target) == socket_node(path):
+            new = target.partition('["')[2].removesuffix('"]')
+            return f" (now `{new}`)"
+        if self._reader.entry(node := socket_node(path)):
+            return ""
+        others = (successor.target for successor in self._reader.successors(node))
+        instead = next(filter(None, others), "") or socket_node(target)
+        return f" (now `{instead.removeprefix(TYPES)}`)" if instead else ""
 
     def _tell_still_taken(self, name: str, taken: dict[str, str], recognition: Recognition) -> None:
         """A former name that most of the nodes which had it still take: where it fails."""

@@ -62,7 +62,7 @@ class Values:
             elif owners and (labelled := self._labelled(owners[0], match["name"], items)):
                 listed = ", ".join(f"`{item}`" for item in labelled[:_FEW])
                 recognition.notes.append(_LABELLED.format(name=match["name"], items=listed))
-            elif similar := _closest(match["name"], items):
+            elif similar := _closest(match["name"], items) or self._explaining(owners, match["name"]):
                 recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
             elif (others := self._taking_only(match["name"])) and owners:
                 listed = ", ".join(f"`{other}`" for other in others)
@@ -78,6 +78,11 @@ class Values:
         """The other items whose label is a name, where spelling does not tell just these: the label is surer."""
         labelled = [item for item in self._enum_values.labelled(owner, name) if item != name]
         return [] if _closest(name, items) == ", ".join(f"`{item}`" for item in labelled) else labelled
+
+    def _explaining(self, owners: Sequence[str], name: str) -> str:
+        """The item of the likeliest owner that says what things called so are; empty for none."""
+        meant = self._enum_values.explaining(owners[0], name) if owners else ()
+        return ", ".join(f"`{item}`" for item in meant)
 
     def _taking_only(self, value: str) -> list[str]:
         """The properties that take a value, where only a few do."""

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.records import INVERTED
+from kb_build.records import BARE_DATA, INVERTED
 from kb_build.symbol_lines import default_text, shown_when, type_text
 
 if TYPE_CHECKING:
@@ -138,6 +138,14 @@ def test_what_an_operator_takes_for_what_is_left_out_is_no_default(symbols: Mapp
     assert given["location"].description.endswith("Left out: the 3D cursor's")
     assert (given["scale"].default, given["scale"].unit, given["location"].default) == (None, "", None)
     assert "location=..., rotation=(0, 0, 0), scale=..." in cube.signature
+
+
+def test_this_blender_has_a_class_for_the_data_of_whatever_is_added(symbols: Mapping[str, Symbol]) -> None:
+    adding = [
+        symbol for path, symbol in symbols.items() if path.startswith("bpy.ops.") and path.endswith("_add")
+    ]
+    assert len(adding) > 20
+    assert not [symbol.path for symbol in adding if BARE_DATA in symbol.flags]
 
 
 @pytest.mark.parametrize(

@@ -181,3 +181,20 @@ def refuses(tmp_path: Path, data: bytes) -> None:
     file.write_bytes(data)
     with pytest.raises(StoreError, match="simworlds kb history"):
         ApiHistory.load(file)
+
+
+def test_a_module_that_a_build_lacks_as_a_whole_is_not_new_in_the_next(committed: ApiHistory) -> None:
+    """The package of 4.2 comes without ``aud``, which Blender has had since long before."""
+    history = merge_versions({"4.2.0": {"bpy"}, "4.3.0": {"bpy", "bpy.new", "aud", "aud.Device"}})
+    assert history.exists("aud.Device", "4.2") is None
+    assert {span.path for span in history.removed_from("4.2")} == {"bpy.new"}
+    assert [each.path for each in history.arrivals("4.3") if each.lacked] == ["bpy.new"]
+    assert history.unknown_modules("4.2") == ("aud",)
+    assert committed.unknown_modules("4.2") == ("aud",)
+    assert committed.unknown_modules("4.3") == ()
+    assert not [span.path for span in committed.removed_from("4.2") if span.path.startswith("aud")]
+
+
+def test_a_module_that_stubs_tell_of_is_new_where_they_lack_it() -> None:
+    history = merge_versions({"2.83": {"bpy"}, "2.90": {"bpy", "bl_math"}, "4.2.0": {"bpy", "bl_math"}})
+    assert history.exists("bl_math", "2.83") is False

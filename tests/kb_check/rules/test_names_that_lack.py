@@ -92,6 +92,7 @@ def test_what_may_be_meant_is_told(checker: Checker, code: str, told: str) -> No
          "TRACK_NEGATIVE_Z", "FORWARD_Z"),
         ("bpy.ops.wm.obj_export(filepath='x', forward_axis='FORWARD_NEGATIVE_Z')", "NEGATIVE_Z", ""),
         ("m.attributes.new('x', 'FLOAT_COLOR', 'VERTEX')", "AttributeGroupMesh", "AttributeGroupPointCloud"),
+        ("m.attributes.new('x', 'FLOAT_COLOR', 'LOOP')", "CORNER", "EDGE"),
     ],
 )  # fmt: skip
 def test_names_are_told_by_what_menus_call_them(
@@ -101,6 +102,12 @@ def test_names_are_told_by_what_menus_call_them(
     told = finding.message.rpartition("5.")[2] if not_meant else finding.message
     assert f"`{meant}`" in finding.message or f".{meant}." in finding.message
     assert not not_meant or f"`{not_meant}`" not in told
+
+
+def test_of_what_may_have_several_owners_the_usual_one_is_told(checker: Checker) -> None:
+    (found,) = checker.check("import bpy\nbpy.context.object.data.attributes.new('x', 'FLOAT', 'LOOP')\n")
+    assert found.symbol == "bpy.types.AttributeGroupMesh.new(domain):LOOP"
+    assert found.instead == ("CORNER",)
 
 
 def test_what_blender_lets_pass_is_a_warning(checker: Checker) -> None:
@@ -381,3 +388,16 @@ def test_a_value_that_wants_a_setting_first_is_no_sure_fix(checker: Checker) -> 
     assert "'FFMPEG' is taken only with media_type='VIDEO'" in finding.message
     assert finding.fix is not None
     assert not finding.fix.sure
+
+
+def test_what_one_of_several_owners_takes_is_not_denied(checker: Checker) -> None:
+    """An object's modifiers take a name and a type, a curve's a type: whichever is read last."""
+    code = (
+        "import bpy\nobj = bpy.context.object\ncurve = obj.animation_data.drivers[0]\n"
+        "one = obj.modifiers if obj.name else curve.modifiers\n"
+        "two = curve.modifiers if obj.name else obj.modifiers\n"
+    )
+    assert checker.check(f"{code}one.new('x', 'SUBSURF')\ntwo.new('x', 'SUBSURF')\n") == []
+    assert checker.check(f"{code}one.new(type='NOISE')\ntwo.new(name='x', type='SUBSURF')\n") == []
+    found = checker.check(f"{code}one.new(type='NOTHING')\ntwo.new(type='NOTHING')\n")
+    assert [row.rule for row in found] == ["unknown-value", "unknown-value"]

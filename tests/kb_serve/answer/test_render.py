@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import classes, of_data, paths
 
-from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, Parameter, Symbol
+from kb_build.records import BARE_DATA, NOT_TAKEN, Deprecation, EnumItem, Parameter, Symbol
 from kb_build.symbol_lines import is_stand_in, usual_default, written
 from kb_serve.answer.property_facts import facts
 from kb_serve.answer.render import MarkdownRenderer
@@ -410,3 +410,11 @@ def test_a_decorator_is_said_to_be_one(kb: KnowledgeBase) -> None:
         "`bpy.app.handlers.persistent` a decorator of functions: `@persistent`"
         in kb.query("app handlers load_post keeps after new file").text
     )
+
+
+def test_an_operator_that_makes_data_without_a_class_says_so(renderer: MarkdownRenderer) -> None:
+    operator = Symbol("bpy.ops.object.new_add", "operator", flags=(f"{BARE_DATA}bpy.ops.object.old_add",))
+    told = "no class for the data of the object that it adds: nothing in them can be read or set."
+    assert f"{told} Use `bpy.ops.object.old_add`." in shown(renderer, operator)
+    assert told in shown(renderer, Symbol("bpy.ops.object.new_add", "operator", flags=(BARE_DATA,)))
+    assert told not in shown(renderer, Symbol("bpy.ops.object.new_add", "operator"))

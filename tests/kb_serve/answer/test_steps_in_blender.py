@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 import pytest
@@ -64,6 +65,86 @@ def test_whatever_can_be_made_is_made_without_an_error(reader: BaseReader) -> No
     done = do_steps({path: lines for path, lines in told.items() if lines})
     assert sum(topic.done for topic in done) > 150
     assert [(topic.topic, *row) for topic in done for row in topic.failed] == []
+
+
+def test_every_node_with_items_gets_one_in_each_of_its_collections(reader: BaseReader) -> None:
+    """And is linked by what it gets: nodes are joined to what goes through the tree, in sockets of one kind."""
+    kinds = "owner LIKE 'bpy.types.%Node%' AND type = 'collection' AND collection LIKE '%Items'"
+    items: dict[str, set[str]] = defaultdict(set)
+    for node, name in reader.rows(f"SELECT owner, name FROM symbols WHERE {kinds}"):
+        items[node].add(name)
+    assert {
+        f"{TYPES}GeometryNodeBake",
+        f"{TYPES}NodeCombineBundle",
+        f"{TYPES}GeometryNodeMenuSwitch",
+    } <= items.keys()
+    told = {node: steps(reader, node.removeprefix(TYPES).lower(), node.removeprefix(TYPES)) for node in items}
+    for node, lines in told.items():
+        added = {name for name in items[node] if any(f".{name}.new(" in line for line in lines)}
+        assert added == items[node], node
+        assert any("tree.links.new(" in line for line in lines), node
+    assert [(topic.topic, *row) for topic in do_steps(told) for row in topic.failed] == []
+
+
+@pytest.mark.parametrize(
+    ("node", "links"),
+    [
+        (
+            "GeometryNodeBake",
+            (
+                'group_input.outputs[0], bake.inputs["Geometry"]',
+                'bake.outputs["Geometry"], group_output.inputs[0]',
+            ),
+        ),
+        (
+            "GeometryNodeIndexSwitch",
+            (
+                'group_input.outputs[0], switch.inputs["0"]',
+                'switch.outputs["Output"], group_output.inputs[0]',
+            ),
+        ),
+        (
+            "NodeCombineBundle",
+            (
+                'group_input.outputs[0], bundle.inputs["Geometry"]',
+                'bundle.outputs["Bundle"], group_output.inputs[0]',
+            ),
+        ),
+        (
+            "NodeSeparateBundle",
+            (
+                'group_input.outputs[0], bundle.inputs["Bundle"]',
+                'bundle.outputs["Geometry"], group_output.inputs[0]',
+            ),
+        ),
+        (
+            "NodeClosureOutput",
+            (
+                'input.outputs["Geometry"], output.inputs["Geometry"]',
+                'output.outputs["Closure"], group_output.inputs[0]',
+            ),
+        ),
+        (
+            "GeometryNodeForeachGeometryElementInput",
+            (
+                'group_input.outputs[0], input.inputs["Geometry"]',
+                'input.outputs["Element"], output.inputs["Geometry"]',
+                'output.outputs["Generation_0"], group_output.inputs[0]',
+            ),
+        ),
+        (
+            "CompositorNodeOutputFile",
+            (
+                'render_layers.outputs["Image"], file.inputs["Image"]',
+                'render_layers.outputs["Image"], group_output.inputs[0]',
+            ),
+        ),
+    ],
+)
+def test_a_node_is_linked_through_and_not_past(reader: BaseReader, node: str, links: tuple[str, ...]) -> None:
+    lines = steps(reader, node.lower(), node)
+    linked = [line.partition("`tree.links.new(")[2] for line in lines if "tree.links.new(" in line]
+    assert linked == [f"{link})`" for link in links]
 
 
 def test_a_step_that_fails_is_told() -> None:

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.likely_values import likely_values
 
 if TYPE_CHECKING:
@@ -17,10 +18,28 @@ if TYPE_CHECKING:
     [
         ("obj.display_type = 'WIREFRAME'", "Closest: `'WIRE'`"),
         ("mesh.attributes.new('x', 'FLOAT3', 'POINT')", "`'FLOAT3'` is not a value of"),
+        # Loops are said to be face corners. What is in no scene may be a mesh's, or a point cloud's: all take the same.
+        (
+            "mesh.attributes.new('x', 'FLOAT', 'LOOP')",
+            "AttributeGroupMesh.new(domain)`. Closest: `'CORNER'`.",
+        ),
+        ("obj.data.attributes.new(name='x', type='FLOAT', domain='LOOP')", "Closest: `'CORNER'`."),
+        ("attributes.new(name='x', type='FLOAT', domain='LOOP')", "AttributeGroupMesh.new(domain)`. Closest"),
+        (
+            'TypeError: AttributeGroupMesh.new(): error with argument 3, "domain" -  enum "LOOP" not found in '
+            "('POINT', 'EDGE', 'FACE', 'CORNER', 'CURVE', 'INSTANCE', 'LAYER')",
+            "closest: `CORNER`.",
+        ),
         ("bpy.ops.wm.obj_export(filepath='x', forward_axis='-Z')", "Closest: `'NEGATIVE_Z'`"),
         ("constraint.track_axis = 'TRACK_-Z'", "Closest: `'TRACK_NEGATIVE_Z'`"),
         ("bpy.data.lights.new('L', type='POINT', energy=5)", "takes no `energy`"),
         ("bpy.ops.object.join(target=1)", "takes no arguments"),
+        # The words that say what it is, and not "use"; its label; few of its other arguments say "select".
+        ("bpy.ops.export_scene.fbx(use_animation=True)", "takes no `use_animation`; closest: `bake_anim`."),
+        ("bpy.ops.export_scene.fbx(use_anim=True)", "Similar names: `bpy.ops.export_scene.fbx(bake_anim=…)`"),
+        ("bpy.ops.mesh.bevel(width=1)", "takes no `width`; closest: `offset`."),
+        ("bpy.ops.wm.stl_export(use_selection=True)", "closest: `export_selected_objects`."),
+        ("bpy.ops.wm.obj_import(axis_forward='Y')", "closest: `forward_axis`."),
     ],
 )
 def test_what_is_none_is_told(kb: KnowledgeBase, query: str, said: str) -> None:
@@ -40,6 +59,8 @@ def test_what_is_none_is_told(kb: KnowledgeBase, query: str, said: str) -> None:
         "key_block.data[0].co = (0, 0, 0)",
         "noise.noise_dimensions = '4D'",
         "layout.operator('object.select_all').action = 'SELECT'",
+        "attributes.new('x', 'FLOAT', 'CORNER')",
+        "modifiers.new('x', 'NOISE')",  # of an object or an F-curve: which do not take the same
         "importlib.reload(sys.modules[name])",
         "obj.keyframe_insert(data_path='location', frame=1)",
         "prop = PointerProperty(type=Object, poll=lambda self, obj: obj.type == 'MESH')",
@@ -54,3 +75,14 @@ def test_the_likeliest_value_points_the_same_way() -> None:
     axes = ("X", "Y", "Z", "NEGATIVE_X", "NEGATIVE_Y", "NEGATIVE_Z")
     assert likely_values("-Y", axes) == ["NEGATIVE_Y"]
     assert likely_values("FORWARD_NEGATIVE_Z", ("TRACK_Z", "TRACK_NEGATIVE_Z")) == ["TRACK_NEGATIVE_Z"]
+
+
+def test_the_likeliest_argument_says_most_of_the_same() -> None:
+    """What is like a name in its empty words alone is not meant; a misspelling comes first."""
+    names = ["use_selection", "bake_anim", "bake_anim_use_all_bones", "use_visible", "segments", "use_tspace"]
+    labels = dict.fromkeys(names, "")
+    assert likely_keywords("use_animation", labels)[:1] == ["bake_anim"]
+    assert likely_keywords("use_nothing", labels) == []
+    assert likely_keywords("segmants", labels) == likely_keywords("segs", labels) == ["segments"]
+    assert likely_keywords("visible_use", labels)[0] == "use_visible"
+    assert likely_keywords("width", {"offset": "Width", "width_pct": ""})[0] == "offset"

@@ -501,6 +501,25 @@ def test_messages_reveal_removed_symbols(kb: KnowledgeBase, message: str, former
     assert "removed in" in note or "gone by" in note
 
 
+@pytest.mark.parametrize(
+    ("socket", "told"),
+    [
+        ("Cr", "on `CompositorNodeSepYCCA` (now `CompositorNodeSeparateColor`)."),
+        (
+            "R",
+            "on `CompositorNodeCombRGBA` (now `CompositorNodeCombineColor`), `CompositorNodeSepRGBA` (now ",
+        ),
+        ("Value_Bool", "socket `Value_Bool` on `GeometryNodeFieldOnDomain`, "),
+        ("Specular", "Nodes that have one: `ShaderNodeEeveeSpecular`."),
+    ],
+)
+def test_a_key_that_no_node_is_named_with_may_be_of_several(
+    kb: KnowledgeBase, socket: str, told: str
+) -> None:
+    notes = "\n".join(kb.query(f"KeyError: 'bpy_prop_collection[key]: key \"{socket}\" not found'").notes)
+    assert told in notes
+
+
 def test_names_of_the_callers_data_are_not_searched_for() -> None:
     assert prose_of("RuntimeError: Error: Object 'Cloth' already in collection 'Smoke'").split() == [
         "Object", "already", "in", "collection",

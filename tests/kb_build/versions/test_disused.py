@@ -1,0 +1,63 @@
+"""Properties that are still there and do nothing: which they are, in which versions, and what is said of them."""
+
+from __future__ import annotations
+
+from kb_build.blender.tried_facts import ADDED
+from kb_build.records import BARE_DATA, Deprecation, Symbol
+from kb_build.versions.disused import with_present_ways, without_effect
+from kb_build.versions.successors import load_successors
+
+EEVEE = "bpy.types.SceneEEVEE"
+NAMES = (
+    "use_bloom",
+    "use_ssr",
+    "use_gtao",
+    "gtao_distance",
+    "taa_samples",
+    "use_raytracing",
+    "fast_gi_method",
+)
+SYMBOLS = [Symbol(f"{EEVEE}.{name}", "property", EEVEE) for name in NAMES]
+
+
+def _said(version: str, symbols: list[Symbol] = SYMBOLS) -> dict[str, Deprecation]:
+    """Name → what is said of it, for those of which anything is."""
+    found = without_effect(symbols, load_successors(), version)
+    assert [symbol.path for symbol in found] == [symbol.path for symbol in symbols]
+    return {symbol.name: symbol.deprecation for symbol in found if symbol.deprecation}
+
+
+def test_settings_of_an_engine_that_is_gone_have_no_effect_until_they_go() -> None:
+    said = _said("4.2")
+    assert set(said) == {"use_bloom", "use_ssr", "use_gtao"}
+    assert (said["use_ssr"].since, said["use_ssr"].removal) == ("4.2", "4.3")
+    assert said["use_gtao"].removal == "5.0"
+    assert (
+        said["use_ssr"].note == f"It has no effect. Use `{EEVEE}.use_raytracing`. (release notes 4.2: EEVEE)"
+    )
+    # What this version lacks is not told: no node is among these symbols.
+    assert "ShaderNodeAmbientOcclusion" not in said["use_gtao"].note
+    assert "Glare node" in said["use_bloom"].note
+
+
+def test_they_have_an_effect_before_and_are_gone_after() -> None:
+    assert _said("4.1") == {}
+    assert set(_said("4.5")) == {"use_gtao"}
+    assert _said("5.0") == {}
+
+
+def test_what_blender_says_itself_stays() -> None:
+    own = Deprecation("Blender says so.", "4.2", "5.0")
+    assert _said("4.2", [Symbol(f"{EEVEE}.use_ssr", "property", EEVEE, deprecation=own)]) == {"use_ssr": own}
+
+
+def test_an_operator_that_makes_what_is_to_come_names_the_one_of_today() -> None:
+    row: dict[str, object] = {"flags": ["needs:"]}
+    ADDED["bare_data"](row, {"path": "bpy.ops.object.grease_pencil_add"})
+    assert row["flags"] == ["needs:", BARE_DATA]
+    bare = Symbol("bpy.ops.object.grease_pencil_add", "operator", flags=("needs:", BARE_DATA))
+    today = Symbol("bpy.ops.object.gpencil_add", "operator")
+    table = load_successors()
+    assert with_present_ways([bare, today], table, "4.2")[0].flags == ("needs:", f"{BARE_DATA}{today.path}")
+    assert with_present_ways([bare], table, "4.2") == [bare]
+    assert with_present_ways([bare, today], table, "4.3") == [bare, today]
