@@ -45,7 +45,7 @@ _ITEMS = re.compile(
 _OF_NODES = ("node", "zone")  # how titles of what is in trees end
 # Nodes of one name are told apart by where they are.
 _WHERE = re.compile(
-    r"\s(?:in|of|for)\s(?:the\s)?(?:composit(?:or|ing)|geometry\snodes?|shaders?(?:\s(?:nodes?|editor))?)\b",
+    r"(?:\s(?:in|of|for)\s(?:the\s)?|(?<=\snode)\s)(?:composit(?:or|ing)|geometry\snodes?|shaders?(?:\s(?:nodes?|editor))?)\b",
     re.I,
 )
 _OF_A_PLACE = re.compile(
@@ -112,8 +112,11 @@ class TopicPages:
         name, _, kind = plain.rpartition(" ")
         if kind.lower() not in _OF_NODES or not name:
             return ""
-        if kind.lower() == _OF_NODES[1] and (slug := self._called(name)):
-            return slug
+        if kind.lower() == _OF_NODES[1]:
+            titled = {slug for _, slug in self._reader.by_key(topic_key(name))}
+            # Its name alone may be a chapter's as well.
+            if len(of_nodes := [slug for slug in titled if self._is_of_node(slug)]) == 1:
+                return of_nodes[0]
         wanted = set(terms(plain))
         fitting = [slug for slug, title in self._titles_of_nodes if wanted <= title]
         return fitting[0] if len(fitting) == 1 and len(wanted) > 1 else ""
@@ -195,12 +198,13 @@ class TopicPages:
         page = self._reader.page_entry(slug)
         if page is None or page.source != "manual":
             return False
-        return not slug.startswith(_ASIDE_PAGES) or self._is_of_node(slug)
+        # Nodes that several kinds of trees take are explained aside.
+        is_of_nodes = slug.startswith(_PAGES_OF_NODES) and self._is_of_node(slug)
+        return is_of_nodes or not slug.startswith(_ASIDE_PAGES)
 
     def _is_of_node(self, slug: str) -> bool:
-        """Whether a page explains a node that several kinds of trees take."""
-        symbols = self._reader.symbols_of_page(slug) if slug.startswith(_PAGES_OF_NODES) else ()
-        return any(self._reader.descends(path, _NODE) for path in symbols)
+        """Whether a page explains a node."""
+        return any(self._reader.descends(path, _NODE) for path in self._reader.symbols_of_page(slug))
 
     def _size(self, slug: str) -> int:
         """The number of pages and symbols below a page: people rarely mean the smaller chapter."""

@@ -32,6 +32,8 @@ PAGES = {
     f"{GEOMETRY}repeat_zone": ("Repeat Zone", "GeometryNodeRepeatInput"),
     CLOSURE: ("Closure", "NodeClosureInput"),
     f"{GEOMETRY}closure": ("Closure", ""),
+    f"{GEOMETRY}closure/index": ("Node Closures", ""),
+    f"{GEOMETRY}closure/evaluate": ("Evaluate Closure Node", "NodeEvaluateClosure"),
     BUNDLE: ("Combine Bundle Node", "NodeCombineBundle"),
     LAYOUT: ("Layout Nodes", "UILayout"),
     FILE: ("File Output Node", "CompositorNodeOutputFile"),
@@ -45,7 +47,14 @@ def topics(reader: BaseReader, tmp_path_factory: pytest.TempPathFactory) -> Iter
     paths = {entry.path for name in names for entry in reader.lineage(f"{TYPES}{name}")}
     symbols = [symbol for path in sorted(paths) if (symbol := reader.symbol(path))]
     pages = [
-        Page(slug, "manual", "5.1", title, (Section("a", title, 1, "It does something."),))
+        Page(
+            slug,
+            "manual",
+            "5.1",
+            title,
+            (Section("a", title, 1, "It does something."),),
+            children=(f"{GEOMETRY}closure", f"{GEOMETRY}closure/evaluate") if slug.endswith("/index") else (),
+        )
         for slug, (title, _) in PAGES.items()
     ]
     links = [Link(f"{TYPES}{name}", slug, "manual") for slug, (_, name) in PAGES.items() if name]
@@ -67,6 +76,7 @@ def topics(reader: BaseReader, tmp_path_factory: pytest.TempPathFactory) -> Iter
         ("for each geometry element zone", EACH),
         ("file output node compositor slots", FILE),
         ("geometry nodes bake node", BAKE),
+        ("bake node geometry nodes", BAKE),
         ("compositor bake node", BLUR),
         ("bake node in the compositor", BLUR),
         # What several are called, what none is, and a page that only an aside part of the manual has.
