@@ -46,6 +46,18 @@ def test_they_have_an_effect_before_and_are_gone_after() -> None:
     assert _said("5.0") == {}
 
 
+def test_only_what_went_with_an_engine_is_told_so() -> None:
+    # A property that is merely on its way out works until it is gone.
+    table = load_successors()
+    symbols = [
+        Symbol(row.old, "property", row.old.rpartition(".")[0]) for row in table if not {*"(:"} & {*row.old}
+    ]
+    versions = {row.version for row in table} - {""}
+    notes = {one.note for version in versions for one in _said(version, symbols).values()}
+    assert notes
+    assert {note[note.rindex("(") :] for note in notes} == {"(release notes 4.2: EEVEE)"}
+
+
 def test_what_blender_says_itself_stays() -> None:
     own = Deprecation("Blender says so.", "4.2", "5.0")
     assert _said("4.2", [Symbol(f"{EEVEE}.use_ssr", "property", EEVEE, deprecation=own)]) == {"use_ssr": own}
