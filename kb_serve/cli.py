@@ -99,7 +99,7 @@ def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
         Console(sys.stdout).print(Markdown(answer.text, hyperlinks=False))
     else:
         click.echo(answer.text)
-    return answer.kind != "none"
+    return answer.kind != "none" or bool(answer.notes)  # of what is gone without a successor, notes say all
 
 
 def _print_raw(base: KnowledgeBase, answer: DocsAnswer) -> bool:

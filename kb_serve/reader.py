@@ -25,6 +25,7 @@ _Record = TypeVar("_Record")
 _Value = TypeVar("_Value")
 
 TYPES = "bpy.types."
+EXTEND = "__extend__"  # the identifier of the socket at which a node gets more
 PROPERTIES = "bpy.props."  # whose functions scripts import by name
 STRUCT = "bpy.types.bpy_struct"
 COLLECTION = "bpy.types.bpy_prop_collection"
@@ -219,6 +220,10 @@ class BaseReader:
     def slugs(self) -> frozenset[str]:
         """The slugs of all pages."""
         return frozenset(slug for (slug,) in self.rows("SELECT slug FROM pages"))
+
+    def takes_more_sockets(self, node: str, side: str) -> bool:
+        """Whether a class of nodes gets sockets on a side by its items or its group's interface."""
+        return any(name.startswith(f'{side}["{EXTEND}') for name in self.members(node))
 
     def is_page(self, identifier: str) -> bool:
         """Whether an id is a page's slug, and not a symbol's path."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import stem, words
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
 from kb_serve.recognise.products import CLASSES, WITH_AT
 from kb_serve.recognise.subscripts import NODES_MODIFIER, CustomProperties
@@ -61,7 +62,26 @@ _FILLED = (
     "It is black where no light falls, unless `layer.use_lights = False`."
 )
 _RIGID_BODY = f"{_TYPES}RigidBodyObject"
-_PLACES = frozenset((f"{_TYPES}Object.location", f"{_TYPES}Object.rotation_euler", _RIGID_BODY))
+_PLACES = frozenset((f"{_TYPES}Object.location", f"{_TYPES}Object.rotation_euler"))
+# By one of these a question says that something else than a script or its keys moves the object.
+_SIMULATED = frozenset(
+    map(
+        stem,
+        [
+            "bake",
+            "body",
+            "bounce",
+            "drop",
+            "fall",
+            "physics",
+            "rigid",
+            "roll",
+            "settle",
+            "simulate",
+            "simulation",
+        ],
+    )
+)
 _MOVED = (
     "A rigid body's simulation moves `ob.matrix_world`, not `ob.location` or `ob.rotation_euler`: call "
     "`scene.frame_set(frame)` for every frame from the first, then read `ob.matrix_world.translation`."
@@ -101,15 +121,17 @@ class Practice:
         self._reader = reader
         self._custom = CustomProperties(reader)
 
-    def of(self, identifier: str) -> Iterator[str]:
-        """Sentences on a symbol, or on what the page with that slug explains."""
+    def of(self, identifier: str, question: str) -> Iterator[str]:
+        """Sentences on a symbol, or on what the page with that slug explains, that a question comes to."""
         if identifier.startswith(_HANDLERS) and identifier != _PERSISTENT and self._reader.entry(_PERSISTENT):
             yield _STAYING
         if identifier in {_TIMER, _TIMERS}:
             yield _NO_TIMERS
         if identifier.startswith(_BAKES_FLUID) or self._explains(identifier, _BAKES_FLUIDS):
             yield NO_FLUIDS
-        if identifier in _PLACES or identifier.rpartition("/")[0] in self._chapters_of_rigid_bodies:
+        is_of_place = identifier in _PLACES and not _SIMULATED.isdisjoint(map(stem, words(question)))
+        chapter = identifier.rpartition("/")[0]
+        if is_of_place or identifier == _RIGID_BODY or chapter in self._chapters_of_rigid_bodies:
             yield _MOVED
         if identifier == _RANGES or self._explains(identifier, _RANGES):
             yield _RANGED

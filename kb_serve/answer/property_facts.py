@@ -37,7 +37,8 @@ def facts(symbol: Symbol) -> Iterator[str]:
         yield f"type: `{type_text(symbol)}`"
     if symbol.kind == "socket" and (text := subscripts_text(symbol)):
         yield text
-    if text := default_text(symbol):
+    # The context's members have RNA's defaults only, and are what is the case.
+    if symbol.kind != "context" and (text := default_text(symbol)):
         yield f"default: {text}"
     yield from _range_facts(symbol)
     if symbol.unit and symbol.type not in _NO_NUMBERS:

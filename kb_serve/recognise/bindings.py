@@ -9,7 +9,7 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_serve.recognise.chains import MAX_STEPS, Chain, ChainStep
+from kb_serve.recognise.chains import MAX_STEPS, Chain, ChainStep, sockets_in
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Sequence
@@ -29,12 +29,13 @@ class _Binding(NamedTuple):
 
 
 def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
-    """The chains of a text; those that begin with a variable which was bound before begin with what it was bound to,
-    and this leads on.
+    """The chains of a text, and behind them the sockets in their calls; those that begin with a variable which was
+    bound before begin with what it was bound to, and this leads on.
     """
     bound: dict[str, _Binding] = {}
     elements: dict[str, _Binding] = {}
     found: list[Chain] = []
+    sockets: list[Chain] = []
     leading: set[int] = set()
     end = 0
     for place, chain in enumerate(chains):
@@ -54,11 +55,12 @@ def with_bindings(text: str, chains: Sequence[Chain]) -> list[Chain]:
         elif not own.steps and len(found) > 1 and found[-1].root == "as" and found[-2].steps:
             bound[own.root] = _Binding(found[-2], place - 2)
         found.append(own)
+        sockets += (_from(socket, bound, leading) for socket in sockets_in(chain))
     if elements:  # ``[v.co for v in …]``: used before it is bound
         found = [_from(chain, elements, leading) for chain in found]
     for place in leading:
         found[place] = replace(found[place], leads_on=True)
-    return found
+    return [*found, *sockets]
 
 
 def _without(found: Sequence[Chain], bound: dict[str, _Binding]) -> dict[str, _Binding]:

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 CLEAR = 0.85  # fit of a variable's name that hardly means another class
 LEAST = 0.1  # fit below which neither the variable's name nor its member tells the class
+_KNOWN_ELEMENT = 0.96  # how sure the class of an element is that lacks a name, before others that have it
 LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
 
 # Classes whose members are defined by scripts and add-ons.
@@ -87,6 +88,8 @@ class BrokenExpressions:
             told = resolved.fit >= LIKELY or (called and resolved.missing in ADDING)
             missing = MissingName(resolved.missing, resolved.owner, assigned, sure, called, variable, told)
             recognition.missing.append(missing)
+            if self._is_known_element(chain, resolved):
+                recognition.add(resolved.owner, _KNOWN_ELEMENT - later, "owner")
         for step, symbol in enumerate(reversed(resolved.symbols)):
             socket = step == 0 and symbol.endswith(
                 '"]'
@@ -114,13 +117,21 @@ class BrokenExpressions:
             or (owner is not None and _may_have(owner, chain, resolved.missing))
         )
 
-    @staticmethod
-    def _is_custom(chain: Chain, resolved: ResolvedChain) -> bool:
+    def _is_custom(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether a name is read of a custom property, which may hold anything: ``strip["files"].sort()``."""
         place = len(chain.steps) - resolved.steps_left - 1
         if resolved.missing.startswith("[") or place < 0 or chain.steps[place].kind != "key":
             return False
-        return resolved.owner == resolved.symbols[-1]
+        return resolved.owner == resolved.symbols[-1] and not self._is_known_element(chain, resolved)
+
+    def _is_known_element(self, chain: Chain, resolved: ResolvedChain) -> bool:
+        """Whether a name is missing on an element of a collection whose key tells its class: ``modifiers["Bevel"]``."""
+        if len(resolved.symbols) < 2 or resolved.owner != resolved.symbols[-1]:
+            return False
+        place = len(chain.steps) - resolved.steps_left - 1
+        held = self._reader.entry(resolved.symbols[-2])
+        is_element = held is not None and held.type == "collection"
+        return is_element and place >= 0 and chain.steps[place].kind in {"key", "call"}
 
     def _is_indexed(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether a variable is no instance of the class that its name tells, as it is indexed or called."""

@@ -19,6 +19,7 @@ _DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
 _VALUE = re.compile(r"\s*(?:[-+*/|&^%=!]?=|not\s+in\b|in\b)\s*(?=['\"{(\[])")
 _ITEM = re.compile(r"""(["'])(\w[\w. -]{0,60})\1""")
+_SOCKETS = re.compile(r"\.(?:in|out)puts\[['\"]")
 _QUOTES = ("'", '"')
 _DEFINED = re.compile(r"\bclass\s+\Z")
 _CLOSING = {"(": ")", "[": "]"}
@@ -118,6 +119,13 @@ def _values(text: str, position: int) -> tuple[str, ...]:
         return (item[2],) if item else ()
     content, _ = _bracket(text, start)
     return tuple(item[2] for item in _ITEM.finditer(content))[:_MAX_VALUES]
+
+
+def sockets_in(chain: Chain) -> list[Chain]:
+    """The sockets that stand in a call of one expression: ``noise.outputs["Color"]`` of ``links.new(…)``."""
+    calls = (step.text for step in chain.steps if step.kind == "call" and _SOCKETS.search(step.text))
+    found = (inner for text in calls for inner in find_chains(text))
+    return [inner for inner in found if any(step.kind == "key" for step in inner.steps)]
 
 
 def find_chains(text: str) -> list[Chain]:

@@ -66,6 +66,7 @@ _CALLED_OR_SET = frozenset({"property", "function", "operator"})
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
+_OTHERS_MODULES = frozenset({"np", "numpy", "pd", "plt", "torch", "cv2"})  # that scripts use beside Blender's
 _PYTHON_MODULES = {
     module.__name__: module for module in (itertools, json, logging, math, os, pathlib, random, re, sys, time)
 }
@@ -77,6 +78,8 @@ def _is_api(chain: Chain) -> bool:
     """
     if chain.root in _PYTHON_MODULES and chain.attributes:
         return not hasattr(_PYTHON_MODULES[chain.root], chain.attributes[0])
+    if chain.root in _OTHERS_MODULES:
+        return False
     return chain.root not in _NOT_API or bool(chain.attributes)
 
 
@@ -114,8 +117,23 @@ class Expressions:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
         self._expressions(chains, recognition)
         self._asked_of(chains, recognition)
+        self._imported(chains, recognition)
         self._module_with_member(chains, recognition)
         self._class_with_member(chains, recognition)
+
+    def _taking(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
+        """Readings of a chain, of which the best leads to the case that takes what the chain is set to, or compared
+        with: of ``ob.data.type == 'SPOT'`` a light's.
+        """
+        best = readings[0] if readings and chain.values and readings[0].alike else None
+        if best is None or best.missing:
+            return readings
+        for path in (best.symbols[-1], *best.alike):
+            symbol = self._reader.symbol(path)
+            if symbol and any(item.identifier in chain.values for item in symbol.enum_items):
+                alike = tuple(other for other in (best.symbols[-1], *best.alike) if other != path)
+                return [replace(best, symbols=(*best.symbols[:-1], path), alike=alike), *readings[1:]]
+        return readings
 
     def _expressions(self, chains: list[Chain], recognition: Recognition) -> None:
         code = [chain for chain in chains if chain.is_code and _is_api(chain)]
@@ -124,7 +142,7 @@ class Expressions:
         is_script = len(code) > 1 and any(chain.steps or chain.assigned for chain in code)
         for position, chain in enumerate(code):
             later = 0.02 * min(position, 5)
-            readings = self._resolver.resolve(chain)
+            readings = self._taking(chain, self._resolver.resolve(chain))
             if taken_as := self._old.still_taken(chain, readings):
                 recognition.add_former_name(taken_as, 0.97 - later)
                 continue
@@ -172,10 +190,12 @@ class Expressions:
         """
         if not resolved.complete or (_is_file_name(chain) and resolved.fit < LIKELY):
             return False
-        if broken and len(chain.attributes) == 1 and broken.fit >= CLEAR and resolved.fit < LIKELY:
+        if broken and broken.fit >= CLEAR and resolved.fit < LIKELY:
             missing = MissingName(broken.missing, broken.owner, called=chain.steps[-1].kind == "call")
             has_member = broken.steps_left < len(chain.steps)
-            if has_member or said_otherwise(missing, self._operators, self._reader):
+            if has_member:
+                return False
+            if len(chain.attributes) == 1 and said_otherwise(missing, self._operators, self._reader):
                 return False
         if resolved.keyed and resolved.fit >= CLEAR:
             return True
@@ -363,6 +383,18 @@ class Expressions:
         """The functions of everything in Blender whose names have several words: ``keyframe_insert``."""
         return [name for name in self._reader.members(STRUCT) if "_" in name.strip("_")]
 
+    def _imported(self, chains: list[Chain], recognition: Recognition) -> None:
+        """Adds what an import is of, ``from bpy.app import handlers``, before the module that holds it."""
+        roots = [chain.root for chain in chains]
+        if roots[:1] == ["import"]:
+            paths = [chain.dotted for chain in chains[1:2]]
+        elif roots[:1] == ["from"] and roots[2:3] == ["import"]:
+            paths = [f"{chains[1].dotted}.{root}" for root in roots[3:]]
+        else:
+            return
+        for rank, path in enumerate(path for path in paths if self._reader.entry(path)):
+            recognition.add(path, 0.985 - 0.005 * rank, "import")
+
     def _module_with_member(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds a module's member that stands beside the module, ``from bpy_extras.object_utils import
         world_to_camera_view``: it comes before the module.
@@ -384,19 +416,26 @@ class Expressions:
         self._reader.entry.load(TYPES + root for root in bare)
         named = (self._reader.entry(TYPES + root) for root in bare)
         classes = [entry for entry in named if entry and entry.kind == "class"]
+        # ``mass of ClothSettings``
+        before = {
+            (first, last) for first, of, last in zip(bare, bare[1:], bare[2:], strict=False) if of in _OF
+        }
         for cls in classes:
             for root in bare:
                 if root == cls.name:
                     continue
                 member = self._resolver.member(cls.path, root)
-                if member and ("_" in root or root not in STOP_WORDS):
-                    recognition.add(member.path, 0.98 if "_" in root else 0.96, "class and member")
-                elif not member and "_" in root and (gone := self._old.member(cls.path, root)):
+                is_said = "_" in root or (root, cls.name) in before
+                if member and (is_said or root not in STOP_WORDS):
+                    recognition.add(member.path, 0.98 if is_said else 0.96, "class and member")
+                elif not member and is_said and (gone := self._old.member(cls.path, root)):
                     recognition.add_removed(gone)
             if len(bare) == len(chains):
                 beside = [root for root in bare if root != cls.name]
                 meant = members_by_words(cls.path, beside, self._reader)
-                for rank, path in enumerate(meant):  # of several, the class shows them all
-                    recognition.add(
-                        path, (0.975 if len(meant) == 1 else 0.955) - 0.005 * rank, "class and words"
-                    )
+                said = [word for text in beside for word in words(text) if word not in STOP_WORDS]
+                for rank, path in enumerate(
+                    meant
+                ):  # of several, the class shows them all, unless one is meant
+                    is_one = len(meant) == 1 or words(path.rpartition(".")[2]) == said
+                    recognition.add(path, (0.975 if is_one else 0.955) - 0.005 * rank, "class and words")

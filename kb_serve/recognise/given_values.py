@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.records import NOT_TAKEN
 from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
 from kb_serve.recognise.calls import arguments, places_of, texts_in
 from kb_serve.recognise.likely_values import likely_items
@@ -31,7 +32,7 @@ def wrong_values(chain: Chain, symbol: Symbol, removed: Collection[str], reader:
         for parameter, value in _given(symbol, chain.steps[-1].text):
             owner = f"{symbol.path}({parameter.name})"
             if f"{owner}:{value}" not in removed:
-                yield from _wrong(owner, value, parameter.enum_items, reader)
+                yield from _wrong(owner, value, parameter.enum_items, reader, _refused(symbol, parameter))
 
 
 def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str]]:
@@ -45,16 +46,34 @@ def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str]]:
             yield from ((parameter, value) for value in texts_in(given))
 
 
-def _wrong(owner: str, value: str, items: Sequence[EnumItem], reader: BaseReader) -> Iterator[str]:
+def _refused(symbol: Symbol, parameter: Parameter) -> frozenset[str]:
+    """The values that a call refused of everything that it was tried with."""
+    rows = (row for row in symbol.refusals if row.argument == parameter.name)
+    return frozenset(
+        value for row in rows if not (row.by or row.taken_by or row.given) for value in row.values
+    )
+
+
+def _wrong(
+    owner: str,
+    value: str,
+    items: Sequence[EnumItem],
+    reader: BaseReader,
+    refused: frozenset[str] = frozenset(),
+) -> Iterator[str]:
     names = [item.identifier for item in items]
     if len(names) < FEWEST_VALUES or value in names or value in MORE_VALUES.get(owner, ()) or owner in _OPEN:
         return
     if all(_CLASS.match(name) for name in names):  # those of add-ons are taken as well
         return
-    if closest := likely_items(value, items, reader):
+    taken = [item for item in items if item.identifier not in refused and item.where != NOT_TAKEN]
+    if closest := likely_items(value, taken, reader):
         told = f"Closest: {_listed(closest)}."
     else:
-        told = f"It takes {_listed(names[:_MOST])}{' …' if len(names) > _MOST else ''}."
+        # What is taken somewhere only stands behind what is taken everywhere.
+        taken.sort(key=lambda item: bool(item.where))
+        named = [f"`'{item.identifier}'`{f' ({item.where})' if item.where else ''}" for item in taken[:_MOST]]
+        told = f"It takes {', '.join(named)}{' …' if len(taken) > _MOST else ''}."
     yield f"`'{value}'` is not a value of `{owner}`. {told}"
 
 

@@ -30,9 +30,12 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
     if same := _of_same_sense(written, items):
         return same
     items = [*_without_opposites(written, items)]
+    said = written.upper()
+    # ``ARMATURE_AUTOMATIC`` begins with ``ARMATURE_AUTO``.
+    if begun := [item for item in items if "_" in item and said.startswith(item)]:
+        return sorted(begun, key=len, reverse=True)[:_MOST]
     if similar := [item for item, _ in nearest(written, items)]:
         return similar
-    said = written.upper()
     similar = [item for item in items if len(item) >= _LONG and said.startswith(item)]
     similar = similar or [item for item in items if len(said) >= _SHORT and item.startswith(said)]
     if similar:

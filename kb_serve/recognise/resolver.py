@@ -29,6 +29,7 @@ _LINKS = "links"  # of a socket, which lead elsewhere
 _ROWS = {f"{_MATRIX}.col", f"{_MATRIX}.row"}
 _PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
 _GROUP, _GROUPS = f"{TYPES}PropertyGroup", f"{TYPES}bpy_prop_collection_idprop"
+_NODE = f"{TYPES}Node"
 _ELEMENT, _LAYERS = "bmesh.types.BM", "bmesh.types.BMLayerAccess"
 _NUMBERED = re.compile(r"\.\d{3}$")
 _QUOTED = re.compile(r"""(["'])([\w.]+)\1""")
@@ -255,10 +256,18 @@ class Resolver:
 
     def _socket(self, owner: str, side: str, name: str) -> Iterator[ChainValue]:
         """The sockets of that name: of the node's own class, or of every node where only ``Node`` is known."""
+        found = False
         for entry in self._reader.by_name(name):
             on_side = entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}[")
             if on_side and self._reader.descends(entry.owner, owner):
+                found = True
                 yield self._values.of(entry)
+        if not found and self._may_have_any_socket(owner, side):
+            yield ChainValue(f"{_NODE}.{side}", f"{TYPES}NodeSocket")
+
+    def _may_have_any_socket(self, owner: str, side: str) -> bool:
+        """Whether a class of nodes has sockets that its group or its items name."""
+        return "node_tree" in self._reader.members(owner) or self._reader.takes_more_sockets(owner, side)
 
     def _call(self, value: ChainValue, arguments: str) -> ChainValue:
         """What a call returns; a function that returns a base class of its owner returns the owner's class, and one

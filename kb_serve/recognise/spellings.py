@@ -157,6 +157,7 @@ class Spellings:
             for start in range(len(words) - length + 1)
             if length < len(words)
         ]
+        typed = frozenset(parts)
         # ``track to`` is a constraint, and so is ``copy location``; a modifier's name alone is mostly a plain word.
         parts += [f"{part} constraint" for part in parts]
         parts += [
@@ -173,8 +174,10 @@ class Spellings:
             classes = [
                 one for one in entries if one and one.kind == "class" and one.label.lower() == part.lower()
             ]
+            is_typed = part.count(" ") + 1 >= _LONG_LABEL and part in typed
+            sure = WHOLE_LABEL if is_typed else _LABEL_WITHIN
             for rank, entry in enumerate(self._reader.heaviest(classes)[:_OF_A_LABEL]):
-                recognition.add(entry.path, _LABEL_WITHIN - 0.01 * rank, "label")
+                recognition.add(entry.path, sure - 0.01 * rank, "label")
 
     def _is_enum_item(self, text: str) -> bool:
         return "_" in text and is_value(text, self._reader)

@@ -22,7 +22,7 @@ _NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|sele
 # Names that scripts give to instances of a class, besides the class's own name and its beginning. A camera, light or
 # armature is often the object that holds it.
 _NAMES = {
-    "Object": "o ob obj object objs cube empty",
+    "Object": "o ob obj object objs cube empty child",
     "Camera Object": "cam camera",
     "Light Object": "lamp light lamp_data light_data key_light fill_light",
     "Armature Object": "arm armature amt rig",

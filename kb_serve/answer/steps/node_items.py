@@ -13,8 +13,6 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.new_scene import NewScene
     from kb_serve.reader import Creation, SymbolEntry
 
-EXTEND = "__extend__"  # the identifier of the socket at which a node gets more
-
 
 class NodeItems:
     """The items in one list of steps."""
@@ -50,7 +48,7 @@ class NodeItems:
 
     def may_extend(self, node: str, side: str) -> bool:
         """Whether a node gets sockets on a side by its items."""
-        return any(name.startswith(f'{side}["{EXTEND}') for name in self._reader.members(node))
+        return self._reader.takes_more_sockets(node, side)
 
     def _adding(self, entry: SymbolEntry) -> Creation | None:
         """What adds an item to a collection; None for other members, and for a collection that nothing adds to."""

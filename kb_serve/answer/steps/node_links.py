@@ -10,8 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.records import NOT_TAKEN, PAIRS
 from kb_build.symbol_lines import written
-from kb_serve.answer.steps.node_items import EXTEND
-from kb_serve.reader import TYPES
+from kb_serve.reader import EXTEND, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.messages.former_sockets import FormerSockets
     from kb_serve.recognise.recognition import Recognition
 
+_OF_COLLECTIONS = "bpy_prop_collection"
 _OF_PROPERTIES = (f"{STRUCT}.get", f"{TYPES}ID.bl_system_properties_get")  # where they are read
 
 _LOOKED_INTO = r"""\.(\w+)\[['"]{}['"]\]"""
@@ -35,11 +36,11 @@ class Keys:
     def explain(self, query: str, recognition: Recognition) -> None:
         """Adds notes on each key, and a socket that had it as its name in another version."""
         for match in forms.first_matches(forms.NO_KEY, query):
-            self._key(match["on"], match["name"], query, recognition)
+            self._key(match["on"] or _OF_COLLECTIONS, match["name"], query, recognition)
 
     def _key(self, collection: str, name: str, query: str, recognition: Recognition) -> None:
         """A collection without such an element; it may be a socket's name in another version."""
-        if collection == "bpy_prop_collection":
+        if collection == _OF_COLLECTIONS:
             recognition.notes.append(
                 f'The collection has no element `{name}`; `.get("{name}")` returns None instead of an error, '
                 "and `.keys()` tells which there are."
@@ -52,7 +53,7 @@ class Keys:
             recognition.removed = [one for one in recognition.removed if one not in gone]
         if recognition.removed or any(match.sure >= 0.9 for match in recognition.matches):
             return
-        if collection != "bpy_prop_collection":
+        if collection != _OF_COLLECTIONS:
             recognition.notes.append(
                 f'There is no custom property `{name}`: assigning makes it, and `.get("{name}")` returns None instead '
                 f"of an error. {CustomProperties(self._reader).on_registered(name)}".rstrip()

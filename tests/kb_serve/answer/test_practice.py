@@ -34,9 +34,9 @@ def empty_file() -> Iterator[None]:
     bpy.ops.wm.read_factory_settings(use_empty=True)
 
 
-def said(reader: BaseReader, path: str) -> str:
+def said(reader: BaseReader, path: str, question: str = "") -> str:
     assert reader.entry(path), path
-    return "\n".join(Practice(reader).of(path))
+    return "\n".join(Practice(reader).of(path, question or path))
 
 
 # Drivers
@@ -258,7 +258,9 @@ def test_a_fill_is_rendered_by_its_id_alone(tmp_path: Path) -> None:
 @pytest.mark.parametrize("path", [f"{TYPES}RigidBodyObject", f"{TYPES}Object.location"])
 def test_physics_moves_the_matrix_alone(reader: BaseReader, path: str) -> None:
     if path.endswith("location"):
-        assert "moves `ob.matrix_world`, not `ob.location`" in said(reader, path)
+        moved = "moves `ob.matrix_world`, not `ob.location`"
+        assert moved in said(reader, path, "where is the rigid body after the simulation")
+        assert moved not in said(reader, path, "obj.location = (1, 2)")
     scene = bpy.context.scene
     bpy.ops.mesh.primitive_cube_add(location=(0, 0, 5))
     obj = bpy.context.object

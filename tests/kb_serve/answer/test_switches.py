@@ -39,5 +39,5 @@ def test_what_goes_with_a_setting(reader: BaseReader, path: str, expected: list[
 
 def test_a_handler_is_said_to_go_when_a_file_is_loaded(reader: BaseReader) -> None:
     practice = Practice(reader)
-    assert any("persistent" in text for text in practice.of("bpy.app.handlers.load_post"))
-    assert not list(practice.of("bpy.app.handlers.persistent"))
+    assert any("persistent" in text for text in practice.of("bpy.app.handlers.load_post", "load_post"))
+    assert not list(practice.of("bpy.app.handlers.persistent", "persistent"))

@@ -22,6 +22,17 @@ T = "bpy.types."
         ),
         ("what does recalc_face_normals of bmesh.ops take", "bmesh.ops.recalc_face_normals"),
         ("the save_post list of bpy.app.handlers", "bpy.app.handlers.save_post"),
+        ("from bpy.app import handlers", "bpy.app.handlers"),
+        ("from mathutils.kdtree import KDTree", "mathutils.kdtree.KDTree"),
+        ("from mathutils import Euler, Matrix", "mathutils.Euler"),
+        ("import aud", "aud"),
+        ("quality of ClothSettings", f"{T}ClothSettings.quality"),
+        ("rotation mode of PoseBone", f"{T}PoseBone.rotation_mode"),
+        # Other packages are none of Blender's classes.
+        ("a = np.empty(9); mesh.vertices.foreach_get('co', a)", f"{T}bpy_prop_collection.foreach_get"),
+        # What is compared or set tells which object data are meant.
+        ("if ob.data.type == 'SPOT': print()", f"{T}Light.type"),
+        ("ob.data.type = 'ORTHO'", f"{T}Camera.type"),
         # What a variable was bound to leads on to what is done with it.
         ("spl = curve.splines[0]; spl.use_cyclic_u = True", f"{T}Spline.use_cyclic_u"),
         ("for kp in fcurve.keyframe_points: kp.handle_left_type", f"{T}Keyframe.handle_left_type"),
@@ -52,6 +63,7 @@ def test_what_is_asked_comes_first(kb: KnowledgeBase, query: str, first: str) ->
         ("SceneEEVEE use_ssr is missing", "SceneEEVEE.use_ssr", f"{T}SceneEEVEE.use_raytracing"),
         ("groups of bpy.context.active_action", "Action.groups", f"{T}ActionChannelbag.groups"),
         ('modifiers.new("s", "SMOKE")', "ObjectModifiers.new(type='SMOKE')", f"{T}ObjectModifiers.new"),
+        ("fcurves of Action", "Action.fcurves", f"{T}ActionChannelbag.fcurves"),
         # The last part of a variable's name tells what it is.
         ("title_strip.align_y = 'TOP'", "TextSequence.align_y", f"{T}TextStrip.anchor_y"),
     ],
@@ -120,12 +132,60 @@ def test_what_a_message_is_about_comes_before_what_it_stopped_at(
         ("limit distance between two objects", "LimitDistanceConstraint"),
         ("let the eyes damped track a target", "DampedTrackConstraint"),
         ("wave speed of that modifier", "WaveModifier"),
+        ("track to constraint for a camera", "TrackToConstraint"),
     ],
 )
 def test_the_label_of_a_constraint_or_modifier_is_found_in_a_question(
     kb: KnowledgeBase, query: str, cls: str
 ) -> None:
     assert f"{T}{cls}" in [hit.id.removesuffix(".speed") for hit in kb.query(query).hits[:5]]
+
+
+@pytest.mark.parametrize(
+    ("code", "cls", "name"),
+    [
+        ('m = obj.modifiers["Bevel"]; m.thickness = 0.2', "BevelModifier", "thickness"),
+        ('c = obj.constraints["Track To"]; c.use_x = True', "TrackToConstraint", "use_x"),
+        ('n = tree.nodes.get("Noise Texture"); n.strength = 2', "ShaderNodeTexNoise", "strength"),
+    ],
+)
+def test_what_an_element_lacks_is_told_though_others_have_it(
+    kb: KnowledgeBase, code: str, cls: str, name: str
+) -> None:
+    answer = kb.query(code)
+    assert f"`bpy.types.{cls}` has no `{name}`" in answer.text
+    assert answer.hits[0].id == f"{T}{cls}"
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        'g = tree.nodes.new("GeometryNodeGroup"); g.inputs["Anything"].default_value = 2',
+        'g = mat.node_tree.nodes["Group"]; g.outputs["Anything"]',
+        'tree.nodes["Group Input"].outputs["Anything"]',
+        'links.new(noise.outputs["Color"], bsdf.inputs["Base Color"])',
+    ],
+)
+def test_sockets_that_may_be_there_are_not_denied(kb: KnowledgeBase, code: str) -> None:
+    answer = kb.query(code)
+    assert not any("has no" in note or "does not exist" in note for note in answer.notes)
+
+
+@pytest.mark.parametrize(
+    ("code", "told"),
+    [
+        (
+            'n = nodes.new("ShaderNodeTexNoise"); links.new(n.outputs["Colour"], bsdf.inputs[0])',
+            '`outputs["Colour"]` does not exist; read as `outputs["Color"]`',
+        ),
+        (
+            'e = nodes.new("ShaderNodeEmission"); tree.links.new(e.outputs["BSDF"], o.inputs["Surface"])',
+            '`bpy.types.ShaderNodeEmission` has no `outputs["BSDF"]`',
+        ),
+    ],
+)
+def test_sockets_in_a_call_are_looked_at(kb: KnowledgeBase, code: str, told: str) -> None:
+    assert any(told in note for note in kb.query(code).notes)
 
 
 def test_what_a_new_value_makes_follows_it(kb: KnowledgeBase) -> None:
