@@ -126,7 +126,11 @@ class BrokenExpressions:
 
     def _is_known_element(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether a name is missing on an element of a collection whose key tells its class: ``modifiers["Bevel"]``."""
-        if len(resolved.symbols) < 2 or resolved.owner != resolved.symbols[-1]:
+        if (
+            len(resolved.symbols) < 2
+            or resolved.owner != resolved.symbols[-1]
+            or resolved.missing.startswith("[")
+        ):
             return False
         place = len(chain.steps) - resolved.steps_left - 1
         held = self._reader.entry(resolved.symbols[-2])

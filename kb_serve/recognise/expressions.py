@@ -14,12 +14,10 @@ import re
 import sys
 import time
 from dataclasses import replace
-from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import STOP_WORDS, key, stem, terms, words
+from kb_build.index.analysis import key, stem, terms, words
 from kb_build.schema import FORM_NAME, FORM_SHORT
-from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.broken_expressions import (
     CLEAR,
     LEAST,
@@ -30,7 +28,7 @@ from kb_serve.recognise.broken_expressions import (
 )
 from kb_serve.recognise.chain_starts import LEAST_OF_COLLECTION
 from kb_serve.recognise.enum_values import is_value
-from kb_serve.recognise.members_by_words import members_by_words
+from kb_serve.recognise.names_beside import NamesBeside
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.recognition import MissingName
@@ -52,7 +50,6 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 _FEW = 3
-_OF = frozenset({"a", "an", "from", "in", "of", "on", "the", "to"})
 _DEPRECATED = "Deprecated"  # in the description of what is on its way out, not of what it leads to
 _FILE_ENDINGS = frozenset(
     "abc avi blend exr fbx glb gltf hdr jpg json mkv mov mp4 obj ply png py stl tif usd usdc vdb wav zip".split()  # noqa: SIM905
@@ -112,14 +109,12 @@ class Expressions:
         self._old = old
         self._custom = CustomProperties(reader)
         self._broken = BrokenExpressions(reader, resolver, old)
+        self._beside = NamesBeside(reader, resolver, old)
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
         self._expressions(chains, recognition)
-        self._asked_of(chains, recognition)
-        self._imported(chains, recognition)
-        self._module_with_member(chains, recognition)
-        self._class_with_member(chains, recognition)
+        self._beside.recognise(chains, recognition)
 
     def _taking(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
         """Readings of a chain, of which the best leads to the case that takes what the chain is set to, or compared
@@ -349,93 +344,3 @@ class Expressions:
         about |= set(terms(entry.label))
         usual = 0.2 if entry.group != "ui" and entry.kind in {"property", "function", "operator"} else 0.0
         return len(about & prose) - 0.05 * len(about) + usual
-
-    def _asked_of(self, chains: list[Chain], recognition: Recognition) -> None:
-        """Adds what words ask of an expression: ``f-curves of obj.action``, ``add a driver to obj.location``."""
-        said = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
-        for place, chain in enumerate(chains):
-            certain = recognition.readings.get(chain.source, "")
-            path = certain or next(iter(recognition.guesses.get(chain.source, ())), "")
-            entry = self._reader.entry(path) if path and chain.steps else None
-            if entry is None or entry.kind not in {"property", "context"}:
-                continue
-            for name in self._functions_of_all:
-                if said.issuperset(map(stem, words(name))):
-                    recognition.add(f"{STRUCT}.{name}", 0.975, "asked of it")
-            if certain and entry.type == "pointer" and entry.target:
-                self._member_before(chains[:place], TYPES + entry.target, recognition)
-
-    def _member_before(self, before: list[Chain], cls: str, recognition: Recognition) -> None:
-        """Adds the member of a class that the words before an expression name, ``f-curves of``."""
-        roots = [chain.root for chain in before if not chain.steps]
-        while roots and roots[-1] in _OF:
-            roots.pop()
-        for name in ("".join(roots[-2:]), *roots[-1:]):
-            if name in STOP_WORDS:
-                continue
-            if member := self._resolver.member(cls, name):
-                recognition.add(member.path, 0.98, "asked of it")
-            elif gone := self._old.member(cls, name):
-                recognition.add_removed(gone)
-
-    @cached_property
-    def _functions_of_all(self) -> list[str]:
-        """The functions of everything in Blender whose names have several words: ``keyframe_insert``."""
-        return [name for name in self._reader.members(STRUCT) if "_" in name.strip("_")]
-
-    def _imported(self, chains: list[Chain], recognition: Recognition) -> None:
-        """Adds what an import is of, ``from bpy.app import handlers``, before the module that holds it."""
-        roots = [chain.root for chain in chains]
-        if roots[:1] == ["import"]:
-            paths = [chain.dotted for chain in chains[1:2]]
-        elif roots[:1] == ["from"] and roots[2:3] == ["import"]:
-            paths = [f"{chains[1].dotted}.{root}" for root in roots[3:]]
-        else:
-            return
-        for rank, path in enumerate(path for path in paths if self._reader.entry(path)):
-            recognition.add(path, 0.985 - 0.005 * rank, "import")
-
-    def _module_with_member(self, chains: list[Chain], recognition: Recognition) -> None:
-        """Adds a module's member that stands beside the module, ``from bpy_extras.object_utils import
-        world_to_camera_view``: it comes before the module.
-        """
-        names = [chain.root for chain in chains if chain.is_code]
-        for chain in chains:
-            module = self._reader.entry(chain.dotted) if chain.steps else None
-            if module and module.kind == "module":
-                for name in names:
-                    if self._reader.entry(f"{module.path}.{name}"):
-                        recognition.add(f"{module.path}.{name}", 0.98, "module and member")
-
-    def _class_with_member(self, chains: list[Chain], recognition: Recognition) -> None:
-        """Adds a class's member that stands beside the class, ``SoftBodySettings goal_spring``.
-
-        It comes before the class, unless it may be a word of the question.
-        """
-        bare = [chain.root for chain in chains if not chain.steps]
-        self._reader.entry.load(TYPES + root for root in bare)
-        named = (self._reader.entry(TYPES + root) for root in bare)
-        classes = [entry for entry in named if entry and entry.kind == "class"]
-        # ``mass of ClothSettings``
-        before = {
-            (first, last) for first, of, last in zip(bare, bare[1:], bare[2:], strict=False) if of in _OF
-        }
-        for cls in classes:
-            for root in bare:
-                if root == cls.name:
-                    continue
-                member = self._resolver.member(cls.path, root)
-                is_said = "_" in root or (root, cls.name) in before
-                if member and (is_said or root not in STOP_WORDS):
-                    recognition.add(member.path, 0.98 if is_said else 0.96, "class and member")
-                elif not member and is_said and (gone := self._old.member(cls.path, root)):
-                    recognition.add_removed(gone)
-            if len(bare) == len(chains):
-                beside = [root for root in bare if root != cls.name]
-                meant = members_by_words(cls.path, beside, self._reader)
-                said = [word for text in beside for word in words(text) if word not in STOP_WORDS]
-                for rank, path in enumerate(
-                    meant
-                ):  # of several, the class shows them all, unless one is meant
-                    is_one = len(meant) == 1 or words(path.rpartition(".")[2]) == said
-                    recognition.add(path, (0.975 if is_one else 0.955) - 0.005 * rank, "class and words")

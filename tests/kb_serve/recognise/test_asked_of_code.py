@@ -26,6 +26,8 @@ T = "bpy.types."
         ("from mathutils.kdtree import KDTree", "mathutils.kdtree.KDTree"),
         ("from mathutils import Euler, Matrix", "mathutils.Euler"),
         ("import aud", "aud"),
+        ("import bpy\nob = bpy.context.object\nob.show_name = True", f"{T}Object.show_name"),
+        ("from mathutils import Vector\nob.location = Vector((1, 2, 3))", f"{T}Object.location"),
         ("quality of ClothSettings", f"{T}ClothSettings.quality"),
         ("rotation mode of PoseBone", f"{T}PoseBone.rotation_mode"),
         # Other packages are none of Blender's classes.
