@@ -41,7 +41,10 @@ class NodeSteps:
         self._links = NodeLinks(scene, self._items)
 
     def made(self, creations: Mapping[str, Creation]) -> Iterator[str]:
-        """Nodes, in the tree that takes the first of them."""
+        """Nodes, in the tree that takes the first of them: one that stands alone, unless most are ends of zones."""
+        ends = [node for node in creations if self._links.partner(node)]
+        if len(ends) < len(creations) / 2:
+            creations = {node: creations[node] for node in sorted(creations, key=ends.__contains__)}
         tree = self._trees.taking(next(iter(creations)))
         yield from tree.steps
         yield from self._joined(creations, tree.cls)

@@ -90,6 +90,15 @@ def test_a_node_goes_to_the_input_that_is_called_as_what_it_gives(reader: BaseRe
     )
 
 
+def test_of_many_nodes_one_that_stands_alone_is_the_example(reader: BaseReader) -> None:
+    ends = [f"GeometryNodeSimulation{end}" for end in ("Output", "Input")]
+    alone = [f"GeometryNode{name}" for name in ("InstanceOnPoints", "CurveToMesh", "JoinGeometry")]
+    many = "\n".join(steps(reader, "nodes", *ends, *alone))
+    assert 'nodes.new("GeometryNodeInstanceOnPoints")' in many
+    assert ".pair_with_output(" not in many
+    assert ".pair_with_output(" in "\n".join(steps(reader, "simulation", *ends))
+
+
 def test_a_world_has_a_background_and_no_rigid_bodies(reader: BaseReader) -> None:
     said = "\n".join(steps(reader, "world", "World", "RigidBodyWorld"))
     assert 'tree.nodes.new("ShaderNodeBackground")' in said
