@@ -216,6 +216,10 @@ class Resolver:
         if step.kind == "key" and side in {"inputs", "outputs"}:
             yield from self._socket(owner, side, step.text)
             return
+        is_numbered = step.kind == "index" and side in {"inputs", "outputs"}
+        if is_numbered and (socket := self._socket_at(owner, f"{side}[{step.text}]")):
+            yield self._values.of(socket)
+            return
         named = self._named(value.cls, step.text) if step.kind == "key" else ()
         for path in self._in_tree(named, owner):
             yield ChainValue(path, path)
@@ -264,6 +268,17 @@ class Resolver:
                 yield self._values.of(entry)
         if not found and self._may_have_any_socket(owner, side):
             yield ChainValue(f"{_NODE}.{side}", f"{TYPES}NodeSocket")
+
+    def _socket_at(self, node: str, subscript: str) -> SymbolEntry | None:
+        """The socket of a class of nodes that a subscript with its number gives, ``inputs[0]``."""
+        side, _, number = subscript.rstrip("]").partition("[")
+        entries = [entry for name, entry in self._reader.members(node).items() if name.startswith(f"{side}[")]
+        if not number.isdecimal():
+            return None
+        # Mostly in the order of their numbers.
+        entries = entries[int(number) :] + entries[: int(number)]
+        symbols = ((entry, self._reader.symbol(entry.path)) for entry in entries)
+        return next((entry for entry, symbol in symbols if symbol and subscript in symbol.subscripts), None)
 
     def _may_have_any_socket(self, owner: str, side: str) -> bool:
         """Whether a class of nodes has sockets that its group or its items name."""

@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase
 
 T = "bpy.types."
+P = f"{T}ShaderNodeBsdfPrincipled.inputs"
 
 
 @pytest.mark.parametrize(
@@ -45,6 +46,8 @@ T = "bpy.types."
             f'{T}ShaderNodeTexNoise.inputs["Detail"]',
         ),
         ('obj.modifiers.get("Wave").height', f"{T}WaveModifier.height"),
+        ('tree.nodes["Principled BSDF"].inputs[0].default_value = c', f'{P}["Base Color"]'),
+        ('w.node_tree.nodes["Background"].inputs[1]', f'{T}ShaderNodeBackground.inputs["Strength"]'),
         # What the words ask of an expression.
         ("insert a keyframe on cam.data.lens", f"{T}bpy_struct.keyframe_insert"),
         ("rotation_euler of bpy.context.object", f"{T}Object.rotation_euler"),
