@@ -320,6 +320,15 @@ class BaseReader:
             WHERE target = ? AND target != '' AND kind = 'property' AND type = 'pointer' ORDER BY path"""
         return [SymbolEntry._make(row) for row in self.rows(sql, cls)]
 
+    @cached_property
+    def labelled_classes(self) -> dict[str, list[str]]:
+        """Label of several words, in small letters → the paths of RNA's classes that have it."""
+        sql = "SELECT path, label FROM symbols WHERE owner = 'bpy.types' AND kind = 'class' AND label LIKE '% %'"
+        found: dict[str, list[str]] = {}
+        for path, label in self.rows(f"{sql} ORDER BY path"):
+            found.setdefault(label.lower(), []).append(path)
+        return found
+
     def pointers(self) -> list[SymbolEntry]:
         """All that point to a class."""
         sql = f"SELECT {_ENTRY} FROM symbols WHERE type = 'pointer' AND target != '' ORDER BY path"

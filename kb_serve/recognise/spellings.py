@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import re
-from itertools import chain
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
@@ -158,22 +157,17 @@ class Spellings:
             if length < len(words)
         ]
         typed = frozenset(parts)
+        # Looked up in memory: there are dozens in a question, and hardly ever a class is called so.
         # ``track to`` is a constraint, and so is ``copy location``; a modifier's name alone is mostly a plain word.
         parts += [f"{part} constraint" for part in parts]
         parts += [
             f"{word} {kind}" for kind in _KINDS.intersection(words) for word in words if word not in _KINDS
         ]
-        self._reader.by_key.load(map(key, parts))
-        labelled = {
-            part: [path for form, path in self._reader.by_key(key(part)) if form == FORM_LABEL]
-            for part in parts
-        }
-        self._reader.entry.load(chain.from_iterable(labelled.values()))
-        for part, paths in labelled.items():
-            entries = map(self._reader.entry, paths)
-            classes = [
-                one for one in entries if one and one.kind == "class" and one.label.lower() == part.lower()
-            ]
+        for part in parts:
+            if not (paths := self._reader.labelled_classes.get(part.lower())):
+                continue
+            self._reader.entry.load(paths)
+            classes = list(filter(None, map(self._reader.entry, paths)))
             is_typed = part.count(" ") + 1 >= _LONG_LABEL and part in typed
             sure = WHOLE_LABEL if is_typed else _LABEL_WITHIN
             for rank, entry in enumerate(self._reader.heaviest(classes)[:_OF_A_LABEL]):

@@ -174,7 +174,7 @@ def test_answers_say_where_it_is_done(kb: KnowledgeBase, query: str, first: str)
         ('rig.pose["Bone"].location', "bpy.types.PoseBone.location", '`.bones["Bone"]`'),
         (
             'material.node_tree["Mix"].inputs[0].default_value',
-            "bpy.types.NodeSocketFloat.default_value",
+            'bpy.types.ShaderNodeMix.inputs["Factor"]',
             '`.nodes["Mix"]`',
         ),
     ],
