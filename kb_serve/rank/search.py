@@ -217,10 +217,11 @@ class Searcher:
         are_operators = self.index.operators[numbers]
         asked = {concept.stem: concept.idf for concept in concepts}
         said = frozenset(asked)
+        kinds = said & _KINDS
         called: Scores | None = None
         for place in are_operators[:_NEAREST].nonzero()[0].tolist():
             name = self._name_of(int(numbers[place]))
-            if len(name) >= _WORDS_OF_A_NAME and name <= said and name >= said & _KINDS:
+            if len(name) >= _WORDS_OF_A_NAME and name <= said and name >= kinds:
                 called = np.zeros(len(numbers), np.float32) if called is None else called
                 called[place] = sum(asked[part] for part in name) / sum(asked.values())
         return are_operators, called

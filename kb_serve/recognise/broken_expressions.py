@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 CLEAR = 0.85  # fit of a variable's name that hardly means another class
 LEAST = 0.1  # fit below which neither the variable's name nor its member tells the class
-_KNOWN_ELEMENT = 0.96  # how sure the class of an element is that lacks a name, before others that have it
 LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
+_KNOWN_ELEMENT = 0.96  # how sure the class of an element is that lacks a name, before others that have it
 
 # Classes whose members are defined by scripts and add-ons.
 _OF_OPERATORS = "OperatorProperties"

@@ -16,7 +16,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, stem, terms, words
+from kb_build.index.analysis import key, terms
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.recognise.broken_expressions import (
     CLEAR,
@@ -28,7 +28,7 @@ from kb_serve.recognise.broken_expressions import (
 )
 from kb_serve.recognise.chain_starts import LEAST_OF_COLLECTION
 from kb_serve.recognise.enum_values import is_value
-from kb_serve.recognise.names_beside import NamesBeside
+from kb_serve.recognise.names_beside import NamesBeside, said_in_words
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.recognition import MissingName
@@ -133,7 +133,7 @@ class Expressions:
     def _expressions(self, chains: list[Chain], recognition: Recognition) -> None:
         code = [chain for chain in chains if chain.is_code and _is_api(chain)]
         code.sort(key=lambda chain: chain.leads_on)
-        prose = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
+        prose = said_in_words(chains)
         is_script = len(code) > 1 and any(chain.steps or chain.assigned for chain in code)
         for position, chain in enumerate(code):
             later = 0.02 * min(position, 5)

@@ -12,6 +12,8 @@ from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.members_by_words import members_by_words
 
 if TYPE_CHECKING:
+    from collections.abc import Iterable
+
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.chains import Chain
     from kb_serve.recognise.old_code import OldCode
@@ -19,6 +21,11 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import Resolver
 
 _OF = frozenset({"a", "an", "from", "in", "of", "on", "the", "to"})
+
+
+def said_in_words(chains: Iterable[Chain]) -> set[str]:
+    """The stems of what a query says beside its code."""
+    return {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
 
 
 class NamesBeside:
@@ -38,7 +45,9 @@ class NamesBeside:
 
     def _asked_of(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what words ask of an expression: ``f-curves of obj.action``, ``add a driver to obj.location``."""
-        said = {stem(word) for chain in chains if not chain.is_code for word in words(chain.root)}
+        if not any(chain.steps for chain in chains):
+            return
+        said = said_in_words(chains)
         for place, chain in enumerate(chains):
             certain = recognition.readings.get(chain.source, "")
             path = certain or next(iter(recognition.guesses.get(chain.source, ())), "")

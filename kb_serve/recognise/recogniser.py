@@ -39,7 +39,7 @@ from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLooku
 from kb_serve.recognise.resolver import Resolver
 from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.spellings import Spellings
-from kb_serve.recognise.subscripts import NEW_INPUT, NODES_MODIFIER, asks_for_inputs, asks_for_new_inputs
+from kb_serve.recognise.subscripts import asked_of_inputs
 
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
 _FEW = 3
@@ -107,8 +107,9 @@ class Recogniser:
             self._expressions.recognise(found, recognition)
             self._enum_values.recognise(text, recognition)
             self._removed_values(text, recognition)
-            if not is_message(query):
-                self._described(query, recognition)
+            described = "" if is_message(query) else asked_of_inputs(query)
+            if described and self._reader.entry(described):
+                recognition.add(described, _DESCRIBED, "described")
         self._check_uses(query, chains, recognition)
         self._messages.explain(query, recognition)
         old = next((match.id for match in recognition.matches if match.sure >= _SURE), "")
@@ -119,13 +120,6 @@ class Recogniser:
         self._explain_missing(recognition)
         recognition.matches.sort(key=lambda match: (-match.sure, match.why != "successor"))
         return recognition
-
-    def _described(self, query: str, recognition: Recognition) -> None:
-        """Adds what is asked of the inputs of a geometry-nodes modifier."""
-        asked = {NODES_MODIFIER: asks_for_inputs(query), NEW_INPUT: asks_for_new_inputs(query)}
-        for path, is_asked in asked.items():
-            if is_asked and self._reader.entry(path):
-                recognition.add(path, _DESCRIBED, "described")
 
     def _check_uses(self, query: str, chains: list[Chain], recognition: Recognition) -> None:
         """Adds removed values and arguments of what was recognised, and notes on wrong ones."""

@@ -67,6 +67,8 @@ class ResolvedChain:
 
 def _with_keys(steps: tuple[ChainStep, ...]) -> tuple[ChainStep, ...]:
     """The same steps, in which an element that is got by its name is one by its key: ``nodes.get("Mix").inputs``."""
+    if _GET not in steps:
+        return steps
     found: list[ChainStep] = []
     for place, step in enumerate(steps):
         key_of = _KEY.fullmatch(step.text) if step.kind == "call" and place + 1 < len(steps) else None
@@ -118,7 +120,8 @@ class Resolver:
         symbols = [value.symbol]
         values = [value]
         alike: tuple[str, ...] = ()
-        for number, step in enumerate(steps := _with_keys(steps)):
+        steps = _with_keys(steps)
+        for number, step in enumerate(steps):
             branches = (after for before in values for after in self._step(before, step))
             following = list(islice(branches, _MAX_BRANCHES))
             if not following:

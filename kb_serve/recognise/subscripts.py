@@ -11,7 +11,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 NODES_MODIFIER = f"{TYPES}NodesModifier"
-NEW_INPUT = f"{TYPES}NodeTreeInterface.new_socket"
+_NEW_INPUT = f"{TYPES}NodeTreeInterface.new_socket"
 # The classes whose instances, and whose subclasses' instances, take custom properties.
 _TAKING = frozenset(
     {
@@ -51,20 +51,21 @@ _OUTSIDE = frozenset(map(stem, ("parameter", "exposed")))
 _PARTS = frozenset(map(stem, ("input", "socket", "slider", "parameter")))
 _MODIFIER = stem("modifier")
 _NEW = frozenset(map(stem, ("add", "new", "create")))
-_MAKING = frozenset(map(stem, ("add", "new", "create", "remove", "delete", "interface", "field")))
+_MAKING = _NEW | frozenset(map(stem, ("remove", "delete", "interface", "field")))
 
 
-def asks_for_inputs(query: str) -> bool:
-    """Whether a query in plain words asks for the inputs of a geometry-nodes modifier, rather than to make some."""
+def asked_of_inputs(query: str) -> str:
+    """What a query in plain words asks for that is about the inputs of a geometry-nodes modifier: the modifier, or what
+    makes an input, which is one of its group; empty for neither.
+    """
     stems = set(map(stem, words(query)))
-    said = _OUTSIDE | _INPUT if _MODIFIER in stems else _OUTSIDE
-    return stems >= _SAID and not stems.isdisjoint(said) and stems.isdisjoint(_MAKING)
-
-
-def asks_for_new_inputs(query: str) -> bool:
-    """Whether a query in plain words asks to make an input of a geometry-nodes modifier, which is one of its group."""
-    stems = set(map(stem, words(query)))
-    return stems >= _SAID | {_MODIFIER} and not stems.isdisjoint(_PARTS) and not stems.isdisjoint(_NEW)
+    if not stems >= _SAID:
+        return ""
+    is_of_modifier = _MODIFIER in stems
+    if stems.isdisjoint(_MAKING):
+        return "" if stems.isdisjoint(_OUTSIDE | _INPUT if is_of_modifier else _OUTSIDE) else NODES_MODIFIER
+    is_new = is_of_modifier and not stems.isdisjoint(_PARTS) and not stems.isdisjoint(_NEW)
+    return _NEW_INPUT if is_new else ""
 
 
 class CustomProperties:
