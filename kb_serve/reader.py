@@ -280,10 +280,18 @@ class BaseReader:
 
     def member_names(self, owner: str) -> list[str]:
         """The names of a class's members, inherited ones included, or of a module's."""
-        names: dict[str, None] = {}
-        for ancestor in self.lineage(owner):
-            names.update(dict.fromkeys(self.members(ancestor.path)))
-        return list(names or self.members(owner))
+        owners = [ancestor.path for ancestor in self.lineage(owner)] or [owner]
+        return list(dict.fromkeys(name for path in owners for name in self._own_names(path)))
+
+    def _own_names(self, owner: str) -> list[str]:
+        """The names alone: a module has thousands, and what else is known of them takes megabytes."""
+        name = "CASE kind WHEN 'socket' THEN substr(path, length(owner) + 2) ELSE name END"
+        return [row[0] for row in self.rows(f"SELECT {name} FROM symbols WHERE owner = ? ORDER BY id", owner)]
+
+    def content_lines(self, module: str) -> list[str]:
+        """The lines of what a module has, its own machinery last. Not kept, as ``bpy.types`` has thousands."""
+        sql = """SELECT line FROM symbols WHERE owner = ? AND grp != 'ui' ORDER BY substr(name, 1, 1) = '_', id"""
+        return [row[0] for row in self.rows(sql, module)]
 
     def members_called(self, owner: str, stem: str) -> list[str]:
         """The names of a class's own members that are ``stem``, or begin with it and go on behind a ``_``."""

@@ -47,16 +47,18 @@ def words(text: str) -> list[str]:
     return [word for token in tokens(text) for word in _words_in(token)]
 
 
-@lru_cache(maxsize=30_000)
-def _words_in(token: str) -> tuple[str, ...]:
+def _split(token: str) -> tuple[str, ...]:
     if token.isascii() and token[0].isalpha() and not token.islower():
         return tuple(part.lower() for part in _CAMEL.findall(token))
     return (token.lower(),)
 
 
+_words_in = lru_cache(maxsize=30_000)(_split)
+
+
 def distinct_words(text: str) -> set[str]:
-    """The words of a long text, each once."""
-    return {word for token in set(tokens(text)) for word in _words_in(token)}
+    """The words of a long text, each once. Such a text would fill what is kept for others."""
+    return {word for token in set(tokens(text)) for word in _split(token)}
 
 
 def tokens(text: str) -> list[str]:

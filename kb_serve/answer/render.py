@@ -92,8 +92,8 @@ class MarkdownRenderer:
             yield from self._class(symbol.path, members)
         elif symbol.kind in {"operator", "function"}:
             yield from arguments(symbol, asked)
-        elif symbol.kind in {"module", "data"} and self.reader.members(symbol.path):
-            yield from self._module(symbol)
+        elif symbol.kind in {"module", "data"} and (lines := self.reader.content_lines(symbol.path)):
+            yield AnswerBlock("**Contents**\n" + "\n".join(f"- {line}" for line in lines), "contents")
         elif symbol.collection:
             yield from self._of_collection(symbol)
         if is_stand_in(symbol):
@@ -206,10 +206,3 @@ class MarkdownRenderer:
             seen |= members.keys()
             if new and ancestor.path != STRUCT:
                 yield f"{len(new)} of `{ancestor.name}`"
-
-    def _module(self, symbol: Symbol) -> Iterator[AnswerBlock]:
-        members = [entry for entry in self.reader.members(symbol.path).values() if entry.group != "ui"]
-        members.sort(key=lambda entry: entry.name.startswith("_"))  # what is Blender's own comes last
-        lines = ["- " + entry.line for entry in members]
-        if lines:
-            yield AnswerBlock("**Contents**\n" + "\n".join(lines), "contents")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import distinct_words, key, words
 from kb_serve.reader import TYPES, BaseReader
@@ -36,6 +36,13 @@ class Correction:
     written: str
     meant: str
     similarity: float
+
+
+class _Names(NamedTuple):
+    """key → name of every member whose name has several words; and every word of some length in a name."""
+
+    members: dict[str, str]
+    words: set[str]
 
 
 def similarity(written: str, name: str) -> float:
@@ -120,42 +127,33 @@ class Corrector:
         return {key(name): path.removeprefix(TYPES) for name, path in rows}
 
     @cached_property
-    def _names(self) -> list[tuple[str, bool]]:
-        """The names of members and classes, each with whether it is a member's."""
-        return self._reader.rows(
+    def _names(self) -> _Names:
+        """The names of members and classes. Their rows, megabytes of them, are not kept."""
+        rows: list[tuple[str, bool]] = self._reader.rows(
             "SELECT name, max(kind != 'class') FROM symbols "
             "WHERE kind IN ('property', 'function', 'operator', 'class') GROUP BY name"
         )
-
-    @cached_property
-    def _words(self) -> set[str]:
-        """Every word of some length in a name."""
-        names = "\n".join(name for name, _ in self._names)
-        return {word for word in distinct_words(names) if len(word) >= _WORD}
+        long = (name for name, of_member in rows if of_member and len(name) >= _LONG and "_" in name)
+        found = distinct_words("\n".join(name for name, _ in rows))
+        return _Names({key(name): name for name in long}, {word for word in found if len(word) >= _WORD})
 
     def root(self, written: str) -> Correction | None:
         """The class or module that a misspelt first name means."""
         if len(written) < 5:
             return None
-        return _closest(written, self._roots, _TYPO, self._words)
-
-    @cached_property
-    def _members(self) -> dict[str, str]:
-        """key → name of every member whose name has several words."""
-        names = [name for name, of_member in self._names if of_member]
-        return {key(name): name for name in names if len(name) >= _LONG and "_" in name}
+        return _closest(written, self._roots, _TYPO, self._names.words)
 
     def member(self, written: str) -> Correction | None:
         """Corrects a name of several words, ``use_self_colision``, without its owner; not a variable's plural."""
         if len(written) < _LONG or "_" not in written:
             return None
-        closest = _closest(written, self._members, _CLOSE, self._words)
+        closest = _closest(written, self._names.members, _CLOSE, self._names.words)
         return None if closest and written.removesuffix("s") == closest.meant.removesuffix("s") else closest
 
     def parts(self, written: str) -> list[str]:
         """The members whose words are all but one of a name's: ``hide_set`` and ``hide_viewport``."""
         mine = set(words(written))
-        return sorted(name for name in self._members.values() if _share(mine, name))
+        return sorted(name for name in self._names.members.values() if _share(mine, name))
 
     def corrected(
         self, chain: Chain, readings: list[ResolvedChain]
@@ -193,7 +191,7 @@ class Corrector:
             if resolved.steps_left != readings[0].steps_left:
                 break
             for name, alike in nearest(resolved.missing, self._reader.member_names(resolved.owner), 1):
-                if is_misspelling(resolved.missing, name, self._words):
+                if is_misspelling(resolved.missing, name, self._names.words):
                     return Correction(resolved.missing, name, alike), resolved.steps_left
         return None
 
