@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING
 from kb_build.flow.analysis import MOST_CHARACTERS, Analysis, analyse, analyse_files
 from kb_build.flow.api import Api
 from kb_build.flow.symbols import BaseSymbols
-from kb_check.ignores import Ignores
+from kb_check.ignores import UNUSED, Ignores
 from kb_check.known_names import KnownNames
 from kb_check.package import Package
-from kb_check.rule import all_rules
+from kb_check.rule import all_rules, rule_named
 from kb_check.salvage import salvage
 from kb_check.script import Script
 from kb_serve.reader import BaseReader
@@ -82,16 +82,19 @@ class Checker:
     def check(
         self, code: str | Read, package: Package | None = None, rules: Collection[str] = ()
     ) -> list[Finding]:
-        """The findings in a script, in order. ``package`` is what it and the files beside it register."""
+        """The findings in a script, in order. ``package`` is what it and the files beside it register; ``rules`` are
+        the ids of those that are checked, by default of all.
+        """
         read = self.read(code) if isinstance(code, str) else code
         if package is None:
             package = self.package([read])
         script = self.script(read, package)
-        found = [finding for rule in all_rules().values() for finding in rule.check(script)]
+        asked = map(rule_named, rules) if rules and UNUSED not in rules else all_rules().values()
+        found = [finding for rule in asked for finding in rule.check(script)]
         found = [finding for finding in found if not script.is_doubted(finding.span)]
         ignores = Ignores(read.code)
         kept = ignores.kept(found)
-        if read.error is None and read.analysis.complete:
+        if read.error is None and read.analysis.complete and (not rules or UNUSED in rules):
             kept += ignores.kept(list(ignores.unused(all_rules())))
         chosen = [finding for finding in kept if not rules or finding.rule in rules]
         return sorted(chosen, key=lambda one: (one.span.line, one.span.column, one.rule))

@@ -34,6 +34,12 @@ class Rule:
 
 
 @cache
+def rule_named(name: str) -> Rule:
+    """The rule with an id, alone: its module is called so."""
+    return import_module(f"{rules.__name__}.{name.replace('-', '_')}").RULE
+
+
+@cache
 def all_rules() -> Mapping[str, Rule]:
     """Id → rule, sorted."""
     found: dict[str, Rule] = {}

@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import sqlite3
-import weakref
 from functools import cache
 from typing import TYPE_CHECKING, Any
-from weakref import WeakKeyDictionary
 
 from mcp_types import CallToolResult, TextContent, Tool
 from pydantic import BaseModel, ConfigDict, Field
@@ -16,7 +14,6 @@ from kb_serve.service import readable
 from kb_serve.tool import parsed, reading_tool
 
 if TYPE_CHECKING:
-    from kb_check.checker import Checker
     from kb_check.findings import Finding, Span
     from kb_serve.knowledge_base import KnowledgeBase
     from kb_serve.service import Service
@@ -99,12 +96,13 @@ def is_quick(arguments: dict[str, Any] | None) -> bool:
 
 
 def _checked(base: KnowledgeBase, code: str, max_tokens: int, note: str) -> CheckReply:
-    from kb_check.run_reach import RunReach, may_bring_names  # noqa: PLC0415 - loaded by the first check
+    from kb_check.in_queries import checker_beside  # noqa: PLC0415 - loaded by the first check
+    from kb_check.run_reach import RunReach, may_bring_names  # noqa: PLC0415
     from kb_check.source import split_lines  # noqa: PLC0415
     from kb_check.summary import mended, ranked, summarize  # noqa: PLC0415
     from kb_serve.answer.budget import tokens  # noqa: PLC0415 - loaded with the base
 
-    checker = _checker(base)
+    checker = checker_beside(base)
     try:
         read = checker.read(code)
         findings = ranked(checker.check(read))
@@ -144,17 +142,3 @@ def _checked(base: KnowledgeBase, code: str, max_tokens: int, note: str) -> Chec
         notes=[note] if note else [],
         blender=version,
     )
-
-
-_CHECKERS: WeakKeyDictionary[KnowledgeBase, Checker] = WeakKeyDictionary()
-
-
-def _checker(base: KnowledgeBase) -> Checker:
-    """The checker beside an open base, which is closed after that."""
-    found = _CHECKERS.get(base)
-    if found is None:
-        from kb_check.checker import Checker  # noqa: PLC0415 - loaded by the first check
-
-        found = _CHECKERS[base] = Checker(base.path)
-        weakref.finalize(base, found.close)
-    return found

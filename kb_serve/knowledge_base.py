@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+from importlib import import_module
 from threading import Lock
 from typing import TYPE_CHECKING, Self
 
@@ -10,6 +12,7 @@ from kb_serve.locate import find_base
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
     from types import TracebackType
 
@@ -19,6 +22,10 @@ if TYPE_CHECKING:
 
 # Look-ups and rows of a query. The labelled queries take up to 11,000, and the first one loads 20,000 names more.
 _MOST_WORK = 150_000
+# What code has that words have not.
+_CODE = re.compile(
+    r"[\w\])] *(?:[-+*/%@|&^]|//|\*\*)?=[^=]|\w\([^)]|^\s*(?:for|class|def|with|if) .*:", re.MULTILINE
+)
 
 
 class KnowledgeBase:
@@ -55,7 +62,8 @@ class KnowledgeBase:
         Raises BadQuery for an empty query, one that takes too much work, or a wrong limit or part.
         """
         with self._lock, self._reader.bounded(_MOST_WORK):
-            return self._composer.answer(text, limit, max_tokens, part, command)
+            told = _notes_on_code(self, text)
+            return self._composer.answer(text, limit, max_tokens, part, command=command, told=told)
 
     def symbol(self, path: str) -> Symbol | None:
         """The raw record of an identifier, as the base spells it."""
@@ -90,3 +98,12 @@ class KnowledgeBase:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+
+def _notes_on_code(base: KnowledgeBase, query: str) -> Sequence[str]:
+    """What is wrong in the code of a query. Said by the checker, which is built on this part: it stands here by name,
+    and is loaded with the first code.
+    """
+    if _CODE.search(query) is None:
+        return ()
+    return import_module("kb_check.in_queries").notes_on_code(base, query)

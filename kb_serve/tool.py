@@ -27,8 +27,8 @@ Query before you write a name you are not sure of: what you remember may belong 
 
 `query`, one thing at a time:
 - a name: `ClothSettings.quality`, `bpy.ops.object.modifier_add`, `ShaderNodeBsdfPrincipled`
-- an expression from your code: `bpy.context.object.modifiers["Cloth"].settings.quality`; a wrong name is answered \
-with what took its place
+- an expression or lines of your code: `bpy.context.object.modifiers["Cloth"].settings.quality`; a wrong name is \
+answered with what took its place, a wrong value with what is wanted
 - an error message, whole: `AttributeError: …`; an enum value
 - plain words: `make cloth collide with itself`
 - a topic, when you begin a stage of work (`cloth`, `rigid body`, `uv`): how it is done, pages, classes, operators

@@ -178,13 +178,20 @@ class Api:
             self._own[owner] = found
         return found
 
+    def _own_member(self, owner: str, name: str) -> Symbol | None:
+        """One of them; all would be thousands, of ``bpy.types`` say."""
+        if (own := self._own.get(owner)) is not None:
+            return own.get(name)
+        symbol = self.symbols.symbol(f"{owner}.{name}")
+        return symbol if symbol is not None and symbol.kind != "socket" else None
+
     def member(self, cls: str, name: str) -> Member | None:
         """A member of a class, inherited ones included, or of a module."""
         key = cls, name
         found = self._members.get(key)
         if found is None:
             for ancestor in self.lineage(cls) or (cls,):
-                if symbol := self.own(ancestor).get(name):
+                if symbol := self._own_member(ancestor, name):
                     found = self._members[key] = Member(symbol, self._type_of(symbol))
                     break
         return found
@@ -196,7 +203,7 @@ class Api:
         if found is None:
             rows: dict[str, tuple[str, Member]] = {}
             for child in self.descendants(cls):
-                symbol = self.own(child).get(name)
+                symbol = self._own_member(child, name)
                 if symbol is not None and symbol.path not in rows:
                     rows[symbol.path] = child, Member(symbol, self._type_of(symbol))
             found = tuple(rows.values())

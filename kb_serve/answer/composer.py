@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_serve.answer.asked_values import ASKED_NOTHING, asked_of, asked_words
 from kb_serve.answer.budget import AnswerBlock, tokens
-from kb_serve.answer.docs_answer import DocsAnswer, Draft, draft_of, paged
+from kb_serve.answer.docs_answer import DocsAnswer, Draft, draft_of, paged, with_notes
 from kb_serve.answer.hit_lines import NAMES, HitLines
 from kb_serve.answer.hits import hits_of
 from kb_serve.answer.made_things import made_with
@@ -55,10 +55,19 @@ class AnswerComposer:
         self._lines = HitLines(reader)
         self._topics = Topics(reader)
         self._practice = Practice(reader)
-        self._draft = lru_cache(maxsize=64)(self._make_draft)
+        self._draft = lru_cache(maxsize=32)(self._make_draft)
 
-    def answer(self, query: str, limit: int, max_tokens: int, part: int, command: str = "") -> DocsAnswer:
-        """Answers a query; ``command`` is what it was asked by, if in a shell.
+    def answer(  # noqa: PLR0913 - all that a query comes with
+        self,
+        query: str,
+        limit: int,
+        max_tokens: int,
+        part: int,
+        *,
+        command: str = "",
+        told: Sequence[str] = (),
+    ) -> DocsAnswer:
+        """Answers a query; ``command`` is what it was asked by, if in a shell, ``told`` are notes to begin with.
 
         Raises BadQuery for an empty one, a wrong limit, or a part that does not exist.
         """
@@ -76,7 +85,7 @@ class AnswerComposer:
             raise BadQuery(
                 f"max_tokens={max_tokens} is too small for an answer. Set it to {LEAST_TOKENS} or more."
             )
-        draft = self._draft(text, min(limit, MAX_LIMIT))
+        draft = with_notes(told, self._draft(text, min(limit, MAX_LIMIT)))
         return paged(text, draft, max_tokens, part, command)
 
     def _make_draft(self, text: str, limit: int) -> Draft:

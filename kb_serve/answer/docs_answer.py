@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
 from kb_serve.answer.budget import AnswerBlock, clip, cut, names_of, shown, tokens
@@ -49,9 +49,20 @@ def draft_of(
     kind: AnswerKind, hits: tuple[Hit, ...], notes: Sequence[str], blocks: Iterable[AnswerBlock]
 ) -> Draft:
     """A draft of some blocks. Notes stand above the answer."""
-    above = clip("\n".join(f"> {note}" for note in notes), _NOTES_TOKENS)
-    lead = (AnswerBlock(above, "notes"),) if above else ()
-    return Draft(kind, hits, tuple(notes), cut((*lead, *blocks)))
+    return Draft(kind, hits, tuple(notes), cut((*_above(notes), *blocks)))
+
+
+def with_notes(notes: Sequence[str], draft: Draft) -> Draft:
+    """A draft with further notes, above its own, unless these say the same."""
+    news = [note for note in notes if not any(own in note for own in draft.notes)]
+    if not news:
+        return draft
+    return replace(draft, notes=(*news, *draft.notes), parts=(*cut(_above(news)), *draft.parts))
+
+
+def _above(notes: Sequence[str]) -> tuple[AnswerBlock, ...]:
+    text = clip("\n".join(f"> {note}" for note in notes), _NOTES_TOKENS)
+    return (AnswerBlock(text, "notes"),) if text else ()
 
 
 def paged(query: str, draft: Draft, max_tokens: int, part: int, command: str) -> DocsAnswer:

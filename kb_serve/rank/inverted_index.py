@@ -91,11 +91,11 @@ class InvertedIndex:
         return areas[units.chapters]
 
     @cached_property
-    def asked(self) -> NDArray[np.intp]:
+    def asked(self) -> NDArray[np.int32]:
         """For each phrase the number of the document that it asks for. Raises BaseUnreadable."""
         try:
             ((targets,),) = self._reader.rows("SELECT targets FROM phrases")
-            asked = np.frombuffer(targets, np.int32).astype(np.intp)
+            asked = np.frombuffer(targets, np.int32)
         except (ValueError, TypeError) as error:
             raise self._reader.damaged(error) from error
         if not _within(asked, 0, sum(level.count for level in self.levels)):

@@ -1,0 +1,156 @@
+"""What is wrong in code that ``blender_docs`` is asked about, beyond its names, of which the answer itself tells."""
+
+from __future__ import annotations
+
+import ast
+import builtins
+import re
+import sqlite3
+import textwrap
+import warnings
+import weakref
+from typing import TYPE_CHECKING
+from weakref import WeakKeyDictionary
+
+from kb_check.source import split_lines
+from kb_check.summary import mended
+from kb_serve.recognise.variables import is_guess, usual_classes
+
+if TYPE_CHECKING:
+    from kb_check.checker import Checker
+    from kb_check.findings import Finding
+    from kb_serve.knowledge_base import KnowledgeBase
+
+_MOST = 4
+_LONGEST = 100  # characters of a line that is shown
+_SPAN = re.compile(r"`([^`\n]+)`")
+_FENCED = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
+_MATH = "mathutils"
+# What is wrong in a piece of a script too, whatever stands around it. Names, values of enumerations, keywords, sockets
+# and products are left out: of these an answer tells by itself.
+_RULES = (
+    "callback-signature", "given-callback", "list-attribute", "missing-argument", "no-custom-properties",
+    "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call", "refused-path",
+    "refused-property", "refused-value", "wrong-type",
+)  # fmt: skip
+# What code does that is more than a name.
+_DOES = (
+    ast.Assign, ast.AugAssign, ast.AnnAssign, ast.Call, ast.BinOp, ast.Subscript, ast.FunctionDef, ast.ClassDef,
+)  # fmt: skip
+
+
+def checker_beside(base: KnowledgeBase) -> Checker:
+    """The checker beside an open base, which is closed after that."""
+    found = _CHECKERS.get(base)
+    if found is None:
+        from kb_check.checker import Checker  # noqa: PLC0415 - loaded by the first check
+
+        found = _CHECKERS[base] = Checker(base.path)
+        weakref.finalize(base, found.close)
+    return found
+
+
+_CHECKERS: WeakKeyDictionary[KnowledgeBase, Checker] = WeakKeyDictionary()
+
+
+def notes_on_code(base: KnowledgeBase, query: str) -> tuple[str, ...]:
+    """What Blender refuses of the code in a query, a line each; nothing where there is none.
+
+    What a variable holds that the code does not bind is taken from its name, where scripts use that for some classes;
+    what is told then holds for all of them. Raises BaseUnreadable.
+    """
+    found = _code_in(query)
+    if found is None:
+        return ()
+    code, tree = found
+    checker = checker_beside(base)
+    code = f"{_bindings(tree, checker)}\n{code}"
+    lines = split_lines(code)
+    try:
+        findings = [finding for finding in checker.check(code, rules=_RULES) if _is_news(finding)]
+    except sqlite3.DatabaseError as error:
+        raise checker.names.reader.damaged(error) from error
+    notes = list(dict.fromkeys(_note(finding, lines) for finding in findings))
+    if left := len(notes[_MOST:]):
+        notes[_MOST:] = [f"{left} more: `blender_check` lists them."]
+    return tuple(notes)
+
+
+def _code_in(query: str) -> tuple[str, ast.Module] | None:
+    """The code in a query: in a fence or between backticks, else all of it, or what a line of words introduces."""
+    if fenced := _FENCED.findall(f"{query}\n"):
+        texts = ["".join(fenced)]
+    elif spans := _SPAN.findall(query):
+        texts = ["\n".join(spans)]
+    else:
+        texts = [query, query.partition("\n")[2], query.rpartition("\n")[0]]
+    for text in texts:
+        code = textwrap.dedent(text).strip()
+        tree = _parsed(code)
+        if tree is not None and any(isinstance(node, _DOES) for node in ast.walk(tree)):
+            return code, tree
+    return None
+
+
+def _parsed(code: str) -> ast.Module | None:
+    if not any(sign in code for sign in "=([*"):
+        return None
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")
+            return ast.parse(code)
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return None
+
+
+def _bindings(tree: ast.Module, checker: Checker) -> str:
+    """A line that imports what a piece of code uses of modules, and says what its variables hold."""
+    bound: set[str] = set()
+    read: dict[str, None] = {}
+    owners: set[str] = set()
+    for node in ast.walk(tree):
+        match node:
+            case ast.Name(id=name, ctx=ast.Load()):
+                read[name] = None
+            case ast.Attribute(value=ast.Name(id=name)):
+                owners.add(name)
+            case ast.Name(id=name) | ast.arg(arg=name) | ast.alias(asname=str(name)):
+                bound.add(name)
+            case ast.alias(name=name):
+                bound.add(name.partition(".")[0])
+            case ast.FunctionDef(name=name) | ast.ClassDef(name=name):
+                bound.add(name)
+            case _:
+                pass
+    free = [name for name in read if name not in bound and not hasattr(builtins, name)]
+    return "; ".join(
+        ("import bpy", *filter(None, (_binding(name, name in owners, checker) for name in free)))
+    )
+
+
+def _binding(name: str, is_owner: bool, checker: Checker) -> str:
+    known = checker.names.reader.entry
+    if (entry := known(name)) is not None and entry.kind == "module":
+        return f"import {name}"
+    if known(f"{_MATH}.{name}") is not None:
+        return f"from {_MATH} import {name}"
+    # What only stands as a value is not told by its name: ``mat`` may be a matrix.
+    is_told = is_owner and not is_guess(name)
+    classes = [path for path in usual_classes(name) if known(path)] if is_told else []
+    modules = {path.partition(".")[0] for path in classes}
+    return "; ".join(
+        (*(f"import {module}" for module in modules), f"{name}: {' | '.join(classes)}") if classes else ()
+    )
+
+
+def _is_news(finding: Finding) -> bool:
+    return finding.severity == "error" and finding.span.line > 1 and not finding.absent
+
+
+def _note(finding: Finding, lines: list[str]) -> str:
+    """What is wrong, behind the line that it is wrong in."""
+    line = lines[finding.span.line - 1].strip()
+    shown = f"`{line}`: " if len(line) <= _LONGEST and "`" not in line else ""
+    fix = mended(lines, finding.fix) if finding.fix is not None and finding.fix.sure else ""
+    instead = f" Write `{fix.strip()}`." if fix and "\n" not in fix.strip() and "`" not in fix else ""
+    return f"{shown}{finding.message}{instead}"

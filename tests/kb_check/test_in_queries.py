@@ -1,0 +1,95 @@
+"""What answers say of the code in a query, beyond its names."""
+
+from __future__ import annotations
+
+import ast
+import random
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_check.in_queries import notes_on_code
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+
+
+@pytest.mark.parametrize(
+    ("query", "told"),
+    [
+        ("obj.scale = 2", "`bpy.types.Object.scale` takes 3 floats, not 2."),
+        ("obj.location = (1, 2)", "`bpy.types.Object.location` takes 3 floats, not 2 items."),
+        ("cam.data.lens = 'wide'", "`bpy.types.Camera.lens` takes a number, not 'wide'."),
+        ("r = bmesh.ops.create_cube(bm, size=1)\nr['faces']", "gives `verts`, and no 'faces'."),
+        ("obj.modifiers.new('Subdivision')", "also needs `type`"),
+        ("me.from_pydata(verts, edges)", "also needs `faces`"),
+        ("scene.collection.objects.link('Cube')", "takes an instance of `bpy.types.Object`, not a str."),
+        ("blf.size(0, 20, 72)", "takes 2 arguments by place"),
+        ("pb.rotation_euler = (0, 0)", "`bpy.types.PoseBone.rotation_euler` takes 3 floats"),
+        ("v = Vector((1, 0, 0))\nobj.location = v.length", "takes 3 floats, not a float."),
+        ("Is this right?\nobj.scale = 2", "takes 3 floats, not 2."),
+        ("obj.scale = 2\nWhy does that fail?", "takes 3 floats, not 2."),
+        ("why does `obj.scale = 2` fail", "takes 3 floats, not 2."),
+        ("What is wrong?\n```python\nobj.scale = 2\n```", "takes 3 floats, not 2."),
+    ],
+)
+def test_what_blender_refuses_of_code_is_told(query: str, told: str, kb: KnowledgeBase) -> None:
+    (note,) = notes_on_code(kb, query)
+    assert told in note
+    answer = kb.query(query)
+    assert told in answer.notes[0]
+    assert answer.text.startswith(f"> {answer.notes[0]}")
+
+
+def test_a_sure_fix_is_written_out(kb: KnowledgeBase) -> None:
+    (note,) = notes_on_code(kb, "mat.diffuse_color = (1, 0, 0)")
+    assert note.endswith("Write `mat.diffuse_color = (1, 0, 0, 1.0)`.")
+
+
+@pytest.mark.parametrize(
+    "query",
+    [
+        "cloth",
+        "set the size of a cube (in metres)",
+        "what does scale = 2 mean?",
+        "obj.scale = (2, 2, 2)",
+        "obj.data.lens",
+        "ob.matrix_world = mat",  # a value's name tells nothing
+        "light.color = (1, 1, 1, 1)",  # an object has four, a light three
+        "cam.lens = 'wide'",  # of the name, answers tell
+        "def scale(obj):\n    obj.scale = 2",  # whatever it is called with
+        "obj.location.x = 1; obj[",
+        "x = " + "(" * 5_000,
+    ],
+)
+def test_nothing_is_said_of_words_of_right_code_and_of_what_is_not_sure(query: str, kb: KnowledgeBase) -> None:
+    assert notes_on_code(kb, query) == ()
+
+
+def test_what_answers_say_anyway_is_not_said_twice(kb: KnowledgeBase) -> None:
+    text = kb.query("blf.size(0, 20, 72)").text
+    assert text.count("takes 2 arguments by place") == 1
+
+
+def test_few_of_many_are_told(kb: KnowledgeBase) -> None:
+    notes = notes_on_code(kb, "\n".join(f"obj.scale = {number}" for number in range(9)))
+    assert len(notes) == 5
+    assert notes[-1] == "5 more: `blender_check` lists them."
+
+
+def test_statements_of_blenders_own_scripts_are_left_alone(kb: KnowledgeBase) -> None:
+    import bpy  # noqa: PLC0415 - takes seconds
+
+    folder = Path(bpy.utils.system_resource("SCRIPTS"))
+    statements = sorted(
+        {
+            text
+            for file in sorted(folder.rglob("*.py"))
+            for node in ast.walk(ast.parse(file.read_text()))
+            if isinstance(node, ast.Assign | ast.AugAssign | ast.Return | ast.Expr)
+            if len(text := ast.unparse(node)) < 250
+        }
+    )
+    chosen = random.Random(5).sample(statements, 4_000)
+    assert [(text, notes) for text in chosen if (notes := notes_on_code(kb, text))] == []
