@@ -63,7 +63,9 @@ def test_a_sure_fix_is_written_out(kb: KnowledgeBase) -> None:
         "x = " + "(" * 5_000,
     ],
 )
-def test_nothing_is_said_of_words_of_right_code_and_of_what_is_not_sure(query: str, kb: KnowledgeBase) -> None:
+def test_nothing_is_said_of_words_of_right_code_and_of_what_is_not_sure(
+    query: str, kb: KnowledgeBase
+) -> None:
     assert notes_on_code(kb, query) == ()
 
 
@@ -79,7 +81,7 @@ def test_few_of_many_are_told(kb: KnowledgeBase) -> None:
 
 
 def test_statements_of_blenders_own_scripts_are_left_alone(kb: KnowledgeBase) -> None:
-    import bpy  # noqa: PLC0415 - takes seconds
+    import bpy
 
     folder = Path(bpy.utils.system_resource("SCRIPTS"))
     statements = sorted(
