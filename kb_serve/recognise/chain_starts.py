@@ -89,7 +89,7 @@ class ChainStarts:
                 # An Object's modifiers are likelier than an FCurve's.
                 is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
                 yield value, _COLLECTION_FIT + (_USUAL if is_usual else 0.0) - _LIGHTER * rank
-        for cls, fit in self._owners.of(chain):
+        for cls, fit in (*self._owners.with_socket(chain), *self._owners.of(chain)):
             if cls not in seen:
                 seen.add(cls)
                 yield ChainValue(cls, cls), fit
@@ -110,7 +110,8 @@ class ChainStarts:
         owners = {entry.owner for entry in self._reader.by_name(member)[:_MOST_CALLED_SO]}
         below = (cls.path for owner in owners for cls in self._reader.descendants(owner))
         named = {path for path in (*owners, *below) if variable in words(path.rpartition(".")[2])}
-        return sorted(named, key=lambda path: (len(path), path))
+        weights = self._reader.weights(named)
+        return sorted(named, key=lambda path: (-weights.get(path, 0.0), len(path), path))
 
     def _is_used_as(self, value: ChainValue, chain: Chain) -> bool:
         """Whether a variable with a collection's name is used as one: indexed, or with a member of the collection."""

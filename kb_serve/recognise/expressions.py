@@ -123,12 +123,16 @@ class Expressions:
         best = readings[0] if readings and chain.values and readings[0].alike else None
         if best is None or best.missing:
             return readings
-        for path in (best.symbols[-1], *best.alike):
-            symbol = self._reader.symbol(path)
-            if symbol and any(item.identifier in chain.values for item in symbol.enum_items):
-                alike = tuple(other for other in (best.symbols[-1], *best.alike) if other != path)
-                return [replace(best, symbols=(*best.symbols[:-1], path), alike=alike), *readings[1:]]
-        return readings
+        cases = ((path, self._reader.symbol(path)) for path in (best.symbols[-1], *best.alike))
+        taking = [
+            path
+            for path, symbol in cases
+            if symbol and any(item.identifier in chain.values for item in symbol.enum_items)
+        ]
+        if not taking:
+            return readings
+        symbols = (*best.symbols[:-1], taking[0])
+        return [replace(best, symbols=symbols, alike=tuple(taking[1:])), *readings[1:]]
 
     def _expressions(self, chains: list[Chain], recognition: Recognition) -> None:
         code = [chain for chain in chains if chain.is_code and _is_api(chain)]

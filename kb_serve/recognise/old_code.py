@@ -164,6 +164,9 @@ class OldCode:
         for resolved in readings:
             if resolved.complete or resolved.fit < _LIKELY_FIT:
                 continue
+            # ``node.inputs["x"]`` is a node's rather than a tree's that had inputs.
+            if any(one.fit > resolved.fit and one.steps_left < resolved.steps_left for one in readings):
+                continue
             rest = chain.steps[len(chain.steps) - resolved.steps_left :]
             if "puts[" in resolved.missing:
                 found = self._removed.of_member(resolved.owner, resolved.missing) or self._removed.of_socket(

@@ -16,7 +16,11 @@ if TYPE_CHECKING:
 # Fit of the class that is likeliest meant by a member, for a variable whose name tells nothing; and of one that a part
 # of the name, or what the member is set to, tells.
 TOLD_BY_MEMBER, _TOLD_BY_PART = 0.2, 0.28
+_NAMED_SO = 0.6  # of a class whose name or label has the variable's words, and that has the member
+_NODE_NAMED_SO = 0.93  # … of a node that has the very socket
 _NAMED_ALIKE = 0.3  # share of a name's fit that counts beside the member
+_OF_TEXTURES = "bpy.types.TextureNode"
+_LETTERS = 2  # of a word that tells nothing
 _MOST_READ = 60
 _MOST_TOLD = 8  # classes that a member alone may mean
 
@@ -32,15 +36,48 @@ class Owners:
         name = next(iter(chain.attributes), "")
         parts, taking = classes_of_parts(chain.root), self._taking(chain, name)
         named = [set(words(cls.rpartition(".")[2])) for cls in usual_classes(chain.root)]
+        variable = _told_by(chain.root)
         is_class = chain.root[:1].isupper()  # misspelt, or of the script: a member does not tell it
         for rank, owner in enumerate(self._having(name)):
             is_part = any(part <= set(words(owner.name)) for part in named)
+            is_named = bool(variable) and not is_class and variable <= _words_of(owner)
             is_told = is_part or owner.path in taking or self._is_one_of(owner.path, parts)
             told = 0.0 if is_class else _TOLD_BY_PART if is_told else TOLD_BY_MEMBER
             fit = max(told - 0.001 * rank, _NAMED_ALIKE * variable_fit(chain.root, owner.name))
+            if is_named:
+                fit = _NAMED_SO - 0.001 * rank
             # Where a chain goes on, what follows tells which one is meant.
             if rank < _MOST_TOLD or fit > TOLD_BY_MEMBER or len(chain.steps) > 1:
                 yield owner.path, fit
+
+    def with_socket(self, chain: Chain) -> Iterator[tuple[str, float]]:
+        """(class, fit) for the nodes that have the socket which a chain begins with, and the variable's words in their
+        name: ``voronoi.inputs["Randomness"]``.
+        """
+        side, subscript = chain.steps[:2] if len(chain.steps) > 1 else (None, None)
+        if (
+            side is None
+            or subscript is None
+            or subscript.kind != "key"
+            or side.text not in {"inputs", "outputs"}
+        ):
+            return
+        sockets = [entry for entry in self._reader.by_name(subscript.text) if entry.kind == "socket"]
+        self._reader.entry.load(entry.owner for entry in sockets)
+        variable = _told_by(chain.root)
+        shared = {
+            socket.owner: len(variable & _words_of(node))
+            for socket in self.likeliest_sockets(sockets)
+            if (node := self._reader.entry(socket.owner))
+        }
+        fitting = sorted((node for node in shared if shared[node]), key=lambda node: -shared[node])
+        for rank, node in enumerate(fitting):
+            is_named = shared[node] == len(variable)
+            yield node, (_NODE_NAMED_SO if is_named else _TOLD_BY_PART) - 0.001 * rank
+
+    def likeliest_sockets(self, sockets: Sequence[SymbolEntry]) -> Sequence[SymbolEntry]:
+        """Sockets of one name, those first that are likeliest meant: of used nodes, and not of old textures."""
+        return sorted(self.heaviest(sockets), key=lambda entry: entry.owner.startswith(_OF_TEXTURES))
 
     def heaviest(self, members: Sequence[SymbolEntry]) -> Sequence[SymbolEntry]:
         """Members of one name, those first that count most, and whose classes do."""
@@ -66,3 +103,14 @@ class Owners:
     def _is_one_of(self, owner: str, classes: Sequence[str]) -> bool:
         """Whether a class is one of some, or a kind or a base of one."""
         return any(self._reader.descends(owner, cls) or self._reader.descends(cls, owner) for cls in classes)
+
+
+def _told_by(variable: str) -> frozenset[str]:
+    """The words of a variable's name; none where one of them tells nothing."""
+    said = frozenset(words(variable))
+    return said if all(len(word) > _LETTERS for word in said) else frozenset()
+
+
+def _words_of(cls: SymbolEntry) -> set[str]:
+    """The words of a class's name and label: ``ramp`` is of a node Color Ramp."""
+    return {*words(cls.name), *words(cls.label)}

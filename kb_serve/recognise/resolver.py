@@ -35,6 +35,7 @@ _NUMBERED = re.compile(r"\.\d{3}$")
 _QUOTED = re.compile(r"""(["'])([\w.]+)\1""")
 _GET, _KEY = ChainStep("attr", "get"), re.compile(r"""\s*(["'])([^"']+)\1\s*""")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
+_TOLD = 0.2  # fit of the likeliest class of a variable whose name tells nothing
 _MAX_BRANCHES = 60
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
@@ -100,11 +101,25 @@ class Resolver:
             replace(self._follow(value, chain.steps[used:]), fit=fit)
             for value, used, fit in self._starts.of(chain)
         ]
-        unique = {
-            (resolved.symbols[-1:], resolved.missing): resolved
-            for resolved in reversed(self._ranked(readings))
-        }
-        return self._ranked(unique.values())
+        unique: dict[tuple[tuple[str, ...], str], ResolvedChain] = {}
+        for resolved in self._ranked(readings):
+            unique.setdefault((resolved.symbols[-1:], resolved.missing), resolved)
+        return self._writable(chain, list(unique.values()))
+
+    def _writable(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
+        """The readings without those that cannot be assigned, where a chain is assigned and others can."""
+        if not chain.assigned or len(readings) < 2:
+            return readings
+
+        def is_locked(reading: ResolvedChain) -> bool:
+            entry = self._reader.entry(reading.symbols[-1]) if reading.complete else None
+            return entry is not None and entry.is_read_only
+
+        whole = [reading for reading in readings if reading.complete and reading.fit >= _TOLD]
+        locked = [reading for reading in whole if is_locked(reading)]
+        if not locked or len(locked) == len(whole):
+            return readings
+        return [reading for reading in readings if reading not in locked]
 
     def onward(self, path: str, steps: tuple[ChainStep, ...]) -> ResolvedChain:
         """Follows steps from a symbol, as if an expression had led there."""
@@ -127,7 +142,8 @@ class Resolver:
             if not following:
                 missing, owner = self._unresolved(values[0], step)
                 return ResolvedChain(tuple(symbols), missing, owner, steps_left=len(steps) - number)
-            alike = tuple(after.symbol for after in following[1:]) if len(values) == 1 else ()
+            first = following[0].symbol
+            alike = tuple(dict.fromkeys(after.symbol for after in following if after.symbol != first))
             values = following
             if step.kind == "attr" or values[0].symbol != symbols[-1]:
                 symbols.append(values[0].symbol)
@@ -263,12 +279,14 @@ class Resolver:
 
     def _socket(self, owner: str, side: str, name: str) -> Iterator[ChainValue]:
         """The sockets of that name: of the node's own class, or of every node where only ``Node`` is known."""
-        found = False
-        for entry in self._reader.by_name(name):
-            on_side = entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}[")
-            if on_side and self._reader.descends(entry.owner, owner):
-                found = True
-                yield self._values.of(entry)
+        found = [
+            entry
+            for entry in self._reader.by_name(name)
+            if entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}[")
+            if self._reader.descends(entry.owner, owner)
+        ]
+        for entry in self._owners.likeliest_sockets(found):
+            yield self._values.of(entry)
         if not found and self._may_have_any_socket(owner, side):
             yield ChainValue(f"{_NODE}.{side}", f"{TYPES}NodeSocket")
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import re
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
     from kb_serve.reader import BaseReader
 
@@ -59,6 +60,7 @@ _NAMES = {
     "ParticleSystem ParticleSettings": "psys particle_system ps part",
     "ParticleSettings": "pset particle_settings psettings part_settings",
     "Modifier": "mod md modifier",
+    "ClothModifier ClothSettings": "cloth",
     "ClothSettings": "cloth_settings",
     "Constraint": "con cns constraint const crc",
     "Node ShaderNode GeometryNode": "node nd",
@@ -66,7 +68,7 @@ _NAMES = {
     "NodeTree": "ntree nodetree nt node_tree tree ng node_group group nodegroup",
     "NodeLinks": "links",
     "Nodes": "nodes",
-    "NodeSocket": "socket sock inp",
+    "NodeSocket NodeTreeInterfaceSocket": "socket sock inp",
     "ShapeKey": "sk kb shape_key shapekey key_block",
     "Key": "shape_keys",
     "Spline": "spline spl",
@@ -85,7 +87,8 @@ _NAMES = {
     "Screen": "screen scr",
     "Window": "win window",
     "WindowManager": "wm",
-    "UILayout": "layout row column split box flow",
+    "UILayout": "layout row column split box",
+    "UILayout FluidFlowSettings": "flow",
     "Depsgraph": "depsgraph deg dg",
     "Preferences": "prefs preferences user_preferences user_prefs userpref",
     "SequenceEditor": "sed seq_editor sequence_editor",
@@ -99,7 +102,7 @@ _NAMES = {
     "GreasePencilFrame": "gpf gp_frame frame",
     "GreasePencilDrawing": "drawing",
     "_bpy_internal.grease_pencil.stroke.GreasePencilStroke AnnotationStroke": "stroke",
-    "SplinePoint BezierSplinePoint": "point pt",
+    "SplinePoint BezierSplinePoint _bpy_internal.grease_pencil.stroke.GreasePencilStrokePoint": "point pt",
     "ToolSettings": "ts tool_settings ups",
     "Brush": "brush br",
     "PointCache": "cache point_cache",
@@ -177,7 +180,23 @@ class Variables:
         fits: dict[str, float] = {}
         for path, fit in self._candidates(name):
             fits[path] = max(fit, fits.get(path, 0.0))
-        return sorted(fits.items(), key=lambda row: -row[1])
+        found = sorted(fits.items(), key=lambda row: -row[1])
+        if any(one[1] == other[1] for one, other in pairwise(found)):
+            used = self._used(name, fits)
+            found.sort(key=lambda row: (-row[1], -used.get(row[0], 0.0)))
+        return found
+
+    def _used(self, name: str, classes: Collection[str]) -> dict[str, float]:
+        """Class → how much it counts, or the collection of that name which is of it."""
+        held = {
+            entry.path: TYPES + entry.collection for entry in self._reader.by_name(name) if entry.collection
+        }
+        weights = self._reader.weights({*classes, *held})
+        used = {cls: weights.get(cls, 0.0) for cls in classes}
+        for path, cls in held.items():
+            if cls in used:
+                used[cls] = max(used[cls], weights.get(path, 0.0))
+        return used
 
     def _candidates(self, name: str) -> Iterator[tuple[str, float]]:
         named = self._reader.by_name(name)
