@@ -140,7 +140,7 @@ class MarkdownRenderer:
     def sockets(self, path: str, asked: str) -> Iterator[AnswerBlock]:
         """The inputs or outputs of a node's class, where ``asked`` names the class and ``path`` is the list itself."""
         side = path.removeprefix(f"{TYPES}Node.")
-        cls = TYPES + asked.removesuffix(f".{side}").removeprefix(TYPES)
+        cls = TYPES + asked.removesuffix(side).rstrip(" .").removeprefix(TYPES)
         members = self.reader.members(cls).values() if side in {"inputs", "outputs"} else ()
         sockets = [entry for entry in members if entry.path.startswith(f"{cls}.{side}[")]
         yield from _listed(f"{side.title()} of `{cls}`{_once_paired(members)}", sockets)

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 CLEAR = 0.85  # fit of a variable's name that hardly means another class
 LEAST = 0.1  # fit below which neither the variable's name nor its member tells the class
 LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
+_BEFORE_UNKNOWN = 0.93  # how sure a function is of whose result nothing is known
 _KNOWN_ELEMENT = 0.96  # how sure the class of an element is that lacks a name, before others that have it
 
 # Classes whose members are defined by scripts and add-ons.
@@ -75,6 +76,11 @@ class BrokenExpressions:
     def tell(self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
         """Adds a chain as far as it could be resolved, and its missing name."""
         is_element = self._is_element(chain, resolved, later, recognition)
+        called_on = self._reader.entry(resolved.owner)
+        if (
+            called_on and called_on.kind == "function" and resolved.fit >= LIKELY
+        ):  # what it gives is not known
+            recognition.add(resolved.owner, _BEFORE_UNKNOWN - later, "on the way")
         if self._says_nothing(chain, resolved) or (not is_element and self._is_custom(chain, resolved)):
             return
         assigned = chain.assigned and resolved.steps_left == 1

@@ -59,6 +59,9 @@ _CALLED = 0.9  # from here on, a named operator's or function's arguments may st
 _BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 
+_BARE = 0.78  # how sure a class is with a call or an index behind it
+_OF_NAMED = 0.86  # … what a name with ``_`` holds, behind what is called so
+_MADE_BY_CALL = ("mathutils.", "bmesh.types.", "bpy.types.")
 _CALLED_OR_SET = frozenset({"property", "function", "operator"})
 
 # Python's own names, which are not Blender's API.
@@ -83,6 +86,16 @@ def _is_api(chain: Chain) -> bool:
 def _is_file_name(chain: Chain) -> bool:
     """Whether a chain is a name and an ending that files have: ``file.blend``."""
     return len(chain.steps) == 1 and set(chain.attributes) <= _FILE_ENDINGS and chain.steps[0].kind == "attr"
+
+
+def _makes(chain: Chain, resolved: ResolvedChain) -> bool:
+    """Whether a chain calls a class by its name: ``Euler((0, 0, 0), 'XYZ')``."""
+    called = chain.steps[0].kind == "call" and chain.root[:1].isupper()
+    return (
+        called
+        and resolved.symbols[0].endswith(f".{chain.root}")
+        and resolved.symbols[0].startswith(_MADE_BY_CALL)
+    )
 
 
 def _arguments_of(symbol: Symbol | None) -> tuple[tuple[str, tuple[str, ...]], ...]:
@@ -231,6 +244,8 @@ class Expressions:
         is_sure = is_clear(chain, readings[0]) or self._agree(chain, readings)
         recognition.readings[chain.source] = readings[0].symbols[-1] if is_sure else ""
         bare = not chain.attributes and not readings[0].keyed  # a class with a call or an index behind it
+        # ``active_object``: rather what is called so than what it holds
+        is_name = bare and not chain.steps and "_" in chain.root and bool(self._reader.by_name(chain.root))
         likely = [
             resolved
             for resolved in readings[:4]
@@ -238,7 +253,9 @@ class Expressions:
         ]
         recognition.guesses[chain.source] = [resolved.symbols[-1] for resolved in likely]
         for rank, resolved in enumerate(likely):
-            sure = 0.78 if bare and chain.steps else 0.97
+            sure = _BARE if bare and chain.steps and not _makes(chain, resolved) else 0.97
+            if is_name and key(resolved.symbols[-1].rpartition(".")[2]) != key(chain.root):
+                sure = _OF_NAMED
             recognition.add(resolved.symbols[-1], sure - 0.04 * rank - later, "expression")
         if not later and not bare and len(chain.root) > 1:
             usual = usual_classes(chain.root)

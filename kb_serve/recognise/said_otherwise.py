@@ -32,6 +32,8 @@ _GIVEN = "given:"  # the flag of an operator that runs only where a context over
 def said_otherwise(missing: MissingName, operators: OperatorWords, reader: BaseReader) -> list[str]:
     """What the class has that lacks a name: what its buttons call so, else the operators that do it."""
     owner = reader.entry(missing.owner) if missing.name.isidentifier() else None
+    if owner and owner.path.startswith(OPERATORS):
+        return _operators_called(owner.path, missing.name, reader)
     if owner is None or owner.kind != "class" or not words(missing.name):
         return []
     if missing.name in _MAKING and (makers := _makers(owner.path, reader)):
@@ -40,6 +42,11 @@ def said_otherwise(missing: MissingName, operators: OperatorWords, reader: BaseR
     if found or not missing.called:
         return found
     return operators_on(owner.path, missing.name, operators, reader)
+
+
+def _operators_called(module: str, name: str, reader: BaseReader) -> list[str]:
+    """The operators of a module whose label is a name: ``remove_doubles`` is Merge by Distance."""
+    return [entry.path for entry in reader.members(module).values() if key(entry.label) == key(name)][:_FEW]
 
 
 def _makers(owner: str, reader: BaseReader) -> list[str]:

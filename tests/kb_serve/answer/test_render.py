@@ -306,7 +306,9 @@ def test_the_sockets_of_a_zone_are_those_of_a_pair(kb: KnowledgeBase) -> None:
     assert "once it is paired" not in kb.query("GeometryNodeMeshCube").text
 
 
-@pytest.mark.parametrize("query", ["ShaderNodeMath.inputs", "bpy.types.ShaderNodeMath.inputs"])
+@pytest.mark.parametrize(
+    "query", ["ShaderNodeMath.inputs", "bpy.types.ShaderNodeMath.inputs", "ShaderNodeMath inputs"]
+)
 def test_the_sockets_of_a_class_come_before_what_all_nodes_say_of_them(kb: KnowledgeBase, query: str) -> None:
     text = kb.query(query).text
     assert text.startswith("**Inputs of `bpy.types.ShaderNodeMath`**\n- `")

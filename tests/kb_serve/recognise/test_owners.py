@@ -66,3 +66,21 @@ def test_a_socket_that_no_node_has_is_not_a_trees(kb: KnowledgeBase) -> None:
 def test_layers_of_a_bmesh_are_found_by_name(query: str, kb: KnowledgeBase) -> None:
     assert "no custom properties" not in kb.query(query).text
     assert kb.query(f"{query}.name").hits[0].id == "bmesh.types.BMLayerItem.name"
+
+
+@pytest.mark.parametrize(
+    ("query", "meant"),
+    [
+        ("Euler((0.1, 0.2, 0.3), 'XYZ')", "mathutils.Euler"),
+        ("Vector((1, 2, 3))", "mathutils.Vector"),
+        ("sequencer_scene", "bpy.types.Context.sequencer_scene"),
+        ("active_object", "bpy.types.Context.active_object"),
+        ("particle_system", "bpy.types.ParticleSystem"),
+        ("bpy.ops.mesh.merge_by_distance()", "bpy.ops.mesh.remove_doubles"),
+        ("me.edge_creases_ensure().data[0].value = 1", "bpy.types.Mesh.edge_creases_ensure"),
+    ],
+)
+def test_what_is_named_comes_before_what_it_holds_and_what_resembles_it(
+    query: str, meant: str, kb: KnowledgeBase
+) -> None:
+    assert kb.query(query).hits[0].id == meant
