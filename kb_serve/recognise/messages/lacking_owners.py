@@ -18,6 +18,8 @@ if TYPE_CHECKING:
     from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
+_ID = f"{TYPES}ID"
+_OF_NO_BLOCK = frozenset({"BlendData", "Context", "Depsgraph", "Event"})
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
 _NOT_IMPORTED = "`{module}` is a module of its own, to be imported first: `import {module}`."
 
@@ -80,7 +82,16 @@ class LackingOwners:
         return member or cls
 
     def _within(self, owner: str, name: str, recognition: Recognition) -> None:
-        """A member that a class lacks, and that something has which it points to."""
+        """A member that a class lacks, and that something has which it points to: before all what it is a part of."""
+        of_block = self._reader.entry(f"{_ID}.{name}")
+        cls = self._reader.entry(owner)
+        is_part = cls is not None and cls.group == "data" and cls.name not in _OF_NO_BLOCK
+        if of_block and is_part and not self._reader.descends(owner, _ID):
+            recognition.add(of_block.path, 0.96, "error message")
+            recognition.notes.append(
+                f"The data-block that it is part of has it: `.id_data.{name}` (`{of_block.path}`)."
+            )
+            return
         for rank, (pointer, member) in enumerate(self._owners.within(owner, name)[:_FEW]):
             recognition.add(member.path, 0.96 - 0.01 * rank, "error message")
             recognition.notes.append(f"Its `.{pointer}` has it: `.{pointer}.{name}` (`{member.path}`).")

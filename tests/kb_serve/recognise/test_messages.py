@@ -762,3 +762,10 @@ def test_what_a_collection_has_to_add_elements_is_closest(kb: KnowledgeBase) -> 
     for query in ("AttributeError: 'NlaStrips' object has no attribute 'add'", "track.strips.add()"):
         (note,) = [note for note in kb.query(query).notes if "has no `add`" in note]
         assert "Closest: `bpy.types.NlaStrips.new`" in note or "Closest: `bpy.types.ActionStrips.new`" in note
+
+
+def test_what_all_data_blocks_have_is_had_by_that_of_a_bone(kb: KnowledgeBase) -> None:
+    answer = kb.query("AttributeError: 'PoseBone' object has no attribute 'update_tag'")
+    assert any("`.id_data.update_tag`" in note for note in answer.notes)
+    assert "custom_shape" not in answer.text.partition("##")[0]
+    assert "id_data" not in kb.query("AttributeError: 'Context' object has no attribute 'update_tag'").text
