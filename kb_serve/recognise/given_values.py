@@ -24,7 +24,7 @@ _CLASS = re.compile(r"[A-Z]\w*[a-z]")  # ``GeometryNodeTree``
 
 def wrong_values(chain: Chain, symbol: Symbol, removed: Collection[str], reader: BaseReader) -> Iterator[str]:
     """Sentences on what a chain gives that is no item; but on ``removed`` items, given by path."""
-    if symbol.kind == "property":
+    if symbol.kind in {"property", "socket"}:
         for value in chain.values:
             if not symbol.enum_computed and f"{symbol.path}:{value}" not in removed:
                 yield from _wrong(symbol.path, value, symbol.enum_items, reader)
@@ -64,7 +64,8 @@ def _wrong(
     names = [item.identifier for item in items]
     if len(names) < FEWEST_VALUES or value in names or value in MORE_VALUES.get(owner, ()) or owner in _OPEN:
         return
-    if all(_CLASS.match(name) for name in names):  # those of add-ons are taken as well
+    # Those of add-ons are taken as well; entries of menus of sockets are only written so.
+    if all(_CLASS.match(name) for name in names) and "puts[" not in owner:
         return
     taken = [item for item in items if item.identifier not in refused and item.where != NOT_TAKEN]
     if closest := likely_items(value, taken, reader):

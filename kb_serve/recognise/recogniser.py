@@ -5,9 +5,8 @@ enum value or URL. Descriptions are left to the search.
 from __future__ import annotations
 
 import re
-from itertools import islice
 
-from kb_build.index.analysis import terms, tokens
+from kb_build.index.analysis import key, terms, tokens
 from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.addresses import ids_in_urls
 from kb_serve.recognise.bindings import with_bindings
@@ -140,12 +139,7 @@ class Recogniser:
                 self._read_as(chain, recognition) or self._successor(chain, recognition)
             )
             if symbol is None:
-                # A value that what it may be read as once took tells that it is meant.
-                for guess in filter(
-                    None, map(self._reader.symbol, recognition.guesses.get(chain.source, ()))
-                ):
-                    for removed in islice(self._old.in_values(chain, guess), 1):
-                        recognition.add_removed(removed)
+                self._check_guesses(chain, recognition)
                 continue
             recognition.notes += filter(
                 None, (self._enum_values.condition(symbol.path, value) for value in chain.values)
@@ -158,6 +152,19 @@ class Recogniser:
             recognition.notes += (*notes, *wrong_values(chain, symbol, gone, self._reader))
             if any(note.startswith(NO_OVERRIDE) for note in notes):
                 recognition.add(OVERRIDE, 0.98, "error message")  # before the operator that does not take it
+
+    def _check_guesses(self, chain: Chain, recognition: Recognition) -> None:
+        """Adds what was lost by what a chain may be read as, and a note on a value that nothing so called takes."""
+        guesses = list(filter(None, map(self._reader.symbol, recognition.guesses.get(chain.source, ()))))
+        lost = [next(self._old.in_values(chain, guess), None) for guess in guesses]
+        # A value that what it may be read as once took tells that it is meant.
+        for removed in filter(None, lost):
+            recognition.add_removed(removed)
+        if guesses and guesses[0].kind in {"property", "socket"} and not any(lost):
+            name = guesses[0].path[len(guesses[0].owner) :]
+            owners = (path for value in chain.values for path, *_ in self._reader.enum_owners(key(value)))
+            if not any(path.endswith(name) for path in owners):
+                recognition.notes += wrong_values(chain, guesses[0], (), self._reader)
 
     @staticmethod
     def _read_as(chain: Chain, recognition: Recognition) -> str:

@@ -109,6 +109,7 @@ _NAMES = {
     "Context": "ctx cntx context",
     "KeyMapItem": "kmi",
     "KeyMap": "km",
+    "AOV": "aov",
     "ColorRamp": "ramp color_ramp cr",
     "MovieClip": "clip",
     "Text": "textblock text_block",

@@ -93,3 +93,23 @@ def test_only_what_a_call_takes_is_named_in_place_of_a_wrong_value(kb: Knowledge
     assert any("It takes `'POINT'`, `'EDGE'`, `'FACE'`, `'CORNER'`." in note for note in notes)
     notes = kb.query("bpy.ops.object.parent_set(type='ARMATURE_AUTOMATIC')").notes
     assert any(note.endswith("Closest: `'ARMATURE_AUTO'`.") for note in notes)
+
+
+@pytest.mark.parametrize(
+    ("query", "owner"),
+    [
+        ("mapping.vector_type = 'UV'", "ShaderNodeMapping.vector_type"),
+        ("image_texture.projection = 'CUBE'", "ShaderNodeTexImage.projection"),
+        ("file_output.format.media_type = 'EXR'", "ImageFormatSettings.media_type"),
+        ('blur.inputs["Type"].default_value = "Gauss"', 'CompositorNodeBlur.inputs["Type"]'),
+    ],
+)
+def test_a_value_that_nothing_so_called_takes_is_told_whatever_the_variable_is(
+    query: str, owner: str, kb: KnowledgeBase
+) -> None:
+    assert any(f"is not a value of `bpy.types.{owner}`" in note for note in kb.query(query).notes)
+
+
+@pytest.mark.parametrize("query", ["x.type = 'BEVEL'", "c.type == 'COPY_LOCATION'", "socket.type == 'VALUE'"])
+def test_a_value_that_another_one_so_called_takes_is_not_told(query: str, kb: KnowledgeBase) -> None:
+    assert not any("is not a value" in note for note in kb.query(query).notes)
