@@ -14,6 +14,7 @@ bpy.data.node_groups.new("Scatter", "GEOMETRY")  # reported: GeometryNodeTree
 from __future__ import annotations
 
 import ast
+import re
 from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
@@ -21,7 +22,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.expressions import constants
 from kb_build.flow.facts import T
 from kb_build.flow.types import UNKNOWN, Resolution
-from kb_build.records import last_name
+from kb_build.records import NOT_TAKEN, last_name
 from kb_build.symbol_lines import NODE_FAMILIES
 from kb_check.calls import calls
 from kb_check.given import class_values
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     from kb_check.findings import Finding
     from kb_check.script import Script
 
+# How the types of Blender's own trees are misspelt.
+_TREE = re.compile(r"(?i:(compositor|compositing|geometry|shader|texture)_?(node)?s?_?(group|tree)?)")
 _LAYOUT = f"{T}UILayout"
 
 
@@ -49,11 +52,27 @@ def _check(script: Script) -> Iterator[Finding]:
             row.missing,
             key=lambda path: (_likeness(script, path, row.value), weights.get(_class_of(path), 0.0)),
         )
-        values = script.api.values_of(owner)
-        yield lacking_finding(script, RULE.id, row, script.names.value(owner, row.value, values))
+        yield lacking_finding(
+            script, RULE.id, row, script.names.value(owner, row.value, _taken(script, owner))
+        )
     yield from _of_classes(script)
     yield from _of_trees(script)
     yield from _of_icons(script)
+
+
+def _taken(script: Script, owner: str) -> list[str]:
+    """The values of an enumeration, but for those of which it is known that none takes them."""
+    symbol, argument = script.api.symbols.symbol(owner.partition("(")[0]), owner.partition("(")[2][:-1]
+    refusals = symbol.refusals if symbol else ()
+    refused = {
+        value
+        for refusal in refusals
+        if refusal.argument == argument and not (refusal.by or refusal.given or refusal.mode or refusal.again)
+        for value in refusal.values
+    }
+    if symbol and not argument:
+        refused |= {item.identifier for item in symbol.enum_items if item.where == NOT_TAKEN}
+    return [value for value in script.api.values_of(owner) if value not in refused]
 
 
 def _of_icons(script: Script) -> Iterator[Finding]:
@@ -83,7 +102,8 @@ def _of_trees(script: Script) -> Iterator[Finding]:
         if script.api.is_class(f"{T}{value}") or value in script.own_identifiers:
             continue
         meant = script.api.class_of_value(f"{T}NodeTree", value)
-        if not (meant or value.startswith(NODE_FAMILIES)) or script.package.has(("bpy.types",), value):
+        is_built_in = value.startswith(NODE_FAMILIES) or _TREE.fullmatch(value)
+        if not (meant or is_built_in) or script.package.has(("bpy.types",), value):
             continue
         owner = f"{path}(type)"
         lacking = script.names.value(owner, value, script.api.values_of(owner))
