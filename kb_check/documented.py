@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import ELEMENT, ELEMENTS, LAYER_ITEM, T
 from kb_build.flow.types import NONE, UNKNOWN, Instance, Mapping, Plain, Sequence, Tuple, members
+from kb_check.calls import calls_by_node
 from kb_check.literals import items, written
 from kb_check.made_here import bindings
 from kb_check.misfits import Misfit, describe, shown
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from kb_check.given import Taker
     from kb_check.script import Script
 
+_ELEMENTS = ("BMVert", "BMEdge", "BMFace")
+_EXTRUDING, _FACE = "bmesh.ops.extrude_face_region", "bmesh.types.BMFace"
 # How many numbers a class always has.
 LENGTHS = {"mathutils.Color": 3, "mathutils.Euler": 3, "mathutils.Quaternion": 4}
 _AXIS = 3  # numbers that a quaternion is made of besides its own four
@@ -134,18 +137,41 @@ def _wrong_items(script: Script, node: ast.expr, kind: Type, classes: tuple[str,
         of = script.type_of(part)
         if of is not None and _is_none_of(script, of, classes):
             return f"an item that is {shown(script, part, describe(of))}"
+    if _is_extruded(script, node) and len(classes) < len(_ELEMENTS):
+        return "all that was extruded, edges and faces as well: choose with `isinstance`"
+    if isinstance(kind, Tuple) and any(_is_none_of(script, one, classes) for one in kind.items):
+        return _holding(kind.items)
     element = _element(kind)
     is_wrong = element is not UNKNOWN and all(_is_none_of(script, one, classes) for one in members(element))
-    return f"a sequence of {' and '.join(map(_named, members(element)))}" if is_wrong else ""
+    return _holding(members(element)) if is_wrong else ""
+
+
+def _holding(kinds: tuple[Type, ...]) -> str:
+    return f"a sequence that holds {' and '.join(dict.fromkeys(map(describe, kinds)))}"
+
+
+def _is_extruded(script: Script, node: ast.expr) -> bool:
+    """Whether a value is what extruding faces gave, whole: vertices, edges and faces in one list."""
+    match _once_bound(script, node):
+        case ast.Subscript(value=result, slice=ast.Constant(value="geom")):
+            made = _once_bound(script, result)
+        case _:
+            return False
+    call = calls_by_node(script).get(made) if isinstance(made, ast.Call) else None
+    given = call.argument("geom") if call and call.callee.symbol.path == _EXTRUDING else None
+    kind = script.type_of(given) if given else None
+    return kind is not None and _element(kind) == Instance(_FACE)
+
+
+def _once_bound(script: Script, node: ast.expr) -> ast.expr:
+    """The one value that a name has, or else the expression itself."""
+    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
+    return values[0] if len(values) == 1 and values[0] else node
 
 
 def _takes(classes: tuple[str, ...], is_many: bool) -> str:
     named = " or ".join(f"`{cls}`" for cls in classes)
     return f"a list, tuple or sequence of instances of {named}" if is_many else f"an instance of {named}"
-
-
-def _named(kind: Type) -> str:
-    return f"`{kind.cls}`" if isinstance(kind, Instance) else describe(kind)
 
 
 def _classes(script: Script, taker: Taker) -> tuple[tuple[str, ...], bool]:

@@ -58,10 +58,14 @@ class Taker:
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """A value that is given; ``takers`` are the properties that it can be given to, by the types of their owner."""
+    """A value that is given; ``takers`` are the properties that it can be given to, by the types of their owner.
+
+    ``why`` says which settings decide that, if any do: ``while `data_type` is 'FLOAT'``.
+    """
 
     node: ast.expr
     takers: tuple[Taker, ...]
+    why: str = ""
 
 
 @once_per_script
@@ -93,17 +97,20 @@ def _assignments(script: Script) -> Iterator[Given]:
         takers = tuple(property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property")
         refused = any("readonly" in taker.symbol.flags for taker in takers)
         if value is not None and len(takers) == len(paths) and not refused:
-            yield Given(value, _of_socket(script, row.node, takers))
+            found, why = _of_socket(script, row.node, takers)
+            yield Given(value, found, why)
     yield from _typed_by_settings(script)
 
 
-def _of_socket(script: Script, node: ast.Attribute, takers: tuple[Taker, ...]) -> tuple[Taker, ...]:
+def _of_socket(
+    script: Script, node: ast.Attribute, takers: tuple[Taker, ...]
+) -> tuple[tuple[Taker, ...], str]:
     """Those of some properties that the socket has whose value is set, where the settings of its node tell which."""
-    if len(takers) < 2 or not (classes := socket_classes(script, node.value)):
-        return takers
-    members_of = (script.api.member(cls, node.attr) for cls in classes)
+    shown = socket_classes(script, node.value) if len(takers) > 1 else None
+    members_of = (script.api.member(cls, node.attr) for cls in shown.classes) if shown else ()
     paths = {member.symbol.path for member in members_of if member}
-    return tuple(taker for taker in takers if taker.path in paths) or takers
+    found = tuple(taker for taker in takers if taker.path in paths)
+    return (found, shown.why) if found and shown else (takers, "")
 
 
 def _typed_by_settings(script: Script) -> Iterator[Given]:
@@ -112,10 +119,12 @@ def _typed_by_settings(script: Script) -> Iterator[Given]:
         target = node.targets[0] if len(node.targets) == 1 else None
         if not isinstance(target, ast.Attribute) or script.analysis.resolutions.get(target):
             continue
-        classes = socket_classes(script, target.value)
-        member = script.api.member(classes[0], target.attr) if len(classes) == 1 else None
-        if member and member.symbol.kind == "property" and "readonly" not in member.symbol.flags:
-            yield Given(node.value, (property_taker(member.symbol),))
+        shown = socket_classes(script, target.value)
+        member = (
+            script.api.member(shown.classes[0], target.attr) if shown and len(shown.classes) == 1 else None
+        )
+        if shown and member and member.symbol.kind == "property" and "readonly" not in member.symbol.flags:
+            yield Given(node.value, (property_taker(member.symbol),), shown.why)
 
 
 def _arguments(script: Script) -> Iterator[Given]:

@@ -11,7 +11,7 @@ switch.inputs["False"]  # of geometry, while switch.input_type is "GEOMETRY"
 from __future__ import annotations
 
 import ast
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.facts import T
 from kb_build.flow.types import Instance
@@ -33,21 +33,29 @@ _CALLED = {
 }  # fmt: skip
 
 
-def socket_classes(script: Script, node: ast.expr) -> tuple[str, ...]:
-    """The classes of which the socket that an expression asks for can be; none where that is not known."""
+class Shown(NamedTuple):
+    """The classes of which a socket can be, and the settings that decide it, in words."""
+
+    classes: tuple[str, ...]
+    why: str
+
+
+def socket_classes(script: Script, node: ast.expr) -> Shown | None:
+    """The classes of which the socket that an expression asks for can be; None where that is not known."""
     row = script.analysis.resolutions.get(node)
     if not isinstance(node, ast.Subscript) or row is None or not row.symbols or not row.sure or row.missing:
-        return ()
+        return None
     owner = node.value.value if isinstance(node.value, ast.Attribute) else None
     sockets = [symbol for path in row.symbols if (symbol := script.api.symbols.symbol(path))]
     if not isinstance(owner, ast.Name) or not sockets or len(sockets) < len(row.symbols):
-        return ()
+        return None
     deciding = {name for socket in sockets for name in (*showing(socket), *socket.type_settings)}
     cls = sockets[0].owner
     settings = {name: setting_of(script, owner, f"{cls}.{name}", node) for name in deciding}
     known = {name: value for name, value in settings.items() if value is not None}
     found = [_class_of(script, socket, known) for socket in sockets if not _is_hidden(socket, known)]
-    return tuple(dict.fromkeys(found)) if all(found) else ()
+    so = " and ".join(f"`{name}` is {value!r}" for name, value in sorted(known.items()))
+    return Shown(tuple(dict.fromkeys(found)), f" while {so}" if so else "") if found and all(found) else None
 
 
 def _is_hidden(socket: Symbol, settings: Mapping[str, str]) -> bool:

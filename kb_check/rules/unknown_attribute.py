@@ -81,11 +81,12 @@ def _of_sockets(script: Script) -> Iterator[Finding]:
     for node in script.all(ast.Attribute):
         if node.attr != _VALUE or script.analysis.resolutions.get(node) or is_tried(script, node):
             continue
-        classes = socket_classes(script, node.value)
-        if classes and not any(script.api.member(cls, _VALUE) for cls in classes):
+        found = socket_classes(script, node.value)
+        if found is not None and not any(script.api.member(cls, _VALUE) for cls in found.classes):
+            cls = found.classes[0]
             yield Finding(
                 RULE.id, "error", script.name_span(node),
-                f"`{classes[0]}`, which this socket is as its node is set, has no `{_VALUE}`.", classes[0],
+                f"`{cls}`, which this socket is{found.why}, has no `{_VALUE}`.", cls,
             )  # fmt: skip
 
 

@@ -10,6 +10,10 @@ material.diffuse_color = (1, 0, 0)  # reported: 4 floats
 scene.camera = bpy.data.cameras.new("Camera")  # reported: an Object that has it
 scene.render.filepath = pathlib.Path("/tmp/x.png")  # reported: str(…)
 bm.from_mesh(ob)  # reported: ob.data
+bmesh.ops.translate(bm, vec=(0, 0, 1), verts=faces)  # reported: vertices
+loop[uv_layer] = (0, 0)  # reported: loop[uv_layer].uv = (0, 0)
+mix = tree.nodes.new("ShaderNodeMix")
+mix.inputs["A"].default_value = (1, 0, 0, 1)  # reported: mix.data_type = "RGBA" comes first
 ```
 
 So are the attributes of classes, which it reads when they are registered:
@@ -71,7 +75,7 @@ def _check(script: Script) -> Iterator[Finding]:
         assert wrong is not None
         yield Finding(
             RULE.id, "error", script.span(given.node),
-            f"`{taker.path}` takes {wrong.takes}, not {wrong.given}.{_advice(script, taker, given.node)}",
+            f"`{taker.path}`{given.why} takes {wrong.takes}, not {wrong.given}.{_advice(script, taker, given.node)}",
             taker.path, (), _fix(script, taker, wrong, given.node) if len(given.takers) == 1 else None,
         )  # fmt: skip
     yield from _items_given(script)

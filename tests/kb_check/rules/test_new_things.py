@@ -88,6 +88,8 @@ WRONG = {
     ],
     "unknown-value": [
         "bpy.data.node_groups.new('x', 'CompositorTree')",
+        "bpy.ops.export_scene.gltf(filepath='/x', export_format='GLTF')",
+        "bpy.context.scene.cycles.sampling_pattern = 'SOBOL'",
         "bpy.data.actions.new('x').layers.new('x').strips.new(type='FRAMES')",
         _GLARE + "glare.inputs['Type'].default_value = 'FOG_GLOW'",
         _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketFloatFactor')",
@@ -198,6 +200,8 @@ WRONG = {
     ],
 }
 RIGHT = [
+    "bpy.context.scene.cycles.sampling_pattern = 'TABULATED_SOBOL'",
+    _CUBE + "bpy.ops.transform.rotate(value=1, orient_type='GIMBAL')",
     "material = bpy.data.materials.new('x')\nbpy.data.materials.create_gpencil_data(material)\n"
     "material.grease_pencil.color = (1, 0, 0, 1)",
     _CURVE + "curve.fill_mode = 'BOTH'\ncurve.splines.new('NURBS').use_cyclic_u = True",
