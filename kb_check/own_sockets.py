@@ -18,7 +18,7 @@ from kb_build.flow.types import UNKNOWN, Instance, literal_texts
 from kb_check.calls import calls, calls_by_node
 from kb_check.computing import CALLING, computing
 from kb_check.group_inputs import makes_all_groups
-from kb_check.made_here import attributes, is_new, knows_all
+from kb_check.made_here import attributes, called_operators, is_new, knows_all
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _NEW_SOCKET = f"{T}NodeTreeInterface.new_socket"
+_OF_EDITORS = "bpy.ops.node."
 _SIDES = frozenset({"inputs", "outputs"})
 # The two nodes of a group, with the side on which they have its sockets, and how the interface calls that.
 _OF_GROUP = {f"{T}NodeGroupInput": ("outputs", "INPUT"), f"{T}NodeGroupOutput": ("inputs", "OUTPUT")}
@@ -49,6 +50,8 @@ _NUMBERED = re.compile(r"[._]\d+$")  # how the second of several with one name e
 def lacking_own(script: Script) -> Iterator[tuple[ast.Subscript, str, str]]:
     """Where a node is asked for a socket that nothing gives it: (place, class of the node, what would make it)."""
     if not knows_all(script) or computing(script) & CALLING or not _names_are_written(script):
+        return
+    if any(path.startswith(_OF_EDITORS) for path in called_operators(script)):
         return
     for node in script.all(ast.Subscript):
         key = node.slice.value if isinstance(node.slice, ast.Constant) else None

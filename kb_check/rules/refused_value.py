@@ -340,14 +340,10 @@ def _of_another(script: Script, node: ast.expr, kinds: set[str]) -> str:
             continue
         holders = {maker.removeprefix(T).removesuffix(f"{last_name(ancestor)}s.new") for maker in makers}
         is_other = holders and all(
-            f"{T}{one}" in _ids(script, one) and found[2] not in words(one) for one in holders
+            script.api.is_class(f"{T}{one}") and found[2] not in words(one) for one in holders
         )
         return f"{found[1]} of an {holders.pop().lower()}" if is_other and len(holders) == 1 else ""
     return ""
-
-
-def _ids(script: Script, name: str) -> set[str]:
-    return {f"{T}{name}"} if script.api.is_class(f"{T}{name}") else set()
 
 
 def _labels_below(script: Script, base: str) -> set[str]:

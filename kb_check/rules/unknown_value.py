@@ -91,8 +91,10 @@ def _asked(script: Script) -> Iterator[Finding]:
         for parameter, given in call.arguments() if call.callee.symbol.kind == "operator" else ():
             text = given.value if isinstance(given, ast.Constant) else None
             asked = parameter.values_asked
-            if not asked or not isinstance(text, str) or text in asked or parameter.enum_items:
+            if not isinstance(text, str) or text in asked or parameter.enum_items:
                 continue
+            if not asked or not text.isupper() or not all(map(str.isupper, asked)):
+                continue  # names are people's own: of repositories, of trees
             if _times(script)[text] > 1 or not knows_all(script) or is_tried(script, call.node):
                 continue
             path = f"{call.callee.symbol.path}({parameter.name})"
