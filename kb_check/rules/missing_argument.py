@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_check.calls import calls
+from kb_check.calls import calls, calls_of_several
 from kb_check.findings import Finding
 from kb_check.literals import number
 from kb_check.rule import Rule
@@ -47,7 +47,7 @@ _NEEDED_WITH = {"mathutils.Matrix.Rotation": ("axis", "size", {3, 4})}
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for call in calls(script):
+    for call in (*calls(script), *calls_of_several(script)):
         callee = call.callee
         path = callee.symbol.path
         needs_all = path in _NEED_ALL

@@ -165,6 +165,10 @@ WRONG = {
         "armature = bpy.data.armatures.new('x')\narmature.collections.new('x').assign('Bone')",
         "armature = bpy.data.armatures.new('x')\narmature.collections.new('x').assign([1])",
     ],
+    "missing-argument": [
+        _CUBE + "bpy.context.object.data.color_attributes.new('x', 'FLOAT_COLOR')",
+        _CUBE + "data = bpy.context.object.data\ndata.attributes.new(name='x', type='FLOAT')",
+    ],
     "read-only": [
         _STRIPS
         + "cross = strips.new_effect('z', 'CROSS', 3, 1, input1=red, input2=blue)\ncross.left_handle = 3",
@@ -200,6 +204,7 @@ WRONG = {
     ],
 }
 RIGHT = [
+    _CUBE + "bpy.context.object.data.color_attributes.new('x', 'FLOAT_COLOR', 'POINT')",
     "bpy.context.scene.cycles.sampling_pattern = 'TABULATED_SOBOL'",
     _CUBE + "bpy.ops.transform.rotate(value=1, orient_type='GIMBAL')",
     "material = bpy.data.materials.new('x')\nbpy.data.materials.create_gpencil_data(material)\n"
