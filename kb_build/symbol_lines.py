@@ -45,7 +45,7 @@ _OF_OWN_NODES = frozenset({"bpy.types.NodeInputs", "bpy.types.NodeOutputs"})
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
 SET = "set of enum items"
 NEVER_BY_IDENTIFIER = "identifier-never"
-_STAND_INS = frozenset({"NONE", "DEFAULT", "PLACEHOLDER", "UNSUPPORTED"})
+STAND_INS = frozenset({"NONE", "DEFAULT", "PLACEHOLDER", "UNSUPPORTED"})
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
 _SHOWN_OTHERS = 4
@@ -126,9 +126,7 @@ def _is_listed(symbol: Symbol) -> bool:
 def is_stand_in(symbol: Symbol) -> bool:
     """Whether RNA lists no value, or a stand-in for those made while Blender runs, and no new one told any."""
     items = [item.identifier for item in symbol.enum_items]
-    return (
-        symbol.type == "enum" and len(items) <= 1 and _STAND_INS.issuperset(items) and is_uncompared(symbol)
-    )
+    return symbol.type == "enum" and len(items) <= 1 and STAND_INS.issuperset(items) and is_uncompared(symbol)
 
 
 def is_uncompared(symbol: Symbol) -> bool:

@@ -92,13 +92,33 @@ def calls(script: Script) -> list[CallSite]:
         if not isinstance(node, ast.Call) or not row.sure or row.guarded:
             continue
         kinds = [kind for kind in members(script.type_of(node.func) or NoneValue()) if kind != NoneValue()]
-        if len(kinds) != 1 or (symbol := _called(script, kinds[0])) is None:
-            continue
-        unpacking = any(isinstance(argument, ast.Starred) for argument in node.args) or any(
-            keyword.arg is None for keyword in node.keywords
-        )
-        found.append(CallSite(node, callee_of(symbol), unpacking))
+        if len(kinds) == 1 and (symbol := _called(script, kinds[0])):
+            found.append(_site(node, symbol))
     return found
+
+
+@once_per_script
+def calls_of_several(script: Script) -> list[CallSite]:
+    """The calls that surely are of one of several functions with one signature: of the weightiest class."""
+    found: list[CallSite] = []
+    for row in script.resolutions("call"):
+        node = row.node
+        if not isinstance(node, ast.Call) or not row.sure or row.guarded:
+            continue
+        kinds = members(script.type_of(node.func) or NoneValue())
+        symbols = [symbol for kind in kinds if (symbol := _called(script, kind))]
+        signatures = {symbol.signature for symbol in symbols}
+        if len(kinds) == len(symbols) > 1 and len(signatures) == 1 and all(signatures):
+            weights = script.names.reader.weights([symbol.owner for symbol in symbols])
+            found.append(_site(node, max(symbols, key=lambda symbol: weights.get(symbol.owner, 0.0))))
+    return found
+
+
+def _site(node: ast.Call, symbol: Symbol) -> CallSite:
+    unpacking = any(isinstance(argument, ast.Starred) for argument in node.args) or any(
+        keyword.arg is None for keyword in node.keywords
+    )
+    return CallSite(node, callee_of(symbol), unpacking)
 
 
 def nothing_from(script: Script, node: ast.expr) -> str:

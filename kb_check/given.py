@@ -7,11 +7,13 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.flow.api import STRUCT
 from kb_build.flow.facts import T
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_check.calls import calls
 from kb_check.own_classes import own_classes
 from kb_check.script import once_per_script
+from kb_check.shown_sockets import socket_classes
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -23,7 +25,7 @@ _SIZES = re.compile(r"\[(\d+)\]")
 _SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 _MISDOCUMENTED = frozenset({"bpy.utils.resource_path(minor)"})  # an int, which references call a str
 _FIXED = frozenset({2, 3, 4})  # other sizes of a parameter are the most, or the least, that it takes
-_ANY = "bpy.types.AnyType"
+_ANY = "AnyType"
 # What the reference calls an enum and takes a set, as RNA says (``is_enum_flag``) of these parameters without default.
 _FLAGS = frozenset(f"{T}{name}.report(type)" for name in ("Macro", "Operator", "RenderEngine"))
 
@@ -56,10 +58,14 @@ class Taker:
 
 @dataclass(frozen=True, slots=True)
 class Given:
-    """A value that is given; ``takers`` are the properties that it can be given to, by the types of their owner."""
+    """A value that is given; ``takers`` are the properties that it can be given to, by the types of their owner.
+
+    ``why`` says which settings decide that, if any do: ``while `data_type` is 'FLOAT'``.
+    """
 
     node: ast.expr
     takers: tuple[Taker, ...]
+    why: str = ""
 
 
 @once_per_script
@@ -91,7 +97,34 @@ def _assignments(script: Script) -> Iterator[Given]:
         takers = tuple(property_taker(symbol) for symbol in symbols if symbol and symbol.kind == "property")
         refused = any("readonly" in taker.symbol.flags for taker in takers)
         if value is not None and len(takers) == len(paths) and not refused:
-            yield Given(value, takers)
+            found, why = _of_socket(script, row.node, takers)
+            yield Given(value, found, why)
+    yield from _typed_by_settings(script)
+
+
+def _of_socket(
+    script: Script, node: ast.Attribute, takers: tuple[Taker, ...]
+) -> tuple[tuple[Taker, ...], str]:
+    """Those of some properties that the socket has whose value is set, where the settings of its node tell which."""
+    shown = socket_classes(script, node.value) if len(takers) > 1 else None
+    members_of = (script.api.member(cls, node.attr) for cls in shown.classes) if shown else ()
+    paths = {member.symbol.path for member in members_of if member}
+    found = tuple(taker for taker in takers if taker.path in paths)
+    return (found, shown.why) if found and shown else (takers, "")
+
+
+def _typed_by_settings(script: Script) -> Iterator[Given]:
+    """The values of sockets of which a setting of their node chooses the type."""
+    for node in script.all(ast.Assign):
+        target = node.targets[0] if len(node.targets) == 1 else None
+        if not isinstance(target, ast.Attribute) or script.analysis.resolutions.get(target):
+            continue
+        shown = socket_classes(script, target.value)
+        member = (
+            script.api.member(shown.classes[0], target.attr) if shown and len(shown.classes) == 1 else None
+        )
+        if shown and member and member.symbol.kind == "property" and "readonly" not in member.symbol.flags:
+            yield Given(node.value, (property_taker(member.symbol),), shown.why)
 
 
 def _arguments(script: Script) -> Iterator[Given]:
@@ -165,8 +198,9 @@ def parameter_taker(script: Script, symbol: Symbol, parameter: Parameter, *, is_
     elif kind == "enum" and not isinstance(parameter.default, str):
         kind = "enum or set"  # what is required has no default to tell
     elif kind not in _SCALARS:
-        target = f"{T}{parameter.type}"
-        known = not is_operator and target != _ANY and script.api.is_class(target)
+        # What takes anything of RNA's is declared as a class that nothing is derived from.
+        target = STRUCT if parameter.type == _ANY else f"{T}{parameter.type}"
+        known = not is_operator and script.api.is_class(target)
         kind = "pointer" if known else ""
     return Taker(
         path, kind, symbol, target, sizes, "", "", parameter.unit,

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
@@ -120,7 +120,11 @@ class KnownNames:
         """A keyword that a function or operator does not take; ``names`` are those that it takes."""
         part = f"({name})"
         if removed := self._lookup.of_part(function, part) or self._of_former(function, part):
-            return self._removed(removed)
+            lacking = self._removed(removed)
+            if removed.path.startswith(f"{function}("):
+                return lacking
+            why = f"`{function}` takes no `{name}`, as what it took the place of did: "
+            return replace(lacking, message=why + lacking.message)
         names = list(names)
         symbol = self.reader.symbol(function)
         labels = {one.name: one.label for one in symbol.parameters} if symbol else {}

@@ -27,8 +27,16 @@ _BODIES: tuple[type[ast.AST], ...] = (
 )  # fmt: skip
 # Modules that change nothing in Blender's data but what is given to them.
 _HARMLESS = (sys.stdlib_module_names - {"runpy", "importlib"}) | {
-    "bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "idprop", "bl_math", "blf", "aud", "imbuf", "numpy",
+    "bpy", "bmesh", "mathutils", "gpu", "gpu_extras", "idprop", "bl_math", "blf", "aud", "imbuf", "numpy", "scipy",
+    "pandas", "PIL", "cv2", "requests", "yaml", "tqdm", "matplotlib",
 }  # fmt: skip
+# Of Blender's own helpers, the modules and functions of which the same is true.
+_HARMLESS_HELPERS = frozenset(
+    {
+        "bpy_extras.io_utils", "bpy_extras.mesh_utils", "bpy_extras.object_utils.world_to_camera_view",
+        "bpy_extras.view3d_utils",
+    }
+)  # fmt: skip
 _DOTS = 3  # of the path of an operator; that of a module has fewer
 # Operators that change nothing but the active object, which they leave as new as it is.
 _PLAIN = re.compile(r"bpy\.ops\.(mesh\.primitive_\w+_add|object\.(select_all|shade_\w+|delete)|wm\.read_\w+)")
@@ -126,8 +134,13 @@ def knows_all(script: Script) -> bool:
     if computes_names(script):
         return False
     imported = {alias.name for node in script.all(ast.Import) for alias in node.names}
-    imported |= {node.module or "" for node in script.all(ast.ImportFrom)}
-    return {name.partition(".")[0] for name in imported} <= _HARMLESS
+    imported |= {f"{node.module}.{alias.name}" for node in script.all(ast.ImportFrom) for alias in node.names}
+    return all(name.partition(".")[0] in _HARMLESS or _is_helper(name) for name in imported)
+
+
+def _is_helper(name: str) -> bool:
+    """Whether a dotted name is one of the harmless helpers, or in one."""
+    return name in _HARMLESS_HELPERS or name.rpartition(".")[0] in _HARMLESS_HELPERS
 
 
 @once_per_script

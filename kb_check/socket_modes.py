@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.symbol_lines import shown_when
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
@@ -28,6 +30,12 @@ def is_shown(socket: Symbol, settings: Mapping[str, str]) -> bool:
     """Whether one of some settings shows a socket."""
     modes = (mode.partition("=") for mode in socket.modes)
     return any(settings.get(name) in values.split("|") for name, _, values in modes)
+
+
+def is_internal(socket: Symbol, key: str = "") -> bool:
+    """Whether no setting of its node shows a socket, so that nothing but its index gives it: no ``key`` either."""
+    is_hidden = "hidden-by-default" in socket.flags and not shown_when(socket)
+    return is_hidden and not any(f'"{key or socket.label}"' in subscript for subscript in socket.subscripts)
 
 
 def side_of(socket: Symbol) -> str:

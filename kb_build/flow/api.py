@@ -61,7 +61,9 @@ _INTERFACE = f"{T}NodeTreeInterfaceSocket"
 _MOST_CLASSES = 2_000
 _KEY = re.compile(r'\["(?P<name>[^"]+)"\]$')
 _WORD = re.compile(r"[A-Z][a-z0-9]*$")
+_AROUND = re.compile(r"([A-Z][a-z0-9]*)([A-Z][a-z0-9]*)")
 _SIMPLE = re.compile(r"[^a-z0-9]")
+_MAKER = "new_"
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
 
@@ -367,12 +369,18 @@ class Api:
             self._value_classes[base] = self._values_of(base)
         return self._value_classes[base].get(value, "")
 
+    def class_of_maker(self, base: str, function: str) -> str:
+        """The class below ``base`` that a function is named after: Strip and ``new_sound`` → SoundStrip; or empty."""
+        kind = function.removeprefix(_MAKER)
+        return "" if kind == function else self.class_of_value(base, kind.upper())
+
     def _values_of(self, base: str) -> dict[str, str]:
         """Value → class, for every value of the property of ``base`` that tells its classes apart."""
         symbol = next((m.symbol for name in DISCRIMINANTS if (m := self.member(base, name))), None)
         short = base.removeprefix(T)
         last = _WORD.search(short)
         affixes = {short.lower(), last[0].lower() if last else ""}
+        around = _AROUND.fullmatch(short)
         by_name: dict[str, str] = {}
         by_label: dict[str, str] = {}
         for path in self.descendants(base):
@@ -383,6 +391,8 @@ class Api:
                 by_name.setdefault(_SIMPLE.sub("", name.removesuffix(affix).removeprefix(affix)), path)
                 label = _SIMPLE.sub("", cls.label.lower() if cls else "")
                 by_label.setdefault(label.removesuffix(affix).removeprefix(affix), path)
+            if around:  # ActionStrip and ActionKeyframeStrip
+                by_name.setdefault(name.removeprefix(around[1].lower()).removesuffix(around[2].lower()), path)
         found: dict[str, str] = {}
         for item in symbol.enum_items if symbol else ():
             key, label = (_SIMPLE.sub("", text.lower()) for text in (item.identifier, item.name))

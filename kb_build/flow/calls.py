@@ -9,7 +9,14 @@ from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST_RUN
 from kb_build.flow.expressions import constants
-from kb_build.flow.facts import BMESH_RESULTS, NAME_OF_PROPERTY, OPEN_CALLS, VERSION, T
+from kb_build.flow.facts import (
+    BMESH_RESULTS,
+    DERIVED_BY_SCRIPTS,
+    NAME_OF_PROPERTY,
+    OPEN_CALLS,
+    VERSION,
+    T,
+)
 from kb_build.flow.narrowing import Narrowing
 from kb_build.flow.types import (
     BOOL,
@@ -269,12 +276,17 @@ class Calls(Narrowing):
             return (
                 replace(result, traits=(("data", data),)) if data is not UNKNOWN and data != NONE else result
             )
+        if cls := self.api.class_of_maker(result.cls, symbol.name):
+            return replace(result, cls=cls)
+        is_open = not DERIVED_BY_SCRIPTS.isdisjoint(self.api.lineage(result.cls))
         found: list[Type] = []
         for name in ("type", "socket_type", "effect_type"):
             for value in literal_texts(given[name]) if name in given else ():
                 cls = self.api.class_of_value(result.cls, value)
                 # A value that no class of the API answers to may be that of a script's own class.
-                found.append(replace(result, cls=cls) if cls else replace(result, sure=False))
+                found.append(
+                    replace(result, cls=cls or result.cls, sure=result.sure and bool(cls or not is_open))
+                )
         return union(found) if found else result
 
     def _names(self, callee: Function, name: str, node: ast.Call, arguments: list[Type]) -> None:

@@ -38,6 +38,7 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
+from kb_build.symbol_lines import STAND_INS
 from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
 
 if TYPE_CHECKING:
@@ -481,7 +482,13 @@ class Expressions(Members):
             are_classes = bool(items) and all(self.api.is_class(T + item.identifier) for item in items)
             # Of classes, those of add-ons are taken as well.
             is_listed = is_listed or (are_classes and not self.api.is_class(T + value))
-            if len(items) < FEWEST_VALUES or is_listed:
+            # A function's only value is meant, unless it stands in for others.
+            is_judged = len(items) >= FEWEST_VALUES or (
+                bool(parameter)
+                and symbol.kind == "function"
+                and not STAND_INS.issuperset(item.identifier for item in items)
+            )
+            if is_listed or not is_judged:
                 having.append(name)
             elif are_classes or not computed:
                 lacking.append(name)

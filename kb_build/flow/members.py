@@ -422,6 +422,8 @@ class Members(Core):
         else:
             # Of several with one name the node's mode decides.
             found = [socket for socket in sockets if value in socket.socket_names]
+            always = [socket for socket in found if f'{side}["{value}"]' in socket.subscripts]
+            found = always[:1] or found
             found = found or [socket for socket in sockets if value in {socket.name, socket.identifier}]
         if not found:
             if isinstance(value, str) and not _has_sockets_of_its_own(owner.cls):

@@ -64,6 +64,7 @@ _ANIMATING = re.compile(r"keyframe_insert|driver_add|bpy\.ops\.(anim|nla|action|
 # Operators that hand on what other things have.
 _COPYING = re.compile(r"copy|link|join|quick|transfer|preset|paste|append|undo|duplicate")
 _PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
+_OF_DATA = re.compile(r"bpy\.data\.\w+\.(\w+)\(")
 _WORD = re.compile(r"\w+")
 _GENERAL = frozenset({"object", "mesh", "scene", "anim"})  # modules whose operators fill many things
 _OBJECT = f"{T}Object"
@@ -210,6 +211,8 @@ def _may_fill(word: str, call: str, name: str) -> bool:
         module = parts[2]
         is_like_it = module not in _GENERAL and word.startswith(module) and word != name
         return word == parts[3] or is_like_it
+    if found := _OF_DATA.match(call):
+        return word == found[1]
     return word == (parts[-1] if ".modifiers.new(" in call else parts[1])
 
 

@@ -9,6 +9,8 @@ zone = tree.nodes.new("GeometryNodeSimulationInput")
 zone.inputs["Geometry"]  # reported: zone.pair_with_output(…) comes first
 ```
 
+So is what a node never shows, as the `Weight` of shaders, which renderers use.
+
 By index it finds the others as well. A link to one of them has no effect, and is a warning:
 
 ```python
@@ -32,7 +34,7 @@ from kb_check.hidden_links import hidden_link
 from kb_check.made_here import is_new, knows_all, named_words
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
-from kb_check.socket_modes import deciding, side_of
+from kb_check.socket_modes import deciding, is_internal, side_of
 from kb_check.zone_pairing import unpaired
 
 if TYPE_CHECKING:
@@ -44,6 +46,7 @@ if TYPE_CHECKING:
 
 
 def _check(script: Script) -> Iterator[Finding]:
+    yield from _never_shown(script)
     if not knows_all(script):
         return
     for row in script.resolutions("item"):
@@ -60,6 +63,26 @@ def _check(script: Script) -> Iterator[Finding]:
             yield Finding(RULE.id, "error", script.span(node), message, sockets[0].path)
         elif len(sockets) == 1 and (message := hidden_link(script, sockets[0], node, owner)):
             yield Finding(RULE.id, "warning", script.span(node), message, sockets[0].path)
+
+
+def _never_shown(script: Script) -> Iterator[Finding]:
+    """Sockets that their nodes show in no mode, asked for by name or identifier."""
+    for row in script.resolutions("item"):
+        sockets = [symbol for path in row.symbols if (symbol := script.api.symbols.symbol(path))]
+        certain = bool(sockets) and row.sure and not row.guarded and not row.missing
+        if (
+            certain
+            and row.value not in _asked(script)
+            and all(
+                row.value in {*one.socket_names, one.identifier} and is_internal(one, row.value)
+                for one in sockets
+            )
+        ):
+            yield Finding(
+                RULE.id, "error", script.span(row.node),
+                f"A `{sockets[0].owner}` never shows its socket {row.value!r}, and finds only what it shows.",
+                sockets[0].path,
+            )  # fmt: skip
 
 
 @once_per_script

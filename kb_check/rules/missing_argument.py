@@ -15,7 +15,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_check.calls import calls
+from kb_check.calls import calls, calls_of_several
 from kb_check.findings import Finding
 from kb_check.literals import number
 from kb_check.rule import Rule
@@ -30,6 +30,13 @@ if TYPE_CHECKING:
 _SEVERAL_SIGNATURES = ("aud.", "freestyle.", "bpy.props.")
 # What a signature has that tells apart which of its parameters are needed; references of older versions do not.
 _MARKS = ("/", "*", "=")
+# Functions that need all that they take, which their signatures have no mark to say.
+_NEED_ALL = frozenset(
+    {
+        "mathutils.kdtree.KDTree", "mathutils.kdtree.KDTree.find_n", "mathutils.kdtree.KDTree.find_range",
+        "mathutils.kdtree.KDTree.insert",
+    }
+)  # fmt: skip
 # Parameters that may be left out though the reference shows no default: a turn or a scale of a 2 × 2 matrix has no
 # axis, and Vector.Range counts as Python's range does.
 _MAY_BE_LEFT_OUT = {
@@ -40,12 +47,13 @@ _NEEDED_WITH = {"mathutils.Matrix.Rotation": ("axis", "size", {3, 4})}
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for call in calls(script):
+    for call in (*calls(script), *calls_of_several(script)):
         callee = call.callee
         path = callee.symbol.path
-        told = callee.is_rna or any(mark in callee.symbol.signature for mark in _MARKS)
+        needs_all = path in _NEED_ALL
+        told = needs_all or callee.is_rna or any(mark in callee.symbol.signature for mark in _MARKS)
         unreliable = path.startswith(_SEVERAL_SIGNATURES) or callee.is_open or not told
-        if callee.symbol.kind != "function" or call.has_unpacking or unreliable:
+        if (callee.symbol.kind != "function" and not needs_all) or call.has_unpacking or unreliable:
             continue
         needed = _needed(script, call)
         left_out = _MAY_BE_LEFT_OUT.get(path, set()) - needed

@@ -41,7 +41,8 @@ from kb_build.flow.types import (
 )
 from kb_build.records import NAMES_ITEMS
 from kb_check.calls import nothing_from
-from kb_check.conversions import CHANGING_ARRAYS, LENGTHS
+from kb_check.conversions import CHANGING_ARRAYS
+from kb_check.documented import LENGTHS
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.literals import number
 from kb_check.made_here import bindings, callee_path

@@ -7,6 +7,8 @@ Blender refuses it with an AttributeError. What a read-only property leads to ca
 ob.type = "MESH"  # reported
 ob.data.vertices = []  # reported: mesh.from_pydata(...)
 bpy.context.object = ob  # reported: bpy.context.view_layer.objects.active = ob
+cross = strips.new_effect("Cross", "CROSS", 3, 1, input1=first, input2=second)
+cross.left_handle = 10  # reported: its inputs decide
 mesh.texspace_size = (1, 1, 1)  # reported, unless the script names `use_auto_texspace`, which is on at first
 ```
 """
@@ -17,6 +19,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.flow.types import Instance
+from kb_build.records import FREE_ON
 from kb_build.symbol_lines import freed_by, is_locked
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import is_of_instance
@@ -69,6 +73,10 @@ def _check(script: Script) -> Iterator[Finding]:
             first = symbols[0]
             assert first is not None
             yield _finding(script, row, first)
+        elif row.kind == "store" and (kind := _locked_kind(script, row, symbols)):
+            path = row.symbols[0]
+            told = f"`{path}` of a `{kind}` is read-only: what it is made of decides."
+            yield Finding(RULE.id, "error", script.name_span(row.node), told, path)
         elif row.kind == "store":
             yield from _locked(script, row, symbols)
 
@@ -81,6 +89,23 @@ def _locked(script: Script, row: Resolution, symbols: list[Symbol | None]) -> It
         path = next(symbol.path for symbol in symbols if symbol)
         told = f"`{path}` cannot be assigned before `{setting}`: a new one has it otherwise."
         yield Finding(RULE.id, "warning", script.name_span(row.node), told, path)
+
+
+def _locked_kind(script: Script, row: Resolution, symbols: list[Symbol | None]) -> str:
+    """The class of what has a property locked that only some of its kinds have free; empty where it may be free."""
+    symbol = symbols[0] if len(symbols) == 1 and not row.missing else None
+    free = set(symbol.flagged(FREE_ON)) if symbol else set[str]()
+    kind = script.type_of(row.node.value) if isinstance(row.node, ast.Attribute) else None
+    if symbol is None or not free or not isinstance(kind, Instance) or not kind.sure:
+        return ""
+    below = (script.api.symbols.symbol(path) for path in script.api.descendants(symbol.owner))
+    labels = {one.path: one.label.lower() for one in below if one}
+    is_leaf = not script.api.descendants(kind.cls)
+    return (
+        kind.cls
+        if is_leaf and free <= set(labels.values()) and labels.get(kind.cls, "") not in {"", *free}
+        else ""
+    )
 
 
 def _owners(symbols: list[Symbol | None]) -> list[str]:

@@ -9,6 +9,8 @@ tree = bpy.data.node_groups.new("Tree", "CompositorNodeTree")
 tree.interface.new_socket(
     "Mesh", socket_type="NodeSocketGeometry"
 )  # reported: geometry node trees have it only
+compare = tree.nodes.new("FunctionNodeCompare")
+compare.data_type = "BOOLEAN"  # reported: RNA lists it for other nodes
 ```
 
 What a script sets before decides. Where it names the other setting nowhere, what a new scene has does, which a file
@@ -26,12 +28,14 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.flow.facts import T
 from kb_build.flow.types import Instance
-from kb_build.records import last_name
+from kb_build.index.analysis import words
+from kb_build.records import NOT_TAKEN, last_name
 from kb_build.symbol_lines import usual_default
 from kb_check.calls import calls
 from kb_check.findings import Finding
 from kb_check.made_here import (
     alias,
+    bindings,
     called_operators,
     callee_path,
     is_new,
@@ -57,8 +61,9 @@ _WITH = re.compile(rf"(only|not) with {_VALUES}")
 _OR_IF = re.compile(rf"; with {_VALUES} only if .*")
 _ONLY_IF = re.compile(rf"with {_VALUES} only if (\w+)\.(\w+)=(.*)")
 _TEXT = re.compile(r"'([^']*)'")
+_OF = re.compile(r"(.+) of an? (\w+)")
 _BY = re.compile(r"(only|not) by ([^…]+)")
-_SCENE = f"{T}Scene"
+_SCENE, _NODE = f"{T}Scene", f"{T}Node"
 _RESETTING = "bpy.ops.wm.read_factory_settings"
 
 
@@ -90,6 +95,8 @@ def _check(script: Script) -> Iterator[Finding]:
             yield from _refused_by_setting(script, statement, node, setting, item)
         elif " only if " in item.where:
             yield from _refused_beside(script, statement, node, symbol.owner, item)
+        elif item.where == NOT_TAKEN and script.api.descends(symbol.owner, _NODE):
+            yield _never_taken(script, statement.value, item, symbol)
         elif kind := _other_kind(script, node.value, item):
             yield _finding(script, statement.value, item, symbol.path, f"this is a {kind}")
     for call in calls(script):
@@ -115,6 +122,15 @@ def _finding(script: Script, node: ast.expr, item: EnumItem, path: str, why: str
     where = item.where.replace("only by", "only by a").replace(", ", " or a ")
     taken = f"is not taken {where[4:]}" if where.startswith("not ") else f"is taken {where}"
     return Finding(RULE.id, "error", script.span(node), f"{item.identifier!r} {taken}, and {why}.", path)
+
+
+def _never_taken(script: Script, node: ast.expr, item: EnumItem, symbol: Symbol) -> Finding:
+    """What RNA lists for nodes of several classes, and those of this one refuse in every tree."""
+    taken = ", ".join(f"`{one.identifier}`" for one in symbol.enum_items if one.where != NOT_TAKEN)
+    return Finding(
+        RULE.id, "error", script.span(node),
+        f"{item.identifier!r} is refused by every `{symbol.owner}`. It takes {taken}.", symbol.path,
+    )  # fmt: skip
 
 
 # Other settings.
@@ -167,6 +183,10 @@ def _refused_by_setting(
             )
     elif name in named_words(script):
         return
+    elif (own := _own_value(script, target.value, setting.symbol)) is not None:
+        if setting.refuses(own):
+            why = f"`{name}` of a new one is {own!r}: this script does not set it"
+            yield _finding(script, statement.value, item, setting.symbol.path, why)
     elif owner := _new_owner(script, target.value, setting.symbol):
         value = owner.value
         if setting.refuses(value):
@@ -203,6 +223,20 @@ def _refused_beside(
         yield replace(_finding(script, statement.value, item, f"{owner}.{found[1]}", why), severity="warning")
 
 
+def _own_value(script: Script, node: ast.expr, setting: Symbol) -> object:
+    """What a setting is on what a name stands for, which the script has made; None where that is not known."""
+    cls = _class_of(script, node)
+    symbol = script.api.symbols.symbol(cls) if cls else None
+    if symbol is None or not knows_all(script) or not isinstance(node, ast.Name) or not is_new(script, node):
+        return None
+    if not all(isinstance(value, ast.Call) for value in bindings(script).get(node.id, [])):
+        return None
+    label = symbol.label.lower()
+    values = [new.value for new in setting.new_values if not new.when and (label in new.made or not new.made)]
+    own = [new.value for new in setting.new_values if not new.when and label in new.made]
+    return (own or values or [usual_default(setting)])[0]
+
+
 def _new_owner(script: Script, node: ast.expr, setting: Symbol) -> NewValue | None:
     """What a setting is on what the script made, where that is of a class whose new ones have a value of their own."""
     if not knows_all(script):
@@ -226,7 +260,8 @@ def _values_of_scene(script: Script, symbol: Symbol) -> list[object]:
     new_values = (
         new.value
         for new in symbol.new_values
-        if not any(script.api.is_class(f"{T}{made}") for made in new.made)
+        if not (new.when and new.when.partition("=")[0] not in named_words(script))
+        and not any(script.api.is_class(f"{T}{made}") for made in new.made)
     )
     return [usual_default(symbol), *new_values]
 
@@ -273,6 +308,8 @@ def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
     """The kind of something, or of what it belongs to, that does not take an item; empty where none is known."""
     found = _BY.fullmatch(item.where)
     kinds = set(found[2].split(", ")) if found else set[str]()
+    if found and found[1] == "only" and (other := _of_another(script, node, kinds)):
+        return other
     while kinds:
         node = alias(script, node)
         cls = _class_of(script, node)
@@ -288,6 +325,24 @@ def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
         if not isinstance(node, ast.Attribute):
             break
         node = node.value
+    return ""
+
+
+def _of_another(script: Script, node: ast.expr, kinds: set[str]) -> str:
+    """What something is that was made for another thing: a constraint of an object, not of a bone; or empty."""
+    values = bindings(script).get(node.id, []) if isinstance(node, ast.Name) else []
+    makers = {callee_path(script, value) if isinstance(value, ast.Call) else "" for value in values}
+    cls = _class_of(script, node)
+    for ancestor in script.api.lineage(cls) if cls and len(kinds) == 1 else ():
+        symbol = script.api.symbols.symbol(ancestor)
+        found = _OF.fullmatch(next(iter(kinds)))
+        if symbol is None or found is None or symbol.label.lower() != found[1]:
+            continue
+        holders = {maker.removeprefix(T).removesuffix(f"{last_name(ancestor)}s.new") for maker in makers}
+        is_other = holders and all(
+            script.api.is_class(f"{T}{one}") and found[2] not in words(one) for one in holders
+        )
+        return f"{found[1]} of an {holders.pop().lower()}" if is_other and len(holders) == 1 else ""
     return ""
 
 

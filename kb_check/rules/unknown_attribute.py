@@ -35,6 +35,7 @@ from kb_check.made_here import bindings, callee_path, member_path, words_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
+from kb_check.shown_sockets import socket_classes
 from kb_check.tried import is_tried
 from kb_serve.recognise.elements import elsewhere
 
@@ -52,6 +53,7 @@ _LET_PASS = frozenset({"driver_remove"})
 # Before, what is assigned to an unknown name of a property group is lost, and no error.
 _OF_SCRIPTS, _REFUSED = "bpy.types.PropertyGroup", (5, 0)
 _PYTHONS: dict[str, type] = {"bool": bool, "int": int, "float": float, "str": str}
+_VALUE = "default_value"
 _SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 
 
@@ -71,6 +73,21 @@ def _check(script: Script) -> Iterator[Finding]:
             yield lacking_finding(script, RULE.id, row, lacking, level)
     yield from _of_python(script)
     yield from _of_libraries(script)
+    yield from _of_sockets(script)
+
+
+def _of_sockets(script: Script) -> Iterator[Finding]:
+    """Values of sockets that have none, as settings of their node have it: those of geometry, say."""
+    for node in script.all(ast.Attribute):
+        if node.attr != _VALUE or script.analysis.resolutions.get(node) or is_tried(script, node):
+            continue
+        found = socket_classes(script, node.value)
+        if found is not None and not any(script.api.member(cls, _VALUE) for cls in found.classes):
+            cls = found.classes[0]
+            yield Finding(
+                RULE.id, "error", script.name_span(node),
+                f"`{cls}`, which this socket is{found.why}, has no `{_VALUE}`.", cls,
+            )  # fmt: skip
 
 
 def _is_of_object(script: Script, row: Resolution, owner: str) -> bool:

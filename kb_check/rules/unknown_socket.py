@@ -10,6 +10,13 @@ mix = nodes.new("ShaderNodeMix")
 mix.inputs["A_Color"]  # reported: an identifier; mix.inputs["A"] while colours are mixed, or mix.inputs[6]
 ```
 
+So are sockets of groups, zones and bundles that nothing in the script makes:
+
+```python
+group_input = tree.nodes.new("NodeGroupInput")
+group_input.outputs["Geometry"]  # reported unless tree.interface.new_socket("Geometry", ...) stands somewhere
+```
+
 So are the inputs of a group that the script makes, where its modifier is asked for them by identifiers of before 4.0:
 
 ```python
@@ -30,8 +37,10 @@ from kb_build.symbol_lines import subscripts_text
 from kb_check.findings import Finding
 from kb_check.group_inputs import makes_all_groups, named_inputs
 from kb_check.made_here import is_new
+from kb_check.own_sockets import lacking_own
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.socket_modes import is_internal
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -54,7 +63,8 @@ def _check(script: Script) -> Iterator[Finding]:
         if any(_still_works(script, node, row.value) for node in row.missing):
             continue
         node = row.missing[0]
-        names = [_asked_by(s) for side in _sides(row) for s in script.api.sockets(node, side)]
+        sockets = (socket for side in _sides(row) for socket in script.api.sockets(node, side))
+        names = [_asked_by(socket) for socket in sockets if not is_internal(socket)]
         yield lacking_finding(
             script, RULE.id, row, script.names.socket(node, row.value, dict.fromkeys(names))
         )
@@ -68,6 +78,11 @@ def _check(script: Script) -> Iterator[Finding]:
                 f"`{first.owner}` finds its sockets by the names that it shows, not by identifiers as {row.value!r}: "
                 f"{subscripts_text(first)}.", first.path,
             )  # fmt: skip
+    for node, cls, how in lacking_own(script):
+        key = node.slice.value if isinstance(node.slice, ast.Constant) else ""
+        comes = f": {how} comes before" if how else ", as the `new` of its items would"
+        told = f"Nothing in this script gives this `{cls}` a socket {key!r}{comes}."
+        yield Finding(RULE.id, "error", script.span(node), told, cls)
     if script.version >= _RENAMED_IN and makes_all_groups(script):
         yield from _former_inputs(script)
 

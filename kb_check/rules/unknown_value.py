@@ -14,6 +14,8 @@ bpy.data.node_groups.new("Scatter", "GEOMETRY")  # reported: GeometryNodeTree
 from __future__ import annotations
 
 import ast
+import re
+from collections import Counter
 from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
@@ -21,21 +23,25 @@ from typing import TYPE_CHECKING
 from kb_build.flow.expressions import constants
 from kb_build.flow.facts import T
 from kb_build.flow.types import UNKNOWN, Resolution
-from kb_build.records import last_name
+from kb_build.records import NOT_TAKEN, last_name
 from kb_build.symbol_lines import NODE_FAMILIES
 from kb_check.calls import calls
-from kb_check.given import class_values
+from kb_check.findings import Finding
+from kb_check.given import assigned, class_values
 from kb_check.literals import written
+from kb_check.made_here import knows_all
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
+from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.findings import Finding
     from kb_check.script import Script
 
+# How the types of Blender's own trees are misspelt.
+_TREE = re.compile(r"(?i:(compositor|compositing|geometry|shader|texture)_?(node)?s?_?(group|tree)?)")
 _LAYOUT = f"{T}UILayout"
 
 
@@ -49,11 +55,74 @@ def _check(script: Script) -> Iterator[Finding]:
             row.missing,
             key=lambda path: (_likeness(script, path, row.value), weights.get(_class_of(path), 0.0)),
         )
-        values = script.api.values_of(owner)
-        yield lacking_finding(script, RULE.id, row, script.names.value(owner, row.value, values))
+        yield lacking_finding(
+            script, RULE.id, row, script.names.value(owner, row.value, _taken(script, owner))
+        )
     yield from _of_classes(script)
+    yield from _computed(script)
+    yield from _asked(script)
     yield from _of_trees(script)
     yield from _of_icons(script)
+
+
+def _computed(script: Script) -> Iterator[Finding]:
+    """Values of which it is known that another Blender had them, where this one puts its own together while it runs."""
+    for row in script.resolutions("store"):
+        symbol = script.api.symbols.symbol(row.symbols[0]) if len(row.symbols) == 1 else None
+        value = assigned(row.statement, row.node) if isinstance(row.node, ast.Attribute) else None
+        is_sure = row.sure and not row.guarded and not row.missing
+        if not symbol or not symbol.enum_computed or not isinstance(value, ast.Constant) or not is_sure:
+            continue
+        text, values = value.value, script.api.values_of(symbol.path)
+        if not isinstance(text, str) or text in values or value in script.analysis.resolutions:
+            continue
+        if script.names.path(f"{symbol.path}:{text}") is not None:
+            lacking = script.names.value(symbol.path, text, values)
+            found = Resolution(value, "value", missing=(symbol.path,), value=text)
+            yield lacking_finding(script, RULE.id, found, lacking)
+
+
+def _asked(script: Script) -> Iterator[Finding]:
+    """Values of operators whose enumerations are put together while Blender runs, and that name others in a new file.
+
+    What the script names elsewhere too, it may make itself: an orientation, say.
+    """
+    for call in calls(script):
+        for parameter, given in call.arguments() if call.callee.symbol.kind == "operator" else ():
+            text = given.value if isinstance(given, ast.Constant) else None
+            asked = parameter.values_asked
+            if not isinstance(text, str) or text in asked or parameter.enum_items:
+                continue
+            if not asked or not text.isupper() or not all(map(str.isupper, asked)):
+                continue  # names are people's own: of repositories, of trees
+            if _times(script)[text] > 1 or not knows_all(script) or is_tried(script, call.node):
+                continue
+            path = f"{call.callee.symbol.path}({parameter.name})"
+            told = ", ".join(f"`{one}`" for one in asked[:8]) + (" …" if len(asked) > 8 else "")
+            yield Finding(
+                RULE.id, "warning", script.span(given),
+                f"{text!r} is no value of `{path}` in a new file, where it takes {told}.", path,
+            )  # fmt: skip
+
+
+@once_per_script
+def _times(script: Script) -> Counter[object]:
+    return Counter(node.value for node in script.all(ast.Constant))
+
+
+def _taken(script: Script, owner: str) -> list[str]:
+    """The values of an enumeration, but for those of which it is known that none takes them."""
+    symbol, argument = script.api.symbols.symbol(owner.partition("(")[0]), owner.partition("(")[2][:-1]
+    refusals = symbol.refusals if symbol else ()
+    refused = {
+        value
+        for refusal in refusals
+        if refusal.argument == argument and not (refusal.by or refusal.given or refusal.mode or refusal.again)
+        for value in refusal.values
+    }
+    if symbol and not argument:
+        refused |= {item.identifier for item in symbol.enum_items if item.where == NOT_TAKEN}
+    return [value for value in script.api.values_of(owner) if value not in refused]
 
 
 def _of_icons(script: Script) -> Iterator[Finding]:
@@ -83,7 +152,8 @@ def _of_trees(script: Script) -> Iterator[Finding]:
         if script.api.is_class(f"{T}{value}") or value in script.own_identifiers:
             continue
         meant = script.api.class_of_value(f"{T}NodeTree", value)
-        if not (meant or value.startswith(NODE_FAMILIES)) or script.package.has(("bpy.types",), value):
+        is_built_in = value.startswith(NODE_FAMILIES) or _TREE.fullmatch(value)
+        if not (meant or is_built_in) or script.package.has(("bpy.types",), value):
             continue
         owner = f"{path}(type)"
         lacking = script.names.value(owner, value, script.api.values_of(owner))

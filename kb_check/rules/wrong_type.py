@@ -10,6 +10,10 @@ material.diffuse_color = (1, 0, 0)  # reported: 4 floats
 scene.camera = bpy.data.cameras.new("Camera")  # reported: an Object that has it
 scene.render.filepath = pathlib.Path("/tmp/x.png")  # reported: str(…)
 bm.from_mesh(ob)  # reported: ob.data
+bmesh.ops.translate(bm, vec=(0, 0, 1), verts=faces)  # reported: vertices
+loop[uv_layer] = (0, 0)  # reported: loop[uv_layer].uv = (0, 0)
+mix = tree.nodes.new("ShaderNodeMix")
+mix.inputs["A"].default_value = (1, 0, 0, 1)  # reported: mix.data_type = "RGBA" comes first
 ```
 
 So are the attributes of classes, which it reads when they are registered:
@@ -31,23 +35,31 @@ from typing import TYPE_CHECKING
 from kb_build.flow.api import GROUPS
 from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.types import Collection, Instance, Plain
-from kb_check.conversions import describe, misfit
+from kb_check.conversions import misfit
+from kb_check.documented import layer_misfit
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.given import class_values, given_values
 from kb_check.literals import items, set_of
+from kb_check.misfits import describe
 from kb_check.python_paths import is_path
 from kb_check.rule import Rule
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.conversions import Misfit
     from kb_check.given import Given, Taker
+    from kb_check.misfits import Misfit
     from kb_check.script import Script
 
 _COLORS = frozenset({"COLOR", "COLOR_GAMMA"})
 _OBJECT = f"{T}Object"
 _DATA = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
+_LAYER = "bmesh.types.BMLayerItem"
+# How what layers hold as something with members is filled.
+_HELD = {
+    "bmesh.types.BMLoopUV": "loop[layer].uv = (u, v)", "bmesh.types.BMDeformVert": "vert[layer][group_index] = weight",
+}  # fmt: skip
 _LONGEST_INT = 2**31
 
 
@@ -63,7 +75,7 @@ def _check(script: Script) -> Iterator[Finding]:
         assert wrong is not None
         yield Finding(
             RULE.id, "error", script.span(given.node),
-            f"`{taker.path}` takes {wrong.takes}, not {wrong.given}.{_advice(script, taker, given.node)}",
+            f"`{taker.path}`{given.why} takes {wrong.takes}, not {wrong.given}.{_advice(script, taker, given.node)}",
             taker.path, (), _fix(script, taker, wrong, given.node) if len(given.takers) == 1 else None,
         )  # fmt: skip
     yield from _items_given(script)
@@ -86,6 +98,10 @@ def _items_given(script: Script) -> Iterator[Finding]:
         target = node.targets[0]
         if not isinstance(target, ast.Subscript) or isinstance(target.slice, ast.Slice):
             continue
+        if (wrong := layer_misfit(script, target, node.value)) and not is_tried(script, target):
+            told = f"This layer takes {wrong.takes}, not {wrong.given}.{_of_layer(script, wrong)}"
+            yield Finding(RULE.id, "error", script.span(node.value), told, _LAYER)
+            continue
         owner, kind = script.type_of(target.value), script.type_of(node.value)
         row = script.analysis.resolutions.get(target.value)
         certain = row is None or (row.sure and not row.guarded and not row.possible)
@@ -100,6 +116,12 @@ def _items_given(script: Script) -> Iterator[Finding]:
                 RULE.id, "error", script.span(node.value),
                 f"An item of `{path}` takes an instance of `{_element(owner)}` or None, not {describe(kind)}.", path,
             )  # fmt: skip
+
+
+def _of_layer(script: Script, wrong: Misfit) -> str:
+    """What to set instead of a value that a layer holds as something with members: ``.uv`` of a BMLoopUV."""
+    cls = next((cls for cls in _HELD if f"`{cls}`" in wrong.takes), "")
+    return f" Set its members: `{_HELD[cls]}`." if cls and script.api.is_class(cls) else ""
 
 
 def _element(owner: Collection) -> str:

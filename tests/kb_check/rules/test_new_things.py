@@ -37,6 +37,18 @@ _STRIP = (
     "action = bpy.data.actions.new('x')\nslot = action.slots.new('OBJECT', 'x')\n"
     "strip = action.layers.new('x').strips.new(type='KEYFRAME')\n"
 )
+_CURVE = "curve = bpy.data.curves.new('x', 'CURVE')\n"
+_STRIPS = (
+    "strips = bpy.context.scene.sequence_editor_create().strips\n"
+    "red = strips.new_effect('x', 'COLOR', 1, 1, length=9)\nblue = strips.new_effect('y', 'COLOR', 2, 1, length=9)\n"
+)
+_RANDOM = _TREE + "random = tree.nodes.new('FunctionNodeRandomValue')\n"
+_SWITCH = _TREE + "switch = tree.nodes.new('GeometryNodeSwitch')\n"
+_BACKGROUND = "shader = bpy.data.node_groups.new('x', 'ShaderNodeTree').nodes.new('ShaderNodeBackground')\n"
+_INTERFACE = _TREE + "tree.interface.new_socket('Mesh', socket_type='NodeSocketGeometry')\n"
+_SIMULATED = (
+    _ZONE + "second = tree.nodes.new('GeometryNodeSimulationOutput')\nfirst.pair_with_output(second)\n"
+)
 _RESET = "bpy.ops.wm.read_factory_settings(use_empty=True)\n"
 WRONG = {
     "empty-pointer": [
@@ -64,6 +76,7 @@ WRONG = {
         _CUBE + "bpy.context.object.asset_data.description = 'x'",
         _CUBE + "cube = bpy.context.object\ncube.pose.bones['x'].location.x = 1",
         _TREE + "tree.nodes.new('GeometryNodeGroup').node_tree.nodes",
+        "bpy.data.materials.new('x').grease_pencil.color = (1, 0, 0, 1)",
     ],
     "hidden-socket": [
         _POINTS + "points.inputs['Density Max'].default_value = 3",
@@ -74,6 +87,10 @@ WRONG = {
         "tree.links.new(first.outputs['Geometry'], second.inputs['Geometry'])\nfirst.pair_with_output(second)",
     ],
     "unknown-value": [
+        "bpy.data.node_groups.new('x', 'CompositorTree')",
+        "bpy.ops.export_scene.gltf(filepath='/x', export_format='GLTF')",
+        "bpy.context.scene.cycles.sampling_pattern = 'SOBOL'",
+        "bpy.data.actions.new('x').layers.new('x').strips.new(type='FRAMES')",
         _GLARE + "glare.inputs['Type'].default_value = 'FOG_GLOW'",
         _TREE + "tree.interface.new_socket('x', socket_type='NodeSocketFloatFactor')",
         "bpy.data.node_groups.new('x', 'NodeTree')",
@@ -93,6 +110,13 @@ WRONG = {
         _MIX + "mix.outputs['Result_Color']",
         _MIX + "mix.inputs['Fac']",
         _TREE + "tree.nodes.new('FunctionNodeRandomValue').inputs['Max_001']",
+        _TREE + "start = tree.nodes.new('NodeGroupInput')\nstart.outputs['Geometry']",
+        _INTERFACE + "tree.nodes.new('NodeGroupInput').outputs['Geometry']",
+        _INTERFACE + "tree.nodes.new('NodeGroupOutput').inputs['Mesh']",
+        _SIMULATED + "first.outputs['Speed']",
+        _SIMULATED + "second.state_items.new('VECTOR', 'Speed')\nfirst.outputs['Velocity']",
+        _TREE + "bundle = tree.nodes.new('NodeSeparateBundle')\nbundle.bundle_items.new('FLOAT', 'x')\n"
+        "bundle.outputs['y']",
     ],
     "refused-value": [
         _RESET + "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
@@ -119,8 +143,37 @@ WRONG = {
         "tree = bpy.data.node_groups.new('x', 'CompositorNodeTree')\nitems = tree.interface\n"
         "items.new_socket('x', socket_type='NodeSocketGeometry')",
         "curve = bpy.data.curves.new('x', 'CURVE')\ncurve.dimensions = '3D'\ncurve.fill_mode = 'BOTH'",
+        _CURVE + "curve.fill_mode = 'FULL'",
+        "curve = bpy.data.curves.new('x', 'FONT')\ncurve.fill_mode = 'FULL'",
+        _OBJECT + "held = ob.constraints.new('COPY_ROTATION')\nheld.owner_space = 'POSE'",
+        _TREE + "compare = tree.nodes.new('FunctionNodeCompare')\ncompare.data_type = 'BOOLEAN'",
+        "bpy.context.scene.render.image_settings.color_depth = '32'",
+        "from bpy_extras.view3d_utils import location_3d_to_region_2d\n"
+        + _OUTPUT
+        + "out.format.file_format = 'PNG'",
     ],
-    "wrong-type": [_TREE + "tree.interface.new_socket('x', description=None)"],
+    "wrong-type": [
+        _TREE + "tree.interface.new_socket('x', description=None)",
+        _CURVE + "spline = curve.splines.new('NURBS')\nspline.order_u = '4'",
+        _RANDOM + "random.inputs['Max'].default_value = (1, 2, 3)",
+        _RANDOM + "random.data_type = 'FLOAT_VECTOR'\nrandom.inputs['Max'].default_value = 1.0",
+        _RANDOM + "random.data_type = 'INT'\nrandom.inputs['Max'].default_value = 1.5",
+        _SWITCH + "switch.input_type = 'FLOAT'\nswitch.inputs['True'].default_value = (1, 2, 3)",
+        "mix = bpy.data.node_groups.new('x', 'ShaderNodeTree').nodes.new('ShaderNodeMix')\n"
+        "mix.inputs['A'].default_value = (1, 0, 0, 1)",
+        _MIX + "mix.inputs['B'].default_value = 0.5",
+        "armature = bpy.data.armatures.new('x')\narmature.collections.new('x').assign('Bone')",
+        "armature = bpy.data.armatures.new('x')\narmature.collections.new('x').assign([1])",
+    ],
+    "missing-argument": [
+        _CUBE + "bpy.context.object.data.color_attributes.new('x', 'FLOAT_COLOR')",
+        _CUBE + "data = bpy.context.object.data\ndata.attributes.new(name='x', type='FLOAT')",
+    ],
+    "read-only": [
+        _STRIPS
+        + "cross = strips.new_effect('z', 'CROSS', 3, 1, input1=red, input2=blue)\ncross.left_handle = 3",
+        _STRIPS + "glow = strips.new_effect('z', 'GLOW', 3, 1, input1=red)\nglow.duration = 3",
+    ],
     "unknown-name": [
         "import bgl",
         "from bgl import glEnable",
@@ -138,6 +191,12 @@ WRONG = {
         "bpy.context.scene.cycles.use_square_samples = True",
         "bpy.data.lights.new('x', 'POINT').cycles.cast_shadow = True",
         _CUBE + "bpy.context.object.data.face_maps",
+        _CURVE + "spline = curve.splines.new('POLY')\nspline.use_cyclic = True",
+        _CURVE + "curve.splines.new(type='BEZIER').closed = True",
+        "ball = bpy.data.metaballs.new('x').elements.new(type='BALL')\nball.rad = 2",
+        "strip = bpy.data.actions.new('x').layers.new('x').strips.new(type='KEYFRAME')\nstrip.channelbg",
+        _STRIPS + "sound = strips.new_sound('x', '/x.wav', 3, 1)\nsound.transform.scale_x = 2",
+        _SWITCH + "switch.input_type = 'GEOMETRY'\nswitch.inputs['True'].default_value = 1",
     ],
     "unknown-operator": ["bpy.ops.import_mesh.stl(filepath='/x.stl')"],
     "not-in-edit-mode": [
@@ -145,6 +204,48 @@ WRONG = {
     ],
 }
 RIGHT = [
+    _CUBE + "bpy.context.object.data.color_attributes.new('x', 'FLOAT_COLOR', 'POINT')",
+    "bpy.context.scene.cycles.sampling_pattern = 'TABULATED_SOBOL'",
+    _CUBE + "bpy.ops.transform.rotate(value=1, orient_type='GIMBAL')",
+    "material = bpy.data.materials.new('x')\nbpy.data.materials.create_gpencil_data(material)\n"
+    "material.grease_pencil.color = (1, 0, 0, 1)",
+    _CURVE + "curve.fill_mode = 'BOTH'\ncurve.splines.new('NURBS').use_cyclic_u = True",
+    "bpy.data.curves.new('x', 'SURFACE').fill_mode = 'FULL'",
+    "surface = bpy.data.curves.new('x', 'SURFACE')\nsurface.fill_mode = 'FULL'",
+    _ARMATURE + "bpy.context.collection.objects.link(ob)\nbpy.context.view_layer.objects.active = ob\n"
+    "bpy.ops.object.mode_set(mode='EDIT')\narmature.edit_bones.new('x').tail = (0, 0, 1)\n"
+    "bpy.ops.object.mode_set(mode='OBJECT')\nbone = ob.pose.bones['x']\nheld = bone.constraints.new('COPY_ROTATION')\n"
+    "held.owner_space = 'POSE'\ngroup = armature.collections.new('x')\ngroup.assign(bone)\ngroup.assign(bone.bone)",
+    _STRIPS
+    + "red.left_handle = 3\ntext = strips.new_effect('z', 'TEXT', 3, 1, length=9)\ntext.duration = 4\n"
+    "strips.new_image('i', '/x.png', 4, 1).transform.scale_x = 2\nstrips.new_meta('m', 5, 1).strips.new_effect("
+    "'n', 'COLOR', 1, 1, length=9)",
+    _RANDOM + "random.inputs['Max'].default_value = 1.5\nrandom.inputs[1].default_value = (1, 2, 3)",
+    _RANDOM + "random.data_type = 'FLOAT_VECTOR'\nrandom.inputs['Max'].default_value = (1, 2, 3)",
+    _RANDOM + "other = random\nother.data_type = 'INT'\nrandom.inputs['Max'].default_value = 3",
+    _RANDOM + "def turn(node):\n    node.data_type = 'FLOAT_VECTOR'\nturn(random)\n"
+    "random.inputs['Max'].default_value = (1, 2, 3)",
+    _SWITCH + "switch.input_type = 'BOOLEAN'\nswitch.inputs['True'].default_value = True",
+    _SWITCH + "switch.input_type = 'RGBA'\nswitch.inputs['True'].default_value = (1, 0, 0, 1)",
+    _TREE + "switch = tree.nodes.new('GeometryNodeIndexSwitch')\nswitch.data_type = 'VECTOR'\n"
+    "switch.inputs[1].default_value = (1, 2, 3)",
+    _BACKGROUND + "shader.inputs[2].default_value = 1\nprint('Weight' in shader.inputs)",
+    _INTERFACE + "tree.nodes.new('NodeGroupInput').outputs['Mesh']",
+    _INTERFACE + "tree.interface.new_socket('Mesh', in_out='OUTPUT', socket_type='NodeSocketGeometry')\n"
+    "tree.nodes.new('NodeGroupOutput').inputs['Mesh']",
+    _TREE + "for name in ('A', 'B', 'C', 'D', 'E', 'F', 'G', 'H', 'I', 'J'):\n"
+    "    tree.interface.new_socket(name, socket_type='NodeSocketFloat')\n"
+    "tree.nodes.new('NodeGroupInput').outputs['A']",
+    _TREE
+    + "for number in range(3):\n    tree.interface.new_socket(f'V{number}', socket_type='NodeSocketFloat')\n"
+    "tree.nodes.new('NodeGroupInput').outputs['V1']",
+    _TREE
+    + "item = tree.interface.new_socket('x', socket_type='NodeSocketFloat')\nitem.name = 'Size'.upper()\n"
+    "tree.nodes.new('NodeGroupInput').outputs['SIZE']",
+    _SIMULATED + "second.state_items.new('VECTOR', 'Speed')\nfirst.outputs['Speed']\nsecond.inputs['Speed']\n"
+    "first.outputs['Geometry']\nsecond.state_items.new('FLOAT', '')\nfirst.outputs['Float']",
+    _TREE + "bundle = tree.nodes.new('NodeCombineBundle')\nbundle.bundle_items.new('FLOAT', 'x')\n"
+    "bundle.bundle_items.new('FLOAT', 'x')\nbundle.inputs['x_001']",
     "bpy.ops.wm.read_factory_settings(app_template='Video_Editing')\n"
     "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
     _RESET + "bpy.context.scene.render.image_settings.file_format = 'JPEG'",
@@ -307,3 +408,11 @@ def test_an_input_by_its_name_changes_nothing(check: Check, tmp_path: Path) -> N
 )
 def test_what_may_be_done_elsewhere_is_no_finding(check: Check, rule: str, elsewhere: str) -> None:
     assert [code for code in WRONG[rule] if check(rule, f"import bpy\n{elsewhere}\n{code}")] == []
+
+
+def test_what_a_node_never_shows_is_found_whatever_is_done_elsewhere(check: Check, tmp_path: Path) -> None:
+    code = f"import bpy\n{_BACKGROUND}shader.inputs['Weight'].default_value = 1"
+    assert "KeyError" in run_statements(tmp_path, [code])[0][0]
+    assert [
+        len(check("hidden-socket", f"{before}\n{code}")) for before in ("", "import rigs\nrigs.prepare()")
+    ] == [1, 1]
