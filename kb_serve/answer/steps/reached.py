@@ -52,24 +52,29 @@ class ReachedSettings:
         for cls in classes:
             expression = self._expression(cls) if left and cls not in self._scene.shown else ""
             settings = settings_of(cls, self._reader) if expression else ""
-            if not settings:
+            # What is made is not looked for in an element of something else.
+            if not settings or (is_made and "[" in expression):
                 continue
-            left -= 1
-            self._scene.shown.add(cls)
             told = f"(`{cls.removeprefix(TYPES)}`): {settings}"
             ready = self._scene.pointers.reach(held(expression))
             if ready is None:
-                if not is_made or _UNSEEN not in settings:
+                # An element of a collection is there only if somebody has made it.
+                if "[" not in expression and (not is_made or _UNSEEN not in settings):
                     self.waiting.append(f"set, once it is not None, on `{expression}` {told}")
+                    left -= 1
+                    self._scene.shown.add(cls)
                 continue
+            left -= 1
+            self._scene.shown.add(cls)
             yield from ready.steps
             # The steps' own object need not be the active one.
-            is_objects = expression.startswith("bpy.context.object")
-            yield f"set on `{ready.expression if is_objects else expression}` {told}"
+            is_own = expression.startswith("bpy.context.object") or ready.expression != held(expression)
+            yield f"set on `{ready.expression if is_own else expression}` {told}"
 
     def _expression(self, cls: str) -> str:
         """How the one instance of a class is reached; empty where there is none, or it is the interface's."""
         symbol = self._reader.symbol(cls)
         reached = symbol.reached if symbol else ""
-        # An element of a collection is there only if somebody has made it.
-        return "" if "[" in reached or is_of_interface(reached) else reached
+        # Of a collection is set which element is active, and a new one has none.
+        is_collection = bool(self._reader.collections_of(cls.removeprefix(TYPES)))
+        return "" if is_of_interface(reached) or is_collection else reached
