@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import terms
 from kb_build.symbol_lines import operator_needs, refused_nothing
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
@@ -88,10 +89,24 @@ class Steps:
         if made and (not self._names.explained.isdisjoint(made) or self._are_heavy(titled, named or titled)):
             named = sorted(titled, key=lambda path: path not in self._names.explained)
         named = self._with_kinds(named)
+        if not titled and (explained := self._explained()) and not set(named[:1]) & self._names.explained:
+            named = explained
         if self._creations and self._creations.keys().isdisjoint(named):
             named = []
         called = tuple(path.removeprefix(TYPES) for path in named if self._is_the_topic(path))
         return [path for path in named if not self._is_anothers(path, called)] or list(self._names.classes)
+
+    def _explained(self) -> list[str]:
+        """What the page explains and can be made, if its name says something of the title: what a page on one kind of
+        strip explains, rather than what else is called image.
+        """
+        title = set(self._names.words[0]) if self._names.words else set[str]()
+        shared = {
+            path: len(title & set(terms(path.removeprefix(TYPES))))
+            for path in self._names.classes
+            if path in self._names.explained and path in self._creations
+        }
+        return sorted((path for path in shared if shared[path]), key=lambda path: -shared[path])
 
     def _is_in_nothing(self, path: str, creation: Creation) -> bool:
         """Whether an operator that runs anywhere makes a part of what an element has that somebody must have made: it

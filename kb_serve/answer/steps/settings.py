@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import mode_needed
+from kb_build.symbol_lines import empty_when_new, mode_needed
 from kb_serve.answer.steps.members import call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 _LEAST = 1  # weight of a collection or function
 _MEMBERS = 3  # collections, and functions
 _HOLDERS = 4  # pointers of a thing whose settings are shown
+_ADDING = ("new", "add", "append")  # what functions that add are called
+_LOOK_UP = frozenset({"get", "current", "find"})  # in names of functions that do nothing to a thing
 OTHERS_ELEMENT = re.compile(r"\[.*\].*\.")  # … of what has an element that somebody else must have made
 
 
@@ -57,20 +59,26 @@ class SettingSteps:
             return self._scene.variables.of(cls)
         return "" if OTHERS_ELEMENT.search(symbol.reached) else symbol.reached
 
-    def _main(self, entries: Iterator[SymbolEntry]) -> list[SymbolEntry]:
+    def _main(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
         return self._reader.heaviest(entries, _LEAST)[:_MEMBERS]
 
     def _in(self, cls: str, variable: str) -> Iterator[str]:
         """The collections of a thing, and what adds to them; last those that are added to in another mode alone."""
-        collections = (entry for entry in self._reader.members(cls).values() if entry.type == "collection")
         by_mode: dict[str, list[str]] = {"": []}
-        for entry in self._main(collections):
+        for entry in self._collections(cls):
             by_mode.setdefault(self._mode_of(entry), []).append(self._held(entry, variable))
         for mode, items in by_mode.items():
             if mode and (steps := self._scene.obj.to_mode(mode)):
                 yield "; ".join(f"`{step}`" for step in steps)
             if items:
                 yield f"in `{variable}`: " + ", ".join(items)
+
+    def _collections(self, cls: str) -> list[SymbolEntry]:
+        """The main collections of a thing; after those that scripts use most, its own that things are added to."""
+        all_ = [entry for entry in self._reader.members(cls).values() if entry.type == "collection"]
+        main = self._main(all_)
+        own = (entry for entry in all_ if entry.owner == cls and entry not in main and self._added_by(entry))
+        return [*main, *own][:_MEMBERS]
 
     def _mode_of(self, collection: SymbolEntry) -> str:
         """The mode of the object in which alone something is added to a collection of its data; empty for any."""
@@ -88,7 +96,9 @@ class SettingSteps:
         where scripts call it.
         """
         functions = [
-            entry for entry in entries if entry.kind == "function" and UNDO.isdisjoint(entry.name.split("_"))
+            entry
+            for entry in entries
+            if entry.kind == "function" and (UNDO | _LOOK_UP).isdisjoint(entry.name.split("_"))
         ]
         uses = self._reader.use_counts([entry.path for entry in functions])
         return self._main(entry for entry in functions if uses.get(entry.path) or not self._answers(entry))
@@ -101,10 +111,34 @@ class SettingSteps:
 
     def _held(self, entry: SymbolEntry, variable: str) -> str:
         """A collection of a thing, and the call that adds to it."""
-        made = self._adding(entry)
-        call = made.call.partition(f".{entry.name}.")[2] if made else ""
-        by = f", by `{variable}.{entry.name}.{call}`" if call else ""
+        call = self._added_by(entry)
+        by = f", by `{variable}.{entry.name}.{call}`{self._with_it(entry)}" if call else ""
         return f"`.{entry.name}` (`{entry.target}`{by})"
+
+    def _added_by(self, collection: SymbolEntry) -> str:
+        """The call that adds to a collection; empty for none."""
+        if made := self._adding(collection):
+            return made.call.partition(f".{collection.name}.")[2]
+        functions = (
+            self._reader.members(f"{TYPES}{collection.collection}").values() if collection.collection else ()
+        )
+        adding = [one for one in functions if one.kind == "function" and one.name.startswith(_ADDING)]
+        return next((call_of(one) for one in self._reader.heaviest(adding)), "")
+
+    def _with_it(self, collection: SymbolEntry) -> str:
+        """What is then called on what a new element has: strokes are added to the drawing of a frame."""
+        element = f"{TYPES}{collection.target}"
+        for entry in self._reader.members(element).values():
+            target = f"{TYPES}{entry.target}"
+            pointer = (
+                self._reader.symbol(entry.path) if entry.type == "pointer" and self._belongs(target) else None
+            )
+            if pointer is None or empty_when_new(pointer) or self._reader.creations([target]):
+                continue
+            functions = (one for one in self._reader.members(target).values() if one.kind == "function")
+            for function in self._reader.heaviest(functions, _LEAST)[:1]:
+                return f", then `{self._scene.variables.of(element)}.{entry.name}.{call_of(function)}`"
+        return ""
 
     def _adding(self, collection: SymbolEntry) -> Creation | None:
         """What adds to a collection; None where nothing does."""
