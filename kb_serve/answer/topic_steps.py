@@ -72,7 +72,8 @@ class Steps:
         yield from self._functions()
         yield from made_by_subscript(self._names, self._reader)
         is_made = self._is_made()
-        for part in (self._make, self._there) if is_made else (self._there, self._make):
+        makes_first = is_made or self._is_on_made()
+        for part in (self._make, self._there) if makes_first else (self._there, self._make):
             yield from part()
         is_cached = POINT_CACHE in self._scene.shown
         has_its_title = any(map(self._has_title, self._classes[:1]))
@@ -91,7 +92,12 @@ class Steps:
         named = self._with_kinds(named)
         if not titled and (explained := self._explained()) and not set(named[:1]) & self._names.explained:
             named = explained
-        if self._creations and self._creations.keys().isdisjoint(named):
+        # What only has settings is made by what is called so and is of a kind that is made.
+        made = self._names.of_kind & self._creations.keys()
+        if made and self._creations.keys().isdisjoint(named[:1]):
+            named = [*(path for path in self._names.classes if path in made), *named]
+            named = list(dict.fromkeys(named))
+        elif self._creations and self._creations.keys().isdisjoint(named):
             named = []
         called = tuple(path.removeprefix(TYPES) for path in named if self._is_the_topic(path))
         return [path for path in named if not self._is_anothers(path, called)] or list(self._names.classes)
@@ -155,6 +161,13 @@ class Steps:
         return any(path in self._creations for path in self._classes[:1]) or any(
             map(self._has_modifier, self._classes)
         )
+
+    def _is_on_made(self) -> bool:
+        """Whether the topic's main class is reached through something that its steps make."""
+        records = [self._reader.symbol(path) for path in self._classes if path in self._creations]
+        makers = [record.reached for record in records if record and record.reached]
+        mains = [self._reader.symbol(path) for path in self._classes[:1]]
+        return any(main.reached.startswith(f"{maker}.") for main in mains if main for maker in makers)
 
     def _functions(self) -> Iterator[str]:
         """Functions that every thing has and that are called as the topic is: ``keyframe_insert``."""
@@ -226,6 +239,7 @@ class Steps:
         """The topic's settings that are reached without being made: ``RenderSettings``."""
         return self._reached.steps(
             (path for path in self._classes if path not in self._creations and self._counts(path)),
+            {*self._classes[:1], *self._names.explained},
             is_made=self._is_made(),
         )
 

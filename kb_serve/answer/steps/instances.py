@@ -107,9 +107,9 @@ class Instances:
     def _reached(self, cls: str) -> Ready | None:
         """The expression by which scripts mostly reach an instance, where all on its way is there or can be filled."""
         symbol = self._reader.symbol(cls)
-        if symbol is None or not symbol.reached or "[" in symbol.reached or "(" in symbol.reached:
+        if symbol is None or not symbol.reached or "(" in symbol.reached:
             return None
-        ready = self._scene.pointers.reach(held(symbol.reached))
+        ready = self._scene.pointers.reach(held(symbol.reached), adds=False)
         if ready is not None:
             self._scene.variables.add(cls, ready.expression)
         return ready

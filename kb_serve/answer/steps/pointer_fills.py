@@ -45,6 +45,7 @@ class PointerFills:
         self._filled: set[str] = set()
         self._chosen: dict[str, str] = {}  # setting by whose value something is made → what it has made last
         self._called: set[str] = set()
+        self._whole: set[str] = set()  # what an operator made with all that a new one has
 
     def steps(self, pointer: Symbol, above: str) -> list[str]:
         """The step that fills a pointer of ``above``; none if it is there or filled."""
@@ -62,21 +63,24 @@ class PointerFills:
         self._called.update(left)
         return [f"`{call}`" for call in left]
 
-    def reach(self, expression: str) -> Ready | None:
-        """An expression, and what fills pointers on its way that are None on new things; None where one stays so."""
+    def reach(self, expression: str, *, adds: bool = True) -> Ready | None:
+        """An expression, and what fills pointers on its way that are None on new things; None where one stays so.
+
+        ``adds``: whether an operator may add an element that is on its way.
+        """
         before = self._state()
         restore = (self._obj.restoring(), self._variables.restoring())
-        ready = self._reach(expression)
+        ready = self._reach(expression, adds=adds)
         if ready is None:  # nothing is told
-            self._filled, self._chosen, self._called = before
+            self._filled, self._chosen, self._called, self._whole = before
             for undo in restore:
                 undo()
         return ready
 
-    def _state(self) -> tuple[set[str], dict[str, str], set[str]]:
-        return set(self._filled), dict(self._chosen), set(self._called)
+    def _state(self) -> tuple[set[str], dict[str, str], set[str], set[str]]:
+        return set(self._filled), dict(self._chosen), set(self._called), set(self._whole)
 
-    def _reach(self, expression: str) -> Ready | None:
+    def _reach(self, expression: str, *, adds: bool) -> Ready | None:
         steps: list[str] = []
         above, *names = _PARTS.split(expression)
         owner = class_called(above) or self._variables.class_of(above)
@@ -87,7 +91,7 @@ class PointerFills:
                 continue
             entry = self._reader.member([one.path for one in self._reader.lineage(owner)], name)
             if is_element:
-                added = self._adding(entry) if entry else None
+                added = [] if above in self._whole else self._adding(entry) if entry and adds else None
                 if entry is None or added is None:
                     return None
                 steps += added
@@ -121,6 +125,7 @@ class PointerFills:
             return Ready([_step(calls, expression)] if calls else [], expression)
         if above == OBJ and (calls := self._obj.filling(pointer.flagged(FILLED_ON))):
             self._filled.add(expression)
+            self._whole |= {expression} if len(calls) > 1 else set()
             return Ready([_step(calls, expression)], expression)
         target = f"{TYPES}{pointer.target}"
         if there := self._variables.there(target):

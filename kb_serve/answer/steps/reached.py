@@ -9,7 +9,7 @@ from kb_serve.answer.steps.members import settings_of
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from kb_serve.answer.steps.new_scene import NewScene
 
@@ -43,17 +43,17 @@ class ReachedSettings:
         self._reader = scene.reader
         self.waiting: list[str] = []
 
-    def steps(self, classes: Iterable[str], *, is_made: bool) -> Iterator[str]:
+    def steps(self, classes: Iterable[str], main: Collection[str], *, is_made: bool) -> Iterator[str]:
         """The steps that set the first of some classes which are there and have not been shown.
 
-        ``is_made``: whether the topic is about something that is made.
+        ``main``: those that the topic is surely about; ``is_made``: whether it is about something that is made.
         """
         left = _MOST
         for cls in classes:
             expression = self._expression(cls) if left and cls not in self._scene.shown else ""
             settings = settings_of(cls, self._reader) if expression else ""
-            # What is made is not looked for in an element of something else.
-            if not settings or (is_made and "[" in expression):
+            # An element of something else is made for what the topic is about, if nothing else is made.
+            if not settings or ("[" in expression and (is_made or cls not in main)):
                 continue
             told = f"(`{cls.removeprefix(TYPES)}`): {settings}"
             ready = self._scene.pointers.reach(held(expression))

@@ -45,6 +45,10 @@ class SettingSteps:
             return
         if own := settings_of(cls, self._reader):
             yield f"set on `{variable}`: {own}"
+        # The class that the call makes, where that is one of several below it: a point light for a light.
+        for kind, made in self._reader.creations([one.path for one in self._reader.descendants(cls)]).items():
+            if made.call == creation.call and (of_kind := settings_of(kind, self._reader)):
+                yield f"set on `{variable}` (`{kind.removeprefix(TYPES)}`): {of_kind}"
         entries = self._reader.members(cls).values()
         yield from self._in(cls, variable)
         yield from parts(cls, variable, self._names, self._reader)
