@@ -52,8 +52,9 @@ class SettingSteps:
         entries = self._reader.members(cls).values()
         yield from self._in(cls, variable)
         yield from parts(cls, variable, self._names, self._reader)
-        if calls := [f"`{variable}.{call_of(entry)}`" for entry in self._calls(entries)]:
-            yield "call " + ", ".join(calls)
+        calls = [f"{variable}.{call_of(entry)}" for entry in self._calls(entries)]
+        if calls := [*calls, *self._calls_on_parts(cls, variable)]:
+            yield "call " + ", ".join(f"`{call}`" for call in calls)
         yield from self._below(cls, variable)
 
     def _expression(self, cls: str, creation: Creation) -> str:
@@ -132,7 +133,13 @@ class SettingSteps:
     def _with_it(self, collection: SymbolEntry) -> str:
         """What is then called on what a new element has: strokes are added to the drawing of a frame."""
         element = f"{TYPES}{collection.target}"
-        for entry in self._reader.members(element).values():
+        calls = self._calls_on_parts(element, self._scene.variables.of(element))
+        return f", then `{calls[0]}`" if calls else ""
+
+    def _calls_on_parts(self, cls: str, variable: str) -> list[str]:
+        """The main call that adds to each of the things that a new instance has, and that are made with it alone."""
+        calls: list[str] = []
+        for entry in self._reader.members(cls).values():
             target = f"{TYPES}{entry.target}"
             pointer = (
                 self._reader.symbol(entry.path) if entry.type == "pointer" and self._belongs(target) else None
@@ -140,9 +147,10 @@ class SettingSteps:
             if pointer is None or empty_when_new(pointer) or self._reader.creations([target]):
                 continue
             functions = (one for one in self._reader.members(target).values() if one.kind == "function")
-            for function in self._reader.heaviest(functions, _LEAST)[:1]:
-                return f", then `{self._scene.variables.of(element)}.{entry.name}.{call_of(function)}`"
-        return ""
+            adding = (one for one in functions if one.name.startswith(_ADDING))
+            main = self._reader.heaviest(adding, _LEAST)[:1]
+            calls += [f"{variable}.{entry.name}.{call_of(function)}" for function in main]
+        return calls
 
     def _adding(self, collection: SymbolEntry) -> Creation | None:
         """What adds to a collection; None where nothing does."""
