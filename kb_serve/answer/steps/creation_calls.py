@@ -52,8 +52,10 @@ class CreationCalls:
         on = ready.expression.partition(".")[0]
         choices = [
             other.choice
-            for other in list(creations.values())[1:]
-            if other.choice and self._scene.obj.is_made_on(on, other)
+            for cls, other in list(creations.items())[1:]
+            if other.choice
+            and self._scene.obj.is_made_on(on, other)
+            and (on != "tree" or self._trees.is_made_for(cls))
         ]
         return [*steps, made + _also([one for one in choices if f"'{one}'" not in creation.call])]
 

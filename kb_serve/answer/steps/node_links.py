@@ -26,6 +26,7 @@ _END = "tree.get_output_node('ALL')"
 _END_NODE = f"{TYPES}ShaderNodeOutputMaterial"  # what that gives
 _GROUP_END = "group_output"
 _IDENTIFIER, _TYPED_BY = "identifier:", "type-by:"  # flags of sockets
+_DISPLACES = "displacement_method = 'DISPLACEMENT'"
 _PRINCIPLED = 'tree.nodes["Principled BSDF"]'
 _BACKGROUND = 'tree.nodes["Background"].inputs["Color"]'
 
@@ -287,6 +288,8 @@ class NodeLinks:
         members = self._reader.members(node)
         if 'outputs["Displacement"]' in members:
             yield f'`tree.links.new({variable}.outputs["Displacement"], {_END}.inputs["Displacement"])`'
+            if material := self._scene.variables.there(f"{TYPES}Material"):
+                yield f"`{material}.{_DISPLACES}` — a new one has 'BUMP', by which nothing is moved"
         elif color := self._socket(node, "outputs", ("rgba",)):
             to = _BACKGROUND if node in OF_WORLDS else f'{_PRINCIPLED}.inputs["Base Color"]'
             yield f"`tree.links.new({variable}.{color}, {to})`"

@@ -90,6 +90,18 @@ def test_a_node_goes_to_the_input_that_is_called_as_what_it_gives(reader: BaseRe
     )
 
 
+def test_a_material_moves_what_its_nodes_displace(reader: BaseReader) -> None:
+    told = steps(reader, "displacement", "ShaderNodeDisplacement", "CompositorNodeDisplace")
+    assert "`material.displacement_method = 'DISPLACEMENT'`" in told[-1]
+    assert _done_in_blender(told)
+    assert "CompositorNodeDisplace" not in " ".join(told)  # no tree of a material takes it
+
+
+def test_what_a_step_has_made_keeps_its_name(reader: BaseReader) -> None:
+    told = " ".join(steps(reader, "output", "ShaderNodeOutputMaterial"))
+    assert '`output_material = tree.nodes.new("ShaderNodeOutputMaterial")`' in told
+
+
 def test_of_many_nodes_one_that_stands_alone_is_the_example(reader: BaseReader) -> None:
     ends = [f"GeometryNodeSimulation{end}" for end in ("Output", "Input")]
     alone = [f"GeometryNode{name}" for name in ("InstanceOnPoints", "CurveToMesh", "JoinGeometry")]
