@@ -31,7 +31,7 @@ _BROWSER = frozenset({"filemode", "display_type", "sort_method", "hide_props_reg
 
 def arguments(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
     """What an operator or function takes, without what is told already as ``asked`` for, and what it returns."""
-    aside = _of_file_browser(symbol)
+    aside = of_file_browser(symbol)
     if symbol.parameters:
         left_out = {*aside, *asked.told}
         lines = argument_lines(symbol, [item for item in symbol.parameters if item.name not in left_out])
@@ -76,7 +76,7 @@ def argument_lines(symbol: Symbol, parameters: Iterable[Parameter]) -> list[str]
 
 def operator_call(operator: Symbol) -> str:
     """An operator's call, without what only the file browser reads."""
-    return _call_without(operator.signature, _of_file_browser(operator))
+    return _call_without(operator.signature, of_file_browser(operator))
 
 
 def _call_without(signature: str, names: Collection[str]) -> str:
@@ -169,7 +169,7 @@ def _taken(symbol: Symbol, parameter: Parameter) -> str:
 
 def _has_list(symbol: Symbol, parameter: Parameter) -> bool:
     """Whether the values of an argument are listed one by one."""
-    items = () if parameter.name in _of_file_browser(symbol) else parameter.enum_items
+    items = () if parameter.name in of_file_browser(symbol) else parameter.enum_items
     if len(items) > _MOST_ITEMS:  # icons, which nobody reads through
         return False
     return len(items) > _NAMED_ITEMS or (
@@ -182,7 +182,7 @@ def _kept_in(symbol: Symbol) -> str:
     return " a dict with these keys" if symbol.owner == _BMESH_OPERATORS else ""
 
 
-def _of_file_browser(symbol: Symbol) -> list[str]:
+def of_file_browser(symbol: Symbol) -> list[str]:
     """The arguments of an operator on files that say which of them its browser shows, and how."""
     names = [parameter.name for parameter in symbol.parameters]
     if symbol.kind != "operator" or _BROWSER_ALWAYS not in names:

@@ -42,6 +42,23 @@ def panel_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
         yield f"while it is off, Blender's panels grey out or hide {', '.join(names[:_MOST_SWITCHED])}{more}"
 
 
+def switches_off(symbol: Symbol, reader: BaseReader) -> Iterator[tuple[Symbol, bool | str]]:
+    """The settings that panels ask for before they let a property be set, or an operator be run, and that new things
+    have otherwise: each with the value that it must get.
+    """
+    for _, rows in groupby(reader.panel_tests(symbol.path), lambda row: row.clause):
+        row, *more = rows
+        gate = None if more or not _contrary(row, reader) else reader.symbol(row.gate)
+        if gate is not None and gate.type == "boolean":
+            yield gate, row.test == TEST_ON
+        elif gate is not None:
+            named = [item.identifier for item in gate.enum_items if repr(item.identifier) in row.test]
+            others = [item.identifier for item in gate.enum_items if item.identifier not in named]
+            fitting = others if row.test.startswith(_NOT) else named
+            if len(fitting) == 1 or (fitting and not row.test.startswith(_NOT)):
+                yield gate, fitting[0]
+
+
 def _joined(clauses: Sequence[Sequence[PanelCondition]], owners: set[str], reader: BaseReader) -> str:
     """Clauses as one condition."""
     told: list[str] = []

@@ -6,9 +6,9 @@ import re
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, terms
+from kb_build.index.analysis import key, terms, topic_key
 from kb_serve.answer.steps.topic_names import TopicNames
-from kb_serve.answer.topic_pages import subtree
+from kb_serve.answer.topic_pages import SHORT_FOR, subtree
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -44,7 +44,9 @@ class TopicMembers:
             else frozenset(self._reader.symbols_of_page(slug)),
             title=key(title),
         )
-        nearness: dict[str, float] = {}
+        if len(terms(title)) > 1 and names.explained:
+            names.of_kind = self._of_kind(slug, title)
+        nearness = dict.fromkeys(names.of_kind, _NEAR)
         for below, depth in subtree(slug, self._reader).items():
             for path in self._reader.symbols_of_page(below):
                 nearness.setdefault(path, _NEAR if depth < 2 else _FAR)
@@ -80,6 +82,12 @@ class TopicMembers:
             return False
         parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
         return bool(parts) and slug.partition("/")[0] not in parts
+
+    def _of_kind(self, slug: str, title: str) -> frozenset[str]:
+        """What the one other page explains that is called so and says that this is a modifier or constraint."""
+        keys = [topic_key(f"{title} {kind}") for kind in SHORT_FOR]
+        slugs = {found for each in keys for _, found in self._reader.by_key(each)} - {slug}
+        return frozenset(self._reader.symbols_of_page(slugs.pop())) if len(slugs) == 1 else frozenset()
 
     @cached_property
     def _classes(self) -> dict[str, frozenset[str]]:

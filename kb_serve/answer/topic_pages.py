@@ -61,7 +61,7 @@ _MAX_WORDS = 4
 _CALLED_SO = 4  # pages
 _CHAPTER = 100  # pages and symbols of what is meant before a single page
 _KINDS = ("modifier", "constraint", "node")  # how titles of pages end
-_SHORT_FOR = _KINDS[:2]  # of these the name alone is used; nodes are mostly called as what else does the same
+SHORT_FOR = _KINDS[:2]  # of these the name alone is used; nodes are mostly called as what else does the same
 
 
 class TopicPages:
@@ -139,7 +139,7 @@ class TopicPages:
             return self._exactly(plain)
         if plain != plain.lower() and self._is_class(plain):
             return ""
-        keys = [topic_key(f"{plain} {kind}") for kind in ("", *_SHORT_FOR)]
+        keys = [topic_key(f"{plain} {kind}") for kind in ("", *SHORT_FOR)]
         self._reader.by_key.load((*keys, key(plain)))
         titled = [{slug for _, slug in self._reader.by_key(title)} for title in keys]
         titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._reader.page_children(slug)}

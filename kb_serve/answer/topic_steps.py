@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import terms
 from kb_build.symbol_lines import operator_needs, refused_nothing
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
@@ -16,17 +17,18 @@ from kb_serve.answer.steps.instances import Instances
 from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.new_scene import NewScene
 from kb_serve.answer.steps.nodes import NODE, NodeSteps
-from kb_serve.answer.steps.operators import POINT_CACHE, runs
+from kb_serve.answer.steps.operators import POINT_CACHE, UNDO, runs
 from kb_serve.answer.steps.own_properties import made_by_subscript
 from kb_serve.answer.steps.places import PlaceSteps
 from kb_serve.answer.steps.reached import ReachedSettings, is_of_interface
-from kb_serve.answer.steps.settings import SettingSteps
+from kb_serve.answer.steps.settings import OTHERS_ELEMENT, SettingSteps
 from kb_serve.answer.steps.trees import EMBEDDED_TREES, TreeSteps
 from kb_serve.reader import STRUCT, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
+    from kb_build.records import Symbol
     from kb_serve.answer.steps.topic_names import TopicNames
     from kb_serve.reader import BaseReader, Creation
 
@@ -45,7 +47,8 @@ class Steps:
     def __init__(self, reader: BaseReader, names: TopicNames) -> None:
         self._reader = reader
         self._names = names
-        self._creations = reader.creations(list(names.classes))
+        made = reader.creations(list(names.classes))
+        self._creations = {path: one for path, one in made.items() if not self._is_in_nothing(path, one)}
         self._classes = self._main_classes()
         self._scene = NewScene(reader)
         instances = Instances(self._scene, self._tree_of)
@@ -69,11 +72,12 @@ class Steps:
         yield from self._functions()
         yield from made_by_subscript(self._names, self._reader)
         is_made = self._is_made()
-        for part in (self._make, self._there) if is_made else (self._there, self._make):
+        makes_first = is_made or self._is_on_made()
+        for part in (self._make, self._there) if makes_first else (self._there, self._make):
             yield from part()
         is_cached = POINT_CACHE in self._scene.shown
         has_its_title = any(map(self._has_title, self._classes[:1]))
-        yield from runs(self._names, self._reader, is_cached=is_cached, is_made=is_made and has_its_title)
+        yield from runs(self._names, self._scene, is_cached=is_cached, is_made=is_made and has_its_title)
         yield from self._reached.waiting
 
     def _main_classes(self) -> list[str]:
@@ -86,10 +90,37 @@ class Steps:
         if made and (not self._names.explained.isdisjoint(made) or self._are_heavy(titled, named or titled)):
             named = sorted(titled, key=lambda path: path not in self._names.explained)
         named = self._with_kinds(named)
-        if self._creations and self._creations.keys().isdisjoint(named):
+        if not titled and (explained := self._explained()) and not set(named[:1]) & self._names.explained:
+            named = explained
+        # What only has settings is made by what is called so and is of a kind that is made.
+        made = self._names.of_kind & self._creations.keys()
+        if made and self._creations.keys().isdisjoint(named[:1]):
+            named = [*(path for path in self._names.classes if path in made), *named]
+            named = list(dict.fromkeys(named))
+        elif self._creations and self._creations.keys().isdisjoint(named):
             named = []
         called = tuple(path.removeprefix(TYPES) for path in named if self._is_the_topic(path))
         return [path for path in named if not self._is_anothers(path, called)] or list(self._names.classes)
+
+    def _explained(self) -> list[str]:
+        """What the page explains and can be made, if its name says something of the title: what a page on one kind of
+        strip explains, rather than what else is called image.
+        """
+        title = set(self._names.words[0]) if self._names.words else set[str]()
+        shared = {
+            path: len(title & set(terms(path.removeprefix(TYPES))))
+            for path in self._names.classes
+            if path in self._names.explained and path in self._creations
+        }
+        return sorted((path for path in shared if shared[path]), key=lambda path: -shared[path])
+
+    def _is_in_nothing(self, path: str, creation: Creation) -> bool:
+        """Whether an operator that runs anywhere makes a part of what an element has that somebody must have made: it
+        takes that from the context, and else does nothing.
+        """
+        cls, maker = self._reader.symbol(path), self._reader.symbol(creation.maker)
+        is_anywhere = creation.call.startswith("bpy.ops.") and maker is not None and _needs_nothing(maker)
+        return is_anywhere and cls is not None and OTHERS_ELEMENT.search(cls.reached) is not None
 
     def _with_kinds(self, named: list[str]) -> list[str]:
         """Some classes, and those of the topic that derive from one which is not made for itself."""
@@ -131,10 +162,21 @@ class Steps:
             map(self._has_modifier, self._classes)
         )
 
+    def _is_on_made(self) -> bool:
+        """Whether the topic's main class is reached through something that its steps make."""
+        records = [self._reader.symbol(path) for path in self._classes if path in self._creations]
+        makers = [record.reached for record in records if record and record.reached]
+        mains = [self._reader.symbol(path) for path in self._classes[:1]]
+        return any(main.reached.startswith(f"{maker}.") for main in mains if main for maker in makers)
+
     def _functions(self) -> Iterator[str]:
         """Functions that every thing has and that are called as the topic is: ``keyframe_insert``."""
         paths = [path for name in self._names.stems() for path in self._reader.functions_named(name)]
-        entries = (self._reader.entry(path) for path in paths if path.startswith(f"{STRUCT}."))
+        entries = (
+            self._reader.entry(path)
+            for path in paths
+            if path.startswith(f"{STRUCT}.") and UNDO.isdisjoint(path.rpartition(".")[2].split("_"))
+        )
         for entry in self._reader.heaviest(entry for entry in entries if entry)[:_FUNCTIONS]:
             yield f"`obj.{call_of(entry)}` — {entry.line.partition(' — ')[2]}"
 
@@ -191,12 +233,13 @@ class Steps:
     def _needs_nothing(self, creation: Creation) -> bool:
         """Whether an operator makes a thing wherever it is called."""
         maker = self._reader.symbol(creation.maker)
-        return maker is not None and refused_nothing(maker) and not operator_needs(maker)
+        return maker is not None and _needs_nothing(maker)
 
     def _there(self) -> Iterator[str]:
         """The topic's settings that are reached without being made: ``RenderSettings``."""
         return self._reached.steps(
             (path for path in self._classes if path not in self._creations and self._counts(path)),
+            {*self._classes[:1], *self._names.explained},
             is_made=self._is_made(),
         )
 
@@ -204,3 +247,7 @@ class Steps:
         """Whether classes weigh enough, together, beside the topic's heaviest."""
         heaviest_one = max(map(self._names.classes.__getitem__, self._classes))
         return self._names.weight_of(paths) >= _LEAST_SHARE * heaviest_one
+
+
+def _needs_nothing(maker: Symbol) -> bool:
+    return refused_nothing(maker) and not operator_needs(maker)

@@ -104,8 +104,13 @@ def _fill(calls: str, pointer: str, names: Names) -> None:
 
 
 def _operate(step: str, names: Names) -> None:
-    """An operator that makes a thing is called, if what it says to need is there; of others ``poll`` is asked."""
+    """An operator that makes a thing is called, if what it says to need is there, and so is one of which nothing is
+    said, as that which changes the mode; of others ``poll`` is asked.
+    """
     code = _CODE.findall(step)[0]
+    if step == f"`{code}`":
+        _run(code, names)
+        return
     runs = eval(code.partition("(")[0], names).poll()  # noqa: S307 - our own answers
     is_told = " (takes " in step or " (not seen " in step
     if " → " in step:

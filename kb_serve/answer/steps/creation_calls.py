@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.steps.made_line import made_line
+from kb_serve.answer.steps.operators import before
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -51,8 +52,10 @@ class CreationCalls:
         on = ready.expression.partition(".")[0]
         choices = [
             other.choice
-            for other in list(creations.values())[1:]
-            if other.choice and self._scene.obj.is_made_on(on, other)
+            for cls, other in list(creations.items())[1:]
+            if other.choice
+            and self._scene.obj.is_made_on(on, other)
+            and (on != "tree" or self._trees.is_made_for(cls))
         ]
         return [*steps, made + _also([one for one in choices if f"'{one}'" not in creation.call])]
 
@@ -63,6 +66,8 @@ class CreationCalls:
             made = reader.made_by_call(earlier)
             if made and made not in self._scene.shown:
                 yield made_line(made, earlier, self._scene)
+        if call.startswith("bpy.ops.") and (operator := reader.symbol(call.partition("(")[0])):
+            yield from before(operator, self._scene)
 
 
 def _also(choices: list[str]) -> str:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING
 from kb_build.symbol_lines import held
 from kb_serve.answer.steps.pointer_fills import Ready
 from kb_serve.answer.steps.variable_names import MESH, OBJECT, TREE
-from kb_serve.answer.steps.working_object import ACTIVATE
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -24,9 +23,7 @@ if TYPE_CHECKING:
 
 _DEEPEST = 6  # holders of holders
 _EDIT_BONES = "edit_bones"
-_TO_EDIT_MODE = (
-    f"`{ACTIVATE}`; `bpy.ops.object.mode_set(mode='EDIT')` — edit bones are there in Edit Mode only"
-)
+_EDIT_MODE = "EDIT"
 
 
 class Instances:
@@ -62,8 +59,9 @@ class Instances:
         if on is None:
             return None
         steps += on.steps
-        if holder == _EDIT_BONES:
-            steps.append(_TO_EDIT_MODE)
+        if holder == _EDIT_BONES and (codes := self._scene.obj.to_mode(_EDIT_MODE)):
+            entered = "; ".join(f"`{code}`" for code in codes)
+            steps.append(f"{entered} — edit bones are there in Edit Mode only")
         for name, cls in self._scene.makers.things_given(creation):
             if (given := self._of(cls, depth + 1)) is not None:
                 steps += given.steps
@@ -109,9 +107,9 @@ class Instances:
     def _reached(self, cls: str) -> Ready | None:
         """The expression by which scripts mostly reach an instance, where all on its way is there or can be filled."""
         symbol = self._reader.symbol(cls)
-        if symbol is None or not symbol.reached or "[" in symbol.reached or "(" in symbol.reached:
+        if symbol is None or not symbol.reached or "(" in symbol.reached:
             return None
-        ready = self._scene.pointers.reach(held(symbol.reached))
+        ready = self._scene.pointers.reach(held(symbol.reached), adds=False)
         if ready is not None:
             self._scene.variables.add(cls, ready.expression)
         return ready

@@ -24,4 +24,4 @@ class NewScene:
         self.makers = Makers(reader)
         self.variables = VariableNames(reader, self.kinds)
         self.obj = WorkingObject(reader, self.kinds, self.makers, self.variables)
-        self.pointers = PointerFills(reader, self.obj)
+        self.pointers = PointerFills(reader, self.obj, self.variables)

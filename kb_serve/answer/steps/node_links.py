@@ -26,6 +26,7 @@ _END = "tree.get_output_node('ALL')"
 _END_NODE = f"{TYPES}ShaderNodeOutputMaterial"  # what that gives
 _GROUP_END = "group_output"
 _IDENTIFIER, _TYPED_BY = "identifier:", "type-by:"  # flags of sockets
+_DISPLACES = "displacement_method = 'DISPLACEMENT'"
 _PRINCIPLED = 'tree.nodes["Principled BSDF"]'
 _BACKGROUND = 'tree.nodes["Background"].inputs["Color"]'
 
@@ -55,6 +56,21 @@ _GROUPS = {
         ('render_layers = tree.nodes.new("CompositorNodeRLayers")', 'render_layers.outputs["Image"]'),
     ),
 }  # fmt: skip
+
+
+# Kind of sockets → the type of the attribute that keeps what they give: the first is a new node's own.
+_STORED = {
+    "value": "FLOAT",
+    "int": "INT",
+    "boolean": "BOOLEAN",
+    "vector": "FLOAT_VECTOR",
+    "rgba": "FLOAT_COLOR",
+    "rotation": "QUATERNION",
+    "matrix": "FLOAT4X4",
+}
+_SOCKETS = {"value": "Float", "rgba": "Color", "boolean": "Bool"}  # kinds that their classes call otherwise
+_GRID = "Grid"  # in the names of what takes or gives one
+_STORE = f"{TYPES}GeometryNodeStoreNamedAttribute"
 
 
 class NodeLinks:
@@ -102,6 +118,10 @@ class NodeLinks:
             yield from self._to_group(tree, node, variable, own_end)
             return
         yield from self._ending(tree, group)
+        if not taken and group.kind == "geometry" and (own := self._socket(node, "outputs", ())):
+            yield from into
+            yield from self._beside(node, f"{variable}.{own}", own, source)
+            return
         if taken or by_items:
             yield from into
         if taken or source:
@@ -189,8 +209,37 @@ class NodeLinks:
             yield '`group_input = tree.nodes.new("NodeGroupInput")`'
             yield f"`tree.links.new(group_input.outputs[0], {variable}.{own})`"
 
+    def _beside(self, node: str, value: str, own: str, source: str) -> Iterator[str]:
+        """The steps that give out what a node computes beside the geometry: in an attribute of it, where it may be in
+        one, else in an output of its own.
+        """
+        members = self._reader.members(node)
+        kind = members[own].type if own in members else ""
+        # No attribute keeps a grid, whatever kind its values are of.
+        if kind not in _STORED or any(_GRID in name for name in (node, *members)):
+            yield f"`tree.links.new({source}, {_GROUP_END}.inputs[0])`"
+            if steps := [*self._interface(node, own, "OUTPUT")]:
+                yield from steps
+                yield f"`tree.links.new({value}, {_GROUP_END}.inputs[1])`"
+            return
+        yield f'`store = tree.nodes.new("{_STORE.removeprefix(TYPES)}")`'
+        if _STORED[kind] != next(iter(_STORED.values())):
+            yield f"`store.data_type = '{_STORED[kind]}'`"
+        yield '`store.inputs["Name"].default_value = "value"`'
+        yield f'`tree.links.new({source}, store.inputs["Geometry"])`'
+        yield f'`tree.links.new({value}, store.inputs["Value"])`'
+        yield f'`tree.links.new(store.outputs["Geometry"], {_GROUP_END}.inputs[0])`'
+
     def _to_group(self, tree: str, node: str, variable: str, own: str) -> Iterator[str]:
-        """The steps that give out what a node puts together: a group has an output of its kind."""
+        """The steps that give out what a node puts together: a group has an output of its kind, behind that of the
+        geometry, which comes first in a group that a modifier uses.
+        """
+        group = _GROUPS.get(tree)
+        if group is not None and group.kind == "geometry":
+            source = yield from self._beginning(tree, group)
+            yield from self._ending(tree, group)
+            yield from self._beside(node, f"{variable}.{own}", own, source)
+            return
         yield from self._interface(node, own, "OUTPUT")
         if tree not in self._ended:
             self._ended.add(tree)
@@ -200,7 +249,7 @@ class NodeLinks:
     def _interface(self, node: str, socket: str, side: str) -> Iterator[str]:
         """The step that makes a group's socket of the kind that a node's is of."""
         entry = self._reader.members(node).get(socket)
-        cls = f"NodeSocket{entry.type.title()}" if entry else ""
+        cls = f"NodeSocket{_SOCKETS.get(entry.type, entry.type.title())}" if entry else ""
         if entry and self._reader.entry(f"{TYPES}{cls}"):
             name = entry.label or entry.type.title()
             yield f"`tree.interface.new_socket(\"{name}\", in_out='{side}', socket_type='{cls}')`"
@@ -239,6 +288,8 @@ class NodeLinks:
         members = self._reader.members(node)
         if 'outputs["Displacement"]' in members:
             yield f'`tree.links.new({variable}.outputs["Displacement"], {_END}.inputs["Displacement"])`'
+            if material := self._scene.variables.there(f"{TYPES}Material"):
+                yield f"`{material}.{_DISPLACES}` — a new one has 'BUMP', by which nothing is moved"
         elif color := self._socket(node, "outputs", ("rgba",)):
             to = _BACKGROUND if node in OF_WORLDS else f'{_PRINCIPLED}.inputs["Base Color"]'
             yield f"`tree.links.new({variable}.{color}, {to})`"

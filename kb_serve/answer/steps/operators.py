@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import literal, operator_areas, operator_needs, refused_nothing
-from kb_serve.answer.panel_lines import panel_lines
+from kb_build.symbol_lines import held, literal, operator_areas, operator_needs, refused_nothing
+from kb_serve.answer.arguments import of_file_browser
+from kb_serve.answer.panel_lines import panel_lines, switches_off
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.records import Symbol
+    from kb_serve.answer.steps.new_scene import NewScene
     from kb_serve.answer.steps.topic_names import TopicNames
     from kb_serve.reader import BaseReader
 
@@ -21,17 +24,34 @@ _MOST = 4
 _ARGUMENTS = 3  # of an operator's call
 _USED_ELSEWHERE = 3  # weight of an operator that has not the topic's module
 _PATH = "data_path"
+_FILE = "filepath"
+_ASKS = "check_existing"  # before a file is written, in a window
+_ADDED = re.compile(r"what (`.*`) adds")  # what must have been called before an operator runs
 _BAKE = "bake"  # what runs what has been set, wherever it is
-_MAKE_OR_REMOVE = frozenset(
+# What takes away what steps have made and set.
+UNDO = frozenset(
+    {
+        *(
+            "remove",
+            "delete",
+            "free",
+            "clear",
+            "separate",
+            "dissolve",
+            "unlink",
+            "unassign",
+            "unpack",
+            "purge",
+        ),
+        "deselect",
+    }
+)
+_MAKE_OR_REMOVE = UNDO | frozenset(
     {
         "add",
         "new",
         "create",
         "insert",
-        "remove",
-        "delete",
-        "free",
-        "clear",
         "preset",
         "copy",
         "paste",
@@ -44,25 +64,56 @@ _MAKE_OR_REMOVE = frozenset(
 )
 
 
-def runs(names: TopicNames, reader: BaseReader, *, is_cached: bool, is_made: bool) -> Iterator[str]:
-    """The topic's operators that neither make nor remove anything; before them what bakes the cache, if it has one.
+def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) -> Iterator[str]:
+    """The topic's operators that neither make nor remove anything, each after what it needs; before them what bakes
+    the cache, if it has one. Those that ran nowhere without a window are no steps of a script.
 
     Where a thing that is called as the topic ``is_made``, those are left out that do something else: an armature
     modifier needs none of an armature's operators.
     """
+    reader = scene.reader
     weights = reader.weights(list(names.operators))
     operators = [
         path
         for path in names.operators
         if _runs(path)
-        and not _wants_a_path(reader.symbol(path))
+        and (symbol := reader.symbol(path)) is not None
+        and not (_never_ran(symbol) or _wants_a_path(symbol))
         and weights.get(path, 0) >= (1 if path.split(".")[2] in names.keys else _USED_ELSEWHERE)
         and not (is_made and _is_beside(path, names, reader))
     ]
     if is_cached:
         operators = [*_bakes(reader), *operators]
     for path in operators[:_MOST]:
-        yield _line(path, reader)
+        if symbol := reader.symbol(path):
+            yield from before(symbol, scene)
+            yield _line(symbol, reader)
+
+
+def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
+    """The steps after which an operator runs, as far as they are known and have not been told."""
+    for added in _ADDED.findall(operator_needs(operator)):
+        calls = re.findall(r"`([^`]*)`", added)
+        if all(_is_taken(call, scene) for call in calls):
+            yield from scene.pointers.calls(
+                call for call in calls if scene.reader.made_by_call(call) not in scene.shown
+            )
+    if ready := scene.obj.ready_for(operator):
+        yield "; ".join(f"`{code}`" for code in ready)
+    for gate, value in switches_off(operator, scene.reader):
+        owner = scene.reader.symbol(gate.owner)
+        reached = scene.variables.there(gate.owner) or (owner.reached if owner else "")
+        within = scene.pointers.reach(held(scene.variables.within(reached))) if reached else None
+        if within is not None:
+            yield from within.steps
+            yield from scene.pointers.calls([f"{within.expression}.{gate.name} = {value!r}"])
+
+
+def _is_taken(call: str, scene: NewScene) -> bool:
+    """Whether the object is of a type that takes what a call makes on it."""
+    cls = scene.reader.made_by_call(call)
+    creation = scene.reader.creations([cls]).get(cls) if cls else None
+    return creation is None or scene.obj.is_made_on(call.partition(".")[0], creation)
 
 
 def _is_beside(path: str, names: TopicNames, reader: BaseReader) -> bool:
@@ -98,10 +149,9 @@ def _runs(path: str) -> bool:
     return _MAKE_OR_REMOVE.isdisjoint(path.rpartition(".")[2].split("_"))
 
 
-def _wants_a_path(operator: Symbol | None) -> bool:
+def _wants_a_path(operator: Symbol) -> bool:
     """Whether an operator works on what a path in a string names, and on nothing where none is given."""
-    parameters = operator.parameters if operator else ()
-    return any(parameter.name == _PATH and not parameter.default for parameter in parameters)
+    return any(parameter.name == _PATH and not parameter.default for parameter in operator.parameters)
 
 
 def _bakes(reader: BaseReader) -> Iterator[str]:
@@ -113,18 +163,22 @@ def _bakes(reader: BaseReader) -> Iterator[str]:
         yield from (entry.path for entry in reader.heaviest(operators)[:1])
 
 
-def _line(path: str, reader: BaseReader) -> str:
-    """An operator's call with its first arguments, and what it does."""
-    symbol = reader.symbol(path)
-    given = [p for p in symbol.parameters if p.default is not None] if symbol else []
-    arguments = [f"{p.name}={literal(p.default)}" for p in given[:_ARGUMENTS]]
-    left = len(symbol.parameters) - len(arguments) if symbol else 0
-    entry = reader.entry(path)
+def _line(operator: Symbol, reader: BaseReader) -> str:
+    """An operator's call with its first arguments, and what it does: of one on files the file, and nothing that only
+    the file browser reads.
+    """
+    aside = [*of_file_browser(operator), _ASKS]
+    names = {parameter.name for parameter in operator.parameters}
+    files = [f"{_FILE}={_FILE}"] if len(aside) > 1 and _FILE in names else []
+    given = [p for p in operator.parameters if p.default is not None and p.name not in aside]
+    arguments = [*files, *(f"{p.name}={literal(p.default)}" for p in given)][:_ARGUMENTS]
+    left = len(names.difference(aside)) - len(arguments)
+    entry = reader.entry(operator.path)
     said = entry.line.partition(" — ")[2] if entry else ""
     more = f" and {left} more" if left else ""
-    needed = asked(symbol, reader) if symbol else ""
+    needed = asked(operator, reader)
     return (
-        f"`{path}({', '.join(arguments)})`{more}"
+        f"`{operator.path}({', '.join(arguments)})`{more}"
         + (f" — {said}" if said else "")
         + (f" ({needed})" if needed else "")
     )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.steps.variable_names import OBJ, OBJECT, TREE
@@ -55,7 +56,10 @@ class PlaceSteps:
             if ready is not None and variable != ready.expression:
                 self._scene.shown.add(owner)
                 yield from ready.steps
-                yield f"`{ready.expression}.{pointer.name} = {variable}`"
+                if not any(
+                    re.search(rf"[(,] ?{variable}[,)]", step) for step in ready.steps[-1:]
+                ):  # given already
+                    yield f"`{ready.expression}.{pointer.name} = {variable}`"
                 return
 
     def _is_on_object(self, cls: str) -> bool:

@@ -5,18 +5,22 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.records import FILLED_ON
 from kb_build.symbol_lines import empty_when_new, fillers
-from kb_serve.answer.steps.variable_names import class_called
+from kb_serve.answer.steps.variable_names import OBJ, OBJECT, class_called
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from kb_build.records import Symbol
+    from kb_serve.answer.steps.variable_names import VariableNames
     from kb_serve.answer.steps.working_object import WorkingObject
-    from kb_serve.reader import BaseReader
+    from kb_serve.reader import BaseReader, SymbolEntry
 
 _FIRST_WORD = re.compile(r"^(?!bpy\b|obj\b|scene\b)[a-z_]+\.(?=\w+(?: = |\())")
+_PARTS = re.compile(r"\.(?![^\[]*\])")  # between names, and not in a key
+_DATA = "data"
 
 
 class Ready(NamedTuple):
@@ -34,39 +38,116 @@ def stays_empty(pointer: Symbol) -> bool:
 class PointerFills:
     """The pointers that one list of steps fills."""
 
-    def __init__(self, reader: BaseReader, obj: WorkingObject) -> None:
+    def __init__(self, reader: BaseReader, obj: WorkingObject, variables: VariableNames) -> None:
         self._reader = reader
         self._obj = obj
+        self._variables = variables
         self._filled: set[str] = set()
-        self._chosen: set[str] = set()  # settings by whose value something is made
+        self._chosen: dict[str, str] = {}  # setting by whose value something is made → what it has made last
+        self._called: set[str] = set()
+        self._whole: set[str] = set()  # what an operator made with all that a new one has
 
     def steps(self, pointer: Symbol, above: str) -> list[str]:
         """The step that fills a pointer of ``above``; none if it is there or filled."""
         calls = self._calls(pointer, above)
         # One value of a setting makes one thing, another value the next, in place of the first.
-        choices = {call.partition(" = ")[0] for call in calls if " = " in call}
-        elsewhere = "on another object: " if choices & self._chosen else ""
-        self._chosen |= choices
-        return [elsewhere + _step(calls, f"{above}.{pointer.name}")] if calls else []
+        choices = _choices(calls)
+        elsewhere = "on another object: " if choices & self._chosen.keys() else ""
+        expression = f"{above}.{pointer.name}"
+        self._chosen |= dict.fromkeys(choices, expression)
+        return [elsewhere + _step(calls, expression)] if calls else []
 
-    def reach(self, expression: str) -> Ready | None:
-        """An expression, and what fills pointers on its way that are None on new things; None where one stays so."""
+    def calls(self, calls: Iterable[str]) -> list[str]:
+        """The steps that make some calls, of those that no step has made."""
+        left = [call for call in calls if call not in self._called]
+        self._called.update(left)
+        return [f"`{call}`" for call in left]
+
+    def reach(self, expression: str, *, adds: bool = True) -> Ready | None:
+        """An expression, and what fills pointers on its way that are None on new things; None where one stays so.
+
+        ``adds``: whether an operator may add an element that is on its way.
+        """
+        before = self._state()
+        restore = (self._obj.restoring(), self._variables.restoring())
+        ready = self._reach(expression, adds=adds)
+        if ready is None:  # nothing is told
+            self._filled, self._chosen, self._called, self._whole = before
+            for undo in restore:
+                undo()
+        return ready
+
+    def _state(self) -> tuple[set[str], dict[str, str], set[str], set[str]]:
+        return set(self._filled), dict(self._chosen), set(self._called), set(self._whole)
+
+    def _reach(self, expression: str, *, adds: bool) -> Ready | None:
         steps: list[str] = []
-        before = set(self._filled), set(self._chosen)
-        above, *names = expression.split(".")
-        owner = class_called(above)
-        for name in names:
+        above, *names = _PARTS.split(expression)
+        owner = class_called(above) or self._variables.class_of(above)
+        for place, part in enumerate(names):
+            name, is_element, _ = part.partition("[")
+            if (owner, name) == (OBJECT, _DATA):  # an empty one alone has none, and no step makes that
+                above, owner = f"{above}.{name}", self._obj.data_class()
+                continue
             entry = self._reader.member([one.path for one in self._reader.lineage(owner)], name)
-            pointer = self._reader.symbol(entry.path) if entry and entry.type == "pointer" else None
-            if pointer is None:
-                break  # of what a subclass has nothing is known here
-            if stays_empty(pointer):
-                self._filled, self._chosen = before  # nothing is told
-                return None
-            if calls := self._calls(pointer, above):
-                steps.append(_step(calls, f"{above}.{name}"))
-            above, owner = f"{above}.{name}", f"{TYPES}{pointer.target}"
-        return Ready(steps, expression)
+            if is_element:
+                added = [] if above in self._whole else self._adding(entry) if entry and adds else None
+                if entry is None or added is None:
+                    return None
+                steps += added
+            elif entry is None or entry.type not in {"pointer", "collection"}:
+                # Of what a subclass has nothing is known here; what an object's own data lacks it lacks.
+                rest = ".".join((above, *names[place:]))
+                is_lacking = entry is None and above.endswith(f".{_DATA}")
+                return None if is_lacking or "[" in rest or "(" in rest else Ready(steps, rest)
+            elif entry.type == "collection":
+                above, owner = f"{above}.{part}", f"{TYPES}{entry.collection}"
+                continue
+            elif pointer := self._reader.symbol(entry.path):
+                filled = self._filling(pointer, above)
+                if filled is None:
+                    return None
+                steps += filled.steps
+                above, owner = filled.expression, f"{TYPES}{pointer.target}"
+                continue
+            above, owner = f"{above}.{part}", f"{TYPES}{entry.target}"
+        return Ready(steps, above)
+
+    def _filling(self, pointer: Symbol, above: str) -> Ready | None:
+        """What a pointer leads to, and what fills it where it is None on new things; None where it stays so."""
+        expression = f"{above}.{pointer.name}"
+        own = {_FIRST_WORD.sub(f"{above}.", call) for call in fillers(pointer)}
+        if any(self._chosen.get(choice, expression) != expression for choice in _choices(own)):
+            return None  # another value has been chosen
+        if not stays_empty(pointer) or expression in self._filled:
+            calls = self._calls(pointer, above)
+            self._chosen |= dict.fromkeys(_choices(calls), expression)
+            return Ready([_step(calls, expression)] if calls else [], expression)
+        if above == OBJ and (calls := self._obj.filling(pointer.flagged(FILLED_ON))):
+            self._filled.add(expression)
+            self._whole |= {expression} if len(calls) > 1 else set()
+            return Ready([_step(calls, expression)], expression)
+        target = f"{TYPES}{pointer.target}"
+        if there := self._variables.there(target):
+            return Ready([], there)
+        made = self._reader.creations([target]).get(target)
+        if "readonly" in pointer.flags or made is None or not made.call.startswith("bpy.data."):
+            return None
+        variable = self._variables.of(target)
+        self._variables.add(target, variable)
+        return Ready([f"`{variable} = {made.call}`; `{expression} = {variable}`"], variable)
+
+    def _adding(self, collection: SymbolEntry) -> list[str] | None:
+        """The steps by which an operator adds an element to a collection of the object; None if no such is known."""
+        target = f"{TYPES}{collection.target}"
+        made = self._reader.creations([target]).get(target)
+        if made is None or made.choice or not made.call.startswith("bpy.ops."):
+            return None
+        if made.call in self._called:
+            return []
+        self._called.add(made.call)
+        before = "; ".join(f"`{code}`" for code in self._obj.activation())
+        return [*([before] if before else []), f"`{made.call}` → `{collection.target}`"]
 
     def _calls(self, pointer: Symbol, above: str) -> list[str]:
         expression = f"{above}.{pointer.name}"
@@ -75,8 +156,14 @@ class PointerFills:
             return []
         self._filled.add(expression)
         calls = [_FIRST_WORD.sub(f"{above}.", call) for call in calls]
+        self._called.update(calls)
         needs_active = any(call.startswith("bpy.ops.") for call in calls)
         return [*(self._obj.activation() if needs_active else ()), *calls]
+
+
+def _choices(calls: Iterable[str]) -> set[str]:
+    """The settings that some calls set."""
+    return {call.partition(" = ")[0] for call in calls if " = " in call}
 
 
 def _step(calls: Iterable[str], expression: str) -> str:

@@ -9,7 +9,7 @@ from kb_serve.answer.steps.members import settings_of
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from kb_serve.answer.steps.new_scene import NewScene
 
@@ -43,33 +43,38 @@ class ReachedSettings:
         self._reader = scene.reader
         self.waiting: list[str] = []
 
-    def steps(self, classes: Iterable[str], *, is_made: bool) -> Iterator[str]:
+    def steps(self, classes: Iterable[str], main: Collection[str], *, is_made: bool) -> Iterator[str]:
         """The steps that set the first of some classes which are there and have not been shown.
 
-        ``is_made``: whether the topic is about something that is made.
+        ``main``: those that the topic is surely about; ``is_made``: whether it is about something that is made.
         """
         left = _MOST
         for cls in classes:
             expression = self._expression(cls) if left and cls not in self._scene.shown else ""
             settings = settings_of(cls, self._reader) if expression else ""
-            if not settings:
+            # An element of something else is made for what the topic is about, if nothing else is made.
+            if not settings or ("[" in expression and (is_made or cls not in main)):
                 continue
-            left -= 1
-            self._scene.shown.add(cls)
             told = f"(`{cls.removeprefix(TYPES)}`): {settings}"
             ready = self._scene.pointers.reach(held(expression))
             if ready is None:
-                if not is_made or _UNSEEN not in settings:
+                # An element of a collection is there only if somebody has made it.
+                if "[" not in expression and (not is_made or _UNSEEN not in settings):
                     self.waiting.append(f"set, once it is not None, on `{expression}` {told}")
+                    left -= 1
+                    self._scene.shown.add(cls)
                 continue
+            left -= 1
+            self._scene.shown.add(cls)
             yield from ready.steps
             # The steps' own object need not be the active one.
-            is_objects = expression.startswith("bpy.context.object")
-            yield f"set on `{ready.expression if is_objects else expression}` {told}"
+            is_own = expression.startswith("bpy.context.object") or ready.expression != held(expression)
+            yield f"set on `{ready.expression if is_own else expression}` {told}"
 
     def _expression(self, cls: str) -> str:
         """How the one instance of a class is reached; empty where there is none, or it is the interface's."""
         symbol = self._reader.symbol(cls)
         reached = symbol.reached if symbol else ""
-        # An element of a collection is there only if somebody has made it.
-        return "" if "[" in reached or is_of_interface(reached) else reached
+        # Of a collection is set which element is active, and a new one has none.
+        is_collection = bool(self._reader.collections_of(cls.removeprefix(TYPES)))
+        return "" if is_of_interface(reached) or is_collection else reached

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbol_lines import empty_when_new, mode_needed
 from kb_serve.answer.steps.members import call_of, settings_of
-from kb_serve.answer.steps.operators import POINT_CACHE
+from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
 from kb_serve.answer.steps.pointer_fills import stays_empty
 from kb_serve.reader import TYPES
@@ -22,7 +23,9 @@ if TYPE_CHECKING:
 _LEAST = 1  # weight of a collection or function
 _MEMBERS = 3  # collections, and functions
 _HOLDERS = 4  # pointers of a thing whose settings are shown
-_OTHERS_ELEMENT = re.compile(r"\[.*\].*\.")  # … of what has an element that somebody else must have made
+_ADDING = ("new", "add", "append")  # what functions that add are called
+_LOOK_UP = frozenset({"get", "current", "find"})  # in names of functions that do nothing to a thing
+OTHERS_ELEMENT = re.compile(r"\[.*\].*\.")  # … of what has an element that somebody else must have made
 
 
 class SettingSteps:
@@ -42,13 +45,16 @@ class SettingSteps:
             return
         if own := settings_of(cls, self._reader):
             yield f"set on `{variable}`: {own}"
+        # The class that the call makes, where that is one of several below it: a point light for a light.
+        for kind, made in self._reader.creations([one.path for one in self._reader.descendants(cls)]).items():
+            if made.call == creation.call and (of_kind := settings_of(kind, self._reader)):
+                yield f"set on `{variable}` (`{kind.removeprefix(TYPES)}`): {of_kind}"
         entries = self._reader.members(cls).values()
-        collections = (entry for entry in entries if entry.type == "collection")
-        if items := [self._held(entry, variable) for entry in self._main(collections)]:
-            yield f"in `{variable}`: " + ", ".join(items)
+        yield from self._in(cls, variable)
         yield from parts(cls, variable, self._names, self._reader)
-        if calls := [f"`{variable}.{call_of(entry)}`" for entry in self._calls(entries)]:
-            yield "call " + ", ".join(calls)
+        calls = [f"{variable}.{call_of(entry)}" for entry in self._calls(entries)]
+        if calls := [*calls, *self._calls_on_parts(cls, variable)]:
+            yield "call " + ", ".join(f"`{call}`" for call in calls)
         yield from self._below(cls, variable)
 
     def _expression(self, cls: str, creation: Creation) -> str:
@@ -56,16 +62,49 @@ class SettingSteps:
         symbol = self._reader.symbol(cls) if creation.call.startswith("bpy.ops.") else None
         if symbol is None or not symbol.reached:
             return self._scene.variables.of(cls)
-        return "" if _OTHERS_ELEMENT.search(symbol.reached) else symbol.reached
+        return "" if OTHERS_ELEMENT.search(symbol.reached) else symbol.reached
 
-    def _main(self, entries: Iterator[SymbolEntry]) -> list[SymbolEntry]:
+    def _main(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
         return self._reader.heaviest(entries, _LEAST)[:_MEMBERS]
 
+    def _in(self, cls: str, variable: str) -> Iterator[str]:
+        """The collections of a thing, and what adds to them; last those that are added to in another mode alone."""
+        by_mode: dict[str, list[str]] = {"": []}
+        for entry in self._collections(cls):
+            by_mode.setdefault(self._mode_of(entry), []).append(self._held(entry, variable))
+        for mode, items in by_mode.items():
+            if mode and (steps := self._scene.obj.to_mode(mode)):
+                yield "; ".join(f"`{step}`" for step in steps)
+            if items:
+                yield f"in `{variable}`: " + ", ".join(items)
+
+    def _collections(self, cls: str) -> list[SymbolEntry]:
+        """The main collections of a thing; after those that scripts use most, its own that things are added to."""
+        all_ = [entry for entry in self._reader.members(cls).values() if entry.type == "collection"]
+        main = self._main(all_)
+        own = (entry for entry in all_ if entry.owner == cls and entry not in main and self._added_by(entry))
+        return [*main, *own][:_MEMBERS]
+
+    def _mode_of(self, collection: SymbolEntry) -> str:
+        """The mode of the object in which alone something is added to a collection of its data; empty for any."""
+        if not self._scene.kinds.is_data(collection.owner):
+            return ""
+        made = self._adding(collection)
+        maker = self._reader.symbol(made.maker) if made else None
+        if maker is None or not mode_needed(maker):
+            return ""
+        return next((refusal.mode for refusal in maker.refusals if refusal.mode), "")
+
     def _calls(self, entries: Iterable[SymbolEntry]) -> list[SymbolEntry]:
-        """The functions that do something to a thing. One that only answers with a value is asked once all is done, and
-        may have no answer before (``convex_sweep_test``): it counts where scripts call it.
+        """The functions that do something to a thing, and do not take away what steps have made of it. One that only
+        answers with a value is asked once all is done, and may have no answer before (``convex_sweep_test``): it counts
+        where scripts call it.
         """
-        functions = [entry for entry in entries if entry.kind == "function"]
+        functions = [
+            entry
+            for entry in entries
+            if entry.kind == "function" and (UNDO | _LOOK_UP).isdisjoint(entry.name.split("_"))
+        ]
         uses = self._reader.use_counts([entry.path for entry in functions])
         return self._main(entry for entry in functions if uses.get(entry.path) or not self._answers(entry))
 
@@ -77,12 +116,48 @@ class SettingSteps:
 
     def _held(self, entry: SymbolEntry, variable: str) -> str:
         """A collection of a thing, and the call that adds to it."""
-        target = f"{TYPES}{entry.target}"
-        made = self._reader.creations([target]).get(target)
-        adds = made is not None and made.maker.rpartition(".")[0] == f"{TYPES}{entry.collection}"
-        call = made.call.partition(f".{entry.name}.")[2] if made and adds else ""
-        by = f", by `{variable}.{entry.name}.{call}`" if call else ""
+        call = self._added_by(entry)
+        by = f", by `{variable}.{entry.name}.{call}`{self._with_it(entry)}" if call else ""
         return f"`.{entry.name}` (`{entry.target}`{by})"
+
+    def _added_by(self, collection: SymbolEntry) -> str:
+        """The call that adds to a collection; empty for none."""
+        if made := self._adding(collection):
+            return made.call.partition(f".{collection.name}.")[2]
+        functions = (
+            self._reader.members(f"{TYPES}{collection.collection}").values() if collection.collection else ()
+        )
+        adding = [one for one in functions if one.kind == "function" and one.name.startswith(_ADDING)]
+        return next((call_of(one) for one in self._reader.heaviest(adding)), "")
+
+    def _with_it(self, collection: SymbolEntry) -> str:
+        """What is then called on what a new element has: strokes are added to the drawing of a frame."""
+        element = f"{TYPES}{collection.target}"
+        calls = self._calls_on_parts(element, self._scene.variables.of(element))
+        return f", then `{calls[0]}`" if calls else ""
+
+    def _calls_on_parts(self, cls: str, variable: str) -> list[str]:
+        """The main call that adds to each of the things that a new instance has, and that are made with it alone."""
+        calls: list[str] = []
+        for entry in self._reader.members(cls).values():
+            target = f"{TYPES}{entry.target}"
+            pointer = (
+                self._reader.symbol(entry.path) if entry.type == "pointer" and self._belongs(target) else None
+            )
+            if pointer is None or empty_when_new(pointer) or self._reader.creations([target]):
+                continue
+            functions = (one for one in self._reader.members(target).values() if one.kind == "function")
+            adding = (one for one in functions if one.name.startswith(_ADDING))
+            main = self._reader.heaviest(adding, _LEAST)[:1]
+            calls += [f"{variable}.{entry.name}.{call_of(function)}" for function in main]
+        return calls
+
+    def _adding(self, collection: SymbolEntry) -> Creation | None:
+        """What adds to a collection; None where nothing does."""
+        target = f"{TYPES}{collection.target}"
+        made = self._reader.creations([target]).get(target)
+        adds = made is not None and made.maker.rpartition(".")[0] == f"{TYPES}{collection.collection}"
+        return made if adds else None
 
     def _below(self, cls: str, variable: str) -> Iterator[str]:
         """The settings of what a thing points to, the nearest first."""

@@ -19,7 +19,8 @@ class TopicNames:
     """The classes and operators of a topic, each with a weight, the heaviest first.
 
     ``title`` is the key of its title; ``words``: those of its title, then those of its address. ``explained``: the
-    symbols that its page explains, if there are none below it.
+    symbols that its page explains, if there are none below it. ``of_kind``: those of the page that is called as the
+    topic and says what kind it is, as that of the Line Art Modifier.
     """
 
     keys: frozenset[str]
@@ -28,6 +29,7 @@ class TopicNames:
     classes: dict[str, float] = field(default_factory=dict[str, float])
     operators: dict[str, float] = field(default_factory=dict[str, float])
     title: str = ""
+    of_kind: frozenset[str] = frozenset()
 
     def names(self, name: str) -> bool:
         """Whether a name holds the topic's words."""

@@ -89,6 +89,7 @@ class TreeSteps:
         yield made_line(holder, made.call, self._scene)
         yield from self._places.of(holder)
         variable = self._scene.variables.of(holder)
+        self._scene.variables.add(holder, variable)
         if pointer := self._reader.symbol(f"{holder}.{name}"):
             yield from self._scene.pointers.steps(pointer, variable)
         yield f"`tree = {variable}.{name}`"

@@ -8,6 +8,8 @@ from typing import TYPE_CHECKING
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from kb_serve.answer.steps.object_kinds import ObjectKinds
     from kb_serve.reader import BaseReader
 
@@ -43,10 +45,40 @@ class VariableNames:
         """Notes that an instance is there."""
         self._expressions[cls] = expression
 
+    def restoring(self) -> Callable[[], None]:
+        """What makes undone all that is noted from now on."""
+        before = dict(self._expressions)
+
+        def restore() -> None:
+            self._expressions = before
+
+        return restore
+
     def there(self, cls: str) -> str:
         """The expression for an instance of a class that is there already; empty for none."""
         known = (name for made, name in self._expressions.items() if self._reader.descends(made, cls))
         return next(known, "") or _THERE.get(cls, "")
+
+    def is_made(self, cls: str) -> bool:
+        """Whether a step has made an instance of a class."""
+        return cls in self._expressions
+
+    def class_of(self, expression: str) -> str:
+        """The class of the instance that an expression is noted for; empty for none."""
+        return next((cls for cls, name in self._expressions.items() if name == expression), "")
+
+    def within(self, reached: str) -> str:
+        """An expression over a new scene as one that begins with an instance which is there; else as it is."""
+        for cls, name in self._expressions.items():
+            symbol = self._reader.symbol(cls)
+            if (
+                symbol
+                and symbol.reached
+                and reached.startswith(f"{symbol.reached}.")
+                and "[" in symbol.reached
+            ):
+                return name + reached[len(symbol.reached) :]
+        return reached
 
     def of(self, cls: str) -> str:
         """What a script calls an instance: ``object_data``, or the name's last word; its last two if another is so."""

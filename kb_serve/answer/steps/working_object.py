@@ -6,18 +6,27 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
+from kb_build.symbol_lines import operator_active
 from kb_serve.answer.steps.variable_names import OBJ, OBJECT
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
+    from collections.abc import Callable, Sequence
+
+    from kb_build.records import Symbol
     from kb_serve.answer.steps.makers import Makers
     from kb_serve.answer.steps.object_kinds import ObjectKinds
     from kb_serve.answer.steps.variable_names import VariableNames
     from kb_serve.reader import BaseReader, Creation
 
 ACTIVATE = "bpy.context.view_layer.objects.active = obj"
+_SCENE = f"{TYPES}Scene"
 _OTHER = "other"  # what a second object is called
 _MESH = "MESH"
+_OBJECT_MODE = "OBJECT"
+_UPDATE = "bpy.context.view_layer.update()"
+_BY = " by "
+_ADDED_TYPE = re.compile(r"object\.add\(type='(\w+)'\)")
 _NEW_NAME = re.compile(r'\bnew\("[^"]*"')
 
 
@@ -33,6 +42,7 @@ class WorkingObject:
         self._variables = variables
         self._kind = _MESH
         self._is_active = True
+        self._mode = _OBJECT_MODE
 
     def made_of(self, data: str) -> list[str]:
         """The steps that make an object of new data, given by its class; none for what is no object's data."""
@@ -54,6 +64,53 @@ class WorkingObject:
             return []
         self._is_active = True
         return [ACTIVATE]
+
+    def restoring(self) -> Callable[[], None]:
+        """What makes undone all that happens to it from now on."""
+        before = self._kind, self._is_active, self._mode
+
+        def restore() -> None:
+            self._kind, self._is_active, self._mode = before
+
+        return restore
+
+    def data_class(self) -> str:
+        """The class of its data."""
+        return self._kinds.data_of(self._kind)
+
+    def filling(self, ways: Sequence[str]) -> list[str]:
+        """What gives it something that only objects of some ways have: ``object by object.armature_add()``; nothing if
+        none is known. One of the same type as such an object has it once the view layer is updated.
+        """
+        calls = [call for way in ways for kind, _, call in [way.partition(_BY)] if kind == "object"]
+        if any(f"'{self._kind}'" in call for call in calls):
+            return [_UPDATE]
+        kinds = [kind for kind in (_ADDED_TYPE.fullmatch(call) for call in calls) if kind]
+        if not kinds:
+            return []
+        self._kind, self._is_active, self._mode = kinds[0][1], True, _OBJECT_MODE
+        return [f"bpy.ops.{calls[0]}", "obj = bpy.context.object"]
+
+    def to_mode(self, mode: str) -> list[str]:
+        """What puts it into a mode; nothing where it is in that."""
+        steps = self.activation()
+        if mode != self._mode:
+            self._mode = mode
+            steps.append(f"bpy.ops.object.mode_set(mode='{mode}')")
+        return steps
+
+    def ready_for(self, operator: Symbol) -> list[str]:
+        """What makes it the active object in a mode that an operator runs in; nothing where it is none that the
+        operator takes.
+        """
+        types, modes = operator_active(operator)
+        if (types is None and modes is None) or self._variables.is_made(_SCENE):  # which it is not in
+            return []
+        if types is not None and not types.takes(self._kind):
+            return []
+        if modes is None or modes.takes(self._mode):
+            return self.activation()
+        return self.to_mode(_OBJECT_MODE if modes.is_others else modes.names[0])
 
     def mesh_object(self) -> str:
         """What a mesh object is called."""
@@ -84,4 +141,4 @@ class WorkingObject:
 
     def _replace(self, kind: str) -> None:
         self._variables.add(OBJECT, OBJ)
-        self._kind, self._is_active = kind, False
+        self._kind, self._is_active, self._mode = kind, False, _OBJECT_MODE

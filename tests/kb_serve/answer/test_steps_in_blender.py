@@ -107,7 +107,8 @@ def test_every_node_with_items_gets_one_in_each_of_its_collections(reader: BaseR
             "NodeCombineBundle",
             (
                 'group_input.outputs[0], bundle.inputs["Geometry"]',
-                'bundle.outputs["Bundle"], group_output.inputs[0]',
+                "group_input.outputs[0], group_output.inputs[0]",
+                'bundle.outputs["Bundle"], group_output.inputs[1]',
             ),
         ),
         (
@@ -121,7 +122,8 @@ def test_every_node_with_items_gets_one_in_each_of_its_collections(reader: BaseR
             "NodeClosureOutput",
             (
                 'input.outputs["Geometry"], output.inputs["Geometry"]',
-                'output.outputs["Closure"], group_output.inputs[0]',
+                "group_input.outputs[0], group_output.inputs[0]",
+                'output.outputs["Closure"], group_output.inputs[1]',
             ),
         ),
         (
@@ -130,6 +132,21 @@ def test_every_node_with_items_gets_one_in_each_of_its_collections(reader: BaseR
                 'group_input.outputs[0], input.inputs["Geometry"]',
                 'input.outputs["Element"], output.inputs["Geometry"]',
                 'output.outputs["Generation_0"], group_output.inputs[0]',
+            ),
+        ),
+        (
+            "FunctionNodeCombineMatrix",
+            (
+                'group_input.outputs[0], store.inputs["Geometry"]',
+                'matrix.outputs["Matrix"], store.inputs["Value"]',
+                'store.outputs["Geometry"], group_output.inputs[0]',
+            ),
+        ),
+        (
+            "FunctionNodeFormatString",
+            (
+                "group_input.outputs[0], group_output.inputs[0]",
+                'string.outputs["String"], group_output.inputs[1]',
             ),
         ),
         (

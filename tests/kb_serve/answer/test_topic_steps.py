@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import pytest
-from asking import steps
+from asking import TYPES, steps
 
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.topic_steps import Steps
@@ -88,6 +88,18 @@ def test_a_node_goes_to_the_input_that_is_called_as_what_it_gives(reader: BaseRe
         """displacement.outputs["Displacement"], tree.get_output_node('ALL').inputs["Displacement"])"""
         in said
     )
+
+
+def test_a_material_moves_what_its_nodes_displace(reader: BaseReader) -> None:
+    told = steps(reader, "displacement", "ShaderNodeDisplacement", "CompositorNodeDisplace")
+    assert "`material.displacement_method = 'DISPLACEMENT'`" in told[-1]
+    assert _done_in_blender(told)
+    assert "CompositorNodeDisplace" not in " ".join(told)  # no tree of a material takes it
+
+
+def test_what_a_step_has_made_keeps_its_name(reader: BaseReader) -> None:
+    told = " ".join(steps(reader, "output", "ShaderNodeOutputMaterial"))
+    assert '`output_material = tree.nodes.new("ShaderNodeOutputMaterial")`' in told
 
 
 def test_of_many_nodes_one_that_stands_alone_is_the_example(reader: BaseReader) -> None:
@@ -176,3 +188,147 @@ def test_custom_properties_are_made_by_subscript(reader: BaseReader) -> None:
     )  # they work on what a path names, and on nothing else
     (done,) = do_steps({"custom properties": told})
     assert (done.done, list(done.failed)) == (len(told), [])
+
+
+def _told(reader: BaseReader, names: TopicNames) -> list[str]:
+    return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+
+
+def _done_in_blender(told: list[str]) -> bool:
+    (done,) = do_steps({"told": told})
+    return (done.done, done.left, list(done.failed)) == (len(told), 0, [])
+
+
+def test_an_operator_on_files_is_told_with_the_file(reader: BaseReader) -> None:
+    operators = {"bpy.ops.wm.alembic_export": 2.0, "bpy.ops.wm.alembic_import": 1.0}
+    told = _told(reader, TopicNames(frozenset({"alembic"}), (), operators=operators))
+    assert [line.partition("(")[2].partition(",")[0] for line in told] == ["filepath=filepath"] * 2
+    assert not any(
+        name in line for line in told for name in ("filter_", "check_existing", "hide_props_region")
+    )
+
+
+def test_edit_bones_are_added_in_edit_mode(reader: BaseReader) -> None:
+    told = steps(reader, "armature", "Armature", "Bone")
+    entered = next(place for place, line in enumerate(told) if "mode_set(mode='EDIT')" in line)
+    assert "view_layer.objects.active = obj" in told[entered]
+    assert "`.edit_bones`" in told[entered + 1]
+    assert _done_in_blender(told)
+
+
+def test_an_operator_comes_after_the_mode_that_it_runs_in(reader: BaseReader) -> None:
+    names = TopicNames(frozenset({"mesh"}), (), operators={"bpy.ops.mesh.subdivide": 9.0})
+    entered, run = _told(reader, names)
+    assert entered == "1. `bpy.ops.object.mode_set(mode='EDIT')`"
+    assert "bpy.ops.mesh.subdivide(" in run
+    (done,) = do_steps({"subdivide": [entered, "2. `bpy.ops.mesh.subdivide()`"]})
+    assert not done.failed
+
+
+def test_an_operator_comes_after_what_its_poll_asks_for(reader: BaseReader) -> None:
+    names = TopicNames(frozenset({"sequencer"}), (), operators={"bpy.ops.sequencer.refresh_all": 9.0})
+    told = _told(reader, names)
+    assert told[:2] == [
+        "1. `scene.sequence_editor_create()`",
+        "2. `bpy.context.workspace.sequencer_scene = scene`",
+    ]
+    assert _done_in_blender(told)
+
+
+def test_what_never_ran_without_a_window_is_no_step(reader: BaseReader) -> None:
+    names = TopicNames(frozenset({"sound"}), (), operators={"bpy.ops.sound.pack": 9.0})
+    assert _told(reader, names) == []
+
+
+def test_what_takes_away_what_was_made_is_no_step(reader: BaseReader) -> None:
+    told = " ".join(steps(reader, "meta strip", "MetaStrip", "StripsMeta"))
+    assert "new_meta(" in told
+    assert "separate" not in told
+    assert "`.strips` (`Strip`, by `strip.strips.new_" in told
+    assert "driver_remove" not in " ".join(steps(reader, "drivers", "Driver"))
+
+
+def test_a_setting_that_hides_what_an_operator_does_is_switched_on_before(reader: BaseReader) -> None:
+    told = steps(reader, "stereoscopy", "RenderView")
+    assert told[0] == "1. `scene.render.use_multiview = True`"
+    assert told[-1].partition("`bpy.ops.")[2].startswith("scene.render_view_add()")
+    assert _done_in_blender(told)
+
+
+def test_a_canvas_is_made_and_kept_in_images_before_it_is_baked(reader: BaseReader) -> None:
+    classes = {f"{TYPES}DynamicPaintModifier": 2.0, f"{TYPES}DynamicPaintBrushSettings": 1.0}
+    bake = {"bpy.ops.dpaint.bake": 9.0}
+    words = (frozenset({"dynamic", "paint"}),)
+    told = _told(reader, TopicNames(frozenset({"dynamicpaint"}), words, classes=classes, operators=bake))
+    assert "`bpy.ops.dpaint.type_toggle(type='CANVAS')` makes `modifier.canvas_settings`" in told[-3]
+    assert told[-2].endswith("`modifier.canvas_settings.canvas_surfaces.active.surface_format = 'IMAGE'`")
+    assert "bpy.ops.dpaint.bake()" in told[-1]
+    assert _done_in_blender(told)
+
+
+def test_what_an_operator_only_finds_in_the_context_is_not_made_by_it(reader: BaseReader) -> None:
+    told = steps(reader, "boid", "BoidSettings", "BoidState")
+    assert "state_add" not in " ".join(told)
+    assert told[0].endswith("`bpy.ops.object.particle_system_add()` → `ParticleSystem`")
+    assert ".settings.physics_type = 'BOIDS'` makes" in told[1]
+    assert _done_in_blender(told)
+
+
+def test_a_pointer_that_is_none_is_assigned_what_it_leads_to(reader: BaseReader) -> None:
+    told = steps(reader, "line art", "MaterialLineArt")
+    assert told[0].endswith(
+        '`material = bpy.data.materials.new("Material")`; `obj.active_material = material`'
+    )
+    assert "set on `material.lineart`" in told[1]
+    assert _done_in_blender(told)
+
+
+def test_a_material_gets_strokes_settings_by_the_call_that_makes_them(reader: BaseReader) -> None:
+    told = steps(reader, "grease pencil material", "MaterialGPencilStyle", "Material")
+    assert sum('materials.new("Material")' in line for line in told) == 1
+    made = next(place for place, line in enumerate(told) if "create_gpencil_data(material)" in line)
+    assert "set on `material.grease_pencil`" in told[made + 1]
+    assert _done_in_blender(told)
+
+
+def test_a_page_begins_with_what_it_explains(reader: BaseReader) -> None:
+    words = (frozenset({"imag", "sequenc", "strip"}), frozenset({"imag"}))
+    classes = {f"{TYPES}Image": 75.0, f"{TYPES}ImageUser": 36.0, f"{TYPES}ImageStrip": 9.0}
+    explained = frozenset({f"{TYPES}ImageStrip"})
+    told = _told(reader, TopicNames(frozenset({"image"}), words, explained, classes))
+    assert "strips.new_image(" in told[1]
+    assert "`.elements` (`StripElement`, by `strip.elements.append(filename)`)" in " ".join(told)
+    assert "bpy.data" not in " ".join(told)
+
+
+def test_settings_begin_with_what_is_called_so_and_is_made(reader: BaseReader) -> None:
+    for settings, kind, call in (
+        ("Itasc", "KinematicConstraint", "constraint = obj.pose.bones[\"Bone\"].constraints.new('IK')"),
+        (
+            "ObjectLineArt",
+            "GreasePencilLineartModifier",
+            "modifier = obj.modifiers.new(\"Lineart\", 'LINEART')",
+        ),
+    ):
+        explained, of_kind = frozenset({f"{TYPES}{settings}"}), frozenset({f"{TYPES}{kind}"})
+        classes = {f"{TYPES}{settings}": 9.0, f"{TYPES}{kind}": 5.0}
+        names = TopicNames(frozenset({"a"}), (frozenset({"a"}),), explained, classes, of_kind=of_kind)
+        told = _told(reader, names)
+        made = next(place for place, line in enumerate(told) if f"`{call}`" in line)
+        assert "set on `" not in "".join(told[:made])
+        assert _done_in_blender(told)
+
+
+def test_strokes_are_added_to_the_drawing_of_a_frame(reader: BaseReader) -> None:
+    told = " ".join(steps(reader, "layer", "GreasePencilLayer", "GreasePencilDrawing"))
+    assert "by `layer.frames.new(frame_number)`, then `frame.drawing.add_strokes(sizes)`" in told
+    assert "get_frame_at" not in told
+    told = " ".join(steps(reader, "frame", "GreasePencilFrame", "GreasePencilDrawing"))
+    assert "call `frame.drawing.add_strokes(sizes)`" in told
+
+
+def test_a_light_is_set_with_what_only_its_type_has(reader: BaseReader) -> None:
+    told = steps(reader, "light", "Light")
+    (own,) = [line for line in told if "(`PointLight`)" in line]
+    assert "`energy` = 10" in own
+    assert _done_in_blender(told)
