@@ -39,6 +39,7 @@ _LEAST_SHARE = 0.25  # of the heaviest class's weight
 _MODIFIER = f"{TYPES}Modifier"  # of objects
 _IN_A_NODE = ".nodes["  # in a call that makes what a node holds
 _NOT_MADE = frozenset({NODE, *EMBEDDED_TREES})  # for themselves
+_LEGACY = "(Legacy)"  # at the end of labels
 
 
 class Steps:
@@ -48,7 +49,11 @@ class Steps:
         self._reader = reader
         self._names = names
         made = reader.creations(list(names.classes))
-        self._creations = {path: one for path, one in made.items() if not self._is_in_nothing(path, one)}
+        self._creations = {
+            path: one
+            for path, one in made.items()
+            if not self._is_in_nothing(path, one) and not self._is_kept_for_old_files(path)
+        }
         self._classes = self._main_classes()
         self._scene = NewScene(reader)
         instances = Instances(self._scene, self._tree_of)
@@ -113,6 +118,11 @@ class Steps:
             if path in self._names.explained and path in self._creations
         }
         return sorted((path for path in shared if shared[path]), key=lambda path: -shared[path])
+
+    def _is_kept_for_old_files(self, path: str) -> bool:
+        """Whether Blender's menus make no such thing any more: ``Mix (Legacy)``."""
+        entry = self._reader.entry(path)
+        return entry is not None and entry.label.endswith(_LEGACY)
 
     def _is_in_nothing(self, path: str, creation: Creation) -> bool:
         """Whether an operator that runs anywhere makes a part of what an element has that somebody must have made: it
