@@ -32,6 +32,7 @@ from kb_build.records import (
     last_name,
 )
 from kb_build.schema import TEST_ON
+from kb_build.unlisted import STAND_INS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -45,7 +46,6 @@ _OF_OWN_NODES = frozenset({"bpy.types.NodeInputs", "bpy.types.NodeOutputs"})
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
 SET = "set of enum items"
 NEVER_BY_IDENTIFIER = "identifier-never"
-STAND_INS = frozenset({"NONE", "DEFAULT", "PLACEHOLDER", "UNSUPPORTED"})
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
 _SHOWN_OTHERS = 4

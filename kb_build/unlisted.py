@@ -26,4 +26,6 @@ MORE_VALUES = {
     "bpy.types.ColorManagedDisplaySettings.display_device": ("NONE",),
 }  # fmt: skip
 
+# Values that stand in for those which Blender makes while it runs.
+STAND_INS = frozenset({"NONE", "DEFAULT", "PLACEHOLDER", "UNSUPPORTED"})
 FEWEST_VALUES = 2  # of an enumeration that can be judged: of fewer, Blender tells but a stand-in

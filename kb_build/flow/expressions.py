@@ -38,8 +38,7 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
-from kb_build.symbol_lines import STAND_INS
-from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
+from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES, STAND_INS
 
 if TYPE_CHECKING:
     from collections.abc import Callable
