@@ -25,6 +25,7 @@ from kb_build.records import (
     LOCKED_ON,
     LOCKED_WITH,
     NEEDS,
+    NEVER_BY_IDENTIFIER,
     NOT_TAKEN,
     SHOWN_WHEN,
     STARTUP,
@@ -44,7 +45,6 @@ _REGISTERED = "nodes of a class that a script registers: built-in ones refuse it
 _OF_OWN_NODES = frozenset({"bpy.types.NodeInputs", "bpy.types.NodeOutputs"})
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
 SET = "set of enum items"
-NEVER_BY_IDENTIFIER = "identifier-never"
 _STAND_INS = frozenset({"NONE", "DEFAULT", "PLACEHOLDER", "UNSUPPORTED"})
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
