@@ -53,7 +53,7 @@ _SHOWN_LABELS = 3
 # What operators want of the active object, as ``kb_build/blender/inside/operator_needs.py`` words it.
 _NEEDED = re.compile(
     r"(?:an active(?: and selected)? object|any active object or none)(?P<types>(?:, not)? of type [^ ,]+)?"
-    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and only some types in mode [^ ,]+)?"
+    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and only some types in mode [^ ,]+)?(?: with .+)?"
 )
 _QUOTED = re.compile(r"'(\w+)'")
 # Names by which scripts hold what is reached from the context.
