@@ -53,7 +53,8 @@ BARE_DATA = "bare-data:"
 INVERTED = "inverted"
 # How a flag begins that names an end of a number's range that is not kept: ``min`` or ``max``.
 UNBOUNDED = "unbounded:"
-# How a flag begins that says where a number of a new thing stops before the end of its range: ``min=0``, ``max=1``.
+# How a flag begins that says where a number of a new thing stops before the end of its range: ``min=0``, ``max=1``, or
+# by which other number of it, ``min=frame_start``.
 STOPS = "stops:"
 # The flag of a socket that a node of a zone has once it is paired with the other one, and the method that does it.
 WHEN_PAIRED = "when-paired"

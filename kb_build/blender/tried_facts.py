@@ -134,7 +134,7 @@ def _add_limits(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
         row["flags"] = [
             *row.get("flags", ()),
             *(UNBOUNDED + end for end in seen.get("ends", ())),
-            *(f"{STOPS}{side}={value:g}" for side, value in seen.get("stops", {}).items()),
+            *(f"{STOPS}{side}={value}" for side, value in seen.get("stops", {}).items()),
         ]
         for item in row.get("enum_items", ()):
             if kept := seen.get("read_as", {}).get(item["identifier"]):

@@ -85,6 +85,8 @@ def test_a_range_that_is_not_kept_says_so(symbols: Mapping[str, Symbol], tmp_pat
     ("number", "ends"),
     [
         ("NlaStrip.blend_in", {"min=0", "max=1"}),
+        ("ClothSettings.shear_stiffness_max", {"min=shear_stiffness"}),
+        ("CurveMapping.clip_min_x", {"max=clip_max_x"}),
         ("ParticleSettings.path_start", {"min=0", "max=1"}),
         ("MultiresModifier.levels", {"max=0"}),
         ("Scene.frame_current", {"min=0"}),
