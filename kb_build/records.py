@@ -39,6 +39,8 @@ WITHOUT_AREA = "none-without-area"
 NEVER_BY_IDENTIFIER = "identifier-never"
 # How a flag begins that says what an operator's poll wants, of all that was tried; nothing follows if it wants nothing.
 NEEDS = "needs:"
+# How flags begin that name the other operators which an operator's own script calls.
+CALLS = "calls:"
 # How flags begin that name the types of areas in which alone an operator runs (``any``), and the member of the context
 # that it takes instead.
 AREAS = "areas:"

@@ -531,6 +531,7 @@ def test_ways_and_modes_of_making_are_told_apart(symbols: dict[str, Symbol]) -> 
         ("DynamicPaintModifier.brush_settings", ["bpy.ops.dpaint.type_toggle(type='BRUSH')"]),
         ("ParticleSettings.boids", ["particle_settings.physics_type = 'BOIDS'"]),
         ("Texture.color_ramp", ["texture.use_color_ramp = True"]),
+        ("ParticleSystem.cloth", ["particle_system.use_hair_dynamics = True"]),
         ("Scene.compositing_node_group", []),
         ("Object.parent", []),
     ],

@@ -170,7 +170,7 @@ def constraints():
 
 def children():
     """Objects with parents, whose type decides how they can be parented."""
-    for kind in ("MESH", "CURVE", "LATTICE", "ARMATURE"):
+    for kind in ("MESH", "CURVE", "SURFACE", "FONT", "LATTICE", "ARMATURE"):
         parent = object_of(kind)
         child = add_object(None)
         child.parent = parent
