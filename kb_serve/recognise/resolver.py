@@ -280,11 +280,12 @@ class Resolver:
 
     def _with_key(self, side: str, name: str) -> Iterator[SymbolEntry]:
         """The sockets that another text in brackets gives than their name: their identifier, or what they are called in
-        some modes.
+        some modes. Not what was their name in older versions, of which more is told.
         """
         for _, path in self._reader.by_key(key(f"{side}{name}")):
             symbol, entry = self._reader.symbol(path), self._reader.entry(path)
-            if symbol and entry and name in symbol.socket_keys:
+            is_former = entry and self._reader.removed(f'{entry.owner}.{side}["{name}"]')
+            if symbol and entry and name in symbol.socket_keys and not is_former:
                 yield entry
 
     def _socket_at(self, node: str, subscript: str) -> SymbolEntry | None:

@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from statements_in_blender import run_statements
@@ -70,7 +70,7 @@ os._exit(0)
 """
 
 
-def ask_blender(script: str, folder: Path, claims: object = None) -> dict[str, object]:
+def ask_blender(script: str, folder: Path, claims: object = None) -> Any:
     """What a script prints into a file when Blender's interpreter runs it."""
     program, asked, told = folder / "ask.py", folder / "asked.json", folder / "told.json"
     program.write_text(script)
