@@ -96,7 +96,8 @@ def first_sentence(text: str) -> str:
     """The first sentence of a description, on one line, without its full stop."""
     line = " ".join(text.split())
     end = line.find(". ")
-    return (line[:end] if end > 0 else line).rstrip(".")
+    sentence = line[:end] if end > 0 else line
+    return sentence if sentence.endswith("...") else sentence.rstrip(".")
 
 
 def usual_default(symbol: Symbol) -> Default:
