@@ -35,8 +35,12 @@ FILLED_ON = "filled-on:"
 # The flags of a member of the context that is None: where no object is active, and outside the areas of windows.
 WITHOUT_ACTIVE = "none-without-active-object"
 WITHOUT_AREA = "none-without-area"
+# The flag of a socket that its identifier gives in no mode of its node.
+NEVER_BY_IDENTIFIER = "identifier-never"
 # How a flag begins that says what an operator's poll wants, of all that was tried; nothing follows if it wants nothing.
 NEEDS = "needs:"
+# How flags begin that name the other operators which an operator's own script calls.
+CALLS = "calls:"
 # How flags begin that name the types of areas in which alone an operator runs (``any``), and the member of the context
 # that it takes instead.
 AREAS = "areas:"
@@ -51,7 +55,8 @@ BARE_DATA = "bare-data:"
 INVERTED = "inverted"
 # How a flag begins that names an end of a number's range that is not kept: ``min`` or ``max``.
 UNBOUNDED = "unbounded:"
-# How a flag begins that says where a number of a new thing stops before the end of its range: ``min=0``, ``max=1``.
+# How a flag begins that says where a number of a new thing stops before the end of its range: ``min=0``, ``max=1``, or
+# by which other number of it, ``min=frame_start``.
 STOPS = "stops:"
 # The flag of a socket that a node of a zone has once it is paired with the other one, and the method that does it.
 WHEN_PAIRED = "when-paired"
@@ -274,6 +279,15 @@ class Symbol:
     def identifier(self) -> str:
         """A socket's identifier, which its name need not be; empty for what is no socket."""
         return "".join(self.flagged("identifier:")[:1])
+
+    @property
+    def socket_keys(self) -> tuple[str, ...]:
+        """The texts in brackets that give a socket, at least in some modes of its node: its names, and its identifier
+        where that does, too.
+        """
+        by_identifier = self.identifier and NEVER_BY_IDENTIFIER not in self.flags
+        names = (*self.socket_names, self.identifier) if by_identifier else self.socket_names
+        return tuple(dict.fromkeys(name for name in names if name))
 
     @property
     def type_settings(self) -> tuple[str, ...]:

@@ -25,6 +25,7 @@ from kb_build.records import (
     LOCKED_ON,
     LOCKED_WITH,
     NEEDS,
+    NEVER_BY_IDENTIFIER,
     NOT_TAKEN,
     SHOWN_WHEN,
     STARTUP,
@@ -45,7 +46,6 @@ _REGISTERED = "nodes of a class that a script registers: built-in ones refuse it
 _OF_OWN_NODES = frozenset({"bpy.types.NodeInputs", "bpy.types.NodeOutputs"})
 GET_EVALUATED = ".evaluated_get(bpy.context.evaluated_depsgraph_get())"
 SET = "set of enum items"
-NEVER_BY_IDENTIFIER = "identifier-never"
 _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
 _SHOWN_OTHERS = 4
@@ -53,7 +53,7 @@ _SHOWN_LABELS = 3
 # What operators want of the active object, as ``kb_build/blender/inside/operator_needs.py`` words it.
 _NEEDED = re.compile(
     r"(?:an active(?: and selected)? object|any active object or none)(?P<types>(?:, not)? of type [^ ,]+)?"
-    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and only some types in mode [^ ,]+)?"
+    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and only some types in mode [^ ,]+)?(?: with .+)?"
 )
 _QUOTED = re.compile(r"'(\w+)'")
 # Names by which scripts hold what is reached from the context.
@@ -96,7 +96,8 @@ def first_sentence(text: str) -> str:
     """The first sentence of a description, on one line, without its full stop."""
     line = " ".join(text.split())
     end = line.find(". ")
-    return (line[:end] if end > 0 else line).rstrip(".")
+    sentence = line[:end] if end > 0 else line
+    return sentence if sentence.endswith("...") else sentence.rstrip(".")
 
 
 def usual_default(symbol: Symbol) -> Default:

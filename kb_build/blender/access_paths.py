@@ -54,6 +54,7 @@ _TOLD = {
     "UILayout": ("self.layout", 1),  # where a class of the script's own draws
     "NodeTreeInterface": ('bpy.data.node_groups["Geometry Nodes"].interface', 1),
 }
+_SOCKET = "NodeSocket"
 _NEVER_ACTIVE = frozenset({"Nodes"})  # none is, of those that scripts make
 # Objects have them too, but only chains of bones are moved by them.
 _OF_BONES = ("KinematicConstraint", "SplineIKConstraint")
@@ -84,6 +85,8 @@ class _Graph:
     trees: dict[str, tuple[str, ...]] = field(default_factory=dict)
     descendants: dict[str, list[str]] = field(default_factory=dict)
     told: dict[str, str] = field(default_factory=dict)
+    # Class of sockets → (class of nodes, subscript) of those that new nodes have.
+    sockets: dict[str, list[tuple[str, str]]] = field(default_factory=lambda: defaultdict(list))
 
     def below(self, cls: str) -> list[str]:
         """Every class below one, each before its own."""
@@ -119,6 +122,10 @@ def _graph(symbols: Iterable[Symbol], uses: Mapping[str, int], names: Mapping[st
             )
             if symbol.path == f"{TYPES}Object.data":
                 graph.edges[owner] += [_Step(symbol.name, name, cost) for name in _OBJECT_DATA]
+        elif symbol.kind == "socket" and symbol.subscripts and "hidden-by-default" not in symbol.flags:
+            # Those with a pointer have the class that it leads to as target.
+            cls = symbol.target if symbol.target.startswith(_SOCKET) else f"{_SOCKET}{symbol.type.title()}"
+            graph.sockets[cls].append((symbol.owner.removeprefix(TYPES), symbol.subscripts[0]))
     for name in graph.below("Node") if graph.trees else ():
         if not graph.derived.get(name):
             graph.trees.setdefault(name, ())  # RNA has the class, and no tree takes it
@@ -177,6 +184,13 @@ def _place(expressions: dict[str, str], graph: _Graph, places: Mapping[str, str]
     for cls in (cls for cls, trees in graph.trees.items() if "ShaderNodeTree" in trees):
         holder = places.get(cls, "Material")
         expressions[cls] = f"{expressions.get(holder, holder.lower())}.node_tree.nodes{_key(cls, graph)}"
+    # A socket, on a node that has one like it: RNA's way leads to any node, and to the trees that take least of them.
+    for cls, owners in graph.sockets.items():
+        known = [(owner, subscript) for owner, subscript in owners if owner in expressions]
+        of_shaders = any("ShaderNodeTree" in graph.trees.get(owner, ()) for owner, _ in known)
+        if cls in expressions and known and not of_shaders:
+            owner, subscript = min(known, key=lambda found: "inputs" not in found[1])
+            expressions[cls] = f"{expressions[owner]}.{subscript}"
 
 
 def reached_expressions(

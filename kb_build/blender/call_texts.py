@@ -61,7 +61,7 @@ def with_sets(call: str, parameters: Iterable[Parameter]) -> str:
 
 def by_place(call: str) -> str:
     """A call's text with the mark of arguments that are given by their places alone."""
-    head, _, given = call.rstrip(")").partition("(")
+    head, _, given = call.removesuffix(")").partition("(")
     return call if not given or "/" in given or "*" in given else f"{head}({given}, /)"
 
 
@@ -93,5 +93,5 @@ def all_optional(call: str) -> str:
 
 def _parts(call: str) -> tuple[str, list[str]]:
     """A call's text as (what is called, the text of each argument)."""
-    head, _, given = call.rstrip(")").partition("(")
+    head, _, given = call.removesuffix(")").partition("(")
     return head, [text.strip() for text in split_arguments(given)]

@@ -12,6 +12,7 @@ from kb_build.records import (
     ANY,
     AREAS,
     BARE_DATA,
+    CALLS,
     EMPTY,
     ENDS_WITHOUT,
     EVALUATED,
@@ -134,7 +135,7 @@ def _add_limits(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
         row["flags"] = [
             *row.get("flags", ()),
             *(UNBOUNDED + end for end in seen.get("ends", ())),
-            *(f"{STOPS}{side}={value:g}" for side, value in seen.get("stops", {}).items()),
+            *(f"{STOPS}{side}={value}" for side, value in seen.get("stops", {}).items()),
         ]
         for item in row.get("enum_items", ()):
             if kept := seen.get("read_as", {}).get(item["identifier"]):
@@ -173,13 +174,19 @@ def _add_evaluated(row: dict[str, Any] | None, _seen: dict[str, Any]) -> None:
         row["flags"] = [*row.get("flags", ()), EVALUATED]
 
 
-# Kind of record → what adds it to the row of its symbol, which may be missing.
+def _add_calls(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds which other operators an operator's own script calls."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), *(f"{CALLS}{path}" for path in seen["calls"])]
+
+
 def _add_own_class(row: dict[str, Any] | None, tried: dict[str, Any]) -> None:
     """Adds what a class of a script's own must have, as Blender asked for one thing after the other."""
     if row is not None:
         row["flags"] = [*row.get("flags", ()), *(f"{MUST_HAVE}{name}" for name in tried["names"])]
 
 
+# Kind of record → what adds it to the row of its symbol, which may be missing.
 ADDED = {
     "argument_items": _add_argument_items,
     "bare_data": _add_bare_data,
@@ -188,6 +195,7 @@ ADDED = {
     "new_pointer": _add_pointer,
     "operator_needs": _add_needs,
     "operator_areas": _add_areas,
+    "operator_calls": _add_calls,
     "refusals": _add_refusals,
     "empty_collection": _add_empty,
     "evaluated": _add_evaluated,

@@ -145,6 +145,10 @@ class ApiHistory:
         """One bit a version, lowest the oldest; 0 for what no known version has."""
         return self._cells(path)[0]
 
+    def before(self, version: str) -> int:
+        """The bits of the versions before one (minor or full) that is known."""
+        return (1 << (self._number(version) or 0)) - 1
+
     def exists(self, path: str, version: str) -> bool | None:
         """Whether a version (minor or full) has the symbol; None where that is not known."""
         number = self._number(version)

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import LOST_MODULES
 from kb_build.index.analysis import key, short_path
+from kb_build.versions.arrivals import told_arrivals
 from kb_build.versions.history import SHARED, paths_of
 from kb_build.versions.paths import split_path
 from kb_build.versions.similar_names import find_similar_names
@@ -82,7 +83,8 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
     """
     known = {path for symbol in symbols for path in paths_of(symbol)}
     bases = {symbol.path: symbol.base for symbol in symbols if symbol.base}
-    successors = Successors([*load_successors(), *lost_modules()], history, version, bases, known)
+    table = load_successors()
+    successors = Successors([*table, *lost_modules()], history, version, bases, known)
 
     def moved_up(path: str) -> bool:
         """Whether a base of the class has it now: then it is still there."""
@@ -119,18 +121,12 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         for path, *_ in removed
         for position, row in enumerate(successors.of(path))
     ]
-    since = {
-        each.path: (each.first, "" if each.is_sure else each.lacked)
-        for each in history.arrivals(version)
-        # Of what came back "since" would be half the truth; no version between 3.4 and 4.2 is known to have a socket.
-        if each.lacked and not each.is_return and (each.is_sure or not each.path.endswith('"]'))
-    }
     return RemovedSymbols(
         removed=tuple((*row, split_path(row[0])[2]) for row in removed),
         names=tuple(names),
         successors=tuple(rows),
         similar_names=tuple(find_similar_names(symbols, history, version, {path for path, *_ in rows})),
-        since=tuple((symbol.path, *since[symbol.path]) for symbol in symbols if symbol.path in since),
+        since=tuple(told_arrivals(symbols, history, version, table)),
         versions=history.versions,
         unknown_modules=tuple(path for path in history.unknown_modules(version) if path not in known),
     )

@@ -33,6 +33,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Instance
+from kb_build.records import NEVER_BY_IDENTIFIER
 from kb_build.symbol_lines import subscripts_text
 from kb_check.findings import Finding
 from kb_check.group_inputs import makes_all_groups, named_inputs
@@ -49,8 +50,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_check.script import Script
 
-# Of nodes with a set of sockets for each type of data, which Blender finds by name only.
-_BY_NAME_ONLY = "identifier-never"
 _SIDES = ("inputs", "outputs")
 _MODIFIER = "bpy.types.NodesModifier"
 # How the inputs and outputs of groups were called that were made before 4.0; these keep it.
@@ -117,11 +116,11 @@ def _sides(row: Resolution) -> tuple[str, ...]:
 
 def _asked_by(socket: Symbol) -> str:
     """What a socket is asked for by."""
-    return socket.label if _BY_NAME_ONLY in socket.flags else socket.name
+    return socket.label if NEVER_BY_IDENTIFIER in socket.flags else socket.name
 
 
 def _is_only_identifier(socket: Symbol, key: str) -> bool:
-    return _BY_NAME_ONLY in socket.flags and key == socket.identifier and key not in socket.socket_names
+    return NEVER_BY_IDENTIFIER in socket.flags and key == socket.identifier and key not in socket.socket_names
 
 
 def _still_works(script: Script, node: str, name: str) -> bool:

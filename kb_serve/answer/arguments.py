@@ -48,9 +48,11 @@ def arguments(symbol: Symbol, asked: AskedOf) -> Iterator[AnswerBlock]:
     for parameter in symbol.parameters:
         if _has_list(symbol, parameter):
             wanted = asked.values.get(parameter.name, ())
+            refused = never_taken(symbol, parameter.name)
+            taken = [item for item in parameter.enum_items if item.identifier not in refused]
             listed = [item for item in parameter.enum_items if repr(item.identifier) in wanted]
             # The argument's own line names the others.
-            shown = listed if listed and len(parameter.enum_items) <= _NAMED_ITEMS else parameter.enum_items
+            shown = listed if listed and len(parameter.enum_items) <= _NAMED_ITEMS else taken
             items = item_lines(shown, taken_where(symbol, parameter.name), wanted)
             yield AnswerBlock(
                 f"**Values of `{parameter.name}`**\n{items}",

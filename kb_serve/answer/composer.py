@@ -100,7 +100,11 @@ class AnswerComposer:
             return self._answer_each(parts, ranking, limit)
         rows = self._listed(ranking, limit)
         hits = hits_of(rows, self._reader)
-        known = () if ranking.notes else self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF], text)
+        known = (
+            ()
+            if ranking.notes
+            else self._known(hits[:1] if ranking.named else hits[:_KNOWN_OF], text, is_named=ranking.named)
+        )
         told = (*ranking.notes, *known, ranking.alike, *self._source_notes(ranking, hits))
         notes = tuple(dict.fromkeys(filter(None, told)))
         if not hits:
@@ -116,10 +120,10 @@ class AnswerComposer:
             return draft_of("page" if hits[0].is_page else "schema", hits, notes, blocks)
         return draft_of("candidates", hits, notes, self._found(hits, rows, asked_words(text)))
 
-    def _known(self, hits: Sequence[Hit], question: str) -> Iterator[str]:
+    def _known(self, hits: Sequence[Hit], question: str, *, is_named: bool) -> Iterator[str]:
         """What one has to know of the first hits, up to the first name: code needs that, behind pages that tell how."""
         for hit in hits:
-            yield from self._practice.of(hit.id, question)
+            yield from self._practice.of(hit.id, question, is_named=is_named)
             if not hit.is_page:
                 return
 

@@ -34,8 +34,8 @@ _DRIVERS = frozenset(
 )
 _TAGGED = (
     "A driver does not see a custom property that a script has just set, and stays invalid: after "
-    '`owner["name"] = 3.0` call `owner.update_tag()`, also after each later change. One that is invalid already needs '
-    "`driver.expression = driver.expression`, too."
+    '`owner["name"] = 3.0` call `owner.id_data.update_tag()`, also after each later change. One that is invalid '
+    "already needs `driver.expression = driver.expression`, too."
 )
 _TOGGLES_ATTRIBUTE = "bpy.ops.object.geometry_nodes_input_attribute_toggle"
 _STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
@@ -94,6 +94,17 @@ _RANGED = (
 )
 _BAKES_FLUID = "bpy.ops.fluid.bake_"
 _BAKES_FLUIDS = f"{_BAKES_FLUID}all"
+_SIMULATES_FLUID = frozenset(
+    (
+        "bpy.ops.object.quick_liquid",
+        "bpy.ops.object.quick_smoke",
+        f"{_TYPES}FluidDomainSettings",
+        f"{_TYPES}FluidModifier",
+    )
+)
+# How a question says that a fluid is simulated without a window, or ends Blender.
+_FLUIDS = frozenset(map(stem, ("fluid", "smoke", "fire", "liquid")))
+_NO_WINDOW = frozenset(map(stem, ("abort", "background", "crash", "headless", "terminate", "window")))
 _TIMERS = "bpy.app.timers"
 _TIMER = f"{_TIMERS}.register"
 _NO_TIMERS = (
@@ -102,6 +113,29 @@ _NO_TIMERS = (
 )
 _SIZES = {f"{_TYPES}GreasePencilDrawing.add_strokes": "strokes", f"{_TYPES}Curves.add_curves": "curves"}
 _NO_SIZES = "An empty list crashes Blender 5.1: `if sizes: data.add_{}(sizes)`. Each size is at least 1."
+_RETIMED = frozenset(
+    f"{_TYPES}{path}" for path in ("RetimingKey", "RetimingKey.timeline_frame", "RetimingKeys")
+)
+_RETIMES = f"{_TYPES}RetimingKeys.add"
+_NO_RETIMING = (
+    "Assigning a key's `timeline_frame` may crash Blender: 5.1 where the scene has an earlier strip without such keys, "
+    "4.5 always. Make keys where they shall be, `strip.retiming_keys.add(timeline_frame=20)`; "
+    "`strip.retiming_keys.reset()` removes all."
+)
+_NO_KEY = (
+    "It makes no key, and returns None, at a frame outside the strip, as the default is for most, and on a strip that "
+    "takes none."
+)
+_CLOTH_GRAVITY = f"{_TYPES}ClothSettings.gravity"
+_FALLS = (
+    "Cloth does not use its own `gravity`, whatever it is: while `scene.use_gravity` is on it falls by "
+    "`scene.gravity` times the cloth's `settings.effector_weights.gravity`."
+)
+_BAKES = "bpy.ops.object.bake"
+_BAKED = (
+    "What is left out is not the default that is listed here, but what `scene.render.bake` has, where it has a setting "
+    "of that name: `target`, `margin`, `use_clear`, `normal_space` …"
+)
 _INDICES = {
     f"{_TYPES}{path}": done
     for path, done in (
@@ -111,7 +145,26 @@ _INDICES = {
         ("Curves.set_types", "sets the type of all curves"),
     )
 }
+# What a question in plain words says that comes to these sentences; a name needs none.
+_OF_DRIVERS = frozenset(map(stem, ("driver", "driven", "drive")))
+_OF_HANDLERS = frozenset(map(stem, ("handler", "persistent", "callback")))
+_OF_RANGES = frozenset(map(stem, ("property", "custom", "limit", "range", "min", "max", "slider", "ui")))
+_OF_TIMERS = frozenset(map(stem, ("timer", "delay", "interval", "later", "second", "repeat", "periodic")))
 _ALL = "`indices=[]` {}, as if it were left out: call it only `if indices:`."
+
+_SAID = {
+    **dict.fromkeys(_RETIMED, (_NO_RETIMING,)),
+    _RETIMES: (_NO_KEY, _NO_RETIMING),
+    _CLOTH_GRAVITY: (_FALLS,),
+    _BAKES: (_BAKED,),
+}
+
+
+def _is_of_fluids(identifier: str, said: frozenset[str]) -> bool:
+    """Whether a symbol simulates fluids, or a question with these words is on doing so without a window."""
+    if identifier.startswith(_BAKES_FLUID) or identifier in _SIMULATES_FLUID:
+        return True
+    return not (_FLUIDS.isdisjoint(said) or _NO_WINDOW.isdisjoint(said))
 
 
 class Practice:
@@ -121,23 +174,32 @@ class Practice:
         self._reader = reader
         self._custom = CustomProperties(reader)
 
-    def of(self, identifier: str, question: str) -> Iterator[str]:
-        """Sentences on a symbol, or on what the page with that slug explains, that a question comes to."""
+    def of(self, identifier: str, question: str, *, is_named: bool = True) -> Iterator[str]:
+        """Sentences on a symbol, or on what the page with that slug explains, that a question comes to.
+
+        ``is_named``: the question has its name, and was not only found to be like it.
+        """
+        said = frozenset(map(stem, words(question)))
+
+        def is_about(subject: frozenset[str]) -> bool:
+            return is_named or not subject.isdisjoint(said)
+
         if identifier.startswith(_HANDLERS) and identifier != _PERSISTENT and self._reader.entry(_PERSISTENT):
-            yield _STAYING
-        if identifier in {_TIMER, _TIMERS}:
+            yield from (_STAYING,) if is_about(_OF_HANDLERS) else ()
+        if identifier in {_TIMER, _TIMERS} and is_about(_OF_TIMERS):
             yield _NO_TIMERS
-        if identifier.startswith(_BAKES_FLUID) or self._explains(identifier, _BAKES_FLUIDS):
+        if _is_of_fluids(identifier, said) or self._explains(identifier, _BAKES_FLUIDS):
             yield NO_FLUIDS
-        is_of_place = identifier in _PLACES and not _SIMULATED.isdisjoint(map(stem, words(question)))
+        yield from _SAID.get(identifier, ())
+        is_of_place = identifier in _PLACES and not _SIMULATED.isdisjoint(said)
         chapter = identifier.rpartition("/")[0]
         if is_of_place or identifier == _RIGID_BODY or chapter in self._chapters_of_rigid_bodies:
             yield _MOVED
-        if identifier == _RANGES or self._explains(identifier, _RANGES):
+        if (identifier == _RANGES or self._explains(identifier, _RANGES)) and is_about(_OF_RANGES):
             yield _RANGED
         if identifier in CLASSES:
             yield WITH_AT
-        if identifier in _DRIVERS:
+        if identifier in _DRIVERS and is_about(_OF_DRIVERS):
             yield _TAGGED
         yield from self._on_strokes(identifier)
         if thing := _SIZES.get(identifier):

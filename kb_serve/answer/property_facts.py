@@ -85,15 +85,19 @@ def _not_kept(symbol: Symbol) -> str:
 
 
 def _stops_text(symbol: Symbol) -> str:
-    """Where a number of a new thing stops before the end of its range, as tried."""
-    ends = dict(stop.split("=") for stop in symbol.flagged(STOPS))
-    match ends.get("min"), ends.get("max"):
-        case None, None:
-            return ""
-        case low, None:
-            kept = f"no less than {low}"
-        case None, high:
-            kept = f"no more than {high}"
-        case low, high:
-            kept = f"only {low}" if low == high else f"{low} … {high}"
-    return f"a new one keeps {kept} (what else is set decides)"
+    """What keeps a number from the end of its range, as tried. A number that was found on one thing may be only its."""
+    sides, kept = {"min": "below", "max": "above"}, {"min": "less", "max": "more"}
+    known: list[str] = []
+    where: list[str] = []
+    tried: list[str] = []
+    for found in symbol.flagged(STOPS):
+        side, _, end = found.partition("=")
+        if end.isidentifier():
+            known.append(f"`{end}` limits it from {sides[side]}")
+        else:
+            where.append(sides[side])
+            tried.append(f"no {kept[side]} than {end}")
+    if tried:
+        told = f"what else is set may limit it from {' and '.join(where)}"
+        known.append(f"{told} (the one that was tried kept {' and '.join(tried)})")
+    return ", ".join(known)

@@ -5,8 +5,17 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import BARE_DATA, PAIRS
-from kb_build.symbol_lines import is_stand_in, mode_needed, operator_needs, version_meant, written
+from kb_build.records import BARE_DATA, CALLS, PAIRS
+from kb_build.symbol_lines import (
+    area_text,
+    is_stand_in,
+    mode_needed,
+    operator_areas,
+    operator_given,
+    operator_needs,
+    version_meant,
+    written,
+)
 from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
@@ -157,6 +166,7 @@ class MarkdownRenderer:
         lines.extend(asked_of_classes(symbol))
         if needs := operator_needs(symbol):
             lines.append(f"Of all that was tried, its poll takes {needs}.")
+        lines.extend(self._calls_in_areas(symbol))
         for instead in symbol.flagged(BARE_DATA):
             lines.append(_BARE_DATA + (f" Use `{instead}`." if instead else ""))
         told = [*panel_lines(symbol, self.reader)] or [*switch_lines(symbol, self.reader)]
@@ -170,6 +180,14 @@ class MarkdownRenderer:
             lines.append(f"**Deprecated**{since}{removal}: {symbol.deprecation.note}")
         lines.extend(place_lines(symbol, self.reader))
         return "\n\n".join(lines)
+
+    def _calls_in_areas(self, symbol: Symbol) -> Iterator[str]:
+        """The operators that an operator calls in an area, where it can itself begin without one."""
+        for path in symbol.flagged(CALLS) if not operator_areas(symbol) else ():
+            called = self.reader.symbol(path)
+            if called and operator_areas(called) and not operator_given(called):
+                area = area_text(operator_areas(called))
+                yield f"Its own script calls `{path}`, which takes {area}: where it gets there without, it fails."
 
     @staticmethod
     def _call(symbol: Symbol) -> str:

@@ -49,7 +49,7 @@ def context_for(operator: Symbol) -> str:
         )
     return (
         f"{failed}it needs another mode, active object, selection or editor than the context has. "
-        f"`{OVERRIDE}` can provide it."
+        f"`{OVERRIDE}` can provide objects and editors, `bpy.ops.object.mode_set` a mode."
     )
 
 

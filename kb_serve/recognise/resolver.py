@@ -279,16 +279,30 @@ class Resolver:
 
     def _socket(self, owner: str, side: str, name: str) -> Iterator[ChainValue]:
         """The sockets of that name: of the node's own class, or of every node where only ``Node`` is known."""
-        found = [
+        named = self._on_side(self._reader.by_name(name), owner, side)
+        found = named or self._on_side(self._with_key(side, name), owner, side)
+        yield from map(self._values.of, self._owners.likeliest_sockets(found))
+        if not found and self._may_have_any_socket(owner, side):
+            yield ChainValue(f"{_NODE}.{side}", f"{TYPES}NodeSocket")
+
+    def _on_side(self, entries: Iterable[SymbolEntry], owner: str, side: str) -> list[SymbolEntry]:
+        """Of symbols, the sockets on a side of a class of nodes, or of one derived from it."""
+        return [
             entry
-            for entry in self._reader.by_name(name)
+            for entry in entries
             if entry.kind == "socket" and entry.path.startswith(f"{entry.owner}.{side}[")
             if self._reader.descends(entry.owner, owner)
         ]
-        for entry in self._owners.likeliest_sockets(found):
-            yield self._values.of(entry)
-        if not found and self._may_have_any_socket(owner, side):
-            yield ChainValue(f"{_NODE}.{side}", f"{TYPES}NodeSocket")
+
+    def _with_key(self, side: str, name: str) -> Iterator[SymbolEntry]:
+        """The sockets that another text in brackets gives than their name: their identifier, or what they are called in
+        some modes. Not what was their name in older versions, of which more is told.
+        """
+        for _, path in self._reader.by_key(key(f"{side}{name}")):
+            symbol, entry = self._reader.symbol(path), self._reader.entry(path)
+            is_former = entry and self._reader.removed(f'{entry.owner}.{side}["{name}"]')
+            if symbol and entry and name in symbol.socket_keys and not is_former:
+                yield entry
 
     def _socket_at(self, node: str, subscript: str) -> SymbolEntry | None:
         """The socket of a class of nodes that a subscript with its number gives, ``inputs[0]``."""

@@ -184,6 +184,7 @@ def test_a_literal_is_python_and_short(value: object, text: str | None) -> None:
         ("One\ntwo. Three.", "One two"),
         ("v1.5 is new. Then", "v1.5 is new"),
         (". x", ". x"),
+        ("One, two, ...", "One, two, ..."),
     ],
 )
 def test_the_first_sentence_ends_at_a_full_stop_before_a_blank(text: str, sentence: str) -> None:

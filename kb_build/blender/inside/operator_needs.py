@@ -306,29 +306,45 @@ def add(calls):
     return made
 
 
-def parts_needed(known, observer):
-    """path → the calls after which an operator can run that cannot with a new object alone."""
-    found = {}
-    for calls in (adding_calls(observer), modifier_calls()):
-        made = add(calls)
-        after_all = {path: known[path] for path in can_run(known)}
-        add(())
-        for path in can_run(after_all):
-            del after_all[path]  # it wants something that is nobody's, as an action
-        for call in made if after_all else ():
-            add([call])
-            for path in can_run(after_all):
-                found.setdefault(path, []).append(call)
+def run_in_modes(known):
+    """Mode → the operators of these whose poll says yes there, each in the first that does, for the active object."""
+    left, found = dict(known), {}
+    for mode in modes(bpy.context.object):
+        found[mode] = can_run(left)
+        for path in found[mode]:
+            del left[path]
     return found
 
 
-def added(path, calls):
+def parts_needed(known, observer):
+    """path → (mode, the calls after which an operator can run there that cannot with a new object alone)."""
+    found = {}
+    for calls in (adding_calls(observer), modifier_calls()):
+        made = add(calls)
+        after_all = run_in_modes(known)
+        add(())
+        alone, wanting = run_in_modes(known), {}
+        # What can run alone wants something that is nobody's, as an action, or that a mode so far has left.
+        free = set()
+        for mode, paths in after_all.items():
+            free.update(alone.get(mode, ()))
+            wanting[mode] = {path: known[path] for path in paths if path not in free}
+        for call in made if any(wanting.values()) else ():
+            add([call])
+            for mode in modes(bpy.context.object):
+                for path in can_run(wanting.get(mode, {})):
+                    found.setdefault(path, (mode, []))[1].append(call)
+    return found
+
+
+def added(path, mode, calls):
     """What an operator wants that these calls add, in words: the one that says most of the operator's own."""
+    active = "an active object" + ("" if mode == "OBJECT" else f" in mode {mode!r}")
     if sum(call.startswith(MODIFIER) for call in calls) > MOST_MODIFIERS:
-        return "an active object with a modifier"
+        return f"{active} with a modifier"
     words = path.rpartition(".")[2].split("_")
     best = max(calls, key=lambda call: sum(word in call.lower() for word in words))
-    owner = "" if best.startswith("scene.") else "an active object with "
+    owner = "" if best.startswith("scene.") and mode == "OBJECT" else f"{active} with "
     return f"{owner}what `{'`, then `'.join(best.split(THEN))}` adds"
 
 
@@ -349,8 +365,8 @@ def with_objects(write, known, _observer):
 
 def with_parts(write, known, observer):
     """What operators want that is added to an object: these leave ``known``."""
-    for path, calls in sorted(parts_needed(known, observer).items()):
-        write("operator_needs", path=path, needs=added(path, calls))
+    for path, (mode, calls) in sorted(parts_needed(known, observer).items()):
+        write("operator_needs", path=path, needs=added(path, mode, calls))
         del known[path]
 
 

@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Operators under ``bpy.ops``: their arguments with defaults."""
 
+import ast
+import inspect
+import textwrap
+
 import bpy
 
 from .instances.assigning import refused_items
@@ -40,6 +44,30 @@ def argument(operator, prop):
     return {**row, "values_asked": values} if values else row
 
 
+def calls_in(source):
+    """The paths of the operators that a class's source calls where it finds itself, in their order."""
+    found = {}
+    for node in ast.walk(ast.parse(textwrap.dedent(source))):
+        if isinstance(node, ast.Attribute) and node.attr == "temp_override":
+            return []
+        if isinstance(node, ast.Call):
+            path = ast.unparse(node.func)
+            if path.startswith("bpy.ops.") and path.count(".") == 3:
+                found[path] = None
+    return list(found)
+
+
+def write_calls(write, path, identifier):
+    """One ``operator_calls`` record for an operator in Python that calls others."""
+    cls = getattr(bpy.types, identifier, None)
+    try:
+        called = calls_in(inspect.getsource(cls)) if cls is not None else []
+    except (OSError, TypeError, SyntaxError):
+        return  # written in C, or its file is not there
+    if called:
+        write("operator_calls", path=path, calls=called)
+
+
 def write_all(write):
     """One record an operator, one a module of operators."""
     for module_name in sorted(dir(bpy.ops)):
@@ -63,3 +91,4 @@ def write_all(write):
                 ],
                 target=rna.identifier,
             )
+            write_calls(write, f"{owner}.{name}", rna.identifier)

@@ -26,6 +26,7 @@ METHOD_TYPES = (
 )  # fmt: skip
 LAYOUT = "UILayout"  # of which RNA's defaults are no layout's
 SET_OF_ITEMS = "set[enum]"
+LONGEST = 64  # for RNA an array that a function takes in any length may be declared so
 # The flags of functions that classes of scripts define and Blender calls, and of those that it insists on.
 DEFINED, DEFINED_ALWAYS = "defined", "defined-always"
 ATTRIBUTE_TYPES = (property, types.GetSetDescriptorType, types.MemberDescriptorType)
@@ -130,6 +131,8 @@ def describe(prop):
 def parameter(prop):
     """One argument or result of an RNA function, in the terms of ``records.Parameter``."""
     row = describe(prop)
+    if row.get("array") == [LONGEST]:
+        row["array"] = [1]
     kept = ("description", "default", "enum_items", "label", "hard_min", "hard_max", "unit")
     result = {key: row[key] for key in kept if row.get(key) not in (None, "", [])}
     length = "".join(f"[{n}]" for n in row.get("array", ()))

@@ -19,7 +19,8 @@ _NO_DRAWING = (
 _BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
 NO_FLUIDS = (
     "Mantaflow, which simulates fluids, is not set up wholly where Blender is a Python module (`import bpy` in another "
-    "Python): every bake of a fluid ends the process there. Run the script with Blender itself: "
+    "Python): every bake of a fluid ends the process there, and so does its exit once frames were set with a domain in "
+    "the scene. Run the script with Blender itself: "
     "`blender --background scene.blend --python script.py`."
 )
 

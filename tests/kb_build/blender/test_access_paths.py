@@ -238,3 +238,17 @@ def test_no_node_is_placed_in_a_tree_that_refuses_it(extract: Extract, reached: 
                 row.path,
                 expression,
             )
+
+
+def test_a_socket_is_reached_on_a_node_that_has_such_a_one(extract: Extract, reached: dict[str, str]) -> None:
+    of_shaders = {
+        row.target
+        for row in extract.symbols
+        if row.kind == "socket" and row.owner.startswith(f"{TYPES}ShaderNode")
+        if "hidden-by-default" not in row.flags
+    }
+    nodes = 'bpy.context.object.modifiers["GeometryNodes"].node_group.nodes'
+    for name in ("NodeSocketGeometry", "NodeSocketMatrix", "NodeSocketRotation", "NodeSocketObject"):
+        assert name not in of_shaders
+        assert reached[name].startswith(nodes), name
+    assert "active_material.node_tree" in reached["NodeSocketShader"]

@@ -8,7 +8,7 @@ import re
 import subprocess
 import sys
 from collections import Counter
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import pytest
 from statements_in_blender import run_statements
@@ -70,7 +70,7 @@ os._exit(0)
 """
 
 
-def ask_blender(script: str, folder: Path, claims: object = None) -> dict[str, object]:
+def ask_blender(script: str, folder: Path, claims: object = None) -> Any:
     """What a script prints into a file when Blender's interpreter runs it."""
     program, asked, told = folder / "ask.py", folder / "asked.json", folder / "told.json"
     program.write_text(script)
@@ -531,6 +531,7 @@ def test_ways_and_modes_of_making_are_told_apart(symbols: dict[str, Symbol]) -> 
         ("DynamicPaintModifier.brush_settings", ["bpy.ops.dpaint.type_toggle(type='BRUSH')"]),
         ("ParticleSettings.boids", ["particle_settings.physics_type = 'BOIDS'"]),
         ("Texture.color_ramp", ["texture.use_color_ramp = True"]),
+        ("ParticleSystem.cloth", ["particle_system.use_hair_dynamics = True"]),
         ("Scene.compositing_node_group", []),
         ("Object.parent", []),
     ],
@@ -677,9 +678,10 @@ told = {row["path"]: row.get("needs") or row.get("areas") for row in rows if "pa
 json.dump(told, open(sys.argv[2], "w"))
 os._exit(0)
 """
+IN_EDIT_MODE = "bpy.ops.object.mode_set(mode='EDIT')"
 OBJECT, EDIT = "an active object", "an active object of type 'MESH' in mode 'EDIT'"
 OBJECT_MODE = "any active object or none in mode 'OBJECT'"
-ADDS = re.compile(r"an active object with what (.*) adds")
+ADDS = re.compile(r"an active object(?: in mode '(?P<mode>EDIT)')? with what (?P<calls>.*) adds")
 
 
 @pytest.fixture(scope="module")
@@ -696,11 +698,16 @@ def test_operators_can_run_with_what_they_are_said_to_want(
     by_needs: dict[str, list[str]], tmp_path: Path
 ) -> None:
     added = {
-        needs: "\n".join(match[1].replace("`", "").split(", then "))
+        needs: "\n".join(
+            [
+                *match["calls"].replace("`", "").split(", then "),
+                *([IN_EDIT_MODE] if match["mode"] else []),
+            ]
+        )
         for needs in by_needs
         if (match := ADDS.fullmatch(needs))
     }
-    codes = {OBJECT: "", EDIT: "bpy.ops.object.mode_set(mode='EDIT')", **added}
+    codes = {OBJECT: "", EDIT: IN_EDIT_MODE, **added}
     answers = ask_blender(ASK_POLLS, tmp_path, [(code, by_needs[needs]) for needs, code in codes.items()])
     assert len(added) > 6
     for needs, (empty, before, after) in zip(codes, answers, strict=True):
@@ -712,9 +719,10 @@ def test_operators_can_run_with_what_they_are_said_to_want(
 def test_operators_that_want_no_object_refuse_only_the_modes_that_they_are_said_to(
     symbols: dict[str, Symbol], by_needs: dict[str, list[str]], tmp_path: Path
 ) -> None:
-    edit = "bpy.ops.object.mode_set(mode='EDIT')"
     free = [path for path, symbol in symbols.items() if refused_nothing(symbol)]
-    of_object_mode, of_any = ask_blender(ASK_POLLS, tmp_path, [(edit, by_needs[OBJECT_MODE]), (edit, free)])
+    of_object_mode, of_any = ask_blender(
+        ASK_POLLS, tmp_path, [(IN_EDIT_MODE, by_needs[OBJECT_MODE]), (IN_EDIT_MODE, free)]
+    )
     assert (len(by_needs[OBJECT_MODE]) > 50, len(free) > 300) == (True, True)
     assert (all(of_object_mode[0]), all(of_object_mode[1]), any(of_object_mode[2])) == (True, True, False)
     assert all(map(all, of_any))
@@ -743,6 +751,9 @@ def test_operators_that_want_no_object_refuse_only_the_modes_that_they_are_said_
         ("object.shape_key_add", "an active object, not of type 'EMPTY', not in mode 'EDIT'"),
         ("object.vertex_group_remove", "an active object with what `obj.vertex_groups.new()` adds"),
         ("rigidbody.connect", "an active object with what `bpy.ops.rigidbody.object_add()` adds"),
+        ("uv.pack_islands", "an active object in mode 'EDIT' with what `obj.data.uv_layers.new()` adds"),
+        # Vertex Paint Mode leaves one on a new object, too.
+        ("geometry.color_attribute_remove", "an active object with what `obj.data.vertex_colors.new()` adds"),
         ("mesh.primitive_cube_add", ""),  # it runs in an empty scene
         ("view3d.view_selected", "an area of type VIEW_3D"),
         ("anim.keyframe_insert", "an area"),

@@ -85,6 +85,8 @@ def test_a_range_that_is_not_kept_says_so(symbols: Mapping[str, Symbol], tmp_pat
     ("number", "ends"),
     [
         ("NlaStrip.blend_in", {"min=0", "max=1"}),
+        ("ClothSettings.shear_stiffness_max", {"min=shear_stiffness"}),
+        ("CurveMapping.clip_min_x", {"max=clip_max_x"}),
         ("ParticleSettings.path_start", {"min=0", "max=1"}),
         ("MultiresModifier.levels", {"max=0"}),
         ("Scene.frame_current", {"min=0"}),
@@ -191,3 +193,35 @@ def test_a_switch_that_a_panel_shows_the_other_way_round_is_marked(symbols: Mapp
     assert INVERTED in symbols[f"{NODES}Object.hide_render"].flags
     assert INVERTED in symbols[f"{NODES}LayerCollection.exclude"].flags
     assert INVERTED not in symbols[f"{NODES}Object.show_name"].flags
+
+
+def test_what_hangs_on_nodes_and_their_modifier_was_tried(
+    symbols: Mapping[str, Symbol], tmp_path: Path
+) -> None:
+    mode = symbols[f"{NODES}NodesModifierBake.bake_mode"]
+    assert default_text(mode) == "`'STILL'` (new nodes modifier bake); RNA says `'ANIMATION'`"
+    item = symbols[f"{NODES}NodeGeometryCaptureAttributeItem.data_type"]
+    taken = [each.identifier for each in item.enum_items if not each.where]
+    refused = [each.identifier for each in item.enum_items if each.where]
+    assert (len(taken), {"INT8", "STRING", "FLOAT2"} <= {*refused}) == (7, True)
+    assert default_text(item) == ""  # whoever makes one says of which type
+    starting = [
+        "import bpy",
+        "tree = bpy.data.node_groups.new('t', 'GeometryNodeTree')",
+        "items = tree.nodes.new('GeometryNodeCaptureAttribute').capture_items",
+        "item = items.new('VECTOR', 'v')",
+    ]
+    code = [f"item.data_type = {name!r}" for name in (*taken, *refused)]
+    watched = dict.fromkeys(range(len(starting), len(starting) + len(code)), "item.data_type")
+    rows = run_statements(tmp_path, [*starting, *code], watched)[len(starting) :]
+    assert [row[2] for row in rows[: len(taken)]] == [repr(name) for name in taken]
+    assert {row[2] for row in rows[len(taken) :]}.isdisjoint(map(repr, refused))
+
+
+def test_an_array_of_any_length_has_no_length(symbols: Mapping[str, Symbol]) -> None:
+    (indices,) = symbols[f"{NODES}HookModifier.vertex_indices_set"].parameters
+    assert indices.type == symbols[f"{NODES}VertexGroup.add"].parameters[0].type
+
+
+def test_a_call_ends_with_its_own_bracket(symbols: Mapping[str, Symbol]) -> None:
+    assert symbols["bpy.props.CollectionProperty"].signature.endswith("tags=set())")

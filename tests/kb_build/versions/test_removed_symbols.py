@@ -70,7 +70,20 @@ def test_since_names_new_symbols_of_this_version(extract: Extract, removed_symbo
     assert set(since) <= known
     assert since["bpy.types.Scene.compositing_node_group"] == ("5.0", "")
     assert since["bpy.types.GreasePencilArrayModifier"] == ("4.2", "3.4")
+    assert since["bpy.ops.wm.obj_export"] == ("3.1", "")
     assert "bpy.types.Object.location" not in since
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param("bpy.types.Light.use_shadow", id="on each kind of light before"),
+        pytest.param("bpy.types.AttributeGroupMesh.new", id="of a class that was called otherwise"),
+        pytest.param("bpy.ops.wm.alembic_export", id="left out of the package that was asked"),
+    ],
+)
+def test_since_says_nothing_of_new_names_for_old_things(removed_symbols: RemovedSymbols, path: str) -> None:
+    assert path not in {row[0] for row in removed_symbols.since}
 
 
 def test_a_symbol_that_came_back_is_not_removed() -> None:

@@ -7,6 +7,7 @@ import math
 import subprocess
 import sys
 import warnings
+import wave
 from typing import TYPE_CHECKING, Any
 
 import pytest
@@ -67,7 +68,7 @@ def driven() -> tuple[Any, Any, Any]:
     ["DriverTarget.data_path", "bpy_struct.driver_add", "ChannelDriverVariables.new", "Driver.is_valid"],
 )
 def test_a_driver_wants_the_owner_of_a_custom_property_tagged(reader: BaseReader, name: str) -> None:
-    assert "`owner.update_tag()`" in said(reader, TYPES + name)
+    assert "`owner.id_data.update_tag()`" in said(reader, TYPES + name)
 
 
 def test_a_driver_sees_a_custom_property_after_its_owner_was_tagged() -> None:
@@ -96,6 +97,119 @@ def test_a_driver_that_is_invalid_already_wants_its_expression_again() -> None:
     bpy.context.view_layer.update()
     assert driver.is_valid
     assert obj.location.x == 6.0
+
+
+def test_a_bone_has_its_data_block_tagged() -> None:
+    armature = bpy.data.armatures.new("a")
+    rig, obj = bpy.data.objects.new("rig", armature), new_object("obj")
+    bpy.context.scene.collection.objects.link(rig)
+    bpy.context.view_layer.objects.active = rig
+    bpy.ops.object.mode_set(mode="EDIT")
+    armature.edit_bones.new("Bone").tail = (0, 0, 1)
+    bpy.ops.object.mode_set(mode="OBJECT")
+    owner = rig.pose.bones["Bone"]
+    owner["name"] = 3.0
+    driver: Any = obj.driver_add("location", 0).driver
+    variable = driver.variables.new()
+    variable.name = "v"
+    variable.targets[0].id = rig
+    variable.targets[0].data_path = 'pose.bones["Bone"]["name"]'
+    driver.expression = "v"
+    assert not hasattr(owner, "update_tag")
+    owner.id_data.update_tag()
+    bpy.context.view_layer.update()
+    assert obj.location.x == 3.0
+    owner["name"] = 5.0
+    owner.id_data.update_tag()
+    bpy.context.view_layer.update()
+    assert obj.location.x == 5.0
+
+
+@pytest.mark.parametrize(
+    ("path", "question", "is_said"),
+    [
+        ("bpy.types.DriverTarget.data_path", "strip keyframe opacity data_path", False),
+        ("bpy.types.DriverTarget.data_path", "driver that reads a property", True),
+        ("bpy.app.handlers.render_cancel", "cancel a render from a script", False),
+        ("bpy.app.handlers.render_cancel", "a handler that runs when a render is cancelled", True),
+        ("bpy.app.timers.register", "run blender in background with a script", False),
+        ("bpy.app.timers.register", "call a function after an interval", True),
+        ("bpy.types.bpy_struct.id_properties_ui", "bl_info dictionary for an add-on", False),
+        ("bpy.types.bpy_struct.id_properties_ui", "limits of a custom property", True),
+    ],
+)
+def test_what_was_only_found_says_it_where_the_question_is_about_it(
+    reader: BaseReader, path: str, question: str, is_said: bool
+) -> None:
+    told = [*Practice(reader).of(path, question, is_named=False)]
+    assert bool(told) == is_said
+    assert [*Practice(reader).of(path, question)]
+
+
+# Cloth
+
+
+def fallen(*, use_gravity: bool = True, own: float = -9.81, factor: float = 1.0) -> float:
+    """How far a cloth is above its beginning after some frames."""
+    bpy.ops.wm.read_factory_settings(use_empty=True)
+    scene = bpy.context.scene
+    scene.use_gravity = use_gravity
+    bpy.ops.mesh.primitive_grid_add(x_subdivisions=3, y_subdivisions=3)
+    obj = bpy.context.object
+    settings = obj.modifiers.new("Cloth", "CLOTH").settings
+    settings.gravity = (0.0, 0.0, own)
+    settings.effector_weights.gravity = factor
+    for frame in range(1, 6):
+        scene.frame_set(frame)
+    return obj.evaluated_get(bpy.context.evaluated_depsgraph_get()).data.vertices[0].co.z
+
+
+def test_cloth_does_not_use_its_own_gravity(reader: BaseReader) -> None:
+    assert "does not use its own" in said(reader, "bpy.types.ClothSettings.gravity")
+    usual = fallen()
+    assert usual < 0.0
+    assert fallen(own=0.0) == usual
+    assert fallen(factor=0.0) == 0.0
+    assert fallen(use_gravity=False, own=9.81) == 0.0
+
+
+# Retiming
+
+
+def test_keys_of_retiming_are_made_where_they_shall_be(reader: BaseReader, tmp_path: Path) -> None:
+    for path in ("RetimingKey.timeline_frame", "RetimingKeys.add"):
+        assert "may crash Blender" in said(reader, TYPES + path)
+    with wave.open(str(tmp_path / "s.wav"), "wb") as file:
+        file.setnchannels(1)
+        file.setsampwidth(2)
+        file.setframerate(8000)
+        file.writeframes(bytes(2 * 8000 * 3))
+    strips = bpy.context.scene.sequence_editor_create().strips
+    keys = strips.new_sound("s", str(tmp_path / "s.wav"), 1, 1).retiming_keys
+    assert keys.add() is None
+    assert keys.add(timeline_frame=500) is None
+    assert keys.add(timeline_frame=20) is not None
+    assert 20 in [key.timeline_frame for key in keys]
+    keys.reset()
+    assert len(keys) == 0
+
+
+# Baking
+
+
+def test_a_bake_takes_what_is_left_out_from_the_scene(reader: BaseReader) -> None:
+    assert "`scene.render.bake`" in said(reader, "bpy.ops.object.bake")
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    bpy.ops.mesh.primitive_plane_add()
+    mesh = bpy.context.object.data
+    material = bpy.data.materials.new("m")
+    mesh.materials.append(material)
+    colour = mesh.color_attributes.new("c", "FLOAT_COLOR", "POINT")
+    material.node_tree.nodes["Principled BSDF"].inputs["Base Color"].default_value = (0.0, 1.0, 0.0, 1.0)
+    scene.render.bake.target = "VERTEX_COLORS"
+    bpy.ops.object.bake(type="DIFFUSE", pass_filter={"COLOR"})
+    assert tuple(round(part) for part in colour.data[0].color[:3]) == (0, 1, 0)
 
 
 # Drawings and curves

@@ -367,6 +367,11 @@ def test_a_call_that_is_not_python_shows_the_known_defaults(renderer: MarkdownRe
             "rigidbody.connect",
             "its poll takes an active object with what `bpy.ops.rigidbody.object_add()` adds.",
         ),
+        # Nothing of its poll: that of another one fails while it works.
+        (
+            "rigidbody.bake_to_keyframes",
+            "Its own script calls `bpy.ops.anim.keyframe_insert_by_name`, which takes an area:",
+        ),
     ],
 )
 def test_an_operator_says_what_its_poll_takes(kb: KnowledgeBase, operator: str, expected: str) -> None:

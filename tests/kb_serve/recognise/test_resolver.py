@@ -244,6 +244,38 @@ def test_a_socket_that_takes_no_value_is_that_socket_all_the_same(kb: KnowledgeB
     assert any("`bpy.types.NodeSocketShader` has no `default_value`" in note for note in answer.notes)
 
 
+def test_what_blender_takes_in_brackets_gives_the_socket(kb: KnowledgeBase, reader: BaseReader) -> None:
+    """Identifiers that always give a socket were tried on its node."""
+    rows = reader.rows("SELECT path FROM symbols WHERE kind = 'socket' ORDER BY path")
+    found = {}
+    for (path,) in rows:
+        symbol = reader.symbol(path)
+        assert symbol
+        for text in symbol.subscripts:
+            if not text.endswith(f'["{symbol.name}"]') and text.endswith('"]'):
+                found[path] = f"{symbol.owner}.{text}"
+    assert len(found) > 80
+    chosen = random.Random(SEED).sample(sorted(found), 12)
+    asked = {path: kb.query(f"{found[path]}.default_value") for path in chosen}
+    assert {path: answer.hits[0].id for path, answer in asked.items()} == {path: path for path in chosen}
+    assert not [note for answer in asked.values() for note in answer.notes if "has no `inputs" in note]
+
+
+@pytest.mark.parametrize(
+    ("expression", "socket"),
+    [
+        ('color_balance.inputs["Base Lift"]', 'CompositorNodeColorBalance.inputs["Lift"]'),
+        ('node.inputs["Preprocess Blur Size"]', 'CompositorNodeKeying.inputs["Blur Size"]'),
+    ],
+)
+def test_an_identifier_gives_the_socket_of_a_variable(
+    kb: KnowledgeBase, expression: str, socket: str
+) -> None:
+    answer = kb.query(expression)
+    assert answer.hits[0].id == TYPES + socket
+    assert not answer.notes
+
+
 def test_a_socket_that_does_not_exist_is_answered_with_those_that_do(kb: KnowledgeBase) -> None:
     answer = kb.query('mat.node_tree.nodes["Principled BSDF"].inputs["Specular"].default_value')
     ids = [hit.id for hit in answer.hits[:4]]

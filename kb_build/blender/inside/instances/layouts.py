@@ -19,6 +19,8 @@ CHOSEN_OF = frozenset({
     ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("Driver", "expression"), ("Object", "dimensions"),
     ("EditBone", "length"), ("NodeTreeInterfaceSocket", "socket_type"),
 })  # fmt: skip
+# … of an item of a node.
+CHOSEN_OF_ITEMS = frozenset({"socket_type", "data_type"})
 # Kinds that the makers of new things go through: (class, name) → the label of what was made without saying which.
 KIND_UNASKED = {
     ("Light", "type"): "", ("Texture", "type"): "", ("Spline", "type"): "", ("ActionSlot", "target_id_type"): "",
@@ -58,6 +60,7 @@ class Field:
             self.name in CHOSEN
             or (cls, self.name) in KIND_UNASKED
             or (cls, self.name) in CHOSEN_OF
+            or (cls.endswith("Item") and self.name in CHOSEN_OF_ITEMS)
             or (
                 cls in TIMED
                 and not self.name.startswith("select")

@@ -51,23 +51,48 @@ def is_kept(struct, name, value, end):
     return same(kept, value) and not same(kept, end)
 
 
-def stops(struct, prop):
-    """side → where a number of an instance stops before the end of its range: two values beyond are read as that."""
+def stop(struct, prop, side):
+    """Where a number of an instance stops before one end of its range: two values beyond are read as that; or None."""
     name, before = prop.identifier, getattr(struct, prop.identifier)
-    found = {}
-    for side, end, far in (("min", prop.hard_min, -FAR), ("max", prop.hard_max, FAR)):
-        has_end = limit(end) is not None and abs(end) <= MOST
-        last = end if has_end else far
-        nearer = type(before)((last + before) / 2) if has_end else last / 2
-        kept = read_back(struct, name, last)
-        if (
-            kept is not None
-            and not same(kept, last)
-            and same(kept, read_back(struct, name, type(before)(nearer)))
-        ):
-            found[side] = kept
+    end, far = (prop.hard_min, -FAR) if side == "min" else (prop.hard_max, FAR)
+    has_end = limit(end) is not None and abs(end) <= MOST
+    last = end if has_end else far
+    nearer = type(before)((last + before) / 2) if has_end else last / 2
+    kept = read_back(struct, name, last)
+    is_stop = kept is not None and not same(kept, last)
+    is_stop = is_stop and same(kept, read_back(struct, name, type(before)(nearer)))
     read_back(struct, name, before)
-    return found
+    return kept if is_stop else None
+
+
+def stopping(struct, prop, side, kept):
+    """The other number of an instance that decides where one stops: the stop goes as far as it does; "" for none."""
+    for other in struct.bl_rna.properties:
+        name = other.identifier
+        if other.type != prop.type or other.is_array or other == prop or struct.is_property_readonly(name):
+            continue
+        before, own = getattr(struct, name), getattr(struct, prop.identifier)
+        # Towards the number itself, so that it need not give way.
+        moved = read_back(struct, name, before + (1 if side == "max" else -1) * PAST)
+        goes = 0 if moved is None else moved - before
+        again = stop(struct, prop, side) if goes else None
+        read_back(struct, name, before)
+        read_back(struct, prop.identifier, own)
+        if again is not None and same(again - kept, goes):
+            return name
+    return ""
+
+
+def stops(struct, prop):
+    """side → where a number of an instance stops before the end of its range: the other number there that decides, or
+    what it is.
+    """
+    kept = {side: stop(struct, prop, side) for side in ("min", "max")}
+    return {
+        side: stopping(struct, prop, side, value) or f"{value:g}"
+        for side, value in kept.items()
+        if value is not None
+    }
 
 
 def read_as(struct, prop):

@@ -33,6 +33,7 @@ from .making import (
 
 # It is not new any more: only the items that its enumerations take are asked.
 CONSTRAINT_TO_BONE = "constraint with a bone as target"
+SOCKETS = frozenset({"inputs", "outputs"})
 
 
 def data_blocks():
@@ -169,7 +170,7 @@ def constraints():
 
 def children():
     """Objects with parents, whose type decides how they can be parented."""
-    for kind in ("MESH", "CURVE", "LATTICE", "ARMATURE"):
+    for kind in ("MESH", "CURVE", "SURFACE", "FONT", "LATTICE", "ARMATURE"):
         parent = object_of(kind)
         child = add_object(None)
         child.parent = parent
@@ -479,9 +480,51 @@ def node_trees():
     yield "color ramp element", ramp.color_ramp.elements.new(0.5)
 
 
+def added_items(node):
+    """The first item that each collection of a node's items makes, of the first type that it takes."""
+    for prop in node.bl_rna.properties:
+        collection = getattr(node, prop.identifier) if prop.type == "COLLECTION" and prop.srna else None
+        if prop.identifier in SOCKETS or not hasattr(collection, "new"):
+            continue
+        for kind in argument_choices(collection, "socket_type") or [""]:
+            given = [
+                item for item in collection.bl_rna.functions["new"].parameters if item.identifier == "name"
+            ]
+            try:
+                item = collection.new(*([kind] if kind else []), *("new" for _ in given))
+            except (TypeError, RuntimeError):
+                continue
+            if item is not None:
+                yield called(item), item
+                break
+
+
+def node_items():
+    """The items of nodes, and the bakes of a modifier."""
+    for kind in ("GeometryNodeTree", "CompositorNodeTree"):
+        tree = bpy.data.node_groups.new("new", kind)
+        for name in dir(bpy.types):
+            cls = getattr(bpy.types, name)
+            if not isinstance(cls, type) or not issubclass(cls, bpy.types.Node):
+                continue
+            try:
+                node = tree.nodes.new(name)
+            except (TypeError, RuntimeError):
+                continue
+            yield from added_items(node)
+            tree.nodes.remove(node)
+    modifier = new_modifier(mesh_object(), "NODES")
+    if hasattr(modifier, "bakes"):
+        tree = bpy.data.node_groups.new("new", "GeometryNodeTree")
+        tree.nodes.new("GeometryNodeBake")
+        modifier.node_group = tree  # pyright: ignore[reportOptionalMemberAccess]
+        yield from present(modifier, "bakes")
+
+
 MAKERS = (
     data_blocks, added_by_operators, modifiers, constraints, particles, children, force_fields, rigid_bodies, strips,
     animation, tracking, armatures, splines, mesh_parts, drawings, scenes, libraries, node_trees,
+    node_items,
 )  # fmt: skip
 
 

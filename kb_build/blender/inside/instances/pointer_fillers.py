@@ -130,6 +130,19 @@ def modifier_fillers(observer):
                 observer.note_filled(modifier, trial.filled(), f".{field.name} = {item!r}")
 
 
+def particle_fillers(observer):
+    """The switches of particle systems, of each type."""
+    for kind in choices("ParticleSettings", "type"):
+        for name in switches(bpy.types.ParticleSystem.bl_rna):
+            obj = mesh_object()
+            new_modifier(obj, "PARTICLE_SYSTEM")
+            system = obj.particle_systems[-1]
+            system.settings.type = kind
+            trial = Trial(observer, system)
+            setattr(system, name, True)
+            observer.note_filled(system, trial.filled(), f".{name} = True")
+
+
 def operators():
     """(call, operator) of the operators that may add something to what is active."""
     for module in MODULES:
@@ -204,7 +217,7 @@ def operator_fillers(observer):
                 observer.note_filled(None, filled, f"{first_call} then {call}")
 
 
-FILLERS = (data_block_fillers, modifier_fillers, operator_fillers)
+FILLERS = (data_block_fillers, modifier_fillers, particle_fillers, operator_fillers)
 
 
 def find_all(write, observer, skipped):
