@@ -76,10 +76,9 @@ class BrokenExpressions:
     def tell(self, chain: Chain, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
         """Adds a chain as far as it could be resolved, and its missing name."""
         is_element = self._is_element(chain, resolved, later, recognition)
-        called_on = self._reader.entry(resolved.owner)
-        if (
-            called_on and called_on.kind == "function" and resolved.fit >= LIKELY
-        ):  # what it gives is not known
+        owner = self._reader.entry(resolved.owner)
+        # Of what a function gives that is read nothing may be known.
+        if owner and owner.kind == "function" and resolved.fit >= LIKELY:
             recognition.add(resolved.owner, _BEFORE_UNKNOWN - later, "on the way")
         if self._says_nothing(chain, resolved) or (not is_element and self._is_custom(chain, resolved)):
             return

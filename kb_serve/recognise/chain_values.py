@@ -93,9 +93,8 @@ class ChainValues:
             element = others[0] if others else self.returned(makes.path) if makes else ""
             return ChainValue(symbol, element, many=True, container=first)
         if self._reader.member((first,), "keys") and (found := self._reader.member((first,), "get")):
-            return ChainValue(
-                symbol, self.returned(found.path), many=True, container=first
-            )  # like a dictionary
+            # Like a dictionary: what it has is found by a key.
+            return ChainValue(symbol, self.returned(found.path), many=True, container=first)
         return ChainValue(symbol, first)
 
     def classes_in(self, text: str, path: str, *, whole: bool = False) -> list[str]:
