@@ -70,6 +70,7 @@ class Core:
         self.loops: list[Loop] = []
         self.tolerant = 0
         self.guessing = False
+        self.dictionaries = 0  # around what is being read
         self.depth = 0
         self.steps_left = self.file.steps_left
         self.function: FunctionDefinition | None = None
@@ -103,14 +104,15 @@ class Core:
     def inside(self, file: SourceFile, scope: Scope, function: FunctionDefinition | None) -> Generator[None]:
         """Reads at another place, and comes back."""
         outer = self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing
-        outer_file = self.file
+        outer_file, dictionaries = self.file, self.dictionaries
         self._enter(file)
         self.scope, self.function, self.loops = scope, function, []
-        self.tolerant, self.statement, self.guessing = 0, None, False
+        self.tolerant, self.statement, self.guessing, self.dictionaries = 0, None, False, 0
         try:
             yield
         finally:
             self._enter(outer_file)
+            self.dictionaries = dictionaries
             self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing = outer
 
     def _enter(self, file: SourceFile) -> None:

@@ -63,6 +63,7 @@ _MATH = frozenset(
 _VECTOR = "mathutils.Vector"
 _SUMS: dict[type[ast.operator], str] = {ast.Add: "+", ast.Sub: "-", ast.Div: "/"}
 _NUMBERS = frozenset({"bool", "int", "float"})
+_DEEPEST_ITEMS = 4  # dictionaries around one whose items are kept: what holds them, does so twice
 _LONGEST_LITERAL = 64
 _COMPARISONS: dict[type[ast.cmpop], Callable[[list[int], list[int]], bool]] = {
     ast.Lt: op.lt, ast.LtE: op.le, ast.Gt: op.gt, ast.GtE: op.ge, ast.Eq: op.eq, ast.NotEq: op.ne,
@@ -198,6 +199,7 @@ class Expressions(Members):
         keys: list[Type] = []
         values: list[Type] = []
         items: list[tuple[str, Type]] = []
+        self.dictionaries += 1
         for key, value in zip(node.keys, node.values, strict=True):
             value_type = self.evaluate(value)
             if key is None:
@@ -208,7 +210,8 @@ class Expressions(Members):
             values.append(value_type)
             if (text := literal_text(key_type)) is not None and len(items) < _LONGEST_LITERAL:
                 items.append((text, value_type))
-        if len(items) < len(values):
+        self.dictionaries -= 1
+        if len(items) < len(values) or self.dictionaries > _DEEPEST_ITEMS:
             items = []
         return Mapping(union(keys), union(values), tuple(items))
 

@@ -88,3 +88,16 @@ def test_what_is_too_deep_is_told(api: Api, code: str) -> None:
     row = next(row for row in found.resolutions.values() if row.value == "draw_type")
     assert row.missing
     assert not row.guarded
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        "x = " + "{'a': " * 80 + "1" + "}" * 80,
+        "x = " + "{'a': [" * 60 + "1" + "]}" * 60,
+        "x = {'a': 1}\n" + "x = {'a': x, 'b': x}\n" * 80,
+    ],
+)
+def test_dictionaries_in_each_other_take_no_more_work_than_others(api: Api, code: str) -> None:
+    """Each knows what it holds twice, by its keys and at all: of eighty in each other nobody would see the end."""
+    assert analyse(f"{code}\nimport bpy\nbpy.context.object.location", api).error is None
