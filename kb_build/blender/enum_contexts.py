@@ -94,7 +94,7 @@ def _place_taken(taken: set[Context], refused: set[Context]) -> str:
     """Where alone what takes an item is, and what takes it there if not all does; empty where no place decides."""
     present = {_placed(label)[1] for label, _ in taken}
     absent = {_placed(label)[1] for label, _ in refused} - present
-    if not absent:
+    if not absent or "" in present | absent:  # of some it is not told where they are
         return ""
     few_take = len(present) <= len(absent)
     where = f"{'only' if few_take else 'not'} in {' or '.join(sorted(present if few_take else absent))}"

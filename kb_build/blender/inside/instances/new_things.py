@@ -500,19 +500,18 @@ def added_items(node):
 
 
 def node_items():
-    """The items of nodes, and the bakes of a modifier."""
-    for kind in ("GeometryNodeTree", "CompositorNodeTree"):
-        tree = bpy.data.node_groups.new("new", kind)
-        for name in dir(bpy.types):
-            cls = getattr(bpy.types, name)
-            if not isinstance(cls, type) or not issubclass(cls, bpy.types.Node):
-                continue
-            try:
-                node = tree.nodes.new(name)
-            except (TypeError, RuntimeError):
-                continue
-            yield from added_items(node)
-            tree.nodes.remove(node)
+    """The items of geometry nodes, and the bakes of a modifier."""
+    tree = bpy.data.node_groups.new("new", "GeometryNodeTree")
+    for name in dir(bpy.types):
+        cls = getattr(bpy.types, name)
+        if not isinstance(cls, type) or not issubclass(cls, bpy.types.Node):
+            continue
+        try:
+            node = tree.nodes.new(name)
+        except (TypeError, RuntimeError):
+            continue
+        yield from added_items(node)
+        tree.nodes.remove(node)
     modifier = new_modifier(mesh_object(), "NODES")
     if hasattr(modifier, "bakes"):
         tree = bpy.data.node_groups.new("new", "GeometryNodeTree")
