@@ -138,16 +138,16 @@ class BaseReader:
         # A symbol's or page's row, or None; the pages right below one, in the manual's order; the targets of a symbol's
         # links to the manual; (form, id) of everything spelled like a key (see analysis.key), preferred forms first.
         # An entry takes nearly a kilobyte, and a class has fifty members.
-        self.entry = KeptRows(self._entries, None, 1_000)
+        self.entry = KeptRows(self._entries, None, 700)
         self.page_entry = KeptRows(self._page_entries, None, 500)
         self.page_children = KeptRows(self._page_children, (), 100)
         self.manual_links = KeptRows(self._manual_links, (), 500)
-        self.by_key = KeptRows(self._by_key, (), 200)
+        self.by_key = KeptRows(self._by_key, (), 100)
         # What scripts write for a page's labels: (section, line) → the names in Markdown; line -1 is the heading.
         self.label_names = KeptRows(self._label_names, {}, 100)
         # The members of a class or module by name; the classes right below one; the symbols whose last part is a name.
         self.members = lru_cache(maxsize=32)(self._members)
-        self.subclasses = lru_cache(maxsize=64)(self._subclasses)
+        self.subclasses = lru_cache(maxsize=16)(self._subclasses)
         # The whole record of an identifier, and a page with its sections, or None. They are looked at several times
         # while they are answered with.
         self.symbol = lru_cache(maxsize=32)(self._symbol)

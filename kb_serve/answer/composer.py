@@ -55,7 +55,7 @@ class AnswerComposer:
         self._lines = HitLines(reader)
         self._topics = Topics(reader)
         self._practice = Practice(reader)
-        self._draft = lru_cache(maxsize=32)(self._make_draft)
+        self._draft = lru_cache(maxsize=16)(self._make_draft)
 
     def answer(  # noqa: PLR0913 - all that a query comes with
         self,

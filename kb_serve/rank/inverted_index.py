@@ -28,7 +28,7 @@ Scores = NDArray[np.float32]
 K1 = 2.2
 _PAGES = 2.0  # what a page counts, as pages are not weighed: as much as a symbol that is often used
 _NUMBER_BYTES = 4
-_KEPT = 200  # stems; a query has a dozen at most
+_KEPT = 120  # stems; a query has a dozen at most
 
 
 @dataclass(frozen=True, slots=True)
