@@ -83,15 +83,19 @@ class CallSite:
                 yield parameter, keyword.value
 
 
+def _sure_calls(script: Script) -> Iterator[tuple[ast.Call, tuple[Type, ...]]]:
+    """The calls that surely are of the API, each with the types of all that may be called."""
+    for row in script.resolutions("call"):
+        if isinstance(row.node, ast.Call) and row.sure and not row.guarded:
+            yield row.node, members(script.type_of(row.node.func) or NoneValue())
+
+
 @once_per_script
 def calls(script: Script) -> list[CallSite]:
     """The calls that surely are of one thing of the API, in the order in which they stand."""
     found: list[CallSite] = []
-    for row in script.resolutions("call"):
-        node = row.node
-        if not isinstance(node, ast.Call) or not row.sure or row.guarded:
-            continue
-        kinds = [kind for kind in members(script.type_of(node.func) or NoneValue()) if kind != NoneValue()]
+    for node, called in _sure_calls(script):
+        kinds = [kind for kind in called if kind != NoneValue()]
         if len(kinds) == 1 and (symbol := _called(script, kinds[0])):
             found.append(_site(node, symbol))
     return found
@@ -101,11 +105,7 @@ def calls(script: Script) -> list[CallSite]:
 def calls_of_several(script: Script) -> list[CallSite]:
     """The calls that surely are of one of several functions with one signature: of the weightiest class."""
     found: list[CallSite] = []
-    for row in script.resolutions("call"):
-        node = row.node
-        if not isinstance(node, ast.Call) or not row.sure or row.guarded:
-            continue
-        kinds = members(script.type_of(node.func) or NoneValue())
+    for node, kinds in _sure_calls(script):
         symbols = [symbol for kind in kinds if (symbol := _called(script, kind))]
         signatures = {symbol.signature for symbol in symbols}
         if len(kinds) == len(symbols) > 1 and len(signatures) == 1 and all(signatures):

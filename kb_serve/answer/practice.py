@@ -184,8 +184,9 @@ class Practice:
         def is_about(subject: frozenset[str]) -> bool:
             return is_named or not subject.isdisjoint(said)
 
-        if identifier.startswith(_HANDLERS) and identifier != _PERSISTENT and self._reader.entry(_PERSISTENT):
-            yield from (_STAYING,) if is_about(_OF_HANDLERS) else ()
+        is_handler = identifier.startswith(_HANDLERS) and identifier != _PERSISTENT
+        if is_handler and is_about(_OF_HANDLERS) and self._reader.entry(_PERSISTENT):
+            yield _STAYING
         if identifier in {_TIMER, _TIMERS} and is_about(_OF_TIMERS):
             yield _NO_TIMERS
         if _is_of_fluids(identifier, said) or self._explains(identifier, _BAKES_FLUIDS):

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
+from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.variables import classes_of_parts, usual_classes, variable_fit
 
 if TYPE_CHECKING:
@@ -36,15 +37,14 @@ class Owners:
         name = next(iter(chain.attributes), "")
         parts, taking = classes_of_parts(chain.root), self._taking(chain, name)
         named = [set(words(cls.rpartition(".")[2])) for cls in usual_classes(chain.root)]
-        variable = _told_by(chain.root)
         is_class = chain.root[:1].isupper()  # misspelt, or of the script: a member does not tell it
+        variable = frozenset[str]() if is_class else _told_by(chain.root)
         for rank, owner in enumerate(self._having(name)):
             is_part = any(part <= set(words(owner.name)) for part in named)
-            is_named = bool(variable) and not is_class and variable <= _words_of(owner)
             is_told = is_part or owner.path in taking or self._is_one_of(owner.path, parts)
             told = 0.0 if is_class else _TOLD_BY_PART if is_told else TOLD_BY_MEMBER
             fit = max(told - 0.001 * rank, _NAMED_ALIKE * variable_fit(chain.root, owner.name))
-            if is_named:
+            if variable and variable <= _words_of(owner):
                 fit = _NAMED_SO - 0.001 * rank
             # Where a chain goes on, what follows tells which one is meant.
             if rank < _MOST_TOLD or fit > TOLD_BY_MEMBER or len(chain.steps) > 1:
@@ -54,15 +54,11 @@ class Owners:
         """(class, fit) for the nodes that have the socket which a chain begins with, and the variable's words in their
         name: ``voronoi.inputs["Randomness"]``.
         """
-        side, subscript = chain.steps[:2] if len(chain.steps) > 1 else (None, None)
-        if (
-            side is None
-            or subscript is None
-            or subscript.kind != "key"
-            or side.text not in {"inputs", "outputs"}
-        ):
-            return
-        sockets = [entry for entry in self._reader.by_name(subscript.text) if entry.kind == "socket"]
+        match chain.steps:
+            case (ChainStep(text="inputs" | "outputs"), ChainStep(kind="key", text=name), *_):
+                sockets = [entry for entry in self._reader.by_name(name) if entry.kind == "socket"]
+            case _:
+                return
         self._reader.entry.load(entry.owner for entry in sockets)
         variable = _told_by(chain.root)
         shared = {

@@ -31,21 +31,10 @@ _BAKE = "bake"  # what runs what has been set, wherever it is
 # What takes away what steps have made and set.
 UNDO = frozenset(
     {
-        *(
-            "remove",
-            "delete",
-            "free",
-            "clear",
-            "separate",
-            "dissolve",
-            "unlink",
-            "unassign",
-            "unpack",
-            "purge",
-        ),
-        "deselect",
+        "clear", "delete", "deselect", "dissolve", "free", "purge", "remove", "separate", "unassign", "unlink",
+        "unpack",
     }
-)
+)  # fmt: skip
 _MAKE_OR_REMOVE = UNDO | frozenset(
     {
         "add",
