@@ -21,20 +21,20 @@ _QUICK_CHARACTERS = 300
 _Arguments = TypeVar("_Arguments", bound=BaseModel)
 
 DESCRIPTION = """\
-Look up Blender's Python API and manual, for the Blender version in use: exact schemas (types, defaults, ranges, enum \
-values, units), operators with their arguments, node sockets, manual pages. Answers come from that Blender itself. \
+Look up the Python API and manual of the Blender in use: exact schemas (types, defaults, ranges, enum values, \
+units), operators with their arguments, node sockets, manual pages. Answers come from that Blender itself. \
 Query before you write a name you are not sure of: what you remember may belong to another version.
 
 `query`, one thing at a time:
 - a name: `ClothSettings.quality`, `bpy.ops.object.modifier_add`, `ShaderNodeBsdfPrincipled`
-- an expression or lines of your code: `bpy.context.object.modifiers["Cloth"].settings.quality`; a wrong name is \
-answered with what took its place, a wrong value with what is wanted
+- lines of your code: `bpy.context.object.modifiers["Cloth"].settings.quality`; wrong names are answered with what \
+took their place, wrong values with what fits
 - an error message, whole: `AttributeError: …`; an enum value
 - plain words: `make cloth collide with itself`
 - a topic, when you begin a stage of work (`cloth`, `rigid body`, `uv`): how it is done, pages, classes, operators
 
-The best hit is shown in full, others by `id`; query an id to see it. A long answer ends with the part to go on with: \
-repeat the call with it, as `part=23`. `blender="4.5"` asks another version's base."""
+The best hit is shown in full, others by `id`; query an id to see it. A long answer ends with the part to go on with, \
+as `part=23`. `blender="4.5"` asks another version's base."""
 
 
 class DocsArguments(BaseModel):
