@@ -7,11 +7,10 @@ import builtins
 import re
 import sqlite3
 import textwrap
-import warnings
-import weakref
 from typing import TYPE_CHECKING
-from weakref import WeakKeyDictionary
 
+from kb_build.flow.parse import parsed
+from kb_check.beside import checker_beside
 from kb_check.source import split_lines
 from kb_check.summary import mended
 from kb_serve.recognise.variables import is_guess, usual_classes
@@ -19,7 +18,7 @@ from kb_serve.recognise.variables import is_guess, usual_classes
 if TYPE_CHECKING:
     from kb_check.checker import Checker
     from kb_check.findings import Finding
-    from kb_serve.knowledge_base import KnowledgeBase
+    from kb_serve.reader import BaseReader
 
 _MOST = 4
 _LONGEST = 100  # characters of a line that is shown
@@ -33,27 +32,14 @@ _RULES = (
     "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call", "refused-path",
     "refused-property", "refused-value", "wrong-type",
 )  # fmt: skip
+_SIGNS = "=([*"  # one of which such code has
 # What code does that is more than a name.
 _DOES = (
     ast.Assign, ast.AugAssign, ast.AnnAssign, ast.Call, ast.BinOp, ast.Subscript, ast.FunctionDef, ast.ClassDef,
 )  # fmt: skip
 
 
-def checker_beside(base: KnowledgeBase) -> Checker:
-    """The checker beside an open base, which is closed after that."""
-    found = _CHECKERS.get(base)
-    if found is None:
-        from kb_check.checker import Checker  # noqa: PLC0415 - loaded by the first check
-
-        found = _CHECKERS[base] = Checker(base.path)
-        weakref.finalize(base, found.close)
-    return found
-
-
-_CHECKERS: WeakKeyDictionary[KnowledgeBase, Checker] = WeakKeyDictionary()
-
-
-def notes_on_code(base: KnowledgeBase, query: str) -> tuple[str, ...]:
+def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
     """What Blender refuses of the code in a query, a line each; nothing where there is none.
 
     What a variable holds that the code does not bind is taken from its name, where scripts use that for some classes;
@@ -63,7 +49,7 @@ def notes_on_code(base: KnowledgeBase, query: str) -> tuple[str, ...]:
     if found is None:
         return ()
     code, tree = found
-    checker = checker_beside(base)
+    checker = checker_beside(reader)
     code = f"{_bindings(tree, checker)}\n{code}"
     lines = split_lines(code)
     try:
@@ -86,21 +72,10 @@ def _code_in(query: str) -> tuple[str, ast.Module] | None:
         texts = [query, query.partition("\n")[2], query.rpartition("\n")[0]]
     for text in texts:
         code = textwrap.dedent(text).strip()
-        tree = _parsed(code)
-        if tree is not None and any(isinstance(node, _DOES) for node in ast.walk(tree)):
+        tree = parsed(code) if any(sign in code for sign in _SIGNS) else None
+        if isinstance(tree, ast.Module) and any(isinstance(node, _DOES) for node in ast.walk(tree)):
             return code, tree
     return None
-
-
-def _parsed(code: str) -> ast.Module | None:
-    if not any(sign in code for sign in "=([*"):
-        return None
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            return ast.parse(code)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return None
 
 
 def _bindings(tree: ast.Module, checker: Checker) -> str:

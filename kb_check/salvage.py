@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-import ast
 import re
-import warnings
 from dataclasses import dataclass
 
+from kb_build.flow.parse import parsed
 from kb_check.source import split_lines
 
 _MOST_ROUNDS = 40
@@ -73,15 +72,11 @@ def looks_like_python_2(code: str) -> bool:
 
 def _failing_line(lines: list[str]) -> int | None:
     """The index of the line at which the parser fails, the last where it does not say; None if it does not."""
-    try:
-        with warnings.catch_warnings():
-            warnings.simplefilter("ignore")
-            ast.parse("".join(lines))
-    except SyntaxError as error:
-        return min(max((error.lineno or len(lines)) - 1, 0), len(lines) - 1)
-    except (ValueError, RecursionError, MemoryError):
-        return len(lines) - 1
-    return None
+    match parsed("".join(lines)):
+        case SyntaxError(lineno=number):
+            return min(max((number or len(lines)) - 1, 0), len(lines) - 1)
+        case _:
+            return None
 
 
 def _culprit(lines: list[str], number: int) -> range | None:

@@ -34,7 +34,7 @@ class KnowledgeBase:
     def __init__(self, path: Path) -> None:
         """Opens a base file. Raises BaseMissing or BaseUnreadable, which say what to do."""
         self._reader = BaseReader(path)
-        self._composer = AnswerComposer(self._reader)
+        self._composer = AnswerComposer(self._reader, _notes_on_code)
         self._lock = Lock()
 
     @classmethod
@@ -62,8 +62,7 @@ class KnowledgeBase:
         Raises BadQuery for an empty query, one that takes too much work, or a wrong limit or part.
         """
         with self._lock, self._reader.bounded(_MOST_WORK):
-            told = _notes_on_code(self, text)
-            return self._composer.answer(text, limit, max_tokens, part, command=command, told=told)
+            return self._composer.answer(text, limit, max_tokens, part, command)
 
     def symbol(self, path: str) -> Symbol | None:
         """The raw record of an identifier, as the base spells it."""
@@ -80,6 +79,11 @@ class KnowledgeBase:
         """Facts about the base: Blender's version and build, fingerprint, sources, what is missing."""
         with self._lock:
             return self._reader.meta
+
+    @property
+    def reader(self) -> BaseReader:
+        """What reads the base, for parts that work beside it; not for several threads at once."""
+        return self._reader
 
     @property
     def path(self) -> Path:
@@ -100,10 +104,10 @@ class KnowledgeBase:
         self.close()
 
 
-def _notes_on_code(base: KnowledgeBase, query: str) -> Sequence[str]:
+def _notes_on_code(reader: BaseReader, query: str) -> Sequence[str]:
     """What is wrong in the code of a query. Said by the checker, which is built on this part: it stands here by name,
     and is loaded with the first code.
     """
     if _CODE.search(query) is None:
         return ()
-    return import_module("kb_check.in_queries").notes_on_code(base, query)
+    return import_module("kb_check.in_queries").notes_on_code(reader, query)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import warnings
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -11,6 +10,7 @@ from kb_build.flow.calls import Calls
 from kb_build.flow.core import StepsExhausted
 from kb_build.flow.functions import Functions
 from kb_build.flow.other_versions import doubt_what_others_use
+from kb_build.flow.parse import parsed
 from kb_build.flow.source_files import SourceFile, keeps_annotations, module_name
 from kb_build.flow.statements import Statements
 
@@ -176,21 +176,13 @@ def analyse_files(files: Mapping[str, str], api: Api, version: tuple[int, ...] =
 
 def _parsed(path: str, code: str) -> SourceFile:
     name, is_package = module_name(path)
-    tree: ast.Module | None = None
-    error: SyntaxError | None = None
     if len(code) > MOST_CHARACTERS:
-        error = SyntaxError(
+        tree = SyntaxError(
             f"the script is too large ({len(code):,} characters; up to {MOST_CHARACTERS:,} are read)"
         )
     else:
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                tree = ast.parse(code.removeprefix("\ufeff"))
-        except SyntaxError as found:
-            error = found
-        except (ValueError, RecursionError, MemoryError) as found:
-            error = SyntaxError(f"the script cannot be parsed: {found or type(found).__name__}")
+        tree = parsed(code.removeprefix("\ufeff"))
     steps = min(MOST_STEPS, 20_000 + _STEPS_PER_CHARACTER * len(code))
-    lazy = tree is not None and keeps_annotations(tree)
-    return SourceFile(name, is_package, tree, steps, error, keeps_annotations=lazy)
+    if isinstance(tree, SyntaxError):
+        return SourceFile(name, is_package, None, steps, tree)
+    return SourceFile(name, is_package, tree, steps, None, keeps_annotations=keeps_annotations(tree))

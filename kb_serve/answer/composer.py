@@ -24,7 +24,7 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Callable, Iterator, Sequence
 
     from kb_serve.answer.asked_values import AskedOf
     from kb_serve.answer.hits import Hit
@@ -48,33 +48,23 @@ _LONG_WORD = re.compile(rf"(\w{{{_LONGEST_WORD}}})\w+")
 class AnswerComposer:
     """Answers queries from one base."""
 
-    def __init__(self, reader: BaseReader) -> None:
+    def __init__(self, reader: BaseReader, notes_on_code: Callable[[BaseReader, str], Sequence[str]]) -> None:
+        """``notes_on_code`` says what is wrong in the code of a query, if there is any."""
         self._reader = reader
+        self._notes_on_code = notes_on_code
         self._ranker = QueryRanker(reader)
         self._renderer = MarkdownRenderer(reader)
         self._lines = HitLines(reader)
         self._topics = Topics(reader)
         self._practice = Practice(reader)
-        self._draft = lru_cache(maxsize=16)(self._make_draft)
+        self._draft = lru_cache(maxsize=16)(self._draft_with_notes)
 
-    def answer(  # noqa: PLR0913 - all that a query comes with
-        self,
-        query: str,
-        limit: int,
-        max_tokens: int,
-        part: int,
-        *,
-        command: str = "",
-        told: Sequence[str] = (),
-    ) -> DocsAnswer:
-        """Answers a query; ``command`` is what it was asked by, if in a shell, ``told`` are notes to begin with.
+    def answer(self, query: str, limit: int, max_tokens: int, part: int, command: str = "") -> DocsAnswer:
+        """Answers a query; ``command`` is what it was asked by, if in a shell.
 
         Raises BadQuery for an empty one, a wrong limit, or a part that does not exist.
         """
-        # No base holds lone surrogates.
-        text = _COMMENT.sub("", query).strip() or query
-        text = " ".join(text.encode(errors="ignore").decode().replace("\0", " ").split())
-        text = _LONG_WORD.sub(r"\1", text)
+        text = _in_one_line(query)
         if not text:
             raise BadQuery(
                 "The query is empty. Send a name (ClothSettings.quality), or say what you want to do."
@@ -85,8 +75,11 @@ class AnswerComposer:
             raise BadQuery(
                 f"max_tokens={max_tokens} is too small for an answer. Set it to {LEAST_TOKENS} or more."
             )
-        draft = with_notes(told, self._draft(text, min(limit, MAX_LIMIT)))
-        return paged(text, draft, max_tokens, part, command)
+        return paged(text, self._draft(query, min(limit, MAX_LIMIT)), max_tokens, part, command)
+
+    def _draft_with_notes(self, query: str, limit: int) -> Draft:
+        told = self._notes_on_code(self._reader, query)
+        return with_notes(told, self._make_draft(_in_one_line(query), limit))
 
     def _make_draft(self, text: str, limit: int) -> Draft:
         ranking = self._ranker.rank(text, limit)
@@ -237,6 +230,13 @@ class AnswerComposer:
             *overview.more,
         )
         return draft_of("page", hits, notes, blocks)
+
+
+def _in_one_line(query: str) -> str:
+    """A query without what no base holds: comments of code, lone surrogates, words longer than any name."""
+    text = _COMMENT.sub("", query).strip() or query
+    text = " ".join(text.encode(errors="ignore").decode().replace("\0", " ").split())
+    return _LONG_WORD.sub(r"\1", text)
 
 
 def _is_told(path: str, text: str) -> bool:

@@ -40,11 +40,12 @@ class Owners:
         is_class = chain.root[:1].isupper()  # misspelt, or of the script: a member does not tell it
         variable = frozenset[str]() if is_class else _told_by(chain.root)
         for rank, owner in enumerate(self._having(name)):
-            is_part = any(part <= set(words(owner.name)) for part in named)
+            own = set(words(owner.name))
+            is_part = any(part <= own for part in named)
             is_told = is_part or owner.path in taking or self._is_one_of(owner.path, parts)
             told = 0.0 if is_class else _TOLD_BY_PART if is_told else TOLD_BY_MEMBER
             fit = max(told - 0.001 * rank, _NAMED_ALIKE * variable_fit(chain.root, owner.name))
-            if variable and variable <= _words_of(owner):
+            if variable and variable <= own.union(words(owner.label)):
                 fit = _NAMED_SO - 0.001 * rank
             # Where a chain goes on, what follows tells which one is meant.
             if rank < _MOST_TOLD or fit > TOLD_BY_MEMBER or len(chain.steps) > 1:

@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     ],
 )
 def test_what_blender_refuses_of_code_is_told(query: str, told: str, kb: KnowledgeBase) -> None:
-    (note,) = notes_on_code(kb, query)
+    (note,) = notes_on_code(kb.reader, query)
     assert told in note
     answer = kb.query(query)
     assert told in answer.notes[0]
@@ -43,7 +43,7 @@ def test_what_blender_refuses_of_code_is_told(query: str, told: str, kb: Knowled
 
 
 def test_a_sure_fix_is_written_out(kb: KnowledgeBase) -> None:
-    (note,) = notes_on_code(kb, "mat.diffuse_color = (1, 0, 0)")
+    (note,) = notes_on_code(kb.reader, "mat.diffuse_color = (1, 0, 0)")
     assert note.endswith("Write `mat.diffuse_color = (1, 0, 0, 1.0)`.")
 
 
@@ -66,7 +66,7 @@ def test_a_sure_fix_is_written_out(kb: KnowledgeBase) -> None:
 def test_nothing_is_said_of_words_of_right_code_and_of_what_is_not_sure(
     query: str, kb: KnowledgeBase
 ) -> None:
-    assert notes_on_code(kb, query) == ()
+    assert notes_on_code(kb.reader, query) == ()
 
 
 def test_what_answers_say_anyway_is_not_said_twice(kb: KnowledgeBase) -> None:
@@ -75,7 +75,7 @@ def test_what_answers_say_anyway_is_not_said_twice(kb: KnowledgeBase) -> None:
 
 
 def test_few_of_many_are_told(kb: KnowledgeBase) -> None:
-    notes = notes_on_code(kb, "\n".join(f"obj.scale = {number}" for number in range(9)))
+    notes = notes_on_code(kb.reader, "\n".join(f"obj.scale = {number}" for number in range(9)))
     assert len(notes) == 5
     assert notes[-1] == "5 more: `blender_check` lists them."
 
@@ -94,4 +94,4 @@ def test_statements_of_blenders_own_scripts_are_left_alone(kb: KnowledgeBase) ->
         }
     )
     chosen = random.Random(5).sample(statements, 4_000)
-    assert [(text, notes) for text in chosen if (notes := notes_on_code(kb, text))] == []
+    assert [(text, notes) for text in chosen if (notes := notes_on_code(kb.reader, text))] == []

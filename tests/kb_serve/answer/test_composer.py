@@ -10,7 +10,7 @@ import pytest
 from asking import SEED, classes, of_data, paths
 
 from kb_serve.answer.budget import tokens
-from kb_serve.answer.composer import LEAST_TOKENS, MAX_LIMIT
+from kb_serve.answer.composer import LEAST_TOKENS, LIMIT, MAX_LIMIT, MAX_TOKENS, AnswerComposer
 from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
 
@@ -248,3 +248,19 @@ def test_an_operator_of_which_blender_says_nothing_is_listed_with_its_call(kb: K
     lines = kb.query("which camera is rendered python").text.splitlines()
     (line,) = (line for line in lines if line.startswith("- `bpy.ops.render.render`"))
     assert line.startswith("- `bpy.ops.render.render` `render(animation=False, write_still=False, ")
+
+
+def test_the_code_of_a_query_is_checked_once_for_all_parts_of_its_answer(kb: KnowledgeBase) -> None:
+    checked: list[str] = []
+
+    def note(_: BaseReader, query: str) -> tuple[str]:
+        checked.append(query)
+        return ("Blender refuses it.",)
+
+    composer = AnswerComposer(kb.reader, note)
+    query = "bpy.types.Object\n"
+    first, second = (composer.answer(query, LIMIT, MAX_TOKENS, part) for part in (1, 2))
+    assert checked == [query]
+    assert first.text.startswith("> Blender refuses it.")
+    assert first.notes == second.notes
+    assert not second.text.startswith(">")
