@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kb_serve.rank.search import Searcher, SearchHit
+    from kb_serve.rank.siblings import Siblings
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
@@ -112,6 +113,12 @@ class QueryRanker:
 
         return Searcher(self._reader)
 
+    @cached_property
+    def _siblings(self) -> Siblings:
+        from kb_serve.rank.siblings import Siblings  # noqa: PLC0415 - reads the search's index
+
+        return Siblings(self._reader, self.searcher.index)
+
     def rank(self, query: str, limit: int = _LEAST_HITS, about: str = "") -> Ranking:
         """The ids for a query, at least ``limit`` of them if there are; ``about``: see Searcher.search."""
         query, operators = without_unwanted(query)
@@ -137,7 +144,18 @@ class QueryRanker:
         named = best is not None and best.sure >= 0.9 and best.why not in {"enum item", "replacement"}
         named = named and not recognition.is_open
         alike = self._notes.alike(recognition) if named else ""
+        if not is_message(query):
+            ranked = self._with_siblings(ranked, asked, named=named)
         return Ranking(ranked, recognition, named, self._notes.on(recognition), alike)
+
+    def _with_siblings(self, ranked: list[RankedId], asked: str, *, named: bool) -> list[RankedId]:
+        """The same ids, with what the question asks for beside the first of them."""
+        found = self._siblings.of(ranked, self.searcher.concepts(asked), *([1] if named else []))
+        first = max(_ALWAYS, sum(row.why != "found" for row in ranked))
+        last = ranked[:first][-1].score if ranked else SURE
+        beside = [RankedId(path, last, "beside") for path in found]
+        rest = [row for row in ranked[first:] if row.id not in found]
+        return [*ranked[:first], *beside, *rest]
 
     def _replaced(self, ranked: list[RankedId]) -> list[RankedId]:
         """The same ids, each deprecated one that was found behind what takes its place."""

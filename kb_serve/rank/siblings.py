@@ -1,0 +1,184 @@
+"""Finds what a question asks for beside what was found: ``spot light blend and cone angle`` wants two members of a
+class, of which the search ranks one, and the other behind everything that is like the first.
+"""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING, NamedTuple
+
+import numpy as np
+
+from kb_build.index.analysis import stem, words
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+    from kb_serve.rank.inverted_index import InvertedIndex
+    from kb_serve.rank.merging import RankedId
+    from kb_serve.rank.scoring import Concept
+    from kb_serve.reader import BaseReader, SymbolEntry
+
+_ROWS = 5  # of what was found, the first, whose classes may have more
+_CLASSES = 2
+_MOST = 3
+_READ = 6  # members of a class whose labels are read
+_SAYS, _IN_LABEL = (
+    1.4,
+    0.5,
+)  # what a member says of a word (see StemPostings) that its label may have; how likely
+_SHARE = 0.3  # of what its names say, what counts of words that others say already
+_BESIDE = 0.15  # … and of words that only its description has
+_UNASKED = 0.5  # what a word of its name takes away that nobody asked for
+_COUNTS = 0.1
+_KINDS = frozenset(
+    map(stem, ("constraint", "data", "group", "modifier", "node", "object", "property", "settings", "strip"))
+)  # by which classes are called, and questions seldom call them
+_ENDS = (("min", "max"), ("start", "end"), ("x", "y"), ("left", "right"))
+_OTHER_END = dict((pair for one, other in _ENDS for pair in ((one, other), (other, one))))
+
+
+class _Class(NamedTuple):
+    """A class, and those of its members that were found."""
+
+    path: str
+    found: list[SymbolEntry]
+
+
+class Siblings:
+    """Finds them in one base."""
+
+    def __init__(self, reader: BaseReader, index: InvertedIndex) -> None:
+        self._reader = reader
+        self._index = index
+        self._topics = {ref: number for number, ref in enumerate(index.levels[1].refs)}
+
+    def of(self, rows: Sequence[RankedId], concepts: Iterable[Concept], classes: int = _CLASSES) -> list[str]:
+        """Members of the first ``classes`` classes of what was found, in whose names or labels are words of the
+        question that nothing of that class has which was found; and the other end of a range.
+        """
+        asked = {concept.stem: concept.idf for concept in concepts if concept.stem}
+        known = {row.id for row in rows} | {f"{row.id}.{name}" for row in rows for name in row.members}
+        chosen: list[SymbolEntry] = []
+        for cls in self._classes(rows, asked)[:classes]:
+            said = {*_stems(cls.path.rpartition(".")[2]), *_said_by(*cls.found, *chosen)}
+            left = {word: idf for word, idf in asked.items() if word not in said}
+            chosen += self._saying(cls, left, asked, known)
+        chosen += self._other_end(rows, known)
+        return [entry.path for entry in chosen[:_MOST]]
+
+    def _classes(self, rows: Sequence[RankedId], asked: Mapping[str, float]) -> list[_Class]:
+        """The classes of what was found, those first that the question names."""
+        classes: dict[str, _Class] = {}
+        first = [row for row in rows[:_ROWS] if not self._reader.is_page(row.id)]
+        members = [f"{row.id}.{name}" for row in first for name in row.members]
+        self._reader.entry.load((*(row.id for row in first), *members))
+        for path in (*(row.id for row in first), *members):
+            entry = self._reader.entry(path)
+            cls = entry and (entry.path if entry.kind == "class" else entry.owner)
+            if entry is not None and cls in self._topics:
+                classes.setdefault(cls, _Class(cls, [])).found.append(entry)
+        return sorted(classes.values(), key=lambda cls: not _is_named(cls.path, asked))
+
+    def _saying(
+        self, cls: _Class, left: dict[str, float], asked: Mapping[str, float], known: set[str]
+    ) -> Iterator[SymbolEntry]:
+        """The members of a class that say most of some words, each what those before it do not."""
+        if not left:
+            return
+        own = self._words_of(cls.path, left)
+        entries = self._nearest(own, left, known)
+        while left and entries:
+            worth = {
+                number: self._worth(number, entry, own[number], left, asked)
+                for number, entry in entries.items()
+                if not _said_by(entry).isdisjoint(left)
+            }
+            if not worth:
+                return
+            entry = entries.pop(max(worth, key=worth.__getitem__))
+            yield entry
+            for word in _said_by(entry):
+                left.pop(word, None)
+
+    def _words_of(self, cls: str, wanted: Iterable[str]) -> dict[int, dict[str, float]]:
+        """By the number of each member of a class which of some words it has, and how much it says of them."""
+        members = (self._index.levels[0].topics == self._topics[cls]).nonzero()[0]
+        found: dict[int, dict[str, float]] = {}
+        for word in wanted:
+            postings = self._index.postings(word)
+            numbers = postings.numbers[: postings.units]
+            places = np.searchsorted(numbers, members)
+            places = places[numbers.take(places, mode="clip") == members]
+            for number, says in zip(
+                numbers[places].tolist(), postings.saturated[places].tolist(), strict=True
+            ):
+                found.setdefault(number, {})[word] = says
+        return found
+
+    def _nearest(
+        self, own: Mapping[int, Mapping[str, float]], left: Mapping[str, float], known: set[str]
+    ) -> dict[int, SymbolEntry]:
+        """The members that may have some words in their names, or in their labels, that are not known already."""
+        refs = self._index.levels[0].refs
+
+        def near(number: int) -> float:
+            name = _stems(refs[number].rpartition(".")[2])
+            in_name = sum(left[word] for word in own[number] if word in name)
+            in_label = sum(
+                left[word] for word, says in own[number].items() if says >= _SAYS and word not in name
+            )
+            return in_name + _IN_LABEL * in_label - _UNASKED * len(name)
+
+        likely = sorted((number for number in own if refs[number] not in known), key=near, reverse=True)[
+            :_READ
+        ]
+        self._reader.entry.load(refs[number] for number in likely)
+        entries = {number: self._reader.entry(refs[number]) for number in likely}
+        return {
+            number: entry for number, entry in entries.items() if entry is not None and entry.kind != "class"
+        }
+
+    def _worth(
+        self,
+        number: int,
+        entry: SymbolEntry,
+        own: Mapping[str, float],
+        left: Mapping[str, float],
+        asked: Mapping[str, float],
+    ) -> float:
+        said = _said_by(entry)
+        new = sum(idf for word, idf in left.items() if word in said)
+        described = sum(left[word] for word in own if word in left and word not in said)
+        again = sum(idf for word, idf in asked.items() if word in said and word not in left)
+        unasked = len(_stems(entry.name).difference(asked))
+        counts = float(self._index.counts[number])
+        return new + _BESIDE * described + _SHARE * again - _UNASKED * unasked + _COUNTS * counts
+
+    def _other_end(self, rows: Sequence[RankedId], known: set[str]) -> Iterator[SymbolEntry]:
+        """The other end of the range of which the first symbol is one: ``slider_max`` of ``slider_min``."""
+        first = next((row.id for row in rows[:_ROWS] if not self._reader.is_page(row.id)), "")
+        owner, _, name = first.rpartition(".")
+        parts = name.split("_")
+        for place, part in enumerate(parts):
+            if part in _OTHER_END:
+                other = "_".join((*parts[:place], _OTHER_END[part], *parts[place + 1 :]))
+                entry = self._reader.entry(f"{owner}.{other}")
+                if entry is not None and entry.path not in known:
+                    yield entry
+
+
+def _is_named(cls: str, asked: Mapping[str, float]) -> bool:
+    """Whether a question says what makes a class's name."""
+    name = _stems(cls.rpartition(".")[2]) - _KINDS
+    return bool(name) and name.issubset(asked)
+
+
+def _said_by(*entries: SymbolEntry) -> set[str]:
+    """The stems of the names and labels of some symbols."""
+    return {word for entry in entries for name in (entry.name, entry.label) for word in _stems(name)}
+
+
+@lru_cache(maxsize=4_000)
+def _stems(name: str) -> frozenset[str]:
+    return frozenset(map(stem, words(name)))
