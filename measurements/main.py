@@ -26,6 +26,7 @@ PARTS = (
     *(
         "retrieval",
         "names",
+        "compound",
         "defaults",
         "passages",
         "signatures",

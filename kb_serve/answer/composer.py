@@ -152,9 +152,10 @@ class AnswerComposer:
             ranked = self._ranker.rank(part.text, limit, part.about)
             rows = [row for row in self._listed(ranked, limit) if row.id not in told]
             hits = hits_of(rows, self._reader)
-            are_pages = [hit.is_page for hit in hits]
-            chosen = [place for place, is_page in enumerate(are_pages) if not is_page][:_NAMES_OF_A_PART]
-            chosen += [place for place, is_page in enumerate(are_pages) if is_page][:_PAGES_OF_A_PART]
+            names = [place for place, hit in enumerate(hits) if not hit.is_page]
+            names[1:] = sorted(names[1:], key=lambda place: rows[place].why != "beside")
+            pages = [place for place, hit in enumerate(hits) if hit.is_page]
+            chosen = [*names[:_NAMES_OF_A_PART], *pages[:_PAGES_OF_A_PART]]
             lines = [f"- {self._lines.line(hits[place], rows[place])}" for place in chosen]
             lines = [*self._topics.first_steps(part.text, _STEPS_OF_A_PART), *lines]
             blocks.append(AnswerBlock("\n".join((f"**{number}. {part.text}**", *lines)), part.text))

@@ -15,10 +15,11 @@ if TYPE_CHECKING:
     from kb_serve.answer.asked_values import AskedValue
     from kb_serve.answer.hits import Hit
     from kb_serve.rank.merging import RankedId
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.reader import BaseReader, Creation, SymbolEntry
 
 NAMES = "further names"
 _LINE_TOKENS = 60
+_LONGEST_CALL = 70  # characters
 
 
 class HitLines:
@@ -32,12 +33,13 @@ class HitLines:
     ) -> Iterator[AnswerBlock]:
         """A line for each further hit: symbols, then pages. ``asked`` are the question's words."""
         further = list(zip(hits, rows, strict=True))
+        made = self._reader.creations([hit.id for hit in hits if hit.kind == "class"])
         for title, name, are_pages in (
             ("In Python", NAMES, False),
             ("Pages", "further pages", True),
         ):
             lines = [
-                f"- {self.line(hit, row)}{self._values(hit, asked)}"
+                f"- {self.line(hit, row)}{self._values(hit, asked)}{_made(hit.id, made.get(hit.id))}"
                 for hit, row in further
                 if hit.is_page == are_pages
             ]
@@ -98,3 +100,10 @@ class HitLines:
             return f"a decorator of functions: `{uses[0].code.splitlines()[0]}`"
         label = f"{entry.label}, " if entry.label not in {"", entry.name} else ""
         return f"{label}a class with {len(members)} members"
+
+
+def _made(path: str, creation: Creation | None) -> str:
+    """How an instance of a class is made, if that is soon said and the class's name does not say it."""
+    if creation is None or len(creation.call) > _LONGEST_CALL or path.endswith(f".{creation.choice}"):
+        return ""
+    return f" — made by `{creation.call}`"

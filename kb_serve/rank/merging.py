@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import STOP_WORDS, words
 from kb_serve.rank.deprecated import replacement
+from kb_serve.rank.named_nodes import named_nodes
 from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
 from kb_serve.recognise.notes import Notes
@@ -33,6 +34,7 @@ _NEAR = 8  # of the best ids
 _LEAST_BESIDE = 3  # words beside code that are a question of their own
 _MARKS = ".,:;?!()'\""
 _OPERATORS = "bpy.ops"
+_MOST_NODES = 2  # that a question calls by their labels, beside what was found
 _LEAST_HITS = 20  # of the search, so that it also finds alternatives to a named class, and names beside pages
 
 
@@ -145,17 +147,19 @@ class QueryRanker:
         named = named and not recognition.is_open
         alike = self._notes.alike(recognition) if named else ""
         if not is_message(query):
-            ranked = self._with_siblings(ranked, asked, named=named)
+            ranked = self._with_more(ranked, asked, named=named)
         return Ranking(ranked, recognition, named, self._notes.on(recognition), alike)
 
-    def _with_siblings(self, ranked: list[RankedId], asked: str, *, named: bool) -> list[RankedId]:
-        """The same ids, with what the question asks for beside the first of them."""
-        found = self._siblings.of(ranked, self.searcher.concepts(asked), *([1] if named else []))
+    def _with_more(self, ranked: list[RankedId], asked: str, *, named: bool) -> list[RankedId]:
+        """The same ids, with what else the question asks for behind the first of them."""
         first = max(_ALWAYS, sum(row.why != "found" for row in ranked))
+        told = {row.id for row in ranked[:first]}
+        nodes = [node for node in named_nodes(asked, self._reader) if node not in told]
+        members = self._siblings.of(ranked, self.searcher.concepts(asked), *([1] if named else []))
+        more = [*nodes[:_MOST_NODES], *members]
         last = ranked[:first][-1].score if ranked else SURE
-        beside = [RankedId(path, last, "beside") for path in found]
-        rest = [row for row in ranked[first:] if row.id not in found]
-        return [*ranked[:first], *beside, *rest]
+        rest = [row for row in ranked[first:] if row.id not in more]
+        return [*ranked[:first], *(RankedId(path, last, "beside") for path in more), *rest]
 
     def _replaced(self, ranked: list[RankedId]) -> list[RankedId]:
         """The same ids, each deprecated one that was found behind what takes its place."""

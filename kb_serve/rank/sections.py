@@ -42,7 +42,9 @@ def asked_section(page: Page, concepts: Sequence[Concept]) -> str:
 
 
 def _score(section: Section, weights: Mapping[str, float], average: float) -> float:
-    """BM25 of a section's text, heading and labels. A stem is looked for as the beginning of words."""
+    """BM25 of a section's text, heading and labels, and more if the query says all of its heading. A stem is looked for
+    as the beginning of words.
+    """
     text = f" {section.title}\n {section.text}".lower()
     found = [(stem, weight) for stem, weight in weights.items() if stem and stem in text]
     if not found:
@@ -55,4 +57,5 @@ def _score(section: Section, weights: Mapping[str, float], average: float) -> fl
         begins = f" {stem}"
         count = text.count(begins) + _IN_LABEL * labels.count(begins) + _IN_HEADING * heading.count(begins)
         score += weight * count / (count + norm)
-    return score
+    named = terms_of(section.title)
+    return score + sum(weights[stem] for stem in named) if named and weights.keys() >= set(named) else score

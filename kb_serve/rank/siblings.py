@@ -22,13 +22,12 @@ if TYPE_CHECKING:
 _ROWS = 5  # of what was found, the first, whose classes may have more
 _CLASSES = 2
 _MOST = 3
-_READ = 6  # members of a class whose labels are read
-_SAYS, _IN_LABEL = (
-    1.4,
-    0.5,
-)  # what a member says of a word (see StemPostings) that its label may have; how likely
+_READ = 6  # members of a class whose entries are read
+_SAYS = 1.4  # what a member says of a word (see StemPostings) that its label may have
+_ELSEWHERE = 0.3  # what such a word counts, next to one in its name
+_MUCH, _SPOKEN = 1.9, 0.25  # what it says of a word that it speaks of much, and how much of that counts
+_LEAST = 1.5  # idf of what a member tells that nothing else does
 _SHARE = 0.3  # of what its names say, what counts of words that others say already
-_BESIDE = 0.15  # … and of words that only its description has
 _UNASKED = 0.5  # what a word of its name takes away that nobody asked for
 _COUNTS = 0.1
 _KINDS = frozenset(
@@ -45,6 +44,13 @@ class _Class(NamedTuple):
     found: list[SymbolEntry]
 
 
+class _Member(NamedTuple):
+    """A member of a class, and the words that it tells of, each with how much, up to 1."""
+
+    entry: SymbolEntry
+    told: dict[str, float]
+
+
 class Siblings:
     """Finds them in one base."""
 
@@ -58,19 +64,20 @@ class Siblings:
         question that nothing of that class has which was found; and the other end of a range.
         """
         asked = {concept.stem: concept.idf for concept in concepts if concept.stem}
-        known = {row.id for row in rows} | {f"{row.id}.{name}" for row in rows for name in row.members}
+        first = rows[:_ROWS]
+        known = {row.id for row in first} | {f"{row.id}.{name}" for row in first for name in row.members}
         chosen: list[SymbolEntry] = []
-        for cls in self._classes(rows, asked)[:classes]:
+        for cls in self._classes(first, asked)[:classes]:
             said = {*_stems(cls.path.rpartition(".")[2]), *_said_by(*cls.found, *chosen)}
             left = {word: idf for word, idf in asked.items() if word not in said}
             chosen += self._saying(cls, left, asked, known)
-        chosen += self._other_end(rows, known)
+        chosen += self._other_end(first, known)
         return [entry.path for entry in chosen[:_MOST]]
 
     def _classes(self, rows: Sequence[RankedId], asked: Mapping[str, float]) -> list[_Class]:
         """The classes of what was found, those first that the question names."""
         classes: dict[str, _Class] = {}
-        first = [row for row in rows[:_ROWS] if not self._reader.is_page(row.id)]
+        first = [row for row in rows if not self._reader.is_page(row.id)]
         members = [f"{row.id}.{name}" for row in first for name in row.members]
         self._reader.entry.load((*(row.id for row in first), *members))
         for path in (*(row.id for row in first), *members):
@@ -87,18 +94,19 @@ class Siblings:
         if not left:
             return
         own = self._words_of(cls.path, left)
-        entries = self._nearest(own, left, known)
-        while left and entries:
-            worth = {
-                number: self._worth(number, entry, own[number], left, asked)
-                for number, entry in entries.items()
-                if not _said_by(entry).isdisjoint(left)
-            }
-            if not worth:
+        near = self._nearest(own, left, known)
+        while left:
+            new = {number: _new(member, left) for number, member in near.items()}
+            telling = [number for number in near if new[number] >= _LEAST]
+            if not telling:
                 return
-            entry = entries.pop(max(worth, key=worth.__getitem__))
-            yield entry
-            for word in _said_by(entry):
+            best = max(
+                telling,
+                key=lambda number: new[number] + self._beside(number, near[number], left, asked),
+            )
+            member = near.pop(best)
+            yield member.entry
+            for word in member.told:
                 left.pop(word, None)
 
     def _words_of(self, cls: str, wanted: Iterable[str]) -> dict[int, dict[str, float]]:
@@ -118,46 +126,39 @@ class Siblings:
 
     def _nearest(
         self, own: Mapping[int, Mapping[str, float]], left: Mapping[str, float], known: set[str]
-    ) -> dict[int, SymbolEntry]:
-        """The members that may have some words in their names, or in their labels, that are not known already."""
+    ) -> dict[int, _Member]:
+        """By number the members, not known already, that are likeliest to tell of some words."""
         refs = self._index.levels[0].refs
 
         def near(number: int) -> float:
             name = _stems(refs[number].rpartition(".")[2])
             in_name = sum(left[word] for word in own[number] if word in name)
-            in_label = sum(
+            elsewhere = sum(
                 left[word] for word, says in own[number].items() if says >= _SAYS and word not in name
             )
-            return in_name + _IN_LABEL * in_label - _UNASKED * len(name)
+            return in_name + _ELSEWHERE * elsewhere - _UNASKED * len(name)
 
-        likely = sorted((number for number in own if refs[number] not in known), key=near, reverse=True)[
-            :_READ
-        ]
+        unknown = (number for number in own if refs[number] not in known)
+        likely = sorted(unknown, key=near, reverse=True)[:_READ]
         self._reader.entry.load(refs[number] for number in likely)
         entries = {number: self._reader.entry(refs[number]) for number in likely}
         return {
-            number: entry for number, entry in entries.items() if entry is not None and entry.kind != "class"
+            number: _Member(entry, _told(entry, own[number]))
+            for number, entry in entries.items()
+            if entry is not None and entry.kind != "class"
         }
 
-    def _worth(
-        self,
-        number: int,
-        entry: SymbolEntry,
-        own: Mapping[str, float],
-        left: Mapping[str, float],
-        asked: Mapping[str, float],
+    def _beside(
+        self, number: int, member: _Member, left: Mapping[str, float], asked: Mapping[str, float]
     ) -> float:
-        said = _said_by(entry)
-        new = sum(idf for word, idf in left.items() if word in said)
-        described = sum(left[word] for word in own if word in left and word not in said)
-        again = sum(idf for word, idf in asked.items() if word in said and word not in left)
-        unasked = len(_stems(entry.name).difference(asked))
-        counts = float(self._index.counts[number])
-        return new + _BESIDE * described + _SHARE * again - _UNASKED * unasked + _COUNTS * counts
+        """What speaks for a member beside the words that it is looked for by."""
+        again = sum(idf for word, idf in asked.items() if word in member.told and word not in left)
+        unasked = len(_stems(member.entry.name).difference(asked))
+        return _SHARE * again - _UNASKED * unasked + _COUNTS * float(self._index.counts[number])
 
     def _other_end(self, rows: Sequence[RankedId], known: set[str]) -> Iterator[SymbolEntry]:
         """The other end of the range of which the first symbol is one: ``slider_max`` of ``slider_min``."""
-        first = next((row.id for row in rows[:_ROWS] if not self._reader.is_page(row.id)), "")
+        first = next((row.id for row in rows if not self._reader.is_page(row.id)), "")
         owner, _, name = first.rpartition(".")
         parts = name.split("_")
         for place, part in enumerate(parts):
@@ -172,6 +173,17 @@ def _is_named(cls: str, asked: Mapping[str, float]) -> bool:
     """Whether a question says what makes a class's name."""
     name = _stems(cls.rpartition(".")[2]) - _KINDS
     return bool(name) and name.issubset(asked)
+
+
+def _told(entry: SymbolEntry, own: Mapping[str, float]) -> dict[str, float]:
+    """The words that a member's name and label have, and those that the rest of it speaks of much."""
+    spoken = {word: _SPOKEN * says for word, says in own.items() if says >= _MUCH}
+    return spoken | dict.fromkeys(_said_by(entry), 1.0)
+
+
+def _new(member: _Member, left: Mapping[str, float]) -> float:
+    """How much a member tells of some words."""
+    return sum(left[word] * share for word, share in member.told.items() if word in left)
 
 
 def _said_by(*entries: SymbolEntry) -> set[str]:

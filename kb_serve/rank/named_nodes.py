@@ -1,0 +1,69 @@
+"""Finds the nodes that a question about nodes calls by their labels: ``image texture with mapping node``."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key
+from kb_serve.rank.signals import NODE_WORDS
+from kb_serve.reader import TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
+    from kb_serve.reader import BaseReader, SymbolEntry
+
+_NODE = f"{TYPES}Node"
+_NO_LABEL = frozenset({"node", "nodes"})
+_JOINS = _NO_LABEL | {"and"}
+_MARKS = ".,:;?!()'\"`"
+_OF_TEXTURES = f"{TYPES}TextureNode"
+_LONGEST = 4  # words of a label
+_MOST_WORDS = 20  # with more of them it is no question about nodes alone
+
+
+def named_nodes(question: str, reader: BaseReader) -> list[str]:
+    """Paths of the nodes whose labels a question that speaks of nodes says, in its order: of each label the node that
+    counts most, of old textures only where there is no other.
+    """
+    said = [word.strip(_MARKS) for word in question.lower().split()]
+    if len(said) > _MOST_WORDS or NODE_WORDS.isdisjoint(said):
+        return []
+    spans = [*_spans(said)]
+    reader.by_key.load("".join(said[start:end]) for start, end in spans)
+    nodes: dict[str, None] = {}
+    end_of_last = 0
+    for start, end in spans:
+        if start >= end_of_last and (node := _called("".join(said[start:end]), reader)):
+            nodes[node] = None
+            end_of_last = end
+    return list(nodes)
+
+
+def _spans(said: Sequence[str]) -> Iterator[tuple[int, int]]:
+    """The places of words that may be a label, at each place the longest first; of single ones those that are joined
+    to what a node is called by, as most labels of one word are words of any question.
+    """
+    for start in range(len(said)):
+        for end in range(min(len(said), start + _LONGEST), start, -1):
+            is_long = end - start > 1
+            if _NO_LABEL.isdisjoint(said[start:end]) and (
+                is_long or not _JOINS.isdisjoint(said[end : end + 1])
+            ):
+                yield start, end
+
+
+def _called(label: str, reader: BaseReader) -> str:
+    """The node with a label, in small letters and without spaces; empty for none."""
+    found = [reader.entry(path) for _, path in reader.by_key(label)]
+    nodes = [
+        entry for entry in found if entry and _is_called(entry, label) and reader.descends(entry.path, _NODE)
+    ]
+    if not nodes:
+        return ""
+    weights = reader.weights([node.path for node in nodes])
+    return max(nodes, key=lambda n: (not n.path.startswith(_OF_TEXTURES), weights.get(n.path, 0.0))).path
+
+
+def _is_called(entry: SymbolEntry, label: str) -> bool:
+    return entry.kind == "class" and key(entry.label) == label

@@ -1,0 +1,79 @@
+"""What a question asks for beside its best hit is listed too, and takes nothing's place."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import pytest
+
+from kb_serve.rank.merging import QueryRanker
+
+if TYPE_CHECKING:
+    from kb_serve.knowledge_base import KnowledgeBase
+
+TYPES = "bpy.types."
+
+
+def ids(kb: KnowledgeBase, question: str) -> list[str]:
+    return [hit.id for hit in kb.query(question).hits]
+
+
+@pytest.mark.parametrize(
+    ("question", "wanted"),
+    [
+        (
+            "point lamp soft size and its shadow jitter",
+            ["PointLight.shadow_soft_size", "PointLight.use_shadow_jitter"],
+        ),
+        ("wave modifier height, speed and narrowness", ["WaveModifier.height", "WaveModifier.speed"]),
+        (
+            "hook modifier falloff radius and strength",
+            ["HookModifier.falloff_radius", "HookModifier.strength"],
+        ),
+        ("limits of a shape key's slider", ["ShapeKey.slider_min", "ShapeKey.slider_max"]),
+    ],
+)
+def test_members_of_one_class_are_listed_together(
+    kb: KnowledgeBase, question: str, wanted: list[str]
+) -> None:
+    text = kb.query(question).text
+    assert [name for name in wanted if name not in text and f"`.{name.partition('.')[2]}`" not in text] == []
+
+
+@pytest.mark.parametrize(
+    ("question", "node"),
+    [
+        ("noise texture with mapping and color ramp nodes", "ShaderNodeMapping"),
+        ("use an attribute node to read vertex weights", "ShaderNodeAttribute"),
+    ],
+)
+def test_nodes_that_are_called_by_their_labels_are_listed(
+    kb: KnowledgeBase, question: str, node: str
+) -> None:
+    assert f"{TYPES}{node}" in ids(kb, question)
+
+
+def test_a_label_without_a_node_is_a_word_like_others(kb: KnowledgeBase) -> None:
+    assert f"{TYPES}ShaderNodeMapping" not in ids(kb, "uv mapping and unwrapping of a cube")
+
+
+@pytest.mark.parametrize(
+    "question",
+    ["spot light blend and cone angle", "wind strength and noise", "join text nodes and math nodes"],
+)
+def test_what_is_listed_besides_stands_behind_the_first_hits(kb: KnowledgeBase, question: str) -> None:
+    ranked = QueryRanker(kb.reader).rank(question).ranked
+    reasons = [row.why for row in ranked]
+    assert "beside" in reasons
+    assert "beside" not in reasons[:5]
+    assert len({row.id for row in ranked}) == len(ranked)
+
+
+def test_a_message_asks_for_nothing_besides(kb: KnowledgeBase) -> None:
+    message = "TypeError: SpotLight.spot_size expected a float type, not str"
+    assert "beside" not in {row.why for row in QueryRanker(kb.reader).rank(message).ranked}
+
+
+def test_a_class_in_the_list_says_how_one_is_made(kb: KnowledgeBase) -> None:
+    text = kb.query("keep the camera pointed at an empty with a constraint").text
+    assert "— made by `obj.constraints.new('" in text
