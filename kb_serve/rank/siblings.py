@@ -66,11 +66,15 @@ class Siblings:
         asked = {concept.stem: concept.idf for concept in concepts if concept.stem}
         first = rows[:_ROWS]
         known = {row.id for row in first} | {f"{row.id}.{name}" for row in first for name in row.members}
+        likely = [
+            (left, self._likely(cls.path, left, known))
+            for cls in self._classes(first, asked)[:classes]
+            if (left := _left(asked, (*_stems(cls.path.rpartition(".")[2]), *_said_by(*cls.found))))
+        ]
+        self._reader.entry.load(self._index.levels[0].refs[number] for _, own in likely for number in own)
         chosen: list[SymbolEntry] = []
-        for cls in self._classes(first, asked)[:classes]:
-            said = {*_stems(cls.path.rpartition(".")[2]), *_said_by(*cls.found, *chosen)}
-            left = {word: idf for word, idf in asked.items() if word not in said}
-            chosen += self._saying(cls, left, asked, known)
+        for left, own in likely:
+            chosen += self._saying(own, _left(left, _said_by(*chosen)), asked)
         chosen += self._other_end(first, known)
         return [entry.path for entry in chosen[:_MOST]]
 
@@ -88,26 +92,29 @@ class Siblings:
         return sorted(classes.values(), key=lambda cls: not _is_named(cls.path, asked))
 
     def _saying(
-        self, cls: _Class, left: dict[str, float], asked: Mapping[str, float], known: set[str]
+        self, own: Mapping[int, Mapping[str, float]], left: dict[str, float], asked: Mapping[str, float]
     ) -> Iterator[SymbolEntry]:
-        """The members of a class that say most of some words, each what those before it do not."""
-        if not left:
-            return
-        own = self._words_of(cls.path, left)
-        near = self._nearest(own, left, known)
+        """Those of some members that say most of the words left, each what those before it do not."""
+        near = self._members(own)
         while left:
             new = {number: _new(member, left) for number, member in near.items()}
             telling = [number for number in near if new[number] >= _LEAST]
             if not telling:
                 return
             best = max(
-                telling,
-                key=lambda number: new[number] + self._beside(number, near[number], left, asked),
+                telling, key=lambda number: new[number] + self._beside(number, near[number], left, asked)
             )
             member = near.pop(best)
             yield member.entry
-            for word in member.told:
-                left.pop(word, None)
+            left = _left(left, member.told)
+
+    def _members(self, own: Mapping[int, Mapping[str, float]]) -> dict[int, _Member]:
+        entries = {number: self._reader.entry(self._index.levels[0].refs[number]) for number in own}
+        return {
+            number: _Member(entry, _told(entry, own[number]))
+            for number, entry in entries.items()
+            if entry is not None and entry.kind != "class"
+        }
 
     def _words_of(self, cls: str, wanted: Iterable[str]) -> dict[int, dict[str, float]]:
         """By the number of each member of a class which of some words it has, and how much it says of them."""
@@ -124,11 +131,12 @@ class Siblings:
                 found.setdefault(number, {})[word] = says
         return found
 
-    def _nearest(
-        self, own: Mapping[int, Mapping[str, float]], left: Mapping[str, float], known: set[str]
-    ) -> dict[int, _Member]:
-        """By number the members, not known already, that are likeliest to tell of some words."""
+    def _likely(self, cls: str, left: Mapping[str, float], known: set[str]) -> dict[int, Mapping[str, float]]:
+        """By number the members of a class, not known already, that are likeliest to tell of some words, and how much
+        each has of them.
+        """
         refs = self._index.levels[0].refs
+        own = self._words_of(cls, left)
 
         def near(number: int) -> float:
             name = _stems(refs[number].rpartition(".")[2])
@@ -139,14 +147,7 @@ class Siblings:
             return in_name + _ELSEWHERE * elsewhere - _UNASKED * len(name)
 
         unknown = (number for number in own if refs[number] not in known)
-        likely = sorted(unknown, key=near, reverse=True)[:_READ]
-        self._reader.entry.load(refs[number] for number in likely)
-        entries = {number: self._reader.entry(refs[number]) for number in likely}
-        return {
-            number: _Member(entry, _told(entry, own[number]))
-            for number, entry in entries.items()
-            if entry is not None and entry.kind != "class"
-        }
+        return {number: own[number] for number in sorted(unknown, key=near, reverse=True)[:_READ]}
 
     def _beside(
         self, number: int, member: _Member, left: Mapping[str, float], asked: Mapping[str, float]
@@ -173,6 +174,11 @@ def _is_named(cls: str, asked: Mapping[str, float]) -> bool:
     """Whether a question says what makes a class's name."""
     name = _stems(cls.rpartition(".")[2]) - _KINDS
     return bool(name) and name.issubset(asked)
+
+
+def _left(words_asked: Mapping[str, float], said: Iterable[str]) -> dict[str, float]:
+    told = frozenset(said)
+    return {word: idf for word, idf in words_asked.items() if word not in told}
 
 
 def _told(entry: SymbolEntry, own: Mapping[str, float]) -> dict[str, float]:
