@@ -57,7 +57,7 @@ class Siblings:
     def __init__(self, reader: BaseReader, index: InvertedIndex) -> None:
         self._reader = reader
         self._index = index
-        self._topics = {ref: number for number, ref in enumerate(index.levels[1].refs)}
+        self._topic = lru_cache(maxsize=64)(self._topic_of)
 
     def of(self, rows: Sequence[RankedId], concepts: Iterable[Concept], classes: int = _CLASSES) -> list[str]:
         """Members of the first ``classes`` classes of what was found, in whose names or labels are words of the
@@ -86,10 +86,19 @@ class Siblings:
         self._reader.entry.load((*(row.id for row in first), *members))
         for path in (*(row.id for row in first), *members):
             entry = self._reader.entry(path)
-            cls = entry and (entry.path if entry.kind == "class" else entry.owner)
-            if entry is not None and cls in self._topics:
+            if entry is None or entry.kind == "operator":
+                continue
+            cls = entry.path if entry.kind == "class" else entry.owner
+            if self._topic(cls) is not None:
                 classes.setdefault(cls, _Class(cls, [])).found.append(entry)
         return sorted(classes.values(), key=lambda cls: not _is_named(cls.path, asked))
+
+    def _topic_of(self, cls: str) -> int | None:
+        """The number of a class among the topics; None if it is none."""
+        try:
+            return self._index.levels[1].refs.index(cls)
+        except ValueError:
+            return None
 
     def _saying(
         self, own: Mapping[int, Mapping[str, float]], left: dict[str, float], asked: Mapping[str, float]
@@ -118,7 +127,7 @@ class Siblings:
 
     def _words_of(self, cls: str, wanted: Iterable[str]) -> dict[int, dict[str, float]]:
         """By the number of each member of a class which of some words it has, and how much it says of them."""
-        members = (self._index.levels[0].topics == self._topics[cls]).nonzero()[0]
+        members = (self._index.levels[0].topics == self._topic(cls)).nonzero()[0]
         found: dict[int, dict[str, float]] = {}
         for word in wanted:
             postings = self._index.postings(word)
@@ -197,6 +206,6 @@ def _said_by(*entries: SymbolEntry) -> set[str]:
     return {word for entry in entries for name in (entry.name, entry.label) for word in _stems(name)}
 
 
-@lru_cache(maxsize=4_000)
+@lru_cache(maxsize=1_500)
 def _stems(name: str) -> frozenset[str]:
     return frozenset(map(stem, words(name)))
