@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_check.findings import Finding
 from kb_check.foreign_addons import may_register
+from kb_check.former_values import new_value
 from kb_check.rules.renaming import renaming
 
 if TYPE_CHECKING:
@@ -25,7 +26,7 @@ def lacking_finding(
 
     It is a note where an add-on that the script enables may register such a name.
     """
-    message = lacking.message
+    message = f"{lacking.message} {new_value(script, row, lacking.instead)}".rstrip()
     if addon := _registering(script, row, lacking):
         severity = "note"
         message += f" The add-on `{addon}`, which is enabled here and cannot be looked into, may register it."

@@ -36,8 +36,8 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
         return sorted(begun, key=len, reverse=True)[:_MOST]
     if similar := [item for item, _ in nearest(written, items)]:
         return similar
-    similar = [item for item in items if len(item) >= _LONG and said.startswith(item)]
-    similar = similar or [item for item in items if len(said) >= _SHORT and item.startswith(said)]
+    similar = [item for item in items if len(item) >= _LONG and said.startswith(item.upper())]
+    similar = similar or [item for item in items if len(said) >= _SHORT and item.upper().startswith(said)]
     if similar:
         return similar
     own = set(words(written))

@@ -1,0 +1,61 @@
+"""What becomes of the value that a name of former versions is given, where what took its place wants another one.
+
+``glare.quality = 'HIGH'``: the input that stands for it takes 'High'. Whoever writes the new name alone gets the next
+error.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_check.literals import written
+from kb_serve.recognise.likely_values import likely_values
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+
+    from kb_build.flow.types import Resolution
+    from kb_check.script import Script
+
+_MOST = 8  # values that are listed
+_COLOR = 4  # numbers of a colour's socket
+_NUMBERS = (ast.Tuple, ast.List)
+
+
+def new_value(script: Script, row: Resolution, instead: Sequence[str]) -> str:
+    """A sentence on the value for the first of what took a name's place; empty where the old one may do."""
+    node = _given(row)
+    if node is None or not instead:
+        return ""
+    node = written(script, node)
+    kind, values = _taken(script, instead[0])
+    if values and isinstance(node, ast.Constant) and node.value not in values:
+        likely = likely_values(node.value, values) if isinstance(node.value, str) else []
+        told = [repr(value) for value in likely[:1] or values[:_MOST]]
+        more = ", …" if not likely and len(values) > _MOST else ""
+        return f"{node.value!r} is {told[0]} there." if likely else f"It takes {', '.join(told)}{more}."
+    if kind == "rgba" and isinstance(node, _NUMBERS) and len(node.elts) == _COLOR - 1:
+        return f"It takes {_COLOR} numbers, with alpha."
+    return ""
+
+
+def _given(row: Resolution) -> ast.expr | None:
+    """What a keyword or an attribute is given."""
+    if isinstance(row.node, ast.keyword):
+        return row.node.value
+    match row.statement:
+        case ast.Assign(targets=[target], value=value) if target is row.node:
+            return value
+        case _:
+            return None
+
+
+def _taken(script: Script, path: str) -> tuple[str, list[str]]:
+    """(type, values) of a property, a socket, or an operator's argument."""
+    whole, _, argument = path.partition("(")
+    symbol = script.api.symbols.symbol(whole)
+    parameters = symbol.parameters if symbol is not None and argument else ()
+    named = next((one for one in parameters if f"{one.name})" == argument), None)
+    found = named if argument else symbol
+    return (found.type, [item.identifier for item in found.enum_items]) if found is not None else ("", [])
