@@ -108,10 +108,21 @@ class AnswerComposer:
             names = ranking.recognition.arguments.get(hits[0].id, ())
             asked = [*self._renderer.arguments(hits[0].id, names)]
             sockets = self._renderer.sockets(hits[0].id, text)
-            whole = self._whole(hits[0], rows[0], asked_of((), names if asked else ()))
+            whole = [*self._whole(hits[0], rows[0], asked_of((), names if asked else ()))]
+            whole[1:1] = self._asked_members(hits[0], rows)
             blocks = (*asked, *sockets, *whole, *self._lines.further(hits[1:], rows[1:]))
             return draft_of("page" if hits[0].is_page else "schema", hits, notes, blocks)
         return draft_of("candidates", hits, notes, self._found(hits, rows, asked_words(text)))
+
+    def _asked_members(self, hit: Hit, rows: Sequence[RankedId]) -> Iterator[AnswerBlock]:
+        """The members that a question asks for of the class that is the best hit, ahead of all that it has."""
+        own = f"{hit.id}."
+        names = tuple(
+            row.id.removeprefix(own) for row in rows if row.why == "beside" and row.id.startswith(own)
+        )
+        if names:
+            lines = self._lines.members(hit.id, names)
+            yield AnswerBlock("**Asked for**\n" + "\n".join(lines), "members asked for")
 
     def _known(self, hits: Sequence[Hit], question: str, *, is_named: bool) -> Iterator[str]:
         """What one has to know of the first hits, up to the first name: code needs that, behind pages that tell how."""
@@ -130,6 +141,7 @@ class AnswerComposer:
         excerpt = self._excerpt(hits[0], rows[0], asked_of(found, names if told else ()))
         others = [*self._lines.further(hits[1:], rows[1:], asked)]
         yield next(excerpt)
+        yield from self._asked_members(hits[0], rows)
         yield from told
         yield from self._made(hits[0], asked_of(found))
         if hits[0].is_page:
@@ -209,7 +221,9 @@ class AnswerComposer:
             said += size if number and not _is_box(block.text) else 0
             yield block
             if number == 0 and row.members:
-                yield AnswerBlock("**Nearest**\n" + "\n".join(self._lines.members(row)), "nearest members")
+                yield AnswerBlock(
+                    "**Nearest**\n" + "\n".join(self._lines.members(hit.id, row.members)), "nearest members"
+                )
 
     def _overview(self, topic: str, ranking: Ranking, limit: int) -> Draft:
         overview = self._topics.overview(topic)

@@ -67,11 +67,11 @@ class HitLines:
         text = first_sentence(said_of(page, self._reader)) if page else ""
         return clip(f"`{hit.id}` ({hit.title}) {text}", _LINE_TOKENS)
 
-    def members(self, row: RankedId) -> Iterator[str]:
-        """A line for each of the members that were found with their class."""
-        self._reader.entry.load(f"{row.id}.{name}" for name in row.members)
-        for name in row.members:
-            entry = self._reader.entry(f"{row.id}.{name}")
+    def members(self, cls: str, names: Sequence[str]) -> Iterator[str]:
+        """A line for each of some members of a class."""
+        self._reader.entry.load(f"{cls}.{name}" for name in names)
+        for name in names:
+            entry = self._reader.entry(f"{cls}.{name}")
             yield f"- {entry.line if entry else f'`{name}`'}"
 
     def asked(self, hit: Hit, asked: Sequence[str]) -> list[AskedValue]:

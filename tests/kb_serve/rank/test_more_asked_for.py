@@ -69,6 +69,14 @@ def test_what_is_listed_besides_stands_behind_the_first_hits(kb: KnowledgeBase, 
     assert len({row.id for row in ranked}) == len(ranked)
 
 
+def test_of_a_class_that_is_named_what_is_asked_for_comes_before_all_that_it_has(kb: KnowledgeBase) -> None:
+    text = kb.query("line art modifier source collection, target layer and material").text
+    asked, _, rest = text.partition("**Asked for**\n")[2].partition("\n\n")
+    names = {line.partition("`")[2].partition("`")[0] for line in asked.splitlines()}
+    assert names >= {"target_layer", "target_material"}
+    assert "**Properties**" in rest
+
+
 def test_a_message_asks_for_nothing_besides(kb: KnowledgeBase) -> None:
     message = "TypeError: SpotLight.spot_size expected a float type, not str"
     assert "beside" not in {row.why for row in QueryRanker(kb.reader).rank(message).ranked}
