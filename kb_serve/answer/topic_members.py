@@ -17,6 +17,8 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 _PARTS_OF_A_WINDOW = ("panel", "panels")
+_EDITORS = "editors/"  # what is edited there is explained elsewhere
+_PAGES_OF_NODES = "interface/controls/nodes/"  # of those that several kinds of trees take
 _MEMBERS = 6
 _NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
 _ASIDE = 0.2
@@ -50,6 +52,7 @@ class TopicMembers:
         for below, depth in subtree(slug, self._reader).items():
             for path in self._reader.symbols_of_page(below):
                 nearness.setdefault(path, _NEAR if depth < 2 else _FAR)
+        explained = frozenset(nearness)
         is_operated = any(
             names.names(path.rpartition(".")[2]) for path in nearness if not path.startswith(TYPES)
         )
@@ -70,6 +73,12 @@ class TopicMembers:
                 names.operators[path] = near * weights[path] * (_UNUSUAL if "preset" in entry.name else 1)
             elif entry is not None and entry.kind == "class" and entry.group == "data":
                 names.classes[path] = near * weights[path]
+        if not slug.startswith(_EDITORS):
+            names.elsewhere = frozenset(
+                path
+                for path in names.classes
+                if path not in explained and self._is_on_other_pages(path, slug)
+            )
         names.operators = dict(sorted(names.operators.items(), key=lambda row: -row[1]))
         return names
 
@@ -82,6 +91,15 @@ class TopicMembers:
             return False
         parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
         return bool(parts) and slug.partition("/")[0] not in parts
+
+    def _is_on_other_pages(self, path: str, slug: str) -> bool:
+        """Whether pages explain a class, but none of a page's chapter, nor of those that this is in."""
+        links = [link.partition("#")[0] for link in self._reader.manual_links(path)]
+        return bool(links) and not any(
+            link.startswith((_PAGES_OF_NODES, slug.removesuffix("index")))
+            or slug.startswith(link.removesuffix("index"))
+            for link in links
+        )
 
     def _of_kind(self, slug: str, title: str) -> frozenset[str]:
         """What the one other page explains that is called so and says that this is a modifier or constraint."""

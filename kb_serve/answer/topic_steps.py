@@ -105,7 +105,17 @@ class Steps:
         elif self._creations and self._creations.keys().isdisjoint(named):
             named = []
         called = tuple(path.removeprefix(TYPES) for path in named if self._is_the_topic(path))
-        return [path for path in named if not self._is_anothers(path, called)] or list(self._names.classes)
+        named = [path for path in named if not self._is_anothers(path, called)] or list(self._names.classes)
+        return [path for path in named if not self._is_elsewhere(path)]
+
+    def _is_elsewhere(self, path: str) -> bool:
+        """Whether a class only has the topic's words in its name, and other pages explain it: a constraint that tracks
+        is no tracking of a film. What is called as the topic, and the modifier of that name, are its own wherever they
+        are explained, with their kinds.
+        """
+        return path in self._names.elsewhere and not any(
+            self._names.is_called(base.path.removesuffix("Modifier")) for base in self._reader.lineage(path)
+        )
 
     def _explained(self) -> list[str]:
         """What the page explains and can be made, if its name says something of the title: what a page on one kind of

@@ -9,23 +9,27 @@ import pytest
 
 from kb_build.records import Link, Page, Section
 from kb_build.store import Contents, write_base
-from kb_serve.answer.topic_overview import Topics
+from kb_serve.answer.topic_members import TopicMembers
+from kb_serve.answer.topic_steps import Steps
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from kb_serve.answer.steps.topic_names import TopicNames
+
 TYPES = "bpy.types."
+MOTION = "movie_clip/tracking/index"
 
 
 def page(slug: str, title: str) -> Page:
     return Page(slug, "manual", "5.1", title, (Section("top", title, 1, "It is set in a panel."),))
 
 
-def members(
+def names_of(
     folder: Path, reader: BaseReader, slug: str, title: str, explained: dict[str, str]
-) -> frozenset[str]:
-    """The members of a page's topic in a base of a few classes, each with the page that explains it."""
+) -> TopicNames:
+    """The names of a page's topic in a base of a few classes, each with the page that explains it."""
     symbols = tuple(symbol for cls in explained if (symbol := reader.symbol(f"{TYPES}{cls}")))
     assert len(symbols) == len(explained)
     others = {other for other in explained.values() if other != slug}
@@ -33,7 +37,15 @@ def members(
     links = tuple(Link(f"{TYPES}{cls}", other, "manual") for cls, other in explained.items())
     write_base(folder / "base.sqlite", Contents(symbols, pages, links, {}))
     with closing(BaseReader(folder / "base.sqlite")) as own:
-        return Topics(own).members(slug)
+        return TopicMembers(own).names(slug, title)
+
+
+def members(
+    folder: Path, reader: BaseReader, slug: str, title: str, explained: dict[str, str]
+) -> frozenset[str]:
+    """All classes and operators of the same."""
+    names = names_of(folder, reader, slug, title, explained)
+    return frozenset({*names.classes, *names.operators})
 
 
 @pytest.mark.parametrize(
@@ -54,3 +66,45 @@ def test_a_panel_at_the_end_of_a_title_is_only_where_its_matter_is(
     explained = {"ShapeKey": "animation/shape_keys/introduction"}
     slug = "animation/shape_keys/shape_keys_panel"
     assert f"{TYPES}ShapeKey" in members(tmp_path, reader, slug, "Shape Keys Panel", explained)
+
+
+MANY = {
+    "MovieTracking": "movie_clip/tracking/clip/track",
+    "MovieTrackingTrack": "movie_clip/tracking/clip/track",
+    "CameraSolverConstraint": "movie_clip/index",
+    "TrackToConstraint": "animation/constraints/tracking/track_to",
+    "LightProbe": "render/eevee/light_probes/index",
+    "NodeClosureInput": "interface/controls/nodes/types/utilities/closure/closure",
+    "LatticeModifier": "modeling/modifiers/deform/lattice",
+}
+
+
+@pytest.mark.parametrize(
+    ("slug", "title", "elsewhere"),
+    [
+        ("movie_clip/tracking/index", "Motion Tracking", {"TrackToConstraint"}),
+        ("render/lights/index", "Lights", {"LightProbe"}),
+        ("modeling/geometry_nodes/closure/index", "Node Closures", set[str]()),
+        ("editors/track", "Track Editor", set[str]()),
+    ],
+)
+def test_what_only_shares_a_word_is_another_topics_where_other_chapters_explain_it(
+    tmp_path: Path, reader: BaseReader, slug: str, title: str, elsewhere: set[str]
+) -> None:
+    names = names_of(tmp_path, reader, slug, title, MANY)
+    assert names.elsewhere == {f"{TYPES}{cls}" for cls in elsewhere}
+
+
+def test_steps_make_what_is_called_as_the_topic_wherever_it_is_explained(
+    tmp_path: Path, reader: BaseReader
+) -> None:
+    slug = "animation/lattice"
+    explained = {"Lattice": slug, "LatticeModifier": MANY["LatticeModifier"], "LatticePoint": slug}
+    names = names_of(tmp_path, reader, slug, "Lattice", explained)
+    assert f"{TYPES}LatticeModifier" in names.elsewhere
+    told = "".join(block.text for block in Steps(reader, names).blocks())
+    assert "'LATTICE'" in told
+    names = names_of(tmp_path, reader, MOTION, "Motion Tracking", MANY)
+    told = "".join(block.text for block in Steps(reader, names).blocks())
+    assert "tracks" in told or "tracking" in told
+    assert "TRACK_TO" not in told
