@@ -227,11 +227,18 @@ class Steps:
         # A modifier with the topic's name makes the settings that it holds.
         for path in sorted(self._classes, key=lambda path: not self._has_modifier(path)):
             creation = self._creations.get(path)
-            if creation and path not in _NOT_MADE and not is_of_interface(creation.call):
+            is_left = path in _NOT_MADE or self._is_of_made_data(path)
+            if creation and not is_left and not is_of_interface(creation.call):
                 groups[creation.maker][path] = creation
         # The first group is the heaviest class's; of the others, many light classes outweigh a single one.
         first, others = [*groups.values()][:1], [*groups.values()][1:]
         return [*first, *sorted(others, key=self._names.weight_of, reverse=True)]
+
+    def _is_of_made_data(self, path: str) -> bool:
+        """Whether a class is the modifier of data that is made: it is told with that, as it is on another object."""
+        data = path.removesuffix("Modifier")
+        is_made = data != path and data in self._classes and data in self._creations
+        return is_made and self._scene.kinds.is_data(data)
 
     def _make_one(self, creations: Mapping[str, Creation], *, is_first: bool) -> Iterator[str]:
         """How the classes of one maker are made, and what the first of them needs to be of use."""

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.records import EMPTY
 from kb_build.symbol_lines import empty_when_new, mode_needed
-from kb_serve.answer.steps.members import call_of, settings_of
+from kb_serve.answer.steps.members import UNSEEN, call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
 from kb_serve.answer.steps.pointer_fills import stays_empty
@@ -51,6 +52,7 @@ class SettingSteps:
                 yield f"set on `{variable}` (`{kind.removeprefix(TYPES)}`): {of_kind}"
         entries = self._reader.members(cls).values()
         yield from self._in(cls, variable)
+        yield from self._on_elements(cls, variable)
         yield from parts(cls, variable, self._names, self._reader)
         calls = [f"{variable}.{call_of(entry)}" for entry in self._calls(entries)]
         if calls := [*calls, *self._calls_on_parts(cls, variable)]:
@@ -77,6 +79,19 @@ class SettingSteps:
                 yield "; ".join(f"`{step}`" for step in steps)
             if items:
                 yield f"in `{variable}`: " + ", ".join(items)
+
+    def _on_elements(self, cls: str, variable: str) -> Iterator[str]:
+        """The settings of the elements that a new thing has, where nothing makes them: a variable's target."""
+        for entry in self._collections(cls):
+            element = f"{TYPES}{entry.target}"
+            symbol = self._reader.symbol(entry.path)
+            has_some = symbol is not None and EMPTY not in symbol.flags
+            if not (has_some and self._belongs(element)) or self._added_by(entry):
+                continue
+            settings = "" if self._reader.creations([element]) else settings_of(element, self._reader)
+            if settings and UNSEEN not in settings:
+                self._scene.shown.add(element)
+                yield f"set on `{variable}.{entry.name}[0]` (`{entry.target}`): {settings}"
 
     def _collections(self, cls: str) -> list[SymbolEntry]:
         """The main collections of a thing; after those that scripts use most, its own that things are added to."""
