@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
 from kb_serve.answer.steps.topic_names import TopicNames
-from kb_serve.answer.topic_pages import SHORT_FOR, subtree
+from kb_serve.answer.topic_pages import CHAPTERS, PAGES_OF_NODES, SHORT_FOR, subtree
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
 
 _PARTS_OF_A_WINDOW = ("panel", "panels")
 _EDITORS = "editors/"  # what is edited there is explained elsewhere
-_PAGES_OF_NODES = "interface/controls/nodes/"  # of those that several kinds of trees take
 _MEMBERS = 6
 _NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
 _ASIDE = 0.2
@@ -93,12 +92,15 @@ class TopicMembers:
         return bool(parts) and slug.partition("/")[0] not in parts
 
     def _is_on_other_pages(self, path: str, slug: str) -> bool:
-        """Whether pages explain a class, but none of a page's chapter, nor of those that this is in."""
+        """Whether pages explain a class, but none of a page's chapter, nor of those that this is in; nodes of several kinds of
+        trees are explained aside.
+        """
         links = [link.partition("#")[0] for link in self._reader.manual_links(path)]
+        near = [slug.removesuffix("index")]
+        if slug.startswith(tuple(CHAPTERS.values())):
+            near.append(PAGES_OF_NODES)
         return bool(links) and not any(
-            link.startswith((_PAGES_OF_NODES, slug.removesuffix("index")))
-            or slug.startswith(link.removesuffix("index"))
-            for link in links
+            link.startswith(tuple(near)) or slug.startswith(link.removesuffix("index")) for link in links
         )
 
     def _of_kind(self, slug: str, title: str) -> frozenset[str]:
