@@ -92,8 +92,8 @@ class TopicMembers:
         return bool(parts) and slug.partition("/")[0] not in parts
 
     def _is_on_other_pages(self, path: str, slug: str) -> bool:
-        """Whether pages explain a class, but none of a page's chapter, nor of those that this is in; nodes of several kinds of
-        trees are explained aside.
+        """Whether pages explain a class, but none of a page's chapter, nor of those that this is in; nodes of several kinds
+        of trees are explained aside.
         """
         links = [link.partition("#")[0] for link in self._reader.manual_links(path)]
         near = [slug.removesuffix("index")]
