@@ -3,21 +3,25 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
+from kb_serve.answer.steps.operators import calls_needed
 from kb_serve.answer.steps.topic_names import TopicNames
+from kb_serve.answer.steps.variable_names import class_called
 from kb_serve.answer.topic_pages import CHAPTERS, PAGES_OF_NODES, SHORT_FOR, subtree
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterator
 
     from kb_serve.reader import BaseReader
 
 _PARTS_OF_A_WINDOW = ("panel", "panels")
 _EDITORS = "editors/"  # what is edited there is explained elsewhere
+_OPERATORS = "bpy.ops."
 _MEMBERS = 6
 _NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
 _ASIDE = 0.2
@@ -65,6 +69,7 @@ class TopicMembers:
         for module in names.keys:
             for path in self._reader.operators_of(module):
                 nearness[path] = _ON_ITS_MODULE * _NEAR
+        nearness = dict.fromkeys(self._worked_on(slug, nearness), _NEAR) | nearness
         weights = self._weights(nearness)
         for path, near in sorted(nearness.items(), key=lambda row: (-row[1] * weights[row[0]], row[0])):
             entry = self._reader.entry(path)
@@ -91,9 +96,33 @@ class TopicMembers:
         parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
         return bool(parts) and slug.partition("/")[0] not in parts
 
+    def _worked_on(self, slug: str, paths: Collection[str]) -> Iterator[str]:
+        """What most operators of a chapter work on, where nothing of it can be made: what is in the thing that a call
+        makes which they need, as the strips of a sequence editor.
+        """
+        operators = [
+            symbol for path in paths if path.startswith(_OPERATORS) and (symbol := self._reader.symbol(path))
+        ]
+        needed = Counter(call for operator in operators for call in calls_needed(operator))
+        call, count = next(iter(needed.most_common(1)), ("", 0))
+        is_chapter = bool(self._reader.page_children(slug))
+        if (
+            not (call and is_chapter)
+            or count < len(operators) / 2
+            or self._reader.creations([*self._classes.keys() & paths])
+        ):
+            return
+        variable, _, name = call.partition("(")[0].rpartition(".")
+        maker = self._reader.symbol(f"{class_called(variable)}.{name}")
+        for holder in maker.returns if maker else ():
+            for entry in self._reader.members(f"{TYPES}{holder.type}").values():
+                if entry.type == "collection":
+                    kinds = [kind.path for kind in self._reader.descendants(f"{TYPES}{entry.target}")]
+                    yield from self._reader.creations(kinds)
+
     def _is_on_other_pages(self, path: str, slug: str) -> bool:
-        """Whether pages explain a class, but none of a page's chapter, nor of those that this is in; nodes of several kinds
-        of trees are explained aside.
+        """Whether pages explain a class, but none of a page's chapter, nor of those that this is in; nodes of several
+        kinds of trees are explained aside.
         """
         links = [link.partition("#")[0] for link in self._reader.manual_links(path)]
         near = [slug.removesuffix("index")]

@@ -6,11 +6,12 @@ own settings and those it points to are set; the operators of the topic that nei
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
-from kb_build.symbol_lines import operator_needs, refused_nothing
+from kb_build.symbol_lines import operator_areas, operator_needs, refused_nothing
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
 from kb_serve.answer.steps.instances import Instances
@@ -40,6 +41,9 @@ _MODIFIER = f"{TYPES}Modifier"  # of objects
 _IN_A_NODE = ".nodes["  # in a call that makes what a node holds
 _NOT_MADE = frozenset({NODE, *EMBEDDED_TREES})  # for themselves
 _LEGACY = "(Legacy)"  # at the end of labels
+_PREPARES = re.compile(
+    r"\d+\. (?:instead: )?`[^`]* = [^`]*`"
+)  # a step that only sets something, for the next
 
 
 class Steps:
@@ -67,8 +71,12 @@ class Steps:
     def blocks(self) -> Iterator[AnswerBlock]:
         """One block, a numbered list; none where nothing is made, set or run."""
         lines = [f"{number}. {step}" for number, step in enumerate(self._steps(), 1)]
-        while sum(tokens(line) + 1 for line in lines) > _MOST_TOKENS:
+        is_cut = False
+        while sum(tokens(line) + 1 for line in lines) > _MOST_TOKENS or (
+            is_cut and _PREPARES.fullmatch(lines[-1])
+        ):
             lines.pop()
+            is_cut = True
         if lines:
             yield AnswerBlock("**How it is done**\n" + "\n".join(lines), "how it is done")
 
@@ -201,7 +209,12 @@ class Steps:
             yield f"`obj.{call_of(entry)}` — {entry.line.partition(' — ')[2]}"
 
     def _make(self) -> Iterator[str]:
-        groups = [group for group in self._groups() if self._is_main(group)][:_MAKERS]
+        all_ = self._groups()
+        groups = [
+            group
+            for group in all_
+            if self._is_main(group) and (group is all_[0] or not self._is_in_area(group))
+        ][:_MAKERS]
         # What an operator makes that needs nothing comes first: a world, before what is in it makes one; nodes come
         # before their items, which they are told with.
         firsts = {id(group): next(iter(group.values())) for group in groups}
@@ -214,6 +227,12 @@ class Steps:
         ):
             if next(iter(creations)) not in self._scene.shown:
                 yield from self._make_one(creations, is_first=creations is groups[0])
+
+    def _is_in_area(self, creations: Mapping[str, Creation]) -> bool:
+        """Whether an operator makes something in an area of a window alone, which a script need not have."""
+        creation = next(iter(creations.values()))
+        maker = self._reader.symbol(creation.maker) if creation.call.startswith("bpy.ops.") else None
+        return maker is not None and bool(operator_areas(maker))
 
     def _is_main(self, creations: Mapping[str, Creation]) -> bool:
         """Whether the topic is about what one maker makes: the kinds of its main class, too."""

@@ -81,8 +81,7 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
 
 def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
     """The steps after which an operator runs, as far as they are known and have not been told."""
-    for added in _ADDED.findall(operator_needs(operator)):
-        calls = re.findall(r"`([^`]*)`", added)
+    for calls in _needed(operator):
         if all(_is_taken(call, scene) for call in calls):
             yield from scene.pointers.calls(
                 call for call in calls if scene.reader.made_by_call(call) not in scene.shown
@@ -95,7 +94,16 @@ def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
         within = scene.pointers.reach(held(scene.variables.within(reached))) if reached else None
         if within is not None:
             yield from within.steps
-            yield from scene.pointers.calls([f"{within.expression}.{gate.name} = {value!r}"])
+            yield from scene.pointers.setting(f"{within.expression}.{gate.name}", value)
+
+
+def calls_needed(operator: Symbol) -> list[str]:
+    """The calls that must have been made before an operator runs."""
+    return [call for calls in _needed(operator) for call in calls]
+
+
+def _needed(operator: Symbol) -> list[list[str]]:
+    return [re.findall(r"`([^`]*)`", added) for added in _ADDED.findall(operator_needs(operator))]
 
 
 def _is_taken(call: str, scene: NewScene) -> bool:

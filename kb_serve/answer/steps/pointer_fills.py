@@ -50,18 +50,29 @@ class PointerFills:
     def steps(self, pointer: Symbol, above: str) -> list[str]:
         """The step that fills a pointer of ``above``; none if it is there or filled."""
         calls = self._calls(pointer, above)
-        # One value of a setting makes one thing, another value the next, in place of the first.
-        choices = _choices(calls)
-        elsewhere = "on another object: " if choices & self._chosen.keys() else ""
         expression = f"{above}.{pointer.name}"
-        self._chosen |= dict.fromkeys(choices, expression)
-        return [elsewhere + _step(calls, expression)] if calls else []
+        self._chosen |= dict.fromkeys(_choices(calls), expression)
+        return [_step(calls, expression)] if calls else []
+
+    def is_in_place(self, pointer: Symbol, above: str) -> bool:
+        """Whether one value of a setting fills a pointer of ``above``, of which another value has filled one."""
+        calls = [_FIRST_WORD.sub(f"{above}.", call) for call in fillers(pointer)]
+        return any(
+            self._chosen.get(one, "") not in {"", f"{above}.{pointer.name}"} for one in _choices(calls)
+        )
 
     def calls(self, calls: Iterable[str]) -> list[str]:
         """The steps that make some calls, of those that no step has made."""
         left = [call for call in calls if call not in self._called]
         self._called.update(left)
         return [f"`{call}`" for call in left]
+
+    def setting(self, expression: str, value: bool | str) -> list[str]:
+        """The step that sets something, if none has; where one has set it otherwise, it is done instead of that."""
+        is_other = any(call.startswith(f"{expression} = ") for call in self._called)
+        return [
+            ("instead: " if is_other else "") + step for step in self.calls([f"{expression} = {value!r}"])
+        ]
 
     def reach(self, expression: str, *, adds: bool = True) -> Ready | None:
         """An expression, and what fills pointers on its way that are None on new things; None where one stays so.

@@ -11,6 +11,8 @@ from kb_serve.answer.steps.members import UNSEEN, call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
 from kb_serve.answer.steps.pointer_fills import stays_empty
+from kb_serve.answer.steps.variable_names import OBJ
+from kb_serve.answer.steps.working_object import OTHER
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -185,11 +187,31 @@ class SettingSteps:
                     continue
                 target = f"{TYPES}{entry.target}"
                 self._scene.shown.add(target)
-                waiting.append((target, f"{above}.{entry.name}"))
+                holder, steps = above, list[str]()
+                if self._scene.pointers.is_in_place(pointer, above):
+                    holder, steps = self._on_another(cls, entry.name) if above == variable else ("", steps)
+                if not holder:
+                    continue
+                waiting.append((target, f"{holder}.{entry.name}"))
                 if left and (settings := settings_of(target, self._reader)):
                     left -= 1
-                    yield from self._scene.pointers.steps(pointer, above)
-                    yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
+                    yield from steps
+                    yield from self._scene.pointers.steps(pointer, holder)
+                    yield f"set on `{holder}.{entry.name}` (`{entry.target}`): {settings}"
+
+    def _on_another(self, cls: str, pointer: str) -> tuple[str, list[str]]:
+        """What a further instance is called, and the steps that make it on an object of its own: one value of a setting
+        makes one thing, another the next in place of the first. No name where it is on no object.
+        """
+        creation = self._reader.creations([cls]).get(cls)
+        if creation is None or not creation.call.startswith(f"{OBJ}."):
+            return "", []
+        name = pointer.partition("_")[0]
+        made = f'{OTHER} = bpy.data.objects.new("{name.title()}", bpy.data.meshes.new("{name.title()}"))'
+        return name, [
+            f"another mesh object: `{made}`; `bpy.context.collection.objects.link({OTHER})`",
+            f"`{name} = {creation.call.replace(OBJ, OTHER, 1)}` → `{cls.removeprefix(TYPES)}`",
+        ]
 
     def _pointer(self, entry: SymbolEntry) -> Symbol | None:
         """The pointer that leads to settings of the topic which are the thing's own; None for any other member."""
