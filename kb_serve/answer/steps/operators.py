@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 
 POINT_CACHE = f"{TYPES}PointCache"  # what operators bake
 _MOST = 4
+_MOST_OF_MODIFIERS = 2
+_MODIFIER = "modifier"  # the argument for one
 _ARGUMENTS = 3  # of an operator's call
 _USED_ELSEWHERE = 3  # weight of an operator that has not the topic's module
 _PATH = "data_path"
@@ -73,10 +75,32 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
     ]
     if is_cached:
         operators = [*_bakes(reader), *operators]
+    modifiers = _of_modifiers(names, scene)
+    operators = [*modifiers, *(path for path in operators if path not in modifiers)]
     for path in operators[:_MOST]:
         if symbol := reader.symbol(path):
             yield from before(symbol, scene)
-            yield _line(symbol, reader)
+            yield _line(symbol, reader, modifiers.get(path, ""))
+
+
+def _of_modifiers(names: TopicNames, scene: NewScene) -> dict[str, str]:
+    """The heaviest operators that run a modifier of the topic, each with the argument that names it: one that binds a
+    mesh to a cage, without which nothing is changed.
+    """
+    reader, found = scene.reader, dict[str, str]()
+    for cls in names.classes:
+        stem = key(cls.removeprefix(TYPES).removesuffix("Modifier"))
+        if cls not in scene.shown or not cls.endswith("Modifier"):
+            continue
+        paths = [
+            path
+            for path in reader.operators_taking(_MODIFIER)
+            if path.split(".")[3].split("_")[0] == stem and _runs(path)
+        ]
+        entries = [entry for path in paths if (entry := reader.entry(path))]
+        argument = f"{_MODIFIER}={scene.variables.of(cls)}.name"
+        found |= {entry.path: argument for entry in reader.heaviest(entries)[:_MOST_OF_MODIFIERS]}
+    return found
 
 
 def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
@@ -160,13 +184,13 @@ def _bakes(reader: BaseReader) -> Iterator[str]:
         yield from (entry.path for entry in reader.heaviest(operators)[:1])
 
 
-def _line(operator: Symbol, reader: BaseReader) -> str:
-    """An operator's call with its first arguments, and what it does: of one on files the file, and nothing that only
-    the file browser reads.
+def _line(operator: Symbol, reader: BaseReader, argument: str = "") -> str:
+    """An operator's call with its first arguments, one of them given as it is, and what it does: of one on files the
+    file, and nothing that only the file browser reads.
     """
     aside = [*of_file_browser(operator), _ASKS]
     names = {parameter.name for parameter in operator.parameters}
-    files = [f"{_FILE}={_FILE}"] if len(aside) > 1 and _FILE in names else []
+    files = [argument] if argument else [f"{_FILE}={_FILE}"] if len(aside) > 1 and _FILE in names else []
     given = [p for p in operator.parameters if p.default is not None and p.name not in aside]
     arguments = [*files, *(f"{p.name}={literal(p.default)}" for p in given)][:_ARGUMENTS]
     left = len(names.difference(aside)) - len(arguments)
