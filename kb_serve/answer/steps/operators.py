@@ -6,7 +6,14 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import held, literal, operator_areas, operator_needs, refused_nothing
+from kb_build.symbol_lines import (
+    held,
+    literal,
+    operator_active,
+    operator_areas,
+    operator_needs,
+    refused_nothing,
+)
 from kb_serve.answer.arguments import of_file_browser
 from kb_serve.answer.panel_lines import panel_lines, switches_off
 from kb_serve.reader import TYPES
@@ -19,6 +26,7 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.topic_names import TopicNames
     from kb_serve.reader import BaseReader
 
+_MODE = f"{TYPES}Object.mode"
 POINT_CACHE = f"{TYPES}PointCache"  # what operators bake
 _MOST = 4
 _MOST_OF_MODIFIERS = 2
@@ -110,7 +118,8 @@ def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
             yield from scene.pointers.calls(
                 call for call in calls if scene.reader.made_by_call(call) not in scene.shown
             )
-    if ready := scene.obj.ready_for(operator):
+    mode = _mode_of_heading(operator, scene.reader)
+    if ready := scene.obj.to_mode(mode) if mode else scene.obj.ready_for(operator):
         yield "; ".join(f"`{code}`" for code in ready)
     for gate, value in switches_off(operator, scene.reader):
         owner = scene.reader.symbol(gate.owner)
@@ -119,6 +128,18 @@ def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
         if within is not None:
             yield from within.steps
             yield from scene.pointers.setting(f"{within.expression}.{gate.name}", value)
+
+
+def _mode_of_heading(operator: Symbol, reader: BaseReader) -> str:
+    """The mode whose name heads what the manual says of an operator, where its poll takes any: in others it does
+    nothing. Empty for none.
+    """
+    place = None if operator_active(operator)[1] else reader.passage(operator.path)
+    page, modes = reader.page(place[0]) if place else None, reader.symbol(_MODE)
+    if place is None or page is None or modes is None:
+        return ""
+    heading = page.sections[place[1]].title
+    return next((item.identifier for item in modes.enum_items if item.name == heading), "")
 
 
 def calls_needed(operator: Symbol) -> list[str]:
