@@ -15,7 +15,7 @@ from kb_serve.answer.topic_pages import CHAPTERS, PAGES_OF_NODES, SHORT_FOR, sub
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from kb_serve.reader import BaseReader
 
@@ -66,9 +66,12 @@ class TopicMembers:
                 path, words, names, slug
             ):
                 nearness[path] = _NAMED * nearness.get(path, _ASIDE if _OWN_NAMES.search(path) else _FAR)
-        for module in names.keys:
-            for path in self._reader.operators_of(module):
-                nearness[path] = _ON_ITS_MODULE * _NEAR
+        for path in self._called_operators(slug, (title, last)):
+            nearness.setdefault(path, _NEAR)
+        nearness |= dict.fromkeys(
+            (path for module in names.keys for path in self._reader.operators_of(module)),
+            _ON_ITS_MODULE * _NEAR,
+        )
         nearness = dict.fromkeys(self._worked_on(slug, nearness), _NEAR) | nearness
         weights = self._weights(nearness)
         for path, near in sorted(nearness.items(), key=lambda row: (-row[1] * weights[row[0]], row[0])):
@@ -95,6 +98,14 @@ class TopicMembers:
             return False
         parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
         return bool(parts) and slug.partition("/")[0] not in parts
+
+    def _called_operators(self, slug: str, titles: Iterable[str]) -> Iterator[str]:
+        """The operators that are called as a topic is, and that its part of the manual explains."""
+        names = {"_".join(words) for title in titles for words in (title.lower().split(), terms(title))}
+        for entry in (entry for name in names for entry in self._reader.by_name(name)):
+            parts = {link.partition("/")[0] for link in self._reader.manual_links(entry.path)}
+            if entry.kind == "operator" and slug.partition("/")[0] in parts:
+                yield entry.path
 
     def _worked_on(self, slug: str, paths: Collection[str]) -> Iterator[str]:
         """What most operators of a chapter work on, where nothing of it can be made: what is in the thing that a call

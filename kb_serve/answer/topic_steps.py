@@ -118,12 +118,15 @@ class Steps:
 
     def _is_elsewhere(self, path: str) -> bool:
         """Whether a class only has the topic's words in its name, and other pages explain it: a constraint that tracks
-        is no tracking of a film. What is called as the topic, and the modifier of that name, are its own wherever they
-        are explained, with their kinds.
+        is no tracking of a film. The modifier that is called as the topic is its own wherever it is explained, and what
+        is called so, with its kinds, if nothing else of the topic is made.
         """
-        return path in self._names.elsewhere and not any(
-            self._names.is_called(base.path.removesuffix("Modifier")) for base in self._reader.lineage(path)
-        )
+        if path not in self._names.elsewhere:
+            return False
+        is_modifier = path.endswith("Modifier") and self._names.is_called(path.removesuffix("Modifier"))
+        own = self._creations.keys() & self._names.classes.keys() - self._names.elsewhere
+        called = (self._names.is_called(base.path) for base in self._reader.lineage(path))
+        return not (is_modifier or (not own and any(called)))
 
     def _explained(self) -> list[str]:
         """What the page explains and can be made, if its name says something of the title: what a page on one kind of

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _FIRST_WORD = re.compile(r"^(?!bpy\b|obj\b|scene\b)[a-z_]+\.(?=\w+(?: = |\())")
 _PARTS = re.compile(r"\.(?![^\[]*\])")  # between names, and not in a key
 _DATA = "data"
+_BLEND_DATA = f"{TYPES}BlendData"
 
 
 class Ready(NamedTuple):
@@ -142,11 +143,22 @@ class PointerFills:
         if there := self._variables.there(target):
             return Ready([], there)
         made = self._reader.creations([target]).get(target)
-        if "readonly" in pointer.flags or made is None or not made.call.startswith("bpy.data."):
+        call = made.call if made else self._loading(pointer.target)
+        if "readonly" in pointer.flags or not call.startswith("bpy.data."):
             return None
         variable = self._variables.of(target)
         self._variables.add(target, variable)
-        return Ready([f"`{variable} = {made.call}`; `{expression} = {variable}`"], variable)
+        return Ready([f"`{variable} = {call}`; `{expression} = {variable}`"], variable)
+
+    def _loading(self, cls: str) -> str:
+        """The call that loads a data-block which nothing but a file makes, as a film; empty for none."""
+        for entry in self._reader.by_name("load"):
+            symbol = self._reader.symbol(entry.path)
+            holders = self._reader.members(_BLEND_DATA).values()
+            holder = next((one.name for one in holders if f"{TYPES}{one.collection}" == entry.owner), "")
+            if symbol is not None and holder and any(result.type == cls for result in symbol.returns):
+                return f"bpy.data.{holder}.load(filepath)"
+        return ""
 
     def _adding(self, collection: SymbolEntry) -> list[str] | None:
         """The steps by which an operator adds an element to a collection of the object; None if no such is known."""
