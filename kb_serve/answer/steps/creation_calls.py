@@ -49,6 +49,8 @@ class CreationCalls:
         steps += _FIRST.get(creation.maker, ())
         self._scene.variables.add(main, self._scene.variables.of(main))
         made = made_line(main, ready.expression, self._scene)
+        if not creation.choice:
+            self._scene.pointers.note(ready.expression)
         on = ready.expression.partition(".")[0]
         choices = [
             other.choice

@@ -62,9 +62,13 @@ class PointerFills:
             self._chosen.get(one, "") not in {"", f"{above}.{pointer.name}"} for one in _choices(calls)
         )
 
+    def note(self, call: str) -> None:
+        """Notes that a step has made a call, whatever its arguments."""
+        self._called.add(call.partition("(")[0])
+
     def calls(self, calls: Iterable[str]) -> list[str]:
         """The steps that make some calls, of those that no step has made."""
-        left = [call for call in calls if call not in self._called]
+        left = [call for call in calls if self._called.isdisjoint({call, call.partition("(")[0]})]
         self._called.update(left)
         return [f"`{call}`" for call in left]
 
@@ -179,6 +183,8 @@ class PointerFills:
             return []
         self._filled.add(expression)
         calls = [_FIRST_WORD.sub(f"{above}.", call) for call in calls]
+        if calls[-1].partition("(")[0] in self._called:
+            return []
         self._called.update(calls)
         needs_active = any(call.startswith("bpy.ops.") for call in calls)
         return [*(self._obj.activation() if needs_active else ()), *calls]
