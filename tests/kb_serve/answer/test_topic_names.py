@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from contextlib import closing
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
@@ -10,6 +11,7 @@ import pytest
 from kb_build.records import Link, Page, Section
 from kb_build.store import Contents, write_base
 from kb_serve.answer.topic_members import TopicMembers
+from kb_serve.answer.topic_overview import Topics
 from kb_serve.answer.topic_steps import Steps
 from kb_serve.reader import BaseReader
 
@@ -108,3 +110,74 @@ def test_steps_make_what_is_called_as_the_topic_wherever_it_is_explained(
     told = "".join(block.text for block in Steps(reader, names).blocks())
     assert "tracks" in told or "tracking" in told
     assert "TRACK_TO" not in told
+
+
+CHAPTERS = {
+    "modeling/geometry_nodes/hair/index": ("Hair Nodes", ("guides", "read", "write")),
+    "physics/particles/hair/index": ("Hair", ("introduction",)),
+    "interface/controls/nodes/types/closure/index": ("Node Closures", ("closure",)),
+    "modeling/geometry_nodes/closure/index": ("Node Closures", ("closure",)),
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("hair", "physics/particles/hair/index"),
+        ("hair nodes", "modeling/geometry_nodes/hair/index"),
+        ("closure", "interface/controls/nodes/types/closure/closure"),
+    ],
+)
+def test_a_word_means_the_page_of_that_title_before_the_nodes_that_have_it(
+    tmp_path: Path, reader: BaseReader, text: str, found: str
+) -> None:
+    ends = [f"{TYPES}NodeClosure{end}" for end in ("Input", "Output")]
+    bases = {base.path for end in ends for base in reader.lineage(end)}
+    symbols = [symbol for path in sorted(bases) if (symbol := reader.symbol(path))]
+    pages = [page("render/shader_nodes/closure", "Closure")]
+    for slug, (title, below) in CHAPTERS.items():
+        slugs = tuple(slug.replace("index", name) for name in below)
+        pages.append(replace(page(slug, title), children=slugs))
+        pages += [page(one, one.rpartition("/")[2].title()) for one in slugs]
+    links = [Link(end, "interface/controls/nodes/types/closure/closure", "manual") for end in ends]
+    write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        assert Topics(own).find(text) == found
+
+
+def test_an_operator_that_is_called_as_a_topic_belongs_to_it(tmp_path: Path, reader: BaseReader) -> None:
+    paths = ("bpy.ops.uv.unwrap", "bpy.ops.uv.smart_project")
+    symbols = [symbol for path in paths if (symbol := reader.symbol(path))]
+    links = [Link(path, "modeling/meshes/editing/uv", "manual") for path in paths]
+    for slug, belongs in (("modeling/meshes/uv/unwrapping", True), ("render/unwrapping", False)):
+        file = tmp_path / f"{belongs}.sqlite"
+        write_base(file, Contents(symbols, (page(slug, "Unwrapping"),), links, {}))
+        with closing(BaseReader(file)) as own:
+            names = TopicMembers(own).names(slug, "Unwrapping")
+        assert ("bpy.ops.uv.unwrap" in names.operators) is belongs
+        assert "bpy.ops.uv.smart_project" not in names.operators
+
+
+def test_a_chapter_works_on_what_its_operators_need_made(tmp_path: Path, reader: BaseReader) -> None:
+    owners = {entry.path for entry in reader.descendants(f"{TYPES}Strip")}
+    owners |= {
+        f"{TYPES}{name}" for name in ("Scene", "SequenceEditor", "StripsTopLevel", "Strip", "BlendData")
+    }
+    run = [f"bpy.ops.sequencer.{name}" for name in ("enable_proxies", "rebuild_proxy", "refresh_all")]
+    paths = [*sorted(owners), *run]
+    paths += [entry.path for owner in sorted(owners) for entry in reader.members(owner).values()]
+    symbols = [symbol for path in dict.fromkeys(paths) if (symbol := reader.symbol(path))]
+    slugs = ("editors/row/index", "editors/one")
+    pages = (
+        replace(page(slugs[0], "Rows"), children=("editors/row/parts",)),
+        page("editors/row/parts", "Parts"),
+        page(slugs[1], "Rows"),
+    )
+    links = [Link(path, slug, "manual") for path in run for slug in slugs]
+    write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        chapter, single = (TopicMembers(own).names(slug, "Rows") for slug in slugs)
+        told = "".join(block.text for block in Steps(own, chapter).blocks())
+    assert {f"{TYPES}SoundStrip", f"{TYPES}MovieStrip"} <= chapter.classes.keys()
+    assert "scene.sequence_editor.strips.new_" in told
+    assert f"{TYPES}SoundStrip" not in single.classes
