@@ -135,7 +135,12 @@ class TopicMembers:
         """Whether pages explain a class, but none of a page's chapter, nor of those that this is in; nodes of several
         kinds of trees are explained aside.
         """
-        links = [link.partition("#")[0] for link in self._reader.manual_links(path)]
+        made = self._reader.creations([path]).get(path)
+        # What it is an element of, where no page explains it itself.
+        is_element = made is not None and not (made.choice or made.call.startswith("bpy."))
+        by = made.maker.rpartition(".")[0] if made and is_element else ""
+        told = self._reader.manual_links(path) or self._reader.manual_links(by)
+        links = [link.partition("#")[0] for link in told]
         near = [slug.removesuffix("index")]
         if slug.startswith(tuple(CHAPTERS.values())):
             near.append(PAGES_OF_NODES)

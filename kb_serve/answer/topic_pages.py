@@ -107,7 +107,15 @@ class TopicPages:
             or self._called(made)
             or self._with_more_words(plain)
             or self._with_more_words(made)
+            or self._with_socket(plain)
         )
+
+    def _with_socket(self, plain: str) -> str:
+        """The page of a zone that is asked for with the name of one of its sockets: the iterations of a repeat zone."""
+        zone, _, socket = plain.rpartition(" ")
+        slug = self._called(zone) if zone.lower().endswith(_OF_NODES[1]) else ""
+        names = (name for node in self._reader.symbols_of_page(slug) for name in self._reader.members(node))
+        return slug if any(f'["{socket.lower()}"]' in name.lower() for name in names) else ""
 
     def _with_more_words(self, plain: str) -> str:
         """The page of the one node or zone whose title has all of some words, or all but its kind; empty for none."""

@@ -16,11 +16,14 @@ from kb_serve.answer.topic_steps import Steps
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
     from kb_serve.answer.steps.topic_names import TopicNames
 
 TYPES = "bpy.types."
+NODES_OF_GEOMETRY = ("bpy_struct", "Node", "NodeInternal", "GeometryNode")  # what these are derived from
+SOFT = "physics/soft_body/settings/simulation"
 MOTION = "movie_clip/tracking/index"
 
 
@@ -29,13 +32,19 @@ def page(slug: str, title: str) -> Page:
 
 
 def names_of(
-    folder: Path, reader: BaseReader, slug: str, title: str, explained: dict[str, str]
+    folder: Path,
+    reader: BaseReader,
+    slug: str,
+    title: str,
+    explained: dict[str, str],
+    others: Sequence[str] = (),
 ) -> TopicNames:
-    """The names of a page's topic in a base of a few classes, each with the page that explains it."""
-    symbols = tuple(symbol for cls in explained if (symbol := reader.symbol(f"{TYPES}{cls}")))
-    assert len(symbols) == len(explained)
-    others = {other for other in explained.values() if other != slug}
-    pages = (page(slug, title), *(page(other, "Other Things") for other in sorted(others)))
+    """The names of a page's topic in a base of a few classes, each with the page that explains it, and of others."""
+    names = [*explained, *others]
+    symbols = tuple(symbol for cls in names if (symbol := reader.symbol(f"{TYPES}{cls}")))
+    assert len(symbols) == len(names)
+    elsewhere = {other for other in explained.values() if other != slug}
+    pages = (page(slug, title), *(page(other, "Other Things") for other in sorted(elsewhere)))
     links = tuple(Link(f"{TYPES}{cls}", other, "manual") for cls, other in explained.items())
     write_base(folder / "base.sqlite", Contents(symbols, pages, links, {}))
     with closing(BaseReader(folder / "base.sqlite")) as own:
@@ -97,6 +106,17 @@ def test_what_only_shares_a_word_is_another_topics_where_other_chapters_explain_
     assert names.elsewhere == {f"{TYPES}{cls}" for cls in elsewhere}
 
 
+def test_what_is_an_element_of_another_topics_thing_is_that_topics(
+    tmp_path: Path, reader: BaseReader
+) -> None:
+    zone = "modeling/geometry_nodes/simulation/simulation_zone"
+    explained = {"SoftBodySettings": SOFT, "NodeGeometrySimulationOutputItems": zone}
+    node, items = "GeometryNodeSimulationOutput", "NodeGeometrySimulationOutputItems"
+    others = [*NODES_OF_GEOMETRY, node, f"{node}.state_items", f"{items}.new", "SimulationStateItem"]
+    names = names_of(tmp_path, reader, SOFT, "Simulation", explained, others)
+    assert f"{TYPES}SimulationStateItem" in names.elsewhere
+
+
 def test_steps_make_what_is_called_as_the_topic_wherever_it_is_explained(
     tmp_path: Path, reader: BaseReader
 ) -> None:
@@ -143,6 +163,17 @@ def test_a_word_means_the_page_of_that_title_before_the_nodes_that_have_it(
     write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
     with closing(BaseReader(tmp_path / "base.sqlite")) as own:
         assert Topics(own).find(text) == found
+
+
+def test_a_zone_is_asked_for_with_the_name_of_a_socket(tmp_path: Path, reader: BaseReader) -> None:
+    node, slug = f"{TYPES}GeometryNodeRepeatInput", "modeling/geometry_nodes/repeat_zone"
+    paths = [node, *(entry.path for entry in reader.members(node).values())]
+    symbols = [symbol for path in paths if (symbol := reader.symbol(path))]
+    pages = (page(slug, "Repeat Zone"), page("render/repeat", "Repeat"))
+    write_base(tmp_path / "base.sqlite", Contents(symbols, pages, (Link(node, slug, "manual"),), {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        assert Topics(own).find("repeat zone iterations") == slug
+        assert Topics(own).find("repeat zone colours") == ""
 
 
 def test_an_operator_that_is_called_as_a_topic_belongs_to_it(tmp_path: Path, reader: BaseReader) -> None:
