@@ -3,20 +3,25 @@
 from __future__ import annotations
 
 import re
+from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
+from kb_serve.answer.steps.operators import calls_needed
 from kb_serve.answer.steps.topic_names import TopicNames
-from kb_serve.answer.topic_pages import SHORT_FOR, subtree
+from kb_serve.answer.steps.variable_names import class_called
+from kb_serve.answer.topic_pages import CHAPTERS, PAGES_OF_NODES, SHORT_FOR, subtree
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Collection, Iterable, Iterator
 
     from kb_serve.reader import BaseReader
 
 _PARTS_OF_A_WINDOW = ("panel", "panels")
+_EDITORS = "editors/"  # what is edited there is explained elsewhere
+_OPERATORS = "bpy.ops."
 _MEMBERS = 6
 _NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
 _ASIDE = 0.2
@@ -50,6 +55,7 @@ class TopicMembers:
         for below, depth in subtree(slug, self._reader).items():
             for path in self._reader.symbols_of_page(below):
                 nearness.setdefault(path, _NEAR if depth < 2 else _FAR)
+        explained = frozenset(nearness)
         is_operated = any(
             names.names(path.rpartition(".")[2]) for path in nearness if not path.startswith(TYPES)
         )
@@ -60,9 +66,13 @@ class TopicMembers:
                 path, words, names, slug
             ):
                 nearness[path] = _NAMED * nearness.get(path, _ASIDE if _OWN_NAMES.search(path) else _FAR)
-        for module in names.keys:
-            for path in self._reader.operators_of(module):
-                nearness[path] = _ON_ITS_MODULE * _NEAR
+        for path in self._called_operators(slug, (title, last)):
+            nearness.setdefault(path, _NEAR)
+        nearness |= dict.fromkeys(
+            (path for module in names.keys for path in self._reader.operators_of(module)),
+            _ON_ITS_MODULE * _NEAR,
+        )
+        nearness = dict.fromkeys(self._worked_on(slug, nearness), _NEAR) | nearness
         weights = self._weights(nearness)
         for path, near in sorted(nearness.items(), key=lambda row: (-row[1] * weights[row[0]], row[0])):
             entry = self._reader.entry(path)
@@ -70,6 +80,12 @@ class TopicMembers:
                 names.operators[path] = near * weights[path] * (_UNUSUAL if "preset" in entry.name else 1)
             elif entry is not None and entry.kind == "class" and entry.group == "data":
                 names.classes[path] = near * weights[path]
+        if not slug.startswith(_EDITORS):
+            names.elsewhere = frozenset(
+                path
+                for path in names.classes
+                if path not in explained and self._is_on_other_pages(path, slug)
+            )
         names.operators = dict(sorted(names.operators.items(), key=lambda row: -row[1]))
         return names
 
@@ -82,6 +98,55 @@ class TopicMembers:
             return False
         parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
         return bool(parts) and slug.partition("/")[0] not in parts
+
+    def _called_operators(self, slug: str, titles: Iterable[str]) -> Iterator[str]:
+        """The operators that are called as a topic is, and that its part of the manual explains."""
+        names = {"_".join(words) for title in titles for words in (title.lower().split(), terms(title))}
+        for entry in (entry for name in names for entry in self._reader.by_name(name)):
+            parts = {link.partition("/")[0] for link in self._reader.manual_links(entry.path)}
+            if entry.kind == "operator" and slug.partition("/")[0] in parts:
+                yield entry.path
+
+    def _worked_on(self, slug: str, paths: Collection[str]) -> Iterator[str]:
+        """What most operators of a chapter work on, where nothing of it can be made: what is in the thing that a call
+        makes which they need, as the strips of a sequence editor.
+        """
+        operators = [
+            symbol for path in paths if path.startswith(_OPERATORS) and (symbol := self._reader.symbol(path))
+        ]
+        needed = Counter(call for operator in operators for call in calls_needed(operator))
+        call, count = next(iter(needed.most_common(1)), ("", 0))
+        is_chapter = bool(self._reader.page_children(slug))
+        if (
+            not (call and is_chapter)
+            or count < len(operators) / 2
+            or self._reader.creations([*self._classes.keys() & paths])
+        ):
+            return
+        variable, _, name = call.partition("(")[0].rpartition(".")
+        maker = self._reader.symbol(f"{class_called(variable)}.{name}")
+        for holder in maker.returns if maker else ():
+            for entry in self._reader.members(f"{TYPES}{holder.type}").values():
+                if entry.type == "collection":
+                    kinds = [kind.path for kind in self._reader.descendants(f"{TYPES}{entry.target}")]
+                    yield from self._reader.creations(kinds)
+
+    def _is_on_other_pages(self, path: str, slug: str) -> bool:
+        """Whether pages explain a class, but none of a page's chapter, nor of those that this is in; nodes of several
+        kinds of trees are explained aside.
+        """
+        made = self._reader.creations([path]).get(path)
+        # What it is an element of, where no page explains it itself.
+        is_element = made is not None and not (made.choice or made.call.startswith("bpy."))
+        by = made.maker.rpartition(".")[0] if made and is_element else ""
+        told = self._reader.manual_links(path) or self._reader.manual_links(by)
+        links = [link.partition("#")[0] for link in told]
+        near = [slug.removesuffix("index")]
+        if slug.startswith(tuple(CHAPTERS.values())):
+            near.append(PAGES_OF_NODES)
+        return bool(links) and not any(
+            link.startswith(tuple(near)) or slug.startswith(link.removesuffix("index")) for link in links
+        )
 
     def _of_kind(self, slug: str, title: str) -> frozenset[str]:
         """What the one other page explains that is called so and says that this is a modifier or constraint."""

@@ -9,7 +9,7 @@ from kb_build.symbol_lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock, clip, tokens
 from kb_serve.answer.pages import own_summary, said_of
 from kb_serve.answer.topic_members import TopicMembers
-from kb_serve.answer.topic_pages import TopicPages, plain_title
+from kb_serve.answer.topic_pages import TopicPages, plain_title, subtree
 from kb_serve.answer.topic_settings import TopicSettings
 from kb_serve.answer.topic_steps import Steps
 from kb_serve.reader import TYPES
@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _EDITOR = f"{TYPES}Space"
 _MOST_SETTINGS = 10
+_DONE = ("set on `", "` → `", "` makes `")  # in steps that make or set something
 _OVERVIEW_TOKENS = 1_200
 _FIRST = (10, 8, 6, 5, 4, 3)  # entries of each list, as many as fit; the others follow all lists
 _LINE_TOKENS = 50
@@ -95,14 +96,22 @@ class Topics:
         """The steps, or else where the topic is a value; and what is set on the page without being told in them."""
         steps = [*Steps(self._reader, names).blocks()]
         yield from steps
-        if not steps and (values := [*self._settings.as_value(plain_title(page))]):
+        if not steps and (values := [*self._settings.as_value(plain_title(page), page.slug)]):
             lines = "\n".join(f"- {line}" for line in values)
             yield AnswerBlock(f"**How it is done**\n{lines}", "as a value")
+        if not any(said in block.text for block in steps for said in _DONE):
+            settings = settings or self._of_chapter(page.slug)
         if steps:  # on a page about an editor how it looks is set, too
             settings = [entry for entry in settings if not self._reader.descends(entry.owner, _EDITOR)]
         told = "".join(block.text for block in steps)
         left = [entry for entry in settings if f"`{entry.name}`" not in told]
         yield from _list_of("Settings", [*self._settings.lines(left[:_MOST_SETTINGS])])
+
+    def _of_chapter(self, slug: str) -> list[SymbolEntry]:
+        """The heaviest settings that the pages of a chapter name beside their labels."""
+        pages = subtree(slug, self._reader)
+        labelled = dict.fromkeys(entry for page in pages for entry in self._settings.labelled(page))
+        return self._reader.heaviest(labelled)[:_MOST_SETTINGS] if len(pages) > 1 else []
 
     def first_steps(self, text: str, most: int) -> list[str]:
         """The first steps of a topic; none for what is no topic."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, PageEntry
 
 _ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
-_PAGES_OF_NODES, _NODE = "interface/controls/nodes/types/", f"{TYPES}Node"
+PAGES_OF_NODES, _NODE = "interface/controls/nodes/types/", f"{TYPES}Node"
 _SELDOM = (
     "grease_pencil/",
     "render/freestyle/",
@@ -52,7 +52,9 @@ _OF_A_PLACE = re.compile(
     r"(?P<place>composit(?:or|ing)|geometry\snodes?|shaders?(?:\snodes?|\seditor)?)\s(?P<node>\w.*\s(?:node|zone))",
     re.I,
 )
-_CHAPTERS = {
+_CHAPTER_OF_NODES = " Nodes"  # how its title ends
+# The chapter of each kind of trees.
+CHAPTERS = {
     "composit": "compositing/",
     "geometry": "modeling/geometry_nodes/",
     "shader": "render/shader_nodes/",
@@ -97,7 +99,7 @@ class TopicPages:
         else:
             node, place = "", ""
         if node.lower().endswith(" node"):
-            chapter = next(chapter for word, chapter in _CHAPTERS.items() if word in place.lower())
+            chapter = next(chapter for word, chapter in CHAPTERS.items() if word in place.lower())
             if slug := self._called(node, chapter):
                 return slug
         return (
@@ -105,7 +107,15 @@ class TopicPages:
             or self._called(made)
             or self._with_more_words(plain)
             or self._with_more_words(made)
+            or self._with_socket(plain)
         )
+
+    def _with_socket(self, plain: str) -> str:
+        """The page of a zone that is asked for with the name of one of its sockets: the iterations of a repeat zone."""
+        zone, _, socket = plain.rpartition(" ")
+        slug = self._called(zone) if zone.lower().endswith(_OF_NODES[1]) else ""
+        names = (name for node in self._reader.symbols_of_page(slug) for name in self._reader.members(node))
+        return slug if any(f'["{socket.lower()}"]' in name.lower() for name in names) else ""
 
     def _with_more_words(self, plain: str) -> str:
         """The page of the one node or zone whose title has all of some words, or all but its kind; empty for none."""
@@ -143,13 +153,25 @@ class TopicPages:
         self._reader.by_key.load((*keys, key(plain)))
         titled = [{slug for _, slug in self._reader.by_key(title)} for title in keys]
         titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._reader.page_children(slug)}
-        titled = [{slug for slug in slugs if slug.startswith(chapter)} for slugs in titled]
+        titled = [
+            self._without_nodes({slug for slug in slugs if slug.startswith(chapter)}, plain)
+            for slugs in titled
+        ]
         for slugs in titled:
             if sizes := {slug: self._size(slug) for slug in slugs if self._is_topic(slug)}:
                 return self._best(sizes, slugs, plain)
         # A page that explains nothing but settings, if no other may be meant.
         alone = next((slugs for slugs in titled if len(slugs) == 1), set[str]())
         return next((slug for slug in alone if self._sets_something(slug)), "")
+
+    def _without_nodes(self, slugs: set[str], plain: str) -> set[str]:
+        """Pages without the chapters of nodes, where another chapter has the very title: who asks for hair
+        says no nodes.
+        """
+        titles = {slug: page.title for slug in slugs if (page := self._reader.page_entry(slug))}
+        exact = {slug for slug, title in titles.items() if key(title) == key(plain)}
+        of_nodes = {slug for slug, title in titles.items() if title.endswith(_CHAPTER_OF_NODES)}
+        return slugs - (of_nodes - exact) if any(map(self._reader.page_children, exact)) else slugs
 
     def _exactly(self, plain: str) -> str:
         """The page of a topic whose title is just these many words; empty for none."""
@@ -164,7 +186,8 @@ class TopicPages:
         if len(exact) == 1 and exact[0] in sizes and is_likely and max(sizes.values()) <= _CHAPTER:
             return exact[0]
         best = max(sizes, key=lambda slug: (slug not in seldom, sizes[slug], slug))
-        is_one_of_many = len(slugs) > _CALLED_SO and not self._reader.page_children(best)
+        apart = [slug for slug in slugs if not any(map(partial(_is_chapter_of, slug), slugs - {slug}))]
+        is_one_of_many = len(apart) > _CALLED_SO and not self._reader.page_children(best)
         return "" if is_one_of_many or (best in seldom and len(seldom) < len(slugs)) else best
 
     @staticmethod
@@ -192,14 +215,14 @@ class TopicPages:
         page = self._reader.page_entry(slug)
         if page is None or not self._may_be_topic(slug):
             return False
-        return bool(self._settings.labelled(slug) or [*self._settings.as_value(plain_title(page))])
+        return bool(self._settings.labelled(slug) or [*self._settings.as_value(plain_title(page), slug)])
 
     def _may_be_topic(self, slug: str) -> bool:
         page = self._reader.page_entry(slug)
         if page is None or page.source != "manual":
             return False
         # Nodes that several kinds of trees take are explained aside.
-        is_of_nodes = slug.startswith(_PAGES_OF_NODES) and self._is_of_node(slug)
+        is_of_nodes = slug.startswith(PAGES_OF_NODES) and self._is_of_node(slug)
         return is_of_nodes or not slug.startswith(_ASIDE_PAGES)
 
     def _is_of_node(self, slug: str) -> bool:
@@ -219,6 +242,12 @@ def subtree(slug: str, reader: BaseReader, depth: int = 3) -> dict[str, int]:
         for below, far in subtree(child.slug, reader, depth - 1).items():
             slugs.setdefault(below, far + 1)
     return slugs
+
+
+def _is_chapter_of(slug: str, other: str) -> bool:
+    """Whether a page begins the chapter that another is in."""
+    folder = slug.removesuffix("index")
+    return folder != slug and other.startswith(folder)
 
 
 def plain_title(page: PageEntry) -> str:

@@ -7,8 +7,9 @@ from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import written
+from kb_build.symbol_lines import held, written
 from kb_serve.answer.budget import clip
+from kb_serve.answer.steps.new_scene import NewScene
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -55,18 +56,28 @@ class TopicSettings:
             yield f"on `{symbol.reached}` (`{name}`):" if symbol and symbol.reached else f"of `{name}`:"
             yield from (f"  {clip(entry.line, _LINE_TOKENS)}" for entry in entries)
 
-    def as_value(self, text: str) -> Iterator[str]:
-        """The calls, then the assignments with the value that a text names, heaviest first: ``light.type = 'SUN'``."""
+    def as_value(self, text: str, slug: str) -> Iterator[str]:
+        """The calls, then the assignments with the value that a page's title names, heaviest first, of what the part of
+        the manual explains that the page is in: ``light.type = 'SUN'``.
+        """
         owners = {owner: value for owner, value, _ in self._reader.enum_owners(key(text))}
         weights = self._reader.weights([owner.partition("(")[0] for owner in owners])
         heavy = {owner: weights.get(owner.partition("(")[0], 0.0) for owner in owners}
-        least = max(_LEAST_WEIGHT, _LEAST_SHARE * max(heavy.values(), default=0.0))
+        near = {_name(owner) for owner in owners if self._is_near(owner, slug)}
+        owners = {owner: value for owner, value in owners.items() if _name(owner) in near}
+        least = max(_LEAST_WEIGHT, _LEAST_SHARE * max(map(heavy.__getitem__, owners), default=0.0))
         written = [
             line
             for owner in sorted(owners, key=lambda owner: ("(" not in owner, -heavy[owner]))
             if heavy[owner] >= least and (line := self._written(owner, owners[owner]))
         ]
         yield from written[:_VALUES]
+
+    def _is_near(self, owner: str, slug: str) -> bool:
+        """Whether the part of the manual that a page is in explains what has a value."""
+        path = owner.partition("(")[0]
+        links = self._reader.manual_links(path) or self._reader.manual_links(path.rpartition(".")[0])
+        return slug.partition("/")[0] in {link.partition("/")[0] for link in links}
 
     def _written(self, owner: str, value: str) -> str:
         """A value where it is given; empty where it cannot be set."""
@@ -78,7 +89,17 @@ class TopicSettings:
             return ""
         holder = self._reader.symbol(entry.owner)
         reached = holder.reached if holder and holder.reached else entry.owner.removeprefix(TYPES)
+        ready = NewScene(self._reader).pointers.reach(held(reached)) if holder and holder.reached else None
+        first = "; ".join(ready.steps) if ready else ""
+        if ready and first:
+            reached = ready.expression
         symbol = self._reader.symbol(path) if entry.kind == "socket" else None
         subscript = (written(symbol) if symbol else path)[len(entry.owner) + 1 :]
         subscript += ".default_value" if symbol else ""
-        return f"`{reached}.{subscript} = {value!r}`"
+        return f"{first}{', then ' if first else ''}`{reached}.{subscript} = {value!r}`"
+
+
+def _name(owner: str) -> str:
+    """The property's or the argument's name of what has a value."""
+    path, _, parameter = owner.partition("(")
+    return parameter.removesuffix(")") or path.rpartition(".")[2]

@@ -6,11 +6,12 @@ own settings and those it points to are set; the operators of the topic that nei
 
 from __future__ import annotations
 
+import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import terms
-from kb_build.symbol_lines import operator_needs, refused_nothing
+from kb_build.symbol_lines import operator_areas, operator_needs, refused_nothing
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
 from kb_serve.answer.steps.instances import Instances
@@ -40,6 +41,9 @@ _MODIFIER = f"{TYPES}Modifier"  # of objects
 _IN_A_NODE = ".nodes["  # in a call that makes what a node holds
 _NOT_MADE = frozenset({NODE, *EMBEDDED_TREES})  # for themselves
 _LEGACY = "(Legacy)"  # at the end of labels
+_PREPARES = re.compile(
+    r"\d+\. (?:instead: )?`[^`]* = [^`]*`"
+)  # a step that only sets something, for the next
 
 
 class Steps:
@@ -67,8 +71,12 @@ class Steps:
     def blocks(self) -> Iterator[AnswerBlock]:
         """One block, a numbered list; none where nothing is made, set or run."""
         lines = [f"{number}. {step}" for number, step in enumerate(self._steps(), 1)]
-        while sum(tokens(line) + 1 for line in lines) > _MOST_TOKENS:
+        is_cut = False
+        while sum(tokens(line) + 1 for line in lines) > _MOST_TOKENS or (
+            is_cut and _PREPARES.fullmatch(lines[-1])
+        ):
             lines.pop()
+            is_cut = True
         if lines:
             yield AnswerBlock("**How it is done**\n" + "\n".join(lines), "how it is done")
 
@@ -105,7 +113,20 @@ class Steps:
         elif self._creations and self._creations.keys().isdisjoint(named):
             named = []
         called = tuple(path.removeprefix(TYPES) for path in named if self._is_the_topic(path))
-        return [path for path in named if not self._is_anothers(path, called)] or list(self._names.classes)
+        named = [path for path in named if not self._is_anothers(path, called)] or list(self._names.classes)
+        return [path for path in named if not self._is_elsewhere(path)]
+
+    def _is_elsewhere(self, path: str) -> bool:
+        """Whether a class only has the topic's words in its name, and other pages explain it: a constraint that tracks
+        is no tracking of a film. The modifier that is called as the topic is its own wherever it is explained, and what
+        is called so, with its kinds, if nothing else of the topic is made.
+        """
+        if path not in self._names.elsewhere:
+            return False
+        is_modifier = path.endswith("Modifier") and self._names.is_called(path.removesuffix("Modifier"))
+        own = self._creations.keys() & self._names.classes.keys() - self._names.elsewhere
+        called = (self._names.is_called(base.path) for base in self._reader.lineage(path))
+        return not (is_modifier or (not own and any(called)))
 
     def _explained(self) -> list[str]:
         """What the page explains and can be made, if its name says something of the title: what a page on one kind of
@@ -191,7 +212,12 @@ class Steps:
             yield f"`obj.{call_of(entry)}` — {entry.line.partition(' — ')[2]}"
 
     def _make(self) -> Iterator[str]:
-        groups = [group for group in self._groups() if self._is_main(group)][:_MAKERS]
+        all_ = self._groups()
+        groups = [
+            group
+            for group in all_
+            if self._is_main(group) and (group is all_[0] or not self._is_in_area(group))
+        ][:_MAKERS]
         # What an operator makes that needs nothing comes first: a world, before what is in it makes one; nodes come
         # before their items, which they are told with.
         firsts = {id(group): next(iter(group.values())) for group in groups}
@@ -205,6 +231,12 @@ class Steps:
             if next(iter(creations)) not in self._scene.shown:
                 yield from self._make_one(creations, is_first=creations is groups[0])
 
+    def _is_in_area(self, creations: Mapping[str, Creation]) -> bool:
+        """Whether an operator makes something in an area of a window alone, which a script need not have."""
+        creation = next(iter(creations.values()))
+        maker = self._reader.symbol(creation.maker) if creation.call.startswith("bpy.ops.") else None
+        return maker is not None and bool(operator_areas(maker))
+
     def _is_main(self, creations: Mapping[str, Creation]) -> bool:
         """Whether the topic is about what one maker makes: the kinds of its main class, too."""
         first = next(iter(creations))
@@ -217,11 +249,18 @@ class Steps:
         # A modifier with the topic's name makes the settings that it holds.
         for path in sorted(self._classes, key=lambda path: not self._has_modifier(path)):
             creation = self._creations.get(path)
-            if creation and path not in _NOT_MADE and not is_of_interface(creation.call):
+            is_left = path in _NOT_MADE or self._is_of_made_data(path)
+            if creation and not is_left and not is_of_interface(creation.call):
                 groups[creation.maker][path] = creation
         # The first group is the heaviest class's; of the others, many light classes outweigh a single one.
         first, others = [*groups.values()][:1], [*groups.values()][1:]
         return [*first, *sorted(others, key=self._names.weight_of, reverse=True)]
+
+    def _is_of_made_data(self, path: str) -> bool:
+        """Whether a class is the modifier of data that is made: it is told with that, as it is on another object."""
+        data = path.removesuffix("Modifier")
+        is_made = data != path and data in self._classes and data in self._creations
+        return is_made and self._scene.kinds.is_data(data)
 
     def _make_one(self, creations: Mapping[str, Creation], *, is_first: bool) -> Iterator[str]:
         """How the classes of one maker are made, and what the first of them needs to be of use."""

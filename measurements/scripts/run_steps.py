@@ -123,7 +123,7 @@ def _operate(step: str, names: Names) -> None:
 
 def _do(step: str, names: Names) -> None:
     """Does one step. Raises what Blender raises."""
-    step = _NUMBER.sub("", step).removeprefix("on another object: ")
+    step = _NUMBER.sub("", step)
     if step.startswith("set, once"):
         return
     for pattern, act in ((_SET, _check_set), (_HELD, _check_held), (_MAKES, _fill)):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.calls_before import calls_before
@@ -49,6 +50,10 @@ class CreationCalls:
         steps += _FIRST.get(creation.maker, ())
         self._scene.variables.add(main, self._scene.variables.of(main))
         made = made_line(main, ready.expression, self._scene)
+        if not creation.choice:
+            mesh = f"{self._scene.obj.mesh_object()}.data."
+            for written in (ready.expression, re.sub(r"^mesh\.", mesh, ready.expression)):
+                self._scene.pointers.note(written)
         on = ready.expression.partition(".")[0]
         choices = [
             other.choice

@@ -66,6 +66,11 @@ class Instances:
             if (given := self._of(cls, depth + 1)) is not None:
                 steps += given.steps
                 rest = re.sub(rf"\b{name}\b(?!\s*=)", given.expression, rest)
+        for name, cls in self._scene.makers.things_by_name(creation):
+            kind, made = self._simplest(cls, depth)
+            given = self._call(made, depth + 1) if made else None
+            if given is not None:
+                steps += [*given.steps, f"`{name} = {given.expression}` → `{kind.removeprefix(TYPES)}`"]
         steps += self._scene.makers.never_without(creation, self._scene.variables.there)
         return Ready(steps, f"{on.expression}.{holder}{maker}{rest}")
 
@@ -94,15 +99,17 @@ class Instances:
         return Ready([*ready.steps, made, *self._scene.obj.made_of(cls)], variable)
 
     def _of_a_kind(self, cls: str, depth: int) -> Ready | None:
-        """An instance of a class below one that is not made for itself: a strip of colour for a Strip.
+        """An instance of a class below one that is not made for itself: a strip of colour for a Strip."""
+        least, _ = self._simplest(cls, depth)
+        return self._of(least, depth) if least else None
 
-        Of several the one that needs the least.
-        """
+    def _simplest(self, cls: str, depth: int) -> tuple[str, Creation | None]:
+        """Of the classes below one that is not made for itself the one that needs the least, and what makes it."""
         below = [entry.path for entry in self._reader.descendants(cls)] if depth < _DEEPEST else []
         made = {path: one for path, one in self._reader.creations(below).items() if one.choice}
         needed = {path: self._scene.makers.count_things(one) for path, one in made.items()}
         least = min(made, key=lambda path: (needed[path], len(made[path].call), path), default="")
-        return self._of(least, depth) if least else None
+        return least, made.get(least)
 
     def _reached(self, cls: str) -> Ready | None:
         """The expression by which scripts mostly reach an instance, where all on its way is there or can be filled."""

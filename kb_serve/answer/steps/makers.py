@@ -42,6 +42,18 @@ class Makers:
             if parameter.required and self._reader.creations([cls]):
                 yield parameter.name, cls
 
+    def things_by_name(self, creation: Creation) -> Iterator[tuple[str, str]]:
+        """The arguments that only some kinds need, and that are things themselves, as the strip that an effect is of:
+        name and class.
+        """
+        maker = self._record(creation.maker)
+        for parameter in maker.parameters if maker else ():
+            cls = f"{TYPES}{parameter.type}"
+            if re.search(rf"\b{parameter.name}={parameter.name}\b", creation.call) and self._reader.entry(
+                cls
+            ):
+                yield parameter.name, cls
+
     def count_things(self, creation: Creation) -> int:
         """How many arguments of a call are things themselves."""
         maker = self._record(creation.maker)

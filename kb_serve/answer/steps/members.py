@@ -10,6 +10,7 @@ from kb_serve.reader import TYPES
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
+UNSEEN = "(RNA's)"  # in the line of a setting of which no instance could be made
 _MOST_SETTINGS = 10
 _NONE = " = None"
 _PLAIN = ("name", "index")  # every thing has them

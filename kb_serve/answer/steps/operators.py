@@ -6,7 +6,14 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import held, literal, operator_areas, operator_needs, refused_nothing
+from kb_build.symbol_lines import (
+    held,
+    literal,
+    operator_active,
+    operator_areas,
+    operator_needs,
+    refused_nothing,
+)
 from kb_serve.answer.arguments import of_file_browser
 from kb_serve.answer.panel_lines import panel_lines, switches_off
 from kb_serve.reader import TYPES
@@ -19,8 +26,11 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.topic_names import TopicNames
     from kb_serve.reader import BaseReader
 
+_MODE = f"{TYPES}Object.mode"
 POINT_CACHE = f"{TYPES}PointCache"  # what operators bake
 _MOST = 4
+_MOST_OF_MODIFIERS = 2
+_MODIFIER = "modifier"  # the argument for one
 _ARGUMENTS = 3  # of an operator's call
 _USED_ELSEWHERE = 3  # weight of an operator that has not the topic's module
 _PATH = "data_path"
@@ -73,21 +83,43 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
     ]
     if is_cached:
         operators = [*_bakes(reader), *operators]
+    modifiers = _of_modifiers(names, scene)
+    operators = [*modifiers, *(path for path in operators if path not in modifiers)]
     for path in operators[:_MOST]:
         if symbol := reader.symbol(path):
             yield from before(symbol, scene)
-            yield _line(symbol, reader)
+            yield _line(symbol, reader, modifiers.get(path, ""))
+
+
+def _of_modifiers(names: TopicNames, scene: NewScene) -> dict[str, str]:
+    """The heaviest operators that run a modifier of the topic, each with the argument that names it: one that binds a
+    mesh to a cage, without which nothing is changed.
+    """
+    reader, found = scene.reader, dict[str, str]()
+    for cls in names.classes:
+        stem = key(cls.removeprefix(TYPES).removesuffix("Modifier"))
+        if cls not in scene.shown or not cls.endswith("Modifier"):
+            continue
+        paths = [
+            path
+            for path in reader.operators_taking(_MODIFIER)
+            if path.split(".")[3].split("_")[0] == stem and _runs(path)
+        ]
+        entries = [entry for path in paths if (entry := reader.entry(path))]
+        argument = f"{_MODIFIER}={scene.variables.of(cls)}.name"
+        found |= {entry.path: argument for entry in reader.heaviest(entries)[:_MOST_OF_MODIFIERS]}
+    return found
 
 
 def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
     """The steps after which an operator runs, as far as they are known and have not been told."""
-    for added in _ADDED.findall(operator_needs(operator)):
-        calls = re.findall(r"`([^`]*)`", added)
+    for calls in _needed(operator):
         if all(_is_taken(call, scene) for call in calls):
             yield from scene.pointers.calls(
                 call for call in calls if scene.reader.made_by_call(call) not in scene.shown
             )
-    if ready := scene.obj.ready_for(operator):
+    mode = _mode_of_heading(operator, scene.reader)
+    if ready := scene.obj.to_mode(mode) if mode else scene.obj.ready_for(operator):
         yield "; ".join(f"`{code}`" for code in ready)
     for gate, value in switches_off(operator, scene.reader):
         owner = scene.reader.symbol(gate.owner)
@@ -95,7 +127,28 @@ def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
         within = scene.pointers.reach(held(scene.variables.within(reached))) if reached else None
         if within is not None:
             yield from within.steps
-            yield from scene.pointers.calls([f"{within.expression}.{gate.name} = {value!r}"])
+            yield from scene.pointers.setting(f"{within.expression}.{gate.name}", value)
+
+
+def _mode_of_heading(operator: Symbol, reader: BaseReader) -> str:
+    """The mode whose name heads what the manual says of an operator, where its poll takes any: in others it does
+    nothing. Empty for none.
+    """
+    place = None if operator_active(operator)[1] else reader.passage(operator.path)
+    page, modes = reader.page(place[0]) if place else None, reader.symbol(_MODE)
+    if place is None or page is None or modes is None:
+        return ""
+    heading = page.sections[place[1]].title
+    return next((item.identifier for item in modes.enum_items if item.name == heading), "")
+
+
+def calls_needed(operator: Symbol) -> list[str]:
+    """The calls that must have been made before an operator runs."""
+    return [call for calls in _needed(operator) for call in calls]
+
+
+def _needed(operator: Symbol) -> list[list[str]]:
+    return [re.findall(r"`([^`]*)`", added) for added in _ADDED.findall(operator_needs(operator))]
 
 
 def _is_taken(call: str, scene: NewScene) -> bool:
@@ -152,13 +205,13 @@ def _bakes(reader: BaseReader) -> Iterator[str]:
         yield from (entry.path for entry in reader.heaviest(operators)[:1])
 
 
-def _line(operator: Symbol, reader: BaseReader) -> str:
-    """An operator's call with its first arguments, and what it does: of one on files the file, and nothing that only
-    the file browser reads.
+def _line(operator: Symbol, reader: BaseReader, argument: str = "") -> str:
+    """An operator's call with its first arguments, one of them given as it is, and what it does: of one on files the
+    file, and nothing that only the file browser reads.
     """
     aside = [*of_file_browser(operator), _ASKS]
     names = {parameter.name for parameter in operator.parameters}
-    files = [f"{_FILE}={_FILE}"] if len(aside) > 1 and _FILE in names else []
+    files = [argument] if argument else [f"{_FILE}={_FILE}"] if len(aside) > 1 and _FILE in names else []
     given = [p for p in operator.parameters if p.default is not None and p.name not in aside]
     arguments = [*files, *(f"{p.name}={literal(p.default)}" for p in given)][:_ARGUMENTS]
     left = len(names.difference(aside)) - len(arguments)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_serve.answer.steps.members import settings_of
 from kb_serve.answer.steps.variable_names import OBJ, OBJECT, TREE
 from kb_serve.reader import TYPES
 
@@ -67,13 +68,18 @@ class PlaceSteps:
         return creation is not None and creation.call.startswith("obj.")
 
     def _deforming(self, cls: str) -> Iterator[str]:
-        """The modifier of the data's name, by which its object changes another: an Armature modifier."""
+        """The modifier of the data's name, by which its object changes another: an Armature modifier; with its settings
+        where it belongs to the topic.
+        """
         modifier = f"{cls}Modifier"
         creation = self._reader.creations([modifier]).get(modifier)
         pointer = self._reader.entry(f"{modifier}.object")
         if creation and pointer and pointer.target == "Object":
             call = creation.call.replace("obj.", "other.", 1)
+            self._scene.shown.add(modifier)
             yield f"on another object, that it changes: `modifier = {call}`, then `modifier.object = obj`"
+            if modifier in self._names.classes and (settings := settings_of(modifier, self._reader)):
+                yield f"set on `modifier` (`{modifier.removeprefix(TYPES)}`): {settings}"
 
     def _linked(self, cls: str, variable: str) -> str:
         """The call that links a data-block to where it counts: a collection to the scene's."""

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _FIRST_WORD = re.compile(r"^(?!bpy\b|obj\b|scene\b)[a-z_]+\.(?=\w+(?: = |\())")
 _PARTS = re.compile(r"\.(?![^\[]*\])")  # between names, and not in a key
 _DATA = "data"
+_BLEND_DATA = f"{TYPES}BlendData"
 
 
 class Ready(NamedTuple):
@@ -50,18 +51,33 @@ class PointerFills:
     def steps(self, pointer: Symbol, above: str) -> list[str]:
         """The step that fills a pointer of ``above``; none if it is there or filled."""
         calls = self._calls(pointer, above)
-        # One value of a setting makes one thing, another value the next, in place of the first.
-        choices = _choices(calls)
-        elsewhere = "on another object: " if choices & self._chosen.keys() else ""
         expression = f"{above}.{pointer.name}"
-        self._chosen |= dict.fromkeys(choices, expression)
-        return [elsewhere + _step(calls, expression)] if calls else []
+        self._chosen |= dict.fromkeys(_choices(calls), expression)
+        return [_step(calls, expression)] if calls else []
+
+    def is_in_place(self, pointer: Symbol, above: str) -> bool:
+        """Whether one value of a setting fills a pointer of ``above``, of which another value has filled one."""
+        calls = [_FIRST_WORD.sub(f"{above}.", call) for call in fillers(pointer)]
+        return any(
+            self._chosen.get(one, "") not in {"", f"{above}.{pointer.name}"} for one in _choices(calls)
+        )
+
+    def note(self, call: str) -> None:
+        """Notes that a step has made a call, whatever its arguments."""
+        self._called.add(call.partition("(")[0])
 
     def calls(self, calls: Iterable[str]) -> list[str]:
         """The steps that make some calls, of those that no step has made."""
-        left = [call for call in calls if call not in self._called]
+        left = [call for call in calls if self._called.isdisjoint({call, call.partition("(")[0]})]
         self._called.update(left)
         return [f"`{call}`" for call in left]
+
+    def setting(self, expression: str, value: bool | str) -> list[str]:
+        """The step that sets something, if none has; where one has set it otherwise, it is done instead of that."""
+        is_other = any(call.startswith(f"{expression} = ") for call in self._called)
+        return [
+            ("instead: " if is_other else "") + step for step in self.calls([f"{expression} = {value!r}"])
+        ]
 
     def reach(self, expression: str, *, adds: bool = True) -> Ready | None:
         """An expression, and what fills pointers on its way that are None on new things; None where one stays so.
@@ -131,11 +147,22 @@ class PointerFills:
         if there := self._variables.there(target):
             return Ready([], there)
         made = self._reader.creations([target]).get(target)
-        if "readonly" in pointer.flags or made is None or not made.call.startswith("bpy.data."):
+        call = made.call if made else self._loading(pointer.target)
+        if "readonly" in pointer.flags or not call.startswith("bpy.data."):
             return None
         variable = self._variables.of(target)
         self._variables.add(target, variable)
-        return Ready([f"`{variable} = {made.call}`; `{expression} = {variable}`"], variable)
+        return Ready([f"`{variable} = {call}`; `{expression} = {variable}`"], variable)
+
+    def _loading(self, cls: str) -> str:
+        """The call that loads a data-block which nothing but a file makes, as a film; empty for none."""
+        for entry in self._reader.by_name("load"):
+            symbol = self._reader.symbol(entry.path)
+            holders = self._reader.members(_BLEND_DATA).values()
+            holder = next((one.name for one in holders if f"{TYPES}{one.collection}" == entry.owner), "")
+            if symbol is not None and holder and any(result.type == cls for result in symbol.returns):
+                return f"bpy.data.{holder}.load(filepath)"
+        return ""
 
     def _adding(self, collection: SymbolEntry) -> list[str] | None:
         """The steps by which an operator adds an element to a collection of the object; None if no such is known."""
@@ -156,6 +183,8 @@ class PointerFills:
             return []
         self._filled.add(expression)
         calls = [_FIRST_WORD.sub(f"{above}.", call) for call in calls]
+        if calls[-1].partition("(")[0] in self._called:
+            return []
         self._called.update(calls)
         needs_active = any(call.startswith("bpy.ops.") for call in calls)
         return [*(self._obj.activation() if needs_active else ()), *calls]

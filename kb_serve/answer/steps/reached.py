@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbol_lines import held
-from kb_serve.answer.steps.members import settings_of
+from kb_serve.answer.steps.members import UNSEEN, settings_of
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.new_scene import NewScene
 
 _MOST = 2
-_UNSEEN = "(RNA's)"  # in the line of a setting of which no instance could be made
 _INTERFACE = (
     "tool_settings",
     "space_data",
@@ -59,7 +58,7 @@ class ReachedSettings:
             ready = self._scene.pointers.reach(held(expression))
             if ready is None:
                 # An element of a collection is there only if somebody has made it.
-                if "[" not in expression and (not is_made or _UNSEEN not in settings):
+                if "[" not in expression and (not is_made or UNSEEN not in settings):
                     self.waiting.append(f"set, once it is not None, on `{expression}` {told}")
                     left -= 1
                     self._scene.shown.add(cls)

@@ -5,11 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.records import EMPTY
 from kb_build.symbol_lines import empty_when_new, mode_needed
-from kb_serve.answer.steps.members import call_of, settings_of
+from kb_serve.answer.steps.members import UNSEEN, call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
 from kb_serve.answer.steps.pointer_fills import stays_empty
+from kb_serve.answer.steps.variable_names import OBJ
+from kb_serve.answer.steps.working_object import OTHER
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -51,6 +54,7 @@ class SettingSteps:
                 yield f"set on `{variable}` (`{kind.removeprefix(TYPES)}`): {of_kind}"
         entries = self._reader.members(cls).values()
         yield from self._in(cls, variable)
+        yield from self._on_elements(cls, variable)
         yield from parts(cls, variable, self._names, self._reader)
         calls = [f"{variable}.{call_of(entry)}" for entry in self._calls(entries)]
         if calls := [*calls, *self._calls_on_parts(cls, variable)]:
@@ -77,6 +81,19 @@ class SettingSteps:
                 yield "; ".join(f"`{step}`" for step in steps)
             if items:
                 yield f"in `{variable}`: " + ", ".join(items)
+
+    def _on_elements(self, cls: str, variable: str) -> Iterator[str]:
+        """The settings of the elements that a new thing has, where nothing makes them: a variable's target."""
+        for entry in self._collections(cls):
+            element = f"{TYPES}{entry.target}"
+            symbol = self._reader.symbol(entry.path)
+            has_some = symbol is not None and EMPTY not in symbol.flags
+            if not (has_some and self._belongs(element)) or self._added_by(entry):
+                continue
+            settings = "" if self._reader.creations([element]) else settings_of(element, self._reader)
+            if settings and UNSEEN not in settings:
+                self._scene.shown.add(element)
+                yield f"set on `{variable}.{entry.name}[0]` (`{entry.target}`): {settings}"
 
     def _collections(self, cls: str) -> list[SymbolEntry]:
         """The main collections of a thing; after those that scripts use most, its own that things are added to."""
@@ -170,11 +187,31 @@ class SettingSteps:
                     continue
                 target = f"{TYPES}{entry.target}"
                 self._scene.shown.add(target)
-                waiting.append((target, f"{above}.{entry.name}"))
+                holder, steps = above, list[str]()
+                if self._scene.pointers.is_in_place(pointer, above):
+                    holder, steps = self._on_another(cls, entry.name) if above == variable else ("", steps)
+                if not holder:
+                    continue
+                waiting.append((target, f"{holder}.{entry.name}"))
                 if left and (settings := settings_of(target, self._reader)):
                     left -= 1
-                    yield from self._scene.pointers.steps(pointer, above)
-                    yield f"set on `{above}.{entry.name}` (`{entry.target}`): {settings}"
+                    yield from steps
+                    yield from self._scene.pointers.steps(pointer, holder)
+                    yield f"set on `{holder}.{entry.name}` (`{entry.target}`): {settings}"
+
+    def _on_another(self, cls: str, pointer: str) -> tuple[str, list[str]]:
+        """What a further instance is called, and the steps that make it on an object of its own: one value of a setting
+        makes one thing, another the next in place of the first. No name where it is on no object.
+        """
+        creation = self._reader.creations([cls]).get(cls)
+        if creation is None or not creation.call.startswith(f"{OBJ}."):
+            return "", []
+        name = pointer.partition("_")[0]
+        made = f'{OTHER} = bpy.data.objects.new("{name.title()}", bpy.data.meshes.new("{name.title()}"))'
+        return name, [
+            f"another mesh object: `{made}`; `bpy.context.collection.objects.link({OTHER})`",
+            f"`{name} = {creation.call.replace(OBJ, OTHER, 1)}` → `{cls.removeprefix(TYPES)}`",
+        ]
 
     def _pointer(self, entry: SymbolEntry) -> Symbol | None:
         """The pointer that leads to settings of the topic which are the thing's own; None for any other member."""

@@ -20,7 +20,8 @@ class TopicNames:
 
     ``title`` is the key of its title; ``words``: those of its title, then those of its address. ``explained``: the
     symbols that its page explains, if there are none below it. ``of_kind``: those of the page that is called as the
-    topic and says what kind it is, as that of the Line Art Modifier.
+    topic and says what kind it is, as that of the Line Art Modifier. ``elsewhere``: the classes that only have its
+    words in their names and that other pages explain.
     """
 
     keys: frozenset[str]
@@ -30,6 +31,7 @@ class TopicNames:
     operators: dict[str, float] = field(default_factory=dict[str, float])
     title: str = ""
     of_kind: frozenset[str] = frozenset()
+    elsewhere: frozenset[str] = frozenset()
 
     def names(self, name: str) -> bool:
         """Whether a name holds the topic's words."""

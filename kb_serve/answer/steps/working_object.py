@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 
 ACTIVATE = "bpy.context.view_layer.objects.active = obj"
 _SCENE = f"{TYPES}Scene"
-_OTHER = "other"  # what a second object is called
+OTHER = "other"  # what a second object is called
 _MESH = "MESH"
 _OBJECT_MODE = "OBJECT"
 _UPDATE = "bpy.context.view_layer.update()"
@@ -114,11 +114,11 @@ class WorkingObject:
 
     def mesh_object(self) -> str:
         """What a mesh object is called."""
-        return OBJ if self._kind == _MESH else _OTHER
+        return OBJ if self._kind == _MESH else OTHER
 
     def name_taking(self, creation: Creation) -> str:
         """What the object is called that takes what is made; empty if neither this one nor a mesh object does."""
-        names = ((OBJ, self._kind), (_OTHER, _MESH))
+        names = ((OBJ, self._kind), (OTHER, _MESH))
         return next((name for name, kind in names if self._takes(kind, creation)), "")
 
     def data_taking(self, creation: Creation) -> str:
@@ -133,7 +133,7 @@ class WorkingObject:
 
     def is_made_on(self, name: str, creation: Creation) -> bool:
         """Whether what a call makes can be made on the object of this name; anything can on what is no object."""
-        return name not in {OBJ, _OTHER} or self._takes(self._kind if name == OBJ else _MESH, creation)
+        return name not in {OBJ, OTHER} or self._takes(self._kind if name == OBJ else _MESH, creation)
 
     def _takes(self, kind: str, creation: Creation) -> bool:
         kinds = self._makers.kinds_taken(creation)

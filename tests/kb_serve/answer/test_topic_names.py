@@ -3,37 +3,60 @@
 from __future__ import annotations
 
 from contextlib import closing
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import pytest
 
 from kb_build.records import Link, Page, Section
 from kb_build.store import Contents, write_base
+from kb_serve.answer.topic_members import TopicMembers
 from kb_serve.answer.topic_overview import Topics
+from kb_serve.answer.topic_steps import Steps
 from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from pathlib import Path
 
+    from kb_serve.answer.steps.topic_names import TopicNames
+
 TYPES = "bpy.types."
+NODES_OF_GEOMETRY = ("bpy_struct", "Node", "NodeInternal", "GeometryNode")  # what these are derived from
+SOFT = "physics/soft_body/settings/simulation"
+MOTION = "movie_clip/tracking/index"
 
 
 def page(slug: str, title: str) -> Page:
     return Page(slug, "manual", "5.1", title, (Section("top", title, 1, "It is set in a panel."),))
 
 
-def members(
-    folder: Path, reader: BaseReader, slug: str, title: str, explained: dict[str, str]
-) -> frozenset[str]:
-    """The members of a page's topic in a base of a few classes, each with the page that explains it."""
-    symbols = tuple(symbol for cls in explained if (symbol := reader.symbol(f"{TYPES}{cls}")))
-    assert len(symbols) == len(explained)
-    others = {other for other in explained.values() if other != slug}
-    pages = (page(slug, title), *(page(other, "Other Things") for other in sorted(others)))
+def names_of(
+    folder: Path,
+    reader: BaseReader,
+    slug: str,
+    title: str,
+    explained: dict[str, str],
+    others: Sequence[str] = (),
+) -> TopicNames:
+    """The names of a page's topic in a base of a few classes, each with the page that explains it, and of others."""
+    names = [*explained, *others]
+    symbols = tuple(symbol for cls in names if (symbol := reader.symbol(f"{TYPES}{cls}")))
+    assert len(symbols) == len(names)
+    elsewhere = {other for other in explained.values() if other != slug}
+    pages = (page(slug, title), *(page(other, "Other Things") for other in sorted(elsewhere)))
     links = tuple(Link(f"{TYPES}{cls}", other, "manual") for cls, other in explained.items())
     write_base(folder / "base.sqlite", Contents(symbols, pages, links, {}))
     with closing(BaseReader(folder / "base.sqlite")) as own:
-        return Topics(own).members(slug)
+        return TopicMembers(own).names(slug, title)
+
+
+def members(
+    folder: Path, reader: BaseReader, slug: str, title: str, explained: dict[str, str]
+) -> frozenset[str]:
+    """All classes and operators of the same."""
+    names = names_of(folder, reader, slug, title, explained)
+    return frozenset({*names.classes, *names.operators})
 
 
 @pytest.mark.parametrize(
@@ -54,3 +77,138 @@ def test_a_panel_at_the_end_of_a_title_is_only_where_its_matter_is(
     explained = {"ShapeKey": "animation/shape_keys/introduction"}
     slug = "animation/shape_keys/shape_keys_panel"
     assert f"{TYPES}ShapeKey" in members(tmp_path, reader, slug, "Shape Keys Panel", explained)
+
+
+MANY = {
+    "MovieTracking": "movie_clip/tracking/clip/track",
+    "MovieTrackingTrack": "movie_clip/tracking/clip/track",
+    "CameraSolverConstraint": "movie_clip/index",
+    "TrackToConstraint": "animation/constraints/tracking/track_to",
+    "LightProbe": "render/eevee/light_probes/index",
+    "NodeClosureInput": "interface/controls/nodes/types/utilities/closure/closure",
+    "LatticeModifier": "modeling/modifiers/deform/lattice",
+}
+
+
+@pytest.mark.parametrize(
+    ("slug", "title", "elsewhere"),
+    [
+        ("movie_clip/tracking/index", "Motion Tracking", {"TrackToConstraint"}),
+        ("render/lights/index", "Lights", {"LightProbe"}),
+        ("modeling/geometry_nodes/closure/index", "Node Closures", set[str]()),
+        ("editors/track", "Track Editor", set[str]()),
+    ],
+)
+def test_what_only_shares_a_word_is_another_topics_where_other_chapters_explain_it(
+    tmp_path: Path, reader: BaseReader, slug: str, title: str, elsewhere: set[str]
+) -> None:
+    names = names_of(tmp_path, reader, slug, title, MANY)
+    assert names.elsewhere == {f"{TYPES}{cls}" for cls in elsewhere}
+
+
+def test_what_is_an_element_of_another_topics_thing_is_that_topics(
+    tmp_path: Path, reader: BaseReader
+) -> None:
+    zone = "modeling/geometry_nodes/simulation/simulation_zone"
+    explained = {"SoftBodySettings": SOFT, "NodeGeometrySimulationOutputItems": zone}
+    node, items = "GeometryNodeSimulationOutput", "NodeGeometrySimulationOutputItems"
+    others = [*NODES_OF_GEOMETRY, node, f"{node}.state_items", f"{items}.new", "SimulationStateItem"]
+    names = names_of(tmp_path, reader, SOFT, "Simulation", explained, others)
+    assert f"{TYPES}SimulationStateItem" in names.elsewhere
+
+
+def test_steps_make_what_is_called_as_the_topic_wherever_it_is_explained(
+    tmp_path: Path, reader: BaseReader
+) -> None:
+    slug = "animation/lattice"
+    explained = {"Lattice": slug, "LatticeModifier": MANY["LatticeModifier"], "LatticePoint": slug}
+    names = names_of(tmp_path, reader, slug, "Lattice", explained)
+    assert f"{TYPES}LatticeModifier" in names.elsewhere
+    told = "".join(block.text for block in Steps(reader, names).blocks())
+    assert "'LATTICE'" in told
+    names = names_of(tmp_path, reader, MOTION, "Motion Tracking", MANY)
+    told = "".join(block.text for block in Steps(reader, names).blocks())
+    assert "tracks" in told or "tracking" in told
+    assert "TRACK_TO" not in told
+
+
+CHAPTERS = {
+    "modeling/geometry_nodes/hair/index": ("Hair Nodes", ("guides", "read", "write")),
+    "physics/particles/hair/index": ("Hair", ("introduction",)),
+    "interface/controls/nodes/types/closure/index": ("Node Closures", ("closure",)),
+    "modeling/geometry_nodes/closure/index": ("Node Closures", ("closure",)),
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("hair", "physics/particles/hair/index"),
+        ("hair nodes", "modeling/geometry_nodes/hair/index"),
+        ("closure", "interface/controls/nodes/types/closure/closure"),
+    ],
+)
+def test_a_word_means_the_page_of_that_title_before_the_nodes_that_have_it(
+    tmp_path: Path, reader: BaseReader, text: str, found: str
+) -> None:
+    ends = [f"{TYPES}NodeClosure{end}" for end in ("Input", "Output")]
+    bases = {base.path for end in ends for base in reader.lineage(end)}
+    symbols = [symbol for path in sorted(bases) if (symbol := reader.symbol(path))]
+    pages = [page("render/shader_nodes/closure", "Closure")]
+    for slug, (title, below) in CHAPTERS.items():
+        slugs = tuple(slug.replace("index", name) for name in below)
+        pages.append(replace(page(slug, title), children=slugs))
+        pages += [page(one, one.rpartition("/")[2].title()) for one in slugs]
+    links = [Link(end, "interface/controls/nodes/types/closure/closure", "manual") for end in ends]
+    write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        assert Topics(own).find(text) == found
+
+
+def test_a_zone_is_asked_for_with_the_name_of_a_socket(tmp_path: Path, reader: BaseReader) -> None:
+    node, slug = f"{TYPES}GeometryNodeRepeatInput", "modeling/geometry_nodes/repeat_zone"
+    paths = [node, *(entry.path for entry in reader.members(node).values())]
+    symbols = [symbol for path in paths if (symbol := reader.symbol(path))]
+    pages = (page(slug, "Repeat Zone"), page("render/repeat", "Repeat"))
+    write_base(tmp_path / "base.sqlite", Contents(symbols, pages, (Link(node, slug, "manual"),), {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        assert Topics(own).find("repeat zone iterations") == slug
+        assert Topics(own).find("repeat zone colours") == ""
+
+
+def test_an_operator_that_is_called_as_a_topic_belongs_to_it(tmp_path: Path, reader: BaseReader) -> None:
+    paths = ("bpy.ops.uv.unwrap", "bpy.ops.uv.smart_project")
+    symbols = [symbol for path in paths if (symbol := reader.symbol(path))]
+    links = [Link(path, "modeling/meshes/editing/uv", "manual") for path in paths]
+    for slug, belongs in (("modeling/meshes/uv/unwrapping", True), ("render/unwrapping", False)):
+        file = tmp_path / f"{belongs}.sqlite"
+        write_base(file, Contents(symbols, (page(slug, "Unwrapping"),), links, {}))
+        with closing(BaseReader(file)) as own:
+            names = TopicMembers(own).names(slug, "Unwrapping")
+        assert ("bpy.ops.uv.unwrap" in names.operators) is belongs
+        assert "bpy.ops.uv.smart_project" not in names.operators
+
+
+def test_a_chapter_works_on_what_its_operators_need_made(tmp_path: Path, reader: BaseReader) -> None:
+    owners = {entry.path for entry in reader.descendants(f"{TYPES}Strip")}
+    owners |= {
+        f"{TYPES}{name}" for name in ("Scene", "SequenceEditor", "StripsTopLevel", "Strip", "BlendData")
+    }
+    run = [f"bpy.ops.sequencer.{name}" for name in ("enable_proxies", "rebuild_proxy", "refresh_all")]
+    paths = [*sorted(owners), *run]
+    paths += [entry.path for owner in sorted(owners) for entry in reader.members(owner).values()]
+    symbols = [symbol for path in dict.fromkeys(paths) if (symbol := reader.symbol(path))]
+    slugs = ("editors/row/index", "editors/one")
+    pages = (
+        replace(page(slugs[0], "Rows"), children=("editors/row/parts",)),
+        page("editors/row/parts", "Parts"),
+        page(slugs[1], "Rows"),
+    )
+    links = [Link(path, slug, "manual") for path in run for slug in slugs]
+    write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        chapter, single = (TopicMembers(own).names(slug, "Rows") for slug in slugs)
+        told = "".join(block.text for block in Steps(own, chapter).blocks())
+    assert {f"{TYPES}SoundStrip", f"{TYPES}MovieStrip"} <= chapter.classes.keys()
+    assert "scene.sequence_editor.strips.new_" in told
+    assert f"{TYPES}SoundStrip" not in single.classes

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
+from contextlib import closing
 from typing import TYPE_CHECKING
 
 import pytest
 
 from kb_build.records import Link, Page, Section, Symbol
 from kb_build.store import Contents, write_base
+from kb_serve.answer.topic_settings import TopicSettings
 from kb_serve.knowledge_base import KnowledgeBase
+from kb_serve.reader import BaseReader
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
     from pathlib import Path
-
-    from kb_serve.reader import BaseReader
 
 TYPES = "bpy.types."
 BLUR = "render/motion_blur"
@@ -27,6 +28,7 @@ HELD = {
     "modifiers/mesh_to_volume": ("MeshToVolumeModifier",),
     "modifiers/volume_to_mesh": ("VolumeToMeshModifier",),
     f"{NODES}/introduction": ("NodesModifier",),
+    "physics/forces": ("FieldSettings",),
     "physics/ocean": ("OceanModifier", "OceanModifier.damping", "OceanModifier.depth"),
 }
 PAGES = (
@@ -53,6 +55,10 @@ PAGES = (
         f"{NODES}/introduction", "manual", "5.1", "Introduction",
         (Section("i", "Introduction", 1, "A modifier runs them."),), breadcrumbs=("Geometry Nodes",),
     ),
+    Page(
+        "pictures/index", "manual", "5.1", "Pictures in Rows", (Section("p", "Pictures in Rows", 1, "One by one."),),
+        children=(BLUR,),
+    ),
     Page("render/film", "manual", "5.1", "Film", (Section("f", "Film", 1, "It says nothing of settings."),)),
 )  # fmt: skip
 
@@ -71,12 +77,18 @@ def _symbols(reader: BaseReader) -> list[Symbol]:
 
 
 @pytest.fixture(scope="module")
-def topics(reader: BaseReader, tmp_path_factory: pytest.TempPathFactory) -> Iterator[KnowledgeBase]:
+def base_of_topics(reader: BaseReader, tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A base of a few classes and of pages about them."""
     links = [Link(f"{TYPES}{name}", slug, "manual") for slug, names in HELD.items() for name in names]
-    path: Path = tmp_path_factory.mktemp("topics") / "base.sqlite"
+    path = tmp_path_factory.mktemp("topics") / "base.sqlite"
     write_base(path, Contents(_symbols(reader), PAGES, links, {"minor": "5.1"}))
-    with KnowledgeBase(path) as knowledge:
+    return path
+
+
+@pytest.fixture(scope="module")
+def topics(base_of_topics: Path) -> Iterator[KnowledgeBase]:
+    """That base as a caller sees it."""
+    with KnowledgeBase(base_of_topics) as knowledge:
         yield knowledge
 
 
@@ -111,7 +123,7 @@ def test_of_what_is_a_value_the_calls_and_settings_are_told_that_take_it(topics:
         answer.text.index(text)
         for text in (
             "`bpy.ops.object.effector_add(type='TURBULENCE')`",
-            "`bpy.context.object.field.type = 'TURBULENCE'`",
+            "`obj.field.type = 'TURBULENCE'`",
         )
     )
     assert call < setting
@@ -121,6 +133,19 @@ def test_a_setting_is_told_once_and_its_class_with_it(topics: KnowledgeBase) -> 
     text = topics.query("motion blur").text
     assert text.count("`motion_blur_shutter`") == 1
     assert "bpy.types.RenderSettings.motion_blur_shutter`" not in text
+
+
+def test_a_value_is_told_where_its_own_part_of_the_manual_has_it(base_of_topics: Path) -> None:
+    with closing(BaseReader(base_of_topics)) as reader:
+        settings = TopicSettings(reader)
+        assert any("obj.field.type" in line for line in settings.as_value("Turbulence", SWIRL))
+        assert not [*settings.as_value("Turbulence", "render/swirl")]
+
+
+def test_a_chapter_that_makes_nothing_tells_the_settings_of_its_pages(topics: KnowledgeBase) -> None:
+    answer = topics.query("pictures in rows")
+    assert answer.hits[0].id == "pictures/index"
+    assert "  - `motion_blur_shutter` float = 0.5" in answer.text
 
 
 def test_an_overview_is_not_headed_by_what_one_has_to_know_of_one_class(topics: KnowledgeBase) -> None:

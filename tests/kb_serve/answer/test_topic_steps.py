@@ -23,10 +23,10 @@ def test_settings_that_a_new_thing_lacks_are_made_first_each_on_an_object_of_its
     found = steps(reader, "fluid", "FluidModifier", "FluidDomainSettings", "FluidFlowSettings")
     made = [line for line in found if "makes" in line]
     assert made[0].endswith("`modifier.fluid_type = 'DOMAIN'` makes `modifier.domain_settings`")
-    assert made[1].endswith(
-        "on another object: `modifier.fluid_type = 'FLOW'` makes `modifier.flow_settings`"
-    )
+    assert made[1].endswith("`flow.fluid_type = 'FLOW'` makes `flow.flow_settings`")
+    assert "`flow = other.modifiers.new(\"Fluid\", 'FLUID')`" in found[found.index(made[1]) - 1]
     assert "set on `modifier.domain_settings`" in found[found.index(made[0]) + 1]
+    assert _done_in_blender(found)
 
 
 def test_a_brush_that_paints_is_toggled_before_it_is_set(reader: BaseReader) -> None:

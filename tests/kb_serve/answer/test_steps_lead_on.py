@@ -1,0 +1,149 @@
+"""The steps of a topic lead to what does something: each thing on the object that it belongs to, and whole."""
+
+from __future__ import annotations
+
+from contextlib import closing
+from typing import TYPE_CHECKING
+
+from asking import TYPES, steps
+
+from kb_build.records import Link, Page, Section
+from kb_build.store import Contents, write_base
+from kb_serve.answer.steps.topic_names import TopicNames
+from kb_serve.answer.topic_steps import Steps
+from kb_serve.reader import BaseReader
+from measurements.steps import do_steps
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from pathlib import Path
+
+
+def told_of(
+    reader: BaseReader, topic: str, classes: Sequence[str] = (), operators: Sequence[str] = ()
+) -> list[str]:
+    """The steps of a topic with some classes and operators, the heaviest first."""
+    names = TopicNames(
+        frozenset({topic.replace(" ", "")}),
+        (frozenset(topic.split()),),
+        classes={f"{TYPES}{name}": 10.0 - place for place, name in enumerate(classes)},
+        operators={f"bpy.ops.{name}": 10.0 - place for place, name in enumerate(operators)},
+    )
+    return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+
+
+def are_done(told: list[str]) -> bool:
+    """Whether all steps can be done in Blender."""
+    (done,) = do_steps({"topic": told})
+    return bool(told) and not done.failed and not done.left
+
+
+def test_a_driver_is_told_up_to_what_it_reads(reader: BaseReader) -> None:
+    told = steps(reader, "driver", "Driver", "DriverVariable", "DriverTarget")
+    assert "set on `variable.targets[0]` (`DriverTarget`): " in told[-1]
+    assert "`data_path`" in told[-1]
+    assert "`id` = None (ID)" in told[-1]
+    assert are_done(told)
+
+
+def test_elements_that_a_new_thing_need_not_have_are_not_set(reader: BaseReader) -> None:
+    told = " ".join(steps(reader, "uv", "MeshUVLoopLayer", "MeshUVLoop"))
+    assert "uv_layers.new()" in told
+    assert "[0]`" not in told
+
+
+def test_what_changes_another_object_is_told_with_the_modifier_of_that_one(reader: BaseReader) -> None:
+    told = steps(reader, "lattice", "Lattice", "LatticeModifier", "LatticePoint")
+    made = [line for line in told if "modifiers.new(" in line]
+    assert len(made) == 1
+    assert "on another object, that it changes: `modifier = other.modifiers.new(" in made[0]
+    assert "set on `modifier` (`LatticeModifier`): " in told[told.index(made[0]) + 1]
+    assert are_done(told)
+
+
+def test_what_lets_an_operator_run_is_set_on_the_first_of_several_things(reader: BaseReader) -> None:
+    classes = ("FluidModifier", "FluidDomainSettings", "FluidFlowSettings")
+    told = told_of(reader, "fluid", classes, ("fluid.bake_all", "fluid.bake_data"))
+    all_, parts = (
+        next(place for place, line in enumerate(told) if f"bpy.ops.fluid.{name}()" in line)
+        for name in ("bake_all", "bake_data")
+    )
+    assert told[all_ - 1].endswith("`modifier.domain_settings.cache_type = 'ALL'`")
+    assert told[parts - 1].endswith("instead: `modifier.domain_settings.cache_type = 'MODULAR'`")
+    assert are_done(told)
+
+
+def test_a_modifier_that_is_bound_is_run_by_its_operator(reader: BaseReader) -> None:
+    told = told_of(reader, "mesh deform", ("MeshDeformModifier",))
+    assert "`bpy.ops.object.meshdeform_bind(modifier=modifier.name)`" in told[-1]
+    assert are_done(told)
+    told = " ".join(told_of(reader, "hook", ("HookModifier",)))
+    assert "mode_set(mode='EDIT')" in told
+    assert "hook_assign(modifier=modifier.name)" in told
+    assert "hook_remove" not in told
+
+
+def test_the_strips_of_an_effect_are_made_before_it(reader: BaseReader) -> None:
+    told = told_of(reader, "cross strip", ("CrossStrip",))
+    place = next(place for place, line in enumerate(told) if "input1=input1, input2=input2" in line)
+    assert [line.partition("`")[2].partition(" ")[0] for line in told[place - 2 : place]] == [
+        "input1",
+        "input2",
+    ]
+    assert are_done(told)
+
+
+def test_what_only_a_file_makes_is_loaded(reader: BaseReader) -> None:
+    told = told_of(reader, "tracking", ("MovieTracking", "MovieTrackingTrack"))
+    assert told[0] == "1. `clip = bpy.data.movieclips.load(filepath)`; `scene.active_clip = clip`"
+    assert any("`track = clip.tracking.tracks.new()`" in line for line in told)
+
+
+def test_what_a_step_has_made_no_operator_makes_again(reader: BaseReader) -> None:
+    told = told_of(
+        reader, "shape keys", ("ShapeKey",), ("object.shape_key_mirror", "object.shape_key_retime")
+    )
+    assert "shape_key_mirror(" in " ".join(told)
+    made = [line for line in told if "obj.shape_key_add(" in line.partition(" — ")[0]]
+    assert len(made) == 2  # the basis, and a key
+    assert are_done(told)
+
+
+def test_what_an_area_alone_makes_is_no_step_beside_others(reader: BaseReader) -> None:
+    told = " ".join(told_of(reader, "movie strip", ("MovieStrip", "MovieClipStrip")))
+    assert "strips.new_movie(" in told
+    assert "movieclip_strip_add" not in told
+    assert "movieclip_strip_add" in " ".join(told_of(reader, "clip strip", ("MovieClipStrip",)))
+
+
+def test_steps_that_have_no_room_take_what_only_prepares_them_along(reader: BaseReader) -> None:
+    classes = ("FluidModifier", "FluidDomainSettings", "FluidFlowSettings", "FluidEffectorSettings")
+    bakes = tuple(f"fluid.bake_{name}" for name in ("all", "data", "mesh", "noise"))
+    told = told_of(reader, "fluid", classes, bakes)
+    assert "bake_noise" not in " ".join(told)
+    assert "`bpy.ops.fluid." in told[-1]
+
+
+def test_an_operator_is_run_in_the_mode_that_heads_what_the_manual_says_of_it(
+    tmp_path: Path, reader: BaseReader
+) -> None:
+    assign, slug = "bpy.ops.object.material_slot_assign", "render/materials/assignment"
+    owners = ("Object", "ID", "bpy_struct")
+    paths = [assign, *(f"{TYPES}{owner}" for owner in owners)]
+    paths += [entry.path for owner in owners for entry in reader.members(f"{TYPES}{owner}").values()]
+    for title, entered in (("Edit Mode", True), ("Slots", False)):
+        said = (
+            "Faces get it.\n\n**Assign Material Slot**\n  Assign active material slot to the selected faces."
+        )
+        sections = (Section("top", "Assignment", 1, "Materials."), Section("mode", title, 2, said))
+        folder = tmp_path / title
+        folder.mkdir()
+        symbols = tuple(symbol for path in paths if (symbol := reader.symbol(path)))
+        links = (Link(assign, slug, "manual"),)
+        page = Page(slug, "manual", "5.1", "Assignment", sections)
+        write_base(folder / "base.sqlite", Contents(symbols, (page,), links, {}))
+        with closing(BaseReader(folder / "base.sqlite")) as own:
+            assert own.passage(assign)
+            told = " ".join(told_of(own, "assignment", (), ("object.material_slot_assign",)))
+        assert "material_slot_assign()" in told
+        assert ("mode_set(mode='EDIT')" in told) is entered
