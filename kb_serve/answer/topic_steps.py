@@ -71,12 +71,11 @@ class Steps:
     def blocks(self) -> Iterator[AnswerBlock]:
         """One block, a numbered list; none where nothing is made, set or run."""
         lines = [f"{number}. {step}" for number, step in enumerate(self._steps(), 1)]
-        is_cut = False
-        while sum(tokens(line) + 1 for line in lines) > _MOST_TOKENS or (
-            is_cut and _PREPARES.fullmatch(lines[-1])
-        ):
+        whole = len(lines)
+        while sum(tokens(line) + 1 for line in lines) > _MOST_TOKENS:
             lines.pop()
-            is_cut = True
+        while lines and len(lines) < whole and _PREPARES.fullmatch(lines[-1]):
+            lines.pop()
         if lines:
             yield AnswerBlock("**How it is done**\n" + "\n".join(lines), "how it is done")
 
@@ -212,11 +211,10 @@ class Steps:
             yield f"`obj.{call_of(entry)}` — {entry.line.partition(' — ')[2]}"
 
     def _make(self) -> Iterator[str]:
-        all_ = self._groups()
         groups = [
             group
-            for group in all_
-            if self._is_main(group) and (group is all_[0] or not self._is_in_area(group))
+            for rank, group in enumerate(self._groups())
+            if self._is_main(group) and not (rank and self._is_in_area(group))
         ][:_MAKERS]
         # What an operator makes that needs nothing comes first: a world, before what is in it makes one; nodes come
         # before their items, which they are told with.
