@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 import textwrap
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 from itertools import dropwhile, groupby, islice, takewhile
 from operator import attrgetter
@@ -380,7 +380,7 @@ def default_text(symbol: Symbol) -> str:
     if EMPTY in symbol.flags:
         return f"empty (new {last_name(symbol.owner)})"
     usual = [new for new in symbol.new_values if not new.when]
-    modal = [new for new in symbol.new_values if new.when]
+    modal = _by_setting(new for new in symbol.new_values if new.when)
     value = usual_default(symbol)
     if value is None:
         return ""
@@ -401,6 +401,19 @@ def default_text(symbol: Symbol) -> str:
     if usual and symbol.default not in (None, value) and _is_listed(symbol):
         text += f"; RNA says `{literal(symbol.default, symbol.type)}`"
     return text
+
+
+def _by_setting(values: Iterable[NewValue]) -> list[NewValue]:
+    """Values with some settings, one that several choices of a setting give once: with ``mode='A', 'B' or 'C'``."""
+    groups: dict[tuple[str, tuple[str, ...], str], list[NewValue]] = {}
+    for new in values:
+        groups.setdefault((repr(new.value), new.made, new.when.partition("=")[0]), []).append(new)
+    merged: list[NewValue] = []
+    for (_, _, setting), same in groups.items():
+        *others, last = (new.when.partition("=")[2] for new in same)
+        choices = f"{', '.join(others)} or {last}" if others else last
+        merged.append(replace(same[0], when=f"{setting}={choices}"))
+    return merged
 
 
 def _other_value(new: NewValue, symbol: Symbol) -> str:
@@ -491,7 +504,7 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
     default = usual_default(symbol)
     if default is not None and symbol.kind in {"property", "socket"}:
         notes.append(f"= {literal(default, symbol.type)}" + (" (RNA's)" if is_uncompared(symbol) else ""))
-        modal = [new for new in symbol.new_values if new.when and not new.made]
+        modal = _by_setting(new for new in symbol.new_values if new.when and not new.made)
         notes += [f"({literal(new.value, symbol.type)} with {new.when})" for new in modal[:_SHOWN_LABELS]]
     if (empty := empty_when_new(symbol)) and not empty.made:
         notes += ["= None", *([f"({made})"] if (made := _made_by(symbol)) else [])]

@@ -109,6 +109,13 @@ def test_a_line_shows_what_a_new_one_has_and_what_a_mode_changes() -> None:
     )
 
 
+def test_a_line_names_the_choices_together_that_change_it_alike() -> None:
+    values = tuple(NewValue(True, (), f"export={choice!r}") for choice in ("FOAM", "BUBBLES"))
+    assert line(type="boolean", default=False, new_values=values, flags=("compared",)) == (
+        "`x` boolean = False (True with export='FOAM' or 'BUBBLES')"
+    )
+
+
 def test_a_line_says_which_pointers_are_none_and_what_makes_them() -> None:
     pointer = {"type": "pointer", "target": "T", "new_values": (NewValue(None),)}
     assert line(**pointer) == "`x` pointer → T = None"
@@ -145,6 +152,8 @@ def test_items_that_no_instance_takes_are_not_listed() -> None:
          "`1` in the factory preferences; RNA says `5`"),
         ({"default": 0, "new_values": (NewValue(1, (), "m='X'"),)}, "`0`; with `m='X'`: `1`"),
         ({"default": 0, "new_values": (NewValue(1, ("a",), "m='X'"),)}, "`0`; with `m='X'`: `1` (a)"),
+        ({"default": 0, "new_values": tuple(NewValue(1, (), f"m={choice!r}") for choice in "XYZ")},
+         "`0`; with `m='X', 'Y' or 'Z'`: `1`"),
         ({"default": "NONE", "enum_items": (EnumItem("None"),), "new_values": (NewValue("None"),)},
          "`'None'` (new A)"),
         ({"default": None}, ""),
