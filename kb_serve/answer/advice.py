@@ -1,0 +1,177 @@
+"""Sentences on what one has to know of a few symbols that neither Blender's API nor its manual says."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+from kb_build.index.analysis import stem, words
+from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
+from kb_serve.recognise.products import CLASSES, WITH_AT
+
+_TYPES = "bpy.types."
+_STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
+_STYLE = f"{_TYPES}MaterialGPencilStyle"
+_RIGID_BODY = f"{_TYPES}RigidBodyObject"
+_RANGES = f"{_TYPES}bpy_struct.id_properties_ui"
+_BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
+_HANDLERS = "bpy.app.handlers."
+_PERSISTENT = f"{_HANDLERS}persistent"
+
+
+def _stems(text: str) -> frozenset[str]:
+    return frozenset(map(stem, words(text)))
+
+
+class Advice(NamedTuple):
+    """A sentence, and what it is told of: symbols, those whose paths begin so, pages that explain a symbol or (in
+    ``chapters_of``) stand in one folder with those.
+
+    A question that does not name the symbol must have a word of ``about``, if there are any, and every question one of
+    ``asked``. It is told of any symbol where the question has a word of each of ``wherever``; and only where the base
+    has the symbol that it ``needs``, but not of that.
+    """
+
+    text: str
+    symbols: frozenset[str] = frozenset()
+    beginning: tuple[str, ...] = ()
+    explained: str = ""
+    chapters_of: str = ""
+    about: frozenset[str] = frozenset()
+    asked: frozenset[str] = frozenset()
+    wherever: tuple[frozenset[str], ...] = ()
+    needs: str = ""
+
+
+def _of(*names: str) -> frozenset[str]:
+    return frozenset(f"{_TYPES}{name}" for name in names)
+
+
+_STAYING = f"Loading a file removes a handler, before `load_post` runs it too, unless it has `@{_PERSISTENT}` above it."
+_TAGGED = (
+    "A driver does not see a custom property that a script has just set, and stays invalid: after "
+    '`owner["name"] = 3.0` call `owner.id_data.update_tag()`, also after each later change. One that is invalid '
+    "already needs `driver.expression = driver.expression`, too."
+)
+_EVERY_POINT = (
+    "Set `radius` and `opacity` of every point: the first `opacity` that is set in a drawing makes it 0 for all its "
+    "other points, and strokes that are added after either was set begin with 0 of it."
+)
+_REACHED = (
+    "`drawing.strokes[0]` is one, with `drawing = layer.frames[0].drawing`; `drawing.add_strokes([4])` makes a new "
+    "one, of four points."
+)
+_FILLED = (
+    "A fill is drawn where the stroke has a `fill_id` other than 0 (`drawing.strokes[0].fill_id = 1`), whatever the "
+    "material's `show_fill` is: in the material's `grease_pencil.fill_color`, with the stroke's `fill_color` over it. "
+    "It is black where no light falls, unless `layer.use_lights = False`."
+)
+_MOVED = (
+    "A rigid body's simulation moves `ob.matrix_world`, not `ob.location` or `ob.rotation_euler`: call "
+    "`scene.frame_set(frame)` for every frame from the first, then read `ob.matrix_world.translation`."
+)
+_RANGED = (
+    '`ob["x"] = 1.0` makes the property, `ob.id_properties_ui("x").update(min=0.0, max=2.0, description="…")` gives it '
+    "limits, which the panel keeps and scripts need not. Choices are named numbers: after "
+    '`ob["mode"] = 0` call `….update(items=[("A", "First", ""), ("B", "Second", "")])`.'
+)
+_NO_TIMERS = (
+    "Timers run between the events of a Blender with a window. Without one (`--background`, or `import bpy` in another "
+    "Python) none ever runs: call the function yourself there."
+)
+_NO_SIZES = "An empty list crashes Blender 5.1: `if sizes: data.add_{}(sizes)`. Each size is at least 1."
+_NO_RETIMING = (
+    "Assigning a key's `timeline_frame` may crash Blender: 5.1 where the scene has an earlier strip without such keys, "
+    "4.5 always. Make keys where they shall be, `strip.retiming_keys.add(timeline_frame=20)`; "
+    "`strip.retiming_keys.reset()` removes all."
+)
+_NO_KEY = (
+    "It makes no key, and returns None, at a frame outside the strip, as the default is for most, and on a strip that "
+    "takes none."
+)
+_FALLS = (
+    "Cloth does not use its own `gravity`, whatever it is: while `scene.use_gravity` is on it falls by "
+    "`scene.gravity` times the cloth's `settings.effector_weights.gravity`."
+)
+_BAKED = (
+    "What is left out is not the default that is listed here, but what `scene.render.bake` has, where it has a setting "
+    "of that name: `target`, `margin`, `use_clear`, `normal_space` …"
+)
+_ALL = "`indices=[]` {}, as if it were left out: call it only `if indices:`."
+
+ADVICE: tuple[Advice, ...] = (
+    Advice(
+        _STAYING,
+        beginning=(_HANDLERS,),
+        about=_stems("handler persistent callback"),
+        needs=_PERSISTENT,
+    ),
+    Advice(
+        _NO_TIMERS,
+        frozenset({"bpy.app.timers", "bpy.app.timers.register"}),
+        about=_stems("timer delay interval later second repeat periodic"),
+    ),
+    Advice(
+        NO_FLUIDS,
+        frozenset({"bpy.ops.object.quick_liquid", "bpy.ops.object.quick_smoke"})
+        | _of("FluidDomainSettings", "FluidModifier"),
+        beginning=("bpy.ops.fluid.bake_",),
+        explained=_BAKES_FLUIDS,
+        wherever=(
+            _stems("fluid smoke fire liquid"),
+            _stems("abort background crash headless terminate window"),
+        ),
+    ),
+    Advice(_NO_KEY, _of("RetimingKeys.add")),
+    Advice(
+        _NO_RETIMING, _of("RetimingKey", "RetimingKey.timeline_frame", "RetimingKeys", "RetimingKeys.add")
+    ),
+    Advice(_FALLS, _of("ClothSettings.gravity")),
+    Advice(_BAKED, frozenset({"bpy.ops.object.bake"})),
+    Advice(_MOVED, frozenset({_RIGID_BODY}), chapters_of=_RIGID_BODY),
+    Advice(
+        _MOVED,
+        _of("Object.location", "Object.rotation_euler"),
+        # By one of these a question says that something else than a script or its keys moves the object.
+        asked=_stems("bake body bounce drop fall physics rigid roll settle simulate simulation"),
+    ),
+    Advice(
+        _RANGED,
+        frozenset({_RANGES}),
+        explained=_RANGES,
+        about=_stems("property custom limit range min max slider ui"),
+    ),
+    Advice(WITH_AT, frozenset(CLASSES)),
+    Advice(
+        _TAGGED,
+        _of(
+            "ChannelDriverVariables.new",
+            "Driver",
+            "Driver.is_valid",
+            "DriverTarget",
+            "DriverTarget.data_path",
+            "DriverVariable",
+            "bpy_struct.driver_add",
+        ),
+        about=_stems("driver driven drive"),
+    ),
+    Advice(
+        _REACHED,
+        frozenset({_STROKE}),
+        beginning=(f"{_STROKE}.",),
+    ),
+    Advice(
+        _FILLED,
+        frozenset(f"{_STROKE}.{name}" for name in ("fill_color", "fill_id", "fill_opacity"))
+        | {
+            f"{_STYLE}{name}" for name in ("", ".fill_color", ".fill_style", ".is_fill_visible", ".show_fill")
+        },
+        explained=_STYLE,
+    ),
+    Advice(_EVERY_POINT, frozenset(f"{_STROKE}Point{name}" for name in ("", ".opacity", ".radius"))),
+    Advice(_NO_SIZES.format("strokes"), _of("GreasePencilDrawing.add_strokes")),
+    Advice(_NO_SIZES.format("curves"), _of("Curves.add_curves")),
+    Advice(_ALL.format("removes all strokes"), _of("GreasePencilDrawing.remove_strokes")),
+    Advice(_ALL.format("sets the type of all strokes"), _of("GreasePencilDrawing.set_types")),
+    Advice(_ALL.format("removes all curves"), _of("Curves.remove_curves")),
+    Advice(_ALL.format("sets the type of all curves"), _of("Curves.set_types")),
+)
