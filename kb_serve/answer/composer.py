@@ -19,7 +19,8 @@ from kb_serve.answer.practice import Practice
 from kb_serve.answer.render import MarkdownRenderer
 from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
-from kb_serve.rank.merging import SURE, QueryRanker, RankedId, Ranking
+from kb_serve.rank.merging import SURE, QueryRanker, Ranking
+from kb_serve.rank.ranked_id import RankedId
 from kb_serve.reader import TYPES
 from kb_serve.recognise.several import parts_of
 

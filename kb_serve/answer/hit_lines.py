@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 
     from kb_serve.answer.asked_values import AskedValue
     from kb_serve.answer.hits import Hit
-    from kb_serve.rank.merging import RankedId
+    from kb_serve.rank.ranked_id import RankedId
     from kb_serve.reader import BaseReader, Creation, SymbolEntry
 
 NAMES = "further names"

@@ -11,7 +11,7 @@ from kb_serve.answer.pages import load_manual_pages, manual_page
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_serve.rank.merging import RankedId
+    from kb_serve.rank.ranked_id import RankedId
     from kb_serve.reader import BaseReader
 
 

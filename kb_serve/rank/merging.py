@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import STOP_WORDS, words
 from kb_serve.rank.deprecated import replacement
 from kb_serve.rank.named_nodes import named_nodes
+from kb_serve.rank.ranked_id import RankedId
 from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
 from kb_serve.recognise.notes import Notes
@@ -36,17 +37,6 @@ _MARKS = ".,:;?!()'\""
 _OPERATORS = "bpy.ops"
 _MOST_NODES = 2  # that a question calls by their labels, beside what was found
 _LEAST_HITS = 20  # of the search, so that it also finds alternatives to a named class, and names beside pages
-
-
-class RankedId(NamedTuple):
-    """An id and why it is in the list; ``score`` falls from 1 down the list. The rest is as of the search's hits."""
-
-    id: str
-    score: float
-    why: str
-    anchor: str = ""
-    members: tuple[str, ...] = ()
-    chapter: int = -1
 
 
 @dataclass(slots=True)

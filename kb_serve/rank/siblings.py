@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_serve.rank.inverted_index import InvertedIndex
-    from kb_serve.rank.merging import RankedId
+    from kb_serve.rank.ranked_id import RankedId
     from kb_serve.rank.scoring import Concept
     from kb_serve.reader import BaseReader, SymbolEntry
 

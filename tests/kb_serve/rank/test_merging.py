@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import paths
 
-from kb_serve.rank.merging import SURE, QueryRanker, RankedId, Ranking
+from kb_serve.rank.merging import SURE, QueryRanker, Ranking
+from kb_serve.rank.ranked_id import RankedId
 from kb_serve.rank.search import SearchHit
 from kb_serve.recognise.recognition import Recognition
 
