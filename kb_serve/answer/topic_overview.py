@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 _EDITOR = f"{TYPES}Space"
 _MOST_SETTINGS = 10
-_DONE = ("set on `", "` → `", "` makes `")  # in steps that make or set something
+_DONE = ("set on `", "` → `", "` makes `", "`obj.")  # in steps that make, set or call something
 _OVERVIEW_TOKENS = 1_200
 _FIRST = (10, 8, 6, 5, 4, 3)  # entries of each list, as many as fit; the others follow all lists
 _LINE_TOKENS = 50
