@@ -185,6 +185,12 @@ class RemovedSymbolLookup:
         below.sort(key=lambda path: (socket_node(path) not in nodes, path))
         return next(filter(None, map(self.of_path, below)), None)
 
+    def of_sockets(self, side: str, name: str) -> list[str]:
+        """Paths of the removed sockets of a name on a side of nodes; none where one is still taken under that name."""
+        end = f'.{side}["{name}"]'
+        paths = [path for path in self._reader.removed_by_key(key(end)) if path.endswith(end)]
+        return [] if any(map(self._reader.still_works, paths)) else paths
+
     def spelled(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed symbols in any usual spelling; bare enum items only as code writes them."""
         items = [f":{text}"] if text.isupper() and "_" in text else []
