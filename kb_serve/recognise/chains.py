@@ -46,8 +46,9 @@ class Chain:
     """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed.
 
     ``assigned`` tells whether it stands left of an assignment; ``values`` are the texts that it is set to or
-    compared with, and ``literal`` a number, truth value, None or tuple of numbers that it is set to; ``quoted``: whether it is a text in the code, as an operator's ``bl_idname``; ``leads_on``: whether
-    a later expression begins with what it gives.
+    compared with, ``literal`` is the number, truth value, None or tuple of numbers that it is set to; ``quoted``:
+    whether it is a text in the code, as an operator's ``bl_idname``; ``leads_on``: whether a later expression begins
+    with what it gives.
     """
 
     root: str

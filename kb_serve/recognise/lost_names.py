@@ -13,7 +13,7 @@ from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.refusals import refuses
 from kb_serve.recognise.removed_symbols import socket_node
-from kb_serve.recognise.variables import usual_classes
+from kb_serve.recognise.variables import classes_of_parts, usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Sequence
@@ -23,8 +23,8 @@ if TYPE_CHECKING:
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
     from kb_serve.recognise.resolver import ResolvedChain
 
-_PART_TELLS = 0.25  # fit of a class that a part of a variable's name, or more, tells
-_FAR_LIKELIER = 1.5  # so much more than what has a name today must count what had it
+_NAMED = 0.5  # fit of a class that a variable's name tells
+_FAR_LIKELIER = 1.3  # so much more than what has a name today must count what had it
 _USED = 10.0  # weight of a class that scripts use much
 _HELD_BY = (TYPES, "bmesh.types.")
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
@@ -91,7 +91,9 @@ class LostNames:
         sockets = [
             entry for entry in self._reader.by_name(name) if entry.path.startswith(f"{entry.owner}.{side}[")
         ]
-        symbols = filter(None, (self._reader.symbol(entry.path) for entry in sockets))
+        symbols = [symbol for entry in sockets if (symbol := self._reader.symbol(entry.path))]
+        if any(item.identifier in chain.values for symbol in symbols for item in symbol.enum_items):
+            return True
         nodes = [symbol.owner for symbol in symbols if not refuses(symbol, chain)]
         lost = socket_node(removed.path)
         weights = self._reader.weights([*nodes, lost])
@@ -129,7 +131,9 @@ class LostNames:
         if found is None:
             return None
         removed, lost, today = found
-        return LostName(removed, 1) if not today or lost > _FAR_LIKELIER * max(today) else None
+        least = max(today, default=0.0)
+        likelier = not least or (lost >= _USED and lost > _FAR_LIKELIER * least)
+        return LostName(removed, 1) if likelier else None
 
     def alike(self, chain: Chain, readings: Sequence[ResolvedChain]) -> RemovedSymbol | None:
         """What may be meant as well as what has the name today: of a class that counts more."""
@@ -138,7 +142,7 @@ class LostNames:
             return None
         removed, lost, _ = found
         owners = self._reader.weights([reading.symbols[0] for reading in readings if reading.complete])
-        return removed if removed.targets and lost >= max(_USED, *owners.values()) else None
+        return removed if removed.successors and lost >= max(_USED, *owners.values()) else None
 
     def _against_today(
         self, chain: Chain, readings: Sequence[ResolvedChain]
@@ -152,7 +156,8 @@ class LostNames:
             return None
         path = self._likeliest(self._removed.paths_named(first.text), _owner_of)
         removed = self._removed.of_path(path) if path else None
-        if removed is None:
+        # What has it today may have taken its place.
+        if removed is None or any(target.endswith(f".{first.text}") for target in removed.targets):
             return None
         taken = [reading for reading in whole if not self._refuses(reading, chain)]
         paths = {path for reading in taken for path in reading.symbols[:2]}
@@ -163,7 +168,7 @@ class LostNames:
     def _is_known(self, chain: Chain, best: ResolvedChain) -> bool:
         """Whether a chain's root tells what it is."""
         own = chain.root in _INSTANCES or chain.root[:1].isupper() or chain.root in {"bpy", *ROOTS}
-        return own or best.fit >= _PART_TELLS or bool(usual_classes(chain.root))
+        return own or best.fit >= _NAMED or bool(usual_classes(chain.root) or classes_of_parts(chain.root))
 
     def _refuses(self, reading: ResolvedChain, chain: Chain) -> bool:
         symbol = self._reader.symbol(reading.symbols[-1])

@@ -68,8 +68,13 @@ class OldCode:
         self._removed = removed
         self._lost_names = LostNames(reader, removed)
 
-    def in_chain(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
-        """The first removed name in a chain that this version cannot resolve; None where that is not sure."""
+    def in_chain(
+        self, chain: Chain, readings: Sequence[ResolvedChain], *, is_quoted: bool = False
+    ) -> OldName | None:
+        """The first removed name in a chain that this version cannot resolve; None where that is not sure.
+
+        ``is_quoted``: whether the name is a text, of which nothing is set that tells more.
+        """
         if readings and readings[0].complete and readings[0].fit >= _LIKELY_FIT:
             return self._member(chain, self._likelier(chain, readings)) or _old(
                 chain, self._lost_names.socket(chain, readings)
@@ -85,7 +90,7 @@ class OldCode:
             or self._of_fitting_class(chain, readings)
             or self._of_any_class(chain, readings)
             or _old(chain, self._lost_names.reached(chain, readings))
-            or _old(chain, self._lost_names.likelier(chain, readings))
+            or (None if is_quoted else _old(chain, self._lost_names.likelier(chain, readings)))
         )
 
     def alike(self, chain: Chain, readings: Sequence[ResolvedChain]) -> RemovedSymbol | None:
@@ -180,7 +185,11 @@ class OldCode:
                     resolved.owner, resolved.missing, chain.root
                 )
             else:
-                found = self._removed.of_member(resolved.owner, resolved.missing)
+                lost = (
+                    self._removed.of_member(owner, resolved.missing)
+                    for owner in resolved.owners or (resolved.owner,)
+                )
+                found = next(filter(None, lost), None)
                 if not found and (resolved.fit >= 1.0 or is_telling(resolved.missing)):
                     found = self._removed.below(resolved.owner, resolved.missing, chain.root)
             if found:
@@ -253,7 +262,9 @@ class OldCode:
         for number, name in names if chain.steps else [(0, chain.root)]:
             if self._reader.by_name(name):
                 return None
-            if (is_telling(name) or _is_set_to_item(chain)) and (removed := self._likeliest(name, chain.root if number == 1 else "")):
+            if (is_telling(name) or _is_set_to_item(chain)) and (
+                removed := self._likeliest(name, chain.root if number == 1 else "")
+            ):
                 return OldName(removed, chain.steps[number:])
         return None
 
@@ -369,7 +380,7 @@ class OldCode:
         for pattern in _PROPERTY_NAMES:
             for match in islice(pattern.finditer(text), _MOST_QUOTED):
                 (chain,) = find_chains(f"{match[1]}.{match[2]}")
-                if old := self.in_chain(chain, self._resolver.resolve(chain)):
+                if old := self.in_chain(chain, self._resolver.resolve(chain), is_quoted=True):
                     yield old.removed
 
 

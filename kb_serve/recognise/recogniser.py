@@ -13,7 +13,7 @@ from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.calls import wrong_arguments
 from kb_serve.recognise.chains import Chain, find_chains
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
-from kb_serve.recognise.corrections import Corrector, nearest
+from kb_serve.recognise.corrections import Corrector, by_first_word, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
 from kb_serve.recognise.given_values import wrong_values
@@ -46,6 +46,7 @@ _SURE = 0.9
 _MANY = 12
 _DESCRIBED = 0.85  # … what plain words describe
 _OTHERWISE = 0.96  # what does or is labelled what a class is asked for by another name
+_BEGINS_ALIKE = 0.86  # … what begins like a name that its class lacks
 _OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
 _OWNER_OF_REMOVED = 0.85  # … one whose removed member has no known successor
 # Of names that resemble a removed one: how sure those are from a score on; half of these are its successors, of the
@@ -243,6 +244,10 @@ class Recogniser:
                     recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
             if not missing.owner or similar or otherwise:
                 continue
+            begun = by_first_word(missing.name, names) if missing.told else ()
+            for place, name in enumerate(begun):
+                if member := self._resolver.member(missing.owner, name):
+                    recognition.add(member.path, _BEGINS_ALIKE - 0.01 * place, SIMILAR)
             if not self._elsewhere(missing, recognition):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
 

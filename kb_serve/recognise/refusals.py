@@ -43,7 +43,10 @@ def _refuses_literal(symbol: Symbol, chain: Chain) -> bool:
     if isinstance(value, tuple):
         # Vectors of sockets have two to four numbers, matrices rows.
         is_open = (symbol.kind == "socket" and numbers > 1) or len(symbol.array) > 1
-        return not is_open and chain.literal.count(",") + (not chain.literal.rstrip(") ").endswith(",")) != numbers
+        return (
+            not is_open
+            and chain.literal.count(",") + (not chain.literal.rstrip(") ").endswith(",")) != numbers
+        )
     if numbers > 1:
         return True
     is_truth = symbol.type == "boolean"

@@ -143,7 +143,7 @@ class RemovedSymbolLookup:
     def below(self, owner: str, name: str, variable: str = "") -> RemovedSymbol | None:
         """A removed member of a class below ``owner``: ``Material.alpha`` for an ID.
 
-        Of several classes the one that ``variable`` may hold; the first, if they all lost it alike.
+        Of several classes the one that ``variable`` may hold; that which counts most, if they all lost it alike.
         """
         found = {path: removed for path in self.paths_below(owner, name) if (removed := self.of_path(path))}
         present = {
@@ -154,7 +154,9 @@ class RemovedSymbolLookup:
         if len(found) > 1 and (owner == _ANY or not alike):
             usual = [f"{cls}.{name}" for cls in usual_classes(variable)]
             return next((found[path] for path in usual if path in found), None)
-        return next(iter(found.values()), None)
+        weights = self._reader.weights([path.rpartition(".")[0] for path in found])
+        heaviest = max(found, key=lambda path: weights.get(path.rpartition(".")[0], 0.0), default="")
+        return found.get(heaviest)
 
     def paths_below(self, owner: str, name: str) -> list[str]:
         """Paths of the removed members called ``name`` of a class and of those below it."""
