@@ -18,9 +18,10 @@ _IDENTIFIER = re.compile(r"(?<!\w)[^\W\d]\w*")  # not what follows the digit of 
 _DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
 _VALUE = re.compile(r"\s*(?:[-+*/|&^%=!]?=|not\s+in\b|in\b)\s*(?=['\"{(\[])")
+_NUMBER = r"-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
 # Literals right of a single ``=`` that are no texts, if nothing goes on behind them.
 _LITERAL = re.compile(
-    r"\s*=\s*(True|False|None|-?\d[\d_.]*(?:e-?\d+)?|\((?:\s*-?\d[\d_.]*(?:e-?\d+)?\s*(?:,|(?=\)))){2,}\s*\))"
+    rf"\s*=\s*(True|False|None|{_NUMBER}|\(\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)+,?\s*\))"
     r"(?![\w.(\[]|\s*(?:[-+*/%@|&^<>!=,]|(?:and|or|in|is|not|if)\b))"
 )
 _ITEM = re.compile(r"""(["'])(\w[\w. -]{0,60})\1""")

@@ -131,6 +131,8 @@ class LostNames:
         if found is None:
             return None
         removed, lost, today = found
+        if any(self._lists(reading, chain) for reading in readings if reading.complete):
+            return None
         least = max(today, default=0.0)
         likelier = not least or (lost >= _USED and lost > _FAR_LIKELIER * least)
         return LostName(removed, 1) if likelier else None
@@ -140,9 +142,12 @@ class LostNames:
         found = self._against_today(chain, readings)
         if found is None or len(chain.steps) > 1:
             return None
-        removed, lost, _ = found
+        removed, lost, today = found
+        if max(today, default=0.0) and any(self._lists(one, chain) for one in readings if one.complete):
+            return None
         owners = self._reader.weights([reading.symbols[0] for reading in readings if reading.complete])
-        return removed if removed.successors and lost >= max(_USED, *owners.values()) else None
+        most = max(owners.values(), default=0.0)
+        return removed if removed.successors and lost and lost >= most else None
 
     def _against_today(
         self, chain: Chain, readings: Sequence[ResolvedChain]
@@ -173,6 +178,11 @@ class LostNames:
     def _refuses(self, reading: ResolvedChain, chain: Chain) -> bool:
         symbol = self._reader.symbol(reading.symbols[-1])
         return symbol is not None and refuses(symbol, chain)
+
+    def _lists(self, reading: ResolvedChain, chain: Chain) -> bool:
+        """Whether what a reading leads to lists the very text that a chain is set to."""
+        symbol = self._reader.symbol(reading.symbols[-1]) if chain.values else None
+        return symbol is not None and any(item.identifier in chain.values for item in symbol.enum_items)
 
     def _likeliest(self, paths: Iterable[str], owner: Callable[[str], str]) -> str:
         """Of removed symbols that of the class of today that counts most; empty for none."""

@@ -91,12 +91,13 @@ class Notes:
             return ""
         return " ".join(filter(None, (self._lost(recognition.alike_lost), self._today(recognition.alike))))
 
-    def _lost(self, symbol: RemovedSymbol | None) -> str:
-        """What an unknown variable's name may be besides that this version lost."""
-        if symbol is None:
+    def _lost(self, lost: tuple[str, RemovedSymbol] | None) -> str:
+        """What a variable of no telling name may stand for besides, which this version lost."""
+        if lost is None:
             return ""
+        variable, symbol = lost
         name, instead = symbol.path.removeprefix(TYPES), " ".join(self._instead(symbol))
-        return f"If the variable stands for what had `{name}`: {self._span(symbol)}. {instead}"
+        return f"If `{variable}` is what had `{name}`, that was {self._span(symbol)}. {instead}"
 
     @staticmethod
     def _today(paths: Sequence[str]) -> str:

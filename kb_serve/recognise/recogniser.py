@@ -34,6 +34,7 @@ from kb_serve.recognise.old_code import OldCode
 from kb_serve.recognise.operator_words import OperatorWords
 from kb_serve.recognise.products import WITH_AT, Products
 from kb_serve.recognise.recognition import MissingName, Recognition
+from kb_serve.recognise.refusals import keywords
 from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
 from kb_serve.recognise.resolver import Resolver
 from kb_serve.recognise.said_otherwise import said_otherwise
@@ -158,6 +159,8 @@ class Recogniser:
         """Adds what was lost by what a chain may be read as, and a note on a value that nothing so called takes."""
         guesses = list(filter(None, map(self._reader.symbol, recognition.guesses.get(chain.source, ()))))
         lost = [next(self._old.in_values(chain, guess), None) for guess in guesses]
+        if len(guesses) == 1 and keywords(chain):  # which may have told it from others of its name
+            recognition.notes += wrong_arguments(chain, guesses[0])
         # A value that what it may be read as once took tells that it is meant.
         for removed in filter(None, lost):
             recognition.add_removed(removed)

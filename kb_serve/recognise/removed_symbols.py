@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
+from kb_build.index.analysis import key, words
 from kb_serve.reader import TYPES
 from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.variables import usual_classes
@@ -67,6 +67,12 @@ def _nearest_to(owner: str, removed: RemovedSymbol) -> RemovedSymbol:
     """A symbol of a removed class, with that of its successors first which the class has that was asked."""
     own_first = sorted(removed.successors, key=lambda one: not one.target.startswith(f"{owner}."))
     return replace(removed, successors=tuple(own_first))
+
+
+def _new_names(removed: RemovedSymbol) -> Iterator[str]:
+    """What took a symbol's place, without its class, and how."""
+    for successor in removed.successors:
+        yield from (successor.target.rpartition(".")[2], successor.how)
 
 
 def socket_node(path: str) -> str:
@@ -150,13 +156,25 @@ class RemovedSymbolLookup:
             path: removed for path, removed in found.items() if self._reader.entry(path.rpartition(".")[0])
         }
         found = present or found  # of the class before what it was called before
-        alike = len({(removed.gone, removed.successors) for removed in found.values()}) == 1
+        alike = len({(removed.gone, *_new_names(removed)) for removed in found.values()}) == 1
         if len(found) > 1 and (owner == _ANY or not alike):
             usual = [f"{cls}.{name}" for cls in usual_classes(variable)]
             return next((found[path] for path in usual if path in found), None)
-        weights = self._reader.weights([path.rpartition(".")[0] for path in found])
-        heaviest = max(found, key=lambda path: weights.get(path.rpartition(".")[0], 0.0), default="")
-        return found.get(heaviest)
+        return found.get(self._likeliest(found, variable))
+
+    def _likeliest(self, paths: Iterable[str], variable: str) -> str:
+        """Of members of several classes that of the one which a variable is named after, or which counts most, as what
+        took its place does; empty for none.
+        """
+        now = {path: (*self._classes_now(path.rpartition(".")[0]),) for path in paths}
+        weights = self._reader.weights({cls for classes in now.values() for cls in classes})
+        said = set(words(variable))
+
+        def likely(path: str) -> tuple[int, float]:
+            is_named = len(said.intersection(words(path.rpartition(".")[0])))
+            return is_named, max((weights.get(cls, 0.0) for cls in now[path]), default=0.0)
+
+        return max(now, key=likely, default="")
 
     def paths_below(self, owner: str, name: str) -> list[str]:
         """Paths of the removed members called ``name`` of a class and of those below it."""

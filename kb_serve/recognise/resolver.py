@@ -14,7 +14,7 @@ from kb_serve.recognise.chain_starts import ChainStarts
 from kb_serve.recognise.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.owners import Owners
-from kb_serve.recognise.refusals import refuses
+from kb_serve.recognise.refusals import keywords, lacks_keyword, refuses
 from kb_serve.recognise.subscripts import CustomProperties
 
 if TYPE_CHECKING:
@@ -112,12 +112,19 @@ class Resolver:
         return self._taking(chain, self._writable(chain, list(unique.values())))
 
     def _taking(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
-        """The readings of an unknown variable without those that refuse what the chain is set to, if others take it."""
-        if not (chain.assigned and (chain.literal or chain.values)):
+        """The readings of an unknown variable without those that refuse what the chain is set to, or a keyword that it
+        is called with, if others take it.
+        """
+        is_set = chain.assigned and (chain.literal or chain.values)
+        if not is_set and not keywords(chain):
             return readings
         guessed = [reading for reading in readings if reading.complete and reading.fit < _NAMED][:_MOST_TRIED]
         symbols = [(reading, self._reader.symbol(reading.symbols[-1])) for reading in guessed]
-        refusing = [reading for reading, symbol in symbols if symbol and refuses(symbol, chain)]
+        refusing = [
+            reading
+            for reading, symbol in symbols
+            if symbol and (refuses(symbol, chain) or lacks_keyword(symbol, chain))
+        ]
         if len(refusing) == len(guessed):
             return readings
         return [reading for reading in readings if reading not in refusing]
