@@ -134,8 +134,8 @@ class LostNames:
         if any(self._lists(reading, chain) for reading in readings if reading.complete):
             return None
         least = max(today, default=0.0)
-        likelier = not least or (lost >= _USED and lost > _FAR_LIKELIER * least)
-        return LostName(removed, 1) if likelier else None
+        is_far_likelier = lost >= _USED and lost > _FAR_LIKELIER * least
+        return LostName(removed, 1) if is_far_likelier or not today else None
 
     def alike(self, chain: Chain, readings: Sequence[ResolvedChain]) -> RemovedSymbol | None:
         """What may be meant as well as what has the name today: of a class that counts more."""

@@ -79,13 +79,17 @@ def test_the_scripts_own_is_left_alone(kb: KnowledgeBase, written: str) -> None:
 
 
 @pytest.mark.parametrize(
-    ("written", "lost"),
-    [("terrain.select = True", "Object.select"), ("q.hide = True", "Object.hide")],
+    ("written", "lost", "version"),
+    [
+        ("terrain.select = True", "Object.select", "2.80"),
+        ("q.hide = True", "Object.hide", "2.80"),
+        ("cb.lift = (0.95, 0.98, 1.05)", "CompositorNodeColorBalance.lift", "5.0"),
+    ],
 )
-def test_what_a_likelier_thing_had_is_named(kb: KnowledgeBase, written: str, lost: str) -> None:
+def test_what_a_likelier_thing_had_is_named(kb: KnowledgeBase, written: str, lost: str, version: str) -> None:
     answer = kb.query(written)
     variable = written.partition(".")[0]
-    assert f"If `{variable}` is what had `{lost}`, that was removed in 2.80" in answer.text
+    assert f"If `{variable}` is what had `{lost}`, that was removed in {version}" in answer.text
     assert answer.hits[0].id.endswith(lost.partition(".")[2])
 
 
