@@ -16,6 +16,8 @@ from kb_check.summary import mended
 from kb_serve.recognise.variables import is_guess, usual_classes
 
 if TYPE_CHECKING:
+    from collections.abc import Iterator, Sequence
+
     from kb_check.checker import Checker
     from kb_check.findings import Finding
     from kb_serve.reader import BaseReader
@@ -32,6 +34,7 @@ _RULES = (
     "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call", "refused-path",
     "refused-property", "refused-value", "wrong-type",
 )  # fmt: skip
+_GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
 _SIGNS = "=([*"  # one of which such code has
 # What code does that is more than a name.
 _DOES = (
@@ -53,7 +56,7 @@ def notes_on_code(reader: BaseReader, query: str) -> tuple[str, ...]:
     code = f"{_bindings(tree, checker)}\n{code}"
     lines = split_lines(code)
     try:
-        findings = [finding for finding in checker.check(code, rules=_RULES) if _is_news(finding)]
+        findings = [*_news(checker.check(code, rules=(*_RULES, _GONE)))]
     except sqlite3.DatabaseError as error:
         raise checker.names.reader.damaged(error) from error
     notes = list(dict.fromkeys(_note(finding, lines) for finding in findings))
@@ -118,8 +121,15 @@ def _binding(name: str, is_owner: bool, checker: Checker) -> str:
     )
 
 
-def _is_news(finding: Finding) -> bool:
-    return finding.severity == "error" and finding.span.line > 1 and not finding.absent
+def _news(findings: Sequence[Finding]) -> Iterator[Finding]:
+    """Errors in the code itself, but for names that are gone, and what is wrong behind one of those in its line."""
+    gone = {finding.span.line: finding.span.column for finding in findings if finding.absent}
+    for finding in findings:
+        span = finding.span
+        is_behind = span.line in gone and gone[span.line] < span.column
+        is_told = finding.rule == _GONE or finding.absent or is_behind
+        if finding.severity == "error" and span.line > 1 and not is_told:
+            yield finding
 
 
 def _note(finding: Finding, lines: list[str]) -> str:

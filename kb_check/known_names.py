@@ -7,9 +7,9 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
-from kb_check.likely_names import by_first_word, by_label
+from kb_check.likely_names import by_label
 from kb_serve.reader import STRUCT, TYPES
-from kb_serve.recognise.corrections import is_misspelling, nearest
+from kb_serve.recognise.corrections import by_first_word, is_misspelling, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.likely_values import likely_values

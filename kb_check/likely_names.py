@@ -8,10 +8,9 @@ from kb_build.index.analysis import stem, words
 from kb_serve.recognise.likely_keywords import EMPTY_WORDS
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Mapping
+    from collections.abc import Mapping
 
 _MOST = 3
-_SHORTEST = 4
 
 
 def by_label(written: str, labels: Mapping[str, str]) -> tuple[list[str], list[str]]:
@@ -27,15 +26,6 @@ def by_label(written: str, labels: Mapping[str, str]) -> tuple[list[str], list[s
     if len(partly) > _MOST:  # what a label ends with is what the thing is
         partly = [name for name in partly if _last(labels[name]) == _last(written)]
     return exact, partly if len(partly) <= _MOST else []
-
-
-def by_first_word(written: str, names: Iterable[str]) -> list[str]:
-    """The names that begin with the first word of one, where they are few: ``resolution_max``."""
-    first, *others = words(written) or [""]
-    if len(first) < _SHORTEST or not others:
-        return []
-    found = [name for name in names if words(name)[:1] == [first]]
-    return found if len(found) <= _MOST else []
 
 
 def _last(text: str) -> str:

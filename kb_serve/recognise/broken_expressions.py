@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.unlisted import SOMETIMES
 from kb_serve.reader import TYPES
 from kb_serve.recognise.chain_starts import ROOTS
+from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.elements import ADDING, elsewhere, meant_by_key
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.variables import OTHERWISE, USUAL, is_guess, usual_classes
@@ -89,8 +90,9 @@ class BrokenExpressions:
         if called and not is_element:
             self._tell_elsewhere(resolved, later, recognition)
         if not is_element and not self._is_told(resolved, recognition):
-            variable = "" if is_clear(chain, resolved) else chain.root
-            told = resolved.fit >= LIKELY or (called and resolved.missing in ADDING)
+            certain = self._leads_there_alone(chain, resolved)
+            variable = "" if certain or is_clear(chain, resolved) else chain.root
+            told = certain or resolved.fit >= LIKELY or (called and resolved.missing in ADDING)
             missing = MissingName(resolved.missing, resolved.owner, assigned, sure, called, variable, told)
             recognition.missing.append(missing)
             if self._is_known_element(chain, resolved):
@@ -106,7 +108,7 @@ class BrokenExpressions:
         owner = self._reader.entry(resolved.owner)
         is_definition = chain.assigned and resolved.steps_left == 1
         return (
-            (resolved.fit < 1.0 and is_guess(chain.root))
+            (resolved.fit < 1.0 and is_guess(chain.root) and not self._leads_there_alone(chain, resolved))
             or resolved.missing.startswith("__")  # every class and module has such names
             or self._is_indexed(chain, resolved)
             # ``bl_idname = "object.my_operator"``
@@ -121,6 +123,18 @@ class BrokenExpressions:
             or (resolved.missing.startswith("[") and len(resolved.symbols) == 1 and chain.root != "bpy")
             or (owner is not None and _may_have(owner, chain, resolved.missing))
         )
+
+    def _leads_there_alone(self, chain: Chain, resolved: ResolvedChain) -> bool:
+        """Whether all that an attribute can be which a variable is asked for is of the class that lacks the next one:
+        ``x.field.missing``, as every ``field`` is of FieldSettings.
+        """
+        match chain.steps:
+            case (ChainStep("attr", name), ChainStep("attr", missing), *_) if missing == resolved.missing:
+                named = self._reader.by_name(name)
+            case _:
+                return False
+        led_to = {f"{TYPES}{entry.target}" for entry in named if entry.group != "ui"}
+        return led_to == {resolved.owner} and all(entry.type == "pointer" for entry in named)
 
     def _is_custom(self, chain: Chain, resolved: ResolvedChain) -> bool:
         """Whether a name is read of a custom property, which may hold anything: ``strip["files"].sort()``."""

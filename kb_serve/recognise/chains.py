@@ -18,6 +18,12 @@ _IDENTIFIER = re.compile(r"(?<!\w)[^\W\d]\w*")  # not what follows the digit of 
 _DOT = re.compile(r"\s*(?:\.|->|::|→)\s*(?=[^\W\d])")
 _ASSIGNMENT = re.compile(r"\s*[-+*/|&^%]?=(?!=)")
 _VALUE = re.compile(r"\s*(?:[-+*/|&^%=!]?=|not\s+in\b|in\b)\s*(?=['\"{(\[])")
+_NUMBER = r"-?(?:\d+\.?\d*|\.\d+)(?:e[-+]?\d+)?"
+# Literals right of a single ``=`` that are no texts, if nothing goes on behind them.
+_LITERAL = re.compile(
+    rf"\s*=\s*(True|False|None|{_NUMBER}|\(\s*{_NUMBER}\s*(?:,\s*{_NUMBER}\s*)+,?\s*\))"
+    r"(?![\w.(\[]|\s*(?:[-+*/%@|&^<>!=,]|(?:and|or|in|is|not|if)\b))"
+)
 _ITEM = re.compile(r"""(["'])(\w[\w. -]{0,60})\1""")
 _SOCKETS = re.compile(r"\.(?:in|out)puts\[['\"]")
 _QUOTES = ("'", '"')
@@ -41,8 +47,9 @@ class Chain:
     """A dotted expression: where it starts, and the steps from there. ``source`` is the text as typed.
 
     ``assigned`` tells whether it stands left of an assignment; ``values`` are the texts that it is set to or
-    compared with; ``quoted``: whether it is a text in the code, as an operator's ``bl_idname``; ``leads_on``: whether
-    a later expression begins with what it gives.
+    compared with, ``literal`` is the number, truth value, None or tuple of numbers that it is set to; ``quoted``:
+    whether it is a text in the code, as an operator's ``bl_idname``; ``leads_on``: whether a later expression begins
+    with what it gives.
     """
 
     root: str
@@ -52,6 +59,7 @@ class Chain:
     values: tuple[str, ...] = ()
     quoted: bool = False
     leads_on: bool = False
+    literal: str = ""
 
     @property
     def dotted(self) -> str:
@@ -121,6 +129,12 @@ def _values(text: str, position: int) -> tuple[str, ...]:
     return tuple(item[2] for item in _ITEM.finditer(content))[:_MAX_VALUES]
 
 
+def _literal(text: str, position: int) -> str:
+    """The number, truth value, None or tuple of numbers right of ``=``; empty for anything else."""
+    match = _LITERAL.match(text, position)
+    return match[1] if match else ""
+
+
 def sockets_in(chain: Chain) -> list[Chain]:
     """The sockets that stand in a call of one expression: ``noise.outputs["Color"]`` of ``links.new(…)``."""
     calls = (step.text for step in chain.steps if step.kind == "call" and _SOCKETS.search(step.text))
@@ -158,6 +172,7 @@ def find_chains(text: str) -> list[Chain]:
             assigned,
             _values(text, position) if steps else (),
             text[start - 1 : start] in _QUOTES and text[start - 1 : start] == text[position : position + 1],
+            literal=_literal(text, position) if steps else "",
         )
         chains.append(chain)
         code += chain.is_code

@@ -36,8 +36,10 @@ _INSTEAD = {
 }
 
 
-def context_for(operator: Symbol) -> str:
-    """What lets an operator run whose ``poll()`` failed."""
+def context_for(operator: Symbol, like: str = "") -> str:
+    """What lets an operator run whose ``poll()`` failed; ``like`` is the member of the context that those like it want,
+    if nothing is known of itself.
+    """
     path = operator.path
     failed = f"`{path}.poll()` failed: "
     if needs := operator_needs(operator):
@@ -46,6 +48,11 @@ def context_for(operator: Symbol) -> str:
         return (
             f"{failed}it refused nothing that was tried: no object, objects of all types in all modes, no area. "
             "What it lacks is in this scene or file."
+        )
+    if like:
+        return (
+            f"{failed}operators like it take `{like}` in the context, here one that it can work on: "
+            f"`{_WITH}({like}={_THINGS.get(like, like)}): {path}()`."
         )
     return (
         f"{failed}it needs another mode, active object, selection or editor than the context has. "

@@ -23,6 +23,7 @@ _READINGS = 3  # of a chain, of which one may lack a name that is only misspelt
 _ROUNDS = 3
 _LONG = 8  # letters of a name that is compared with all others
 _CLOSE = 0.85
+_FEW_BEGIN_SO, _FIRST_WORD = 3, 4  # names with the first word of one, and the letters that it has at least
 _WORD = 3  # letters from which on a word says something
 _TYPO = 0.8  # similarity of a whole name from which on it may be misspelt
 _TYPO_ACROSS_WORDS = 0.88  # … where it has more or fewer words
@@ -84,6 +85,15 @@ def nearest(written: str, names: Iterable[str], limit: int = 3) -> list[tuple[st
     scored = [(name, _alike(left, mine, name)) for name in names]
     likely = [row for row in scored if row[1] >= LIKELY]
     return sorted(likely, key=lambda row: (-row[1], len(row[0]), row[0]))[:limit]
+
+
+def by_first_word(written: str, names: Iterable[str]) -> list[str]:
+    """The names that begin with the first word of one, where they are few: ``resolution_max``."""
+    first, *others = words(written) or [""]
+    if len(first) < _FIRST_WORD or not others:
+        return []
+    found = [name for name in names if words(name)[:1] == [first]]
+    return found if len(found) <= _FEW_BEGIN_SO else []
 
 
 def is_misspelling(written: str, name: str, vocabulary: Container[str] = ()) -> bool:

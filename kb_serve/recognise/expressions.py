@@ -266,6 +266,8 @@ class Expressions:
             ]
             told = dict.fromkeys((*likely[0].alike, *others))
             recognition.alike = [path for path in told if path != likely[0].symbols[-1]]
+        if not later and not bare and (lost := self._old.alike(chain, readings)):
+            recognition.alike_lost = chain.root, lost
         if readings[0].keyed:
             name = next(step.text for step in reversed(chain.steps) if step.kind == "key")
             recognition.notes.append(self._custom.note(readings[0].keyed, name))

@@ -10,7 +10,7 @@ from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.enum_values import EnumValues
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import MissingName, Recognition
@@ -85,10 +85,23 @@ class Notes:
         notes += self._missing(recognition)
         return list(dict.fromkeys((*notes, *recognition.notes)))
 
-    @staticmethod
-    def alike(recognition: Recognition) -> str:
+    def alike(self, recognition: Recognition) -> str:
         """What else of the same name a query may mean whose variable may stand for several things; "" if nothing."""
-        if not (paths := recognition.alike) or recognition.removed or recognition.missing:
+        if recognition.removed or recognition.missing:
+            return ""
+        return " ".join(filter(None, (self._lost(recognition.alike_lost), self._today(recognition.alike))))
+
+    def _lost(self, lost: tuple[str, RemovedSymbol] | None) -> str:
+        """What a variable of no telling name may stand for besides, which this version lost."""
+        if lost is None:
+            return ""
+        variable, symbol = lost
+        name, instead = symbol.path.removeprefix(TYPES), " ".join(self._instead(symbol))
+        return f"If `{variable}` is what had `{name}`, that was {self._span(symbol)}. {instead}"
+
+    @staticmethod
+    def _today(paths: Sequence[str]) -> str:
+        if not paths:
             return ""
         named, more = paths[:_MOST_ALIKE], len(paths) - _MOST_ALIKE
         names = ", ".join(f"`{path.removeprefix(TYPES)}`" for path in named)

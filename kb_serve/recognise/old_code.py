@@ -12,6 +12,7 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.calls import arguments, texts_in
 from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import find_chains
+from kb_serve.recognise.lost_names import LostName, LostNames, is_telling
 from kb_serve.recognise.removed_symbols import socket_node
 from kb_serve.recognise.variables import USUAL, usual_classes, variable_fit
 
@@ -50,11 +51,6 @@ _SAY_NOTHING = frozenset({"node", *"0123456789"})  # words of a variable's name 
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
 
 
-def _is_telling(name: str) -> bool:
-    """Whether a name is hardly one of the script's own: ``dupli_object`` rather than ``index``."""
-    return "_" in name.strip("_")
-
-
 @dataclass(frozen=True, slots=True)
 class OldName:
     """A removed symbol that a chain names, and the steps of the chain behind it."""
@@ -70,20 +66,36 @@ class OldCode:
         self._reader = reader
         self._resolver = resolver
         self._removed = removed
+        self._lost_names = LostNames(reader, removed)
 
-    def in_chain(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
-        """The first removed name in a chain that this version cannot resolve; None where that is not sure."""
+    def in_chain(
+        self, chain: Chain, readings: Sequence[ResolvedChain], *, is_quoted: bool = False
+    ) -> OldName | None:
+        """The first removed name in a chain that this version cannot resolve; None where that is not sure.
+
+        ``is_quoted``: whether the name is a text, of which nothing is set that tells more.
+        """
         if readings and readings[0].complete and readings[0].fit >= _LIKELY_FIT:
-            return self._member(chain, self._likelier(chain, readings))
+            return self._member(chain, self._likelier(chain, readings)) or _old(
+                chain, self._lost_names.socket(chain, readings)
+            )
         return (
             self._path(chain)
             or self._class(chain)
+            or _old(chain, self._lost_names.of_named_data(chain))
             or self._member(chain, readings)
             or self._socket(chain)
+            or _old(chain, self._lost_names.socket(chain, readings))
             or self._of_last_part(chain, readings)
             or self._of_fitting_class(chain, readings)
             or self._of_any_class(chain, readings)
+            or _old(chain, self._lost_names.reached(chain, readings))
+            or (None if is_quoted else _old(chain, self._lost_names.likelier(chain, readings)))
         )
+
+    def alike(self, chain: Chain, readings: Sequence[ResolvedChain]) -> RemovedSymbol | None:
+        """What a chain of an unknown variable may name as well as what has the name today."""
+        return self._lost_names.alike(chain, readings)
 
     def still_taken(self, chain: Chain, readings: Sequence[ResolvedChain]) -> str:
         """The present symbol that a name missing on a class still leads to under its former name; "" for none."""
@@ -173,8 +185,12 @@ class OldCode:
                     resolved.owner, resolved.missing, chain.root
                 )
             else:
-                found = self._removed.of_member(resolved.owner, resolved.missing)
-                if not found and (resolved.fit >= 1.0 or _is_telling(resolved.missing)):
+                lost = (
+                    self._removed.of_member(owner, resolved.missing)
+                    for owner in resolved.owners or (resolved.owner,)
+                )
+                found = next(filter(None, lost), None)
+                if not found and (resolved.fit >= 1.0 or is_telling(resolved.missing)):
                     found = self._removed.below(resolved.owner, resolved.missing, chain.root)
             if found:
                 return OldName(found, rest[1:])
@@ -246,7 +262,9 @@ class OldCode:
         for number, name in names if chain.steps else [(0, chain.root)]:
             if self._reader.by_name(name):
                 return None
-            if _is_telling(name) and (removed := self._likeliest(name, chain.root if number == 1 else "")):
+            if (is_telling(name) or _is_set_to_item(chain)) and (
+                removed := self._likeliest(name, chain.root if number == 1 else "")
+            ):
                 return OldName(removed, chain.steps[number:])
         return None
 
@@ -259,7 +277,16 @@ class OldCode:
             None, (self._removed.of_path(f"{owner}.{name}") for owner in self._owners(name, variable))
         )
         known = [symbol for symbol in removed if symbol.successors or not variable]
-        return min(known, key=lambda symbol: (not symbol.successors, len(symbol.path)), default=None)
+        weights = self._reader.weights({symbol.path.rpartition(".")[0] for symbol in known})
+        return min(
+            known,
+            key=lambda symbol: (
+                not symbol.successors,
+                -weights.get(symbol.path.rpartition(".")[0], 0.0),
+                len(symbol.path),
+            ),
+            default=None,
+        )
 
     def _owners(self, name: str, variable: str) -> list[str]:
         """The classes that had a member of that name, the likeliest first; none where that is anybody's guess."""
@@ -353,8 +380,18 @@ class OldCode:
         for pattern in _PROPERTY_NAMES:
             for match in islice(pattern.finditer(text), _MOST_QUOTED):
                 (chain,) = find_chains(f"{match[1]}.{match[2]}")
-                if old := self.in_chain(chain, self._resolver.resolve(chain)):
+                if old := self.in_chain(chain, self._resolver.resolve(chain), is_quoted=True):
                     yield old.removed
+
+
+def _is_set_to_item(chain: Chain) -> bool:
+    """Whether a chain is a variable's attribute that is set to what only an enumeration takes: ``c.x = 'PATH'``."""
+    return chain.assigned and len(chain.steps) == 1 and any(value.isupper() for value in chain.values)
+
+
+def _old(chain: Chain, lost: LostName | None) -> OldName | None:
+    """What was lost, with the steps of the chain behind it."""
+    return OldName(lost.removed, chain.steps[lost.steps :]) if lost else None
 
 
 def _quoted_paths(text: str) -> Iterator[str]:

@@ -13,7 +13,7 @@ from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.calls import wrong_arguments
 from kb_serve.recognise.chains import Chain, find_chains
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
-from kb_serve.recognise.corrections import Corrector, nearest
+from kb_serve.recognise.corrections import Corrector, by_first_word, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
 from kb_serve.recognise.given_values import wrong_values
@@ -34,6 +34,7 @@ from kb_serve.recognise.old_code import OldCode
 from kb_serve.recognise.operator_words import OperatorWords
 from kb_serve.recognise.products import WITH_AT, Products
 from kb_serve.recognise.recognition import MissingName, Recognition
+from kb_serve.recognise.refusals import keywords
 from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
 from kb_serve.recognise.resolver import Resolver
 from kb_serve.recognise.said_otherwise import said_otherwise
@@ -46,6 +47,7 @@ _SURE = 0.9
 _MANY = 12
 _DESCRIBED = 0.85  # … what plain words describe
 _OTHERWISE = 0.96  # what does or is labelled what a class is asked for by another name
+_BEGINS_ALIKE = 0.86  # … what begins like a name that its class lacks
 _OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
 _OWNER_OF_REMOVED = 0.85  # … one whose removed member has no known successor
 # Of names that resemble a removed one: how sure those are from a score on; half of these are its successors, of the
@@ -157,6 +159,8 @@ class Recogniser:
         """Adds what was lost by what a chain may be read as, and a note on a value that nothing so called takes."""
         guesses = list(filter(None, map(self._reader.symbol, recognition.guesses.get(chain.source, ()))))
         lost = [next(self._old.in_values(chain, guess), None) for guess in guesses]
+        if len(guesses) == 1 and keywords(chain):  # which may have told it from others of its name
+            recognition.notes += wrong_arguments(chain, guesses[0])
         # A value that what it may be read as once took tells that it is meant.
         for removed in filter(None, lost):
             recognition.add_removed(removed)
@@ -243,6 +247,10 @@ class Recogniser:
                     recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
             if not missing.owner or similar or otherwise:
                 continue
+            begun = by_first_word(missing.name, names) if missing.told else ()
+            for place, name in enumerate(begun):
+                if member := self._resolver.member(missing.owner, name):
+                    recognition.add(member.path, _BEGINS_ALIKE - 0.01 * place, SIMILAR)
             if not self._elsewhere(missing, recognition):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
 

@@ -49,8 +49,8 @@ class Recognition:
     ``doubted`` is what the class lacks that the first expression's variable is named after, where another class has
     it: unlike the ``missing`` names it is right as likely as not, and nothing else is looked for.
     ``notes`` are further sentences for the caller. ``alike`` are the members of the surest one's name that other things
-    have for which the query's variable may stand. ``is_open`` tells that the query does not say which of several
-    operators it is about.
+    have for which the query's variable may stand, ``alike_lost`` that variable, and one that a likelier thing had.
+    ``is_open`` tells that the query does not say which of several operators it is about.
     """
 
     matches: list[RecognisedName] = field(default_factory=list)
@@ -63,6 +63,7 @@ class Recognition:
     doubted: MissingName | None = None
     notes: list[str] = field(default_factory=list)
     alike: list[str] = field(default_factory=list)
+    alike_lost: tuple[str, RemovedSymbol] | None = None
     is_open: bool = False
 
     def add(self, identifier: str, sure: float, why: str) -> None:

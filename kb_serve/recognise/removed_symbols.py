@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
+from kb_build.index.analysis import key, words
 from kb_serve.reader import TYPES
 from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.variables import usual_classes
@@ -67,6 +67,12 @@ def _nearest_to(owner: str, removed: RemovedSymbol) -> RemovedSymbol:
     """A symbol of a removed class, with that of its successors first which the class has that was asked."""
     own_first = sorted(removed.successors, key=lambda one: not one.target.startswith(f"{owner}."))
     return replace(removed, successors=tuple(own_first))
+
+
+def _new_names(removed: RemovedSymbol) -> Iterator[str]:
+    """What took a symbol's place, without its class, and how."""
+    for successor in removed.successors:
+        yield from (successor.target.rpartition(".")[2], successor.how)
 
 
 def socket_node(path: str) -> str:
@@ -143,18 +149,32 @@ class RemovedSymbolLookup:
     def below(self, owner: str, name: str, variable: str = "") -> RemovedSymbol | None:
         """A removed member of a class below ``owner``: ``Material.alpha`` for an ID.
 
-        Of several classes the one that ``variable`` may hold; the first, if they all lost it alike.
+        Of several classes the one that ``variable`` may hold; that which counts most, if they all lost it alike.
         """
         found = {path: removed for path in self.paths_below(owner, name) if (removed := self.of_path(path))}
         present = {
             path: removed for path, removed in found.items() if self._reader.entry(path.rpartition(".")[0])
         }
         found = present or found  # of the class before what it was called before
-        alike = len({(removed.gone, removed.successors) for removed in found.values()}) == 1
+        alike = len({(removed.gone, *_new_names(removed)) for removed in found.values()}) == 1
         if len(found) > 1 and (owner == _ANY or not alike):
             usual = [f"{cls}.{name}" for cls in usual_classes(variable)]
             return next((found[path] for path in usual if path in found), None)
-        return next(iter(found.values()), None)
+        return found.get(self._likeliest(found, variable))
+
+    def _likeliest(self, paths: Iterable[str], variable: str) -> str:
+        """Of members of several classes that of the one which a variable is named after, or which counts most, as what
+        took its place does; empty for none.
+        """
+        now = {path: (*self._classes_now(path.rpartition(".")[0]),) for path in paths}
+        weights = self._reader.weights({cls for classes in now.values() for cls in classes})
+        said = set(words(variable))
+
+        def likely(path: str) -> tuple[int, float]:
+            is_named = len(said.intersection(words(path.rpartition(".")[0])))
+            return is_named, max((weights.get(cls, 0.0) for cls in now[path]), default=0.0)
+
+        return max(now, key=likely, default="")
 
     def paths_below(self, owner: str, name: str) -> list[str]:
         """Paths of the removed members called ``name`` of a class and of those below it."""
@@ -184,6 +204,12 @@ class RemovedSymbolLookup:
         ]
         below.sort(key=lambda path: (socket_node(path) not in nodes, path))
         return next(filter(None, map(self.of_path, below)), None)
+
+    def of_sockets(self, side: str, name: str) -> list[str]:
+        """Paths of the removed sockets of a name on a side of nodes; none where one is still taken under that name."""
+        end = f'.{side}["{name}"]'
+        paths = [path for path in self._reader.removed_by_key(key(end)) if path.endswith(end)]
+        return [] if any(map(self._reader.still_works, paths)) else paths
 
     def spelled(self, text: str) -> Iterator[RemovedSymbol]:
         """Removed symbols in any usual spelling; bare enum items only as code writes them."""

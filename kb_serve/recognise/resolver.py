@@ -14,6 +14,7 @@ from kb_serve.recognise.chain_starts import ChainStarts
 from kb_serve.recognise.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.owners import Owners
+from kb_serve.recognise.refusals import keywords, lacks_keyword, refuses
 from kb_serve.recognise.subscripts import CustomProperties
 
 if TYPE_CHECKING:
@@ -36,6 +37,8 @@ _QUOTED = re.compile(r"""(["'])([\w.]+)\1""")
 _GET, _KEY = ChainStep("attr", "get"), re.compile(r"""\s*(["'])([^"']+)\1\s*""")
 _ELEMENT_SUFFIXES = ("modifier", "constraint", "node", "settings")
 _TOLD = 0.2  # fit of the likeliest class of a variable whose name tells nothing
+_NAMED = 0.5  # … of a class that a variable's name tells
+_MOST_TRIED = 12  # readings of which it is asked whether they take a value
 _MAX_BRANCHES = 60
 _OPERATOR_METHODS = frozenset({"poll", "idname", "idname_py", "get_rna_type", "bl_options"})
 
@@ -48,7 +51,8 @@ class ResolvedChain:
     does not have (empty if the whole chain resolved); ``fit`` tells how well a variable's name suits the class
     that was assumed for it, 0 to 1; ``keyed`` is the class whose custom property the chain reaches,
     ``cls`` the class of what a complete one gives, where that is known, and ``alike`` are the members of the last
-    step's name that other cases of its class have, those that count most first.
+    step's name that other cases of its class have, those that count most first. ``owners`` are all classes without the
+    missing name, where a step led to several.
     """
 
     symbols: tuple[str, ...]
@@ -59,6 +63,7 @@ class ResolvedChain:
     keyed: str = ""
     cls: str = ""
     alike: tuple[str, ...] = ()
+    owners: tuple[str, ...] = ()
 
     @property
     def complete(self) -> bool:
@@ -104,7 +109,25 @@ class Resolver:
         unique: dict[tuple[tuple[str, ...], str], ResolvedChain] = {}
         for resolved in self._ranked(readings):
             unique.setdefault((resolved.symbols[-1:], resolved.missing), resolved)
-        return self._writable(chain, list(unique.values()))
+        return self._taking(chain, self._writable(chain, list(unique.values())))
+
+    def _taking(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
+        """The readings of an unknown variable without those that refuse what the chain is set to, or a keyword that it
+        is called with, if others take it.
+        """
+        is_set = chain.assigned and (chain.literal or chain.values)
+        if not is_set and not keywords(chain):
+            return readings
+        guessed = [reading for reading in readings if reading.complete and reading.fit < _NAMED][:_MOST_TRIED]
+        symbols = [(reading, self._reader.symbol(reading.symbols[-1])) for reading in guessed]
+        refusing = [
+            reading
+            for reading, symbol in symbols
+            if symbol and (refuses(symbol, chain) or lacks_keyword(symbol, chain))
+        ]
+        if len(refusing) == len(guessed):
+            return readings
+        return [reading for reading in readings if reading not in refusing]
 
     def _writable(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
         """The readings without those that cannot be assigned, where a chain is assigned and others can."""
@@ -141,7 +164,9 @@ class Resolver:
             following = list(islice(branches, _MAX_BRANCHES))
             if not following:
                 missing, owner = self._unresolved(values[0], step)
-                return ResolvedChain(tuple(symbols), missing, owner, steps_left=len(steps) - number)
+                owners = tuple(dict.fromkeys(self._unresolved(before, step)[1] for before in values))
+                left = len(steps) - number
+                return ResolvedChain(tuple(symbols), missing, owner, steps_left=left, owners=owners)
             first = following[0].symbol
             alike = tuple(dict.fromkeys(after.symbol for after in following if after.symbol != first))
             values = following

@@ -18,6 +18,7 @@ USUAL = 0.95  # fit of a name that scripts use for a class
 OTHERWISE = 0.92  # … and of the further classes that they use it for
 _POINTER = 0.8  # … of what a pointer of that name leads to, or what begins so: a member may tell otherwise
 _LETTER = 0.4  # … of a single letter that a class begins with: it may be anything
+_OBJECT = f"{TYPES}Object"
 _NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|selected|cur|current)_(?=\w)")
 
 # Names that scripts give to instances of a class, besides the class's own name and its beginning. A camera, light or
@@ -25,7 +26,7 @@ _NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|sele
 _NAMES = {
     "Object": "o ob obj object objs cube empty child",
     "Camera Object": "cam camera",
-    "Light Object": "lamp light lamp_data light_data key_light fill_light",
+    "Light Object": "lamp light lamp_data light_data key_light fill_light sun sun_lamp sun_light",
     "Armature Object": "arm armature amt rig",
     "Mesh": "me mesh msh mesh_data",
     "Curve": "cu curve curve_data crv",
@@ -40,8 +41,10 @@ _NAMES = {
     "CyclesRenderSettings": "cycles cscene",
     "SceneEEVEE": "eevee",
     "Material": "mat material mtl mtrl",
-    "Texture ImageTexture": "tex texture",
+    "Texture ImageTexture": "texture",
+    "Texture ImageTexture ShaderNodeTexImage": "tex",
     "Image": "img image",
+    "Image ImageFormatSettings": "im",
     "World": "world wrld wld",
     "Collection": "coll collection grp",
     "UILayout Collection": "col",
@@ -50,7 +53,7 @@ _NAMES = {
     "Keyframe": "kp kf keyframe keyframe_point kfp",
     "Driver": "driver",
     "Driver FCurve": "drv",
-    "AnimData": "anim_data adt animation_data",
+    "AnimData": "ad anim_data adt animation_data",
     "NlaTrack": "nla_track",
     "NlaStrip": "nla_strip",
     "Bone EditBone PoseBone": "bone bn",
@@ -60,6 +63,7 @@ _NAMES = {
     "ParticleSystem ParticleSettings": "psys particle_system ps part",
     "ParticleSettings": "pset particle_settings psettings part_settings",
     "Modifier": "mod md modifier",
+    "ShaderFx": "fx",
     "ClothModifier ClothSettings": "cloth",
     "ClothSettings": "cloth_settings",
     "Constraint": "con cns constraint const crc",
@@ -78,6 +82,7 @@ _NAMES = {
     "MeshPolygon bmesh.types.BMFace": "f face",
     "MeshEdge bmesh.types.BMEdge": "e edge",
     "MeshLoop bmesh.types.BMLoop": "l loop",
+    "bmesh.types.BMLoopUV": "luv loop_uv",
     "SpaceView3D": "space space_data v3d view view3d",
     "SpaceImageEditor": "sima image_editor",
     "SpaceSequenceEditor": "sseq",
@@ -91,8 +96,9 @@ _NAMES = {
     "UILayout FluidFlowSettings": "flow",
     "Depsgraph": "depsgraph deg dg",
     "Preferences": "prefs preferences user_preferences user_prefs userpref",
-    "SequenceEditor": "sed seq_editor sequence_editor",
-    "Strip": "strip seq sequence",
+    "SequenceEditor": "se sed seq_editor sequence_editor",
+    "Strip": "strip sequence",
+    "Strip SequenceEditor": "seq",
     "RigidBodyWorld": "rbw rigidbody_world rb_world",
     "RigidBodyObject": "rb rigid_body",
     "RigidBodyConstraint": "rbc rigid_body_constraint",
@@ -114,7 +120,7 @@ _NAMES = {
     "MovieClip": "clip",
     "Text": "textblock text_block",
     "Event": "event evt",
-    "Library": "lib",
+    "Library UserAssetLibrary": "lib",
     "Volume": "volume vol",
     "bmesh.types.BMesh": "bm bmesh",
 }  # fmt: skip
@@ -154,7 +160,14 @@ def usual_classes(variable: str) -> list[str]:
     name = variable.lower()
     while name not in _BY_NAME and (plain := _NUMBERED.sub("", name)) != name:
         name = plain
-    return _BY_NAME.get(name, [])
+    return _BY_NAME.get(name) or _of_data(name)
+
+
+def _of_data(name: str) -> list[str]:
+    """The classes of the data of objects that scripts call so: ``cam_data`` as ``cam``."""
+    holder, mark, _ = name.rpartition("_data")
+    classes = _BY_NAME.get(holder, []) if mark and name.endswith(mark) else []
+    return [cls for cls in classes if cls != _OBJECT] if _OBJECT in classes else []
 
 
 def classes_of_parts(variable: str) -> list[str]:

@@ -47,6 +47,13 @@ def test_a_sure_fix_is_written_out(kb: KnowledgeBase) -> None:
     assert note.endswith("Write `mat.diffuse_color = (1, 0, 0, 1.0)`.")
 
 
+def test_what_is_gone_comes_before_what_is_wrong_behind_it(kb: KnowledgeBase) -> None:
+    """A line written out without it would fail the same way."""
+    query = 'me.uv_textures.new("Old")'
+    assert notes_on_code(kb.reader, query) == ()
+    assert kb.query(query).notes[0].startswith("`bpy.types.Mesh.uv_textures` does not exist")
+
+
 @pytest.mark.parametrize(
     "query",
     [

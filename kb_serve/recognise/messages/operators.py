@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.symbol_lines import operator_given, operator_needs, refused_nothing
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.messages.guides import ON_OPERATORS, add_guide
 
 if TYPE_CHECKING:
+    from kb_build.records import Symbol
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
@@ -22,6 +24,11 @@ _READS_ONLY = (
 )
 
 
+_SAID = {
+    "id": "data-block",
+    "edit_image": "image",
+    "edit_text": "text",
+}  # what messages call a member of the context
 # Behind a poll that failed for another reason than the context.
 _SAYS_WHY = re.compile(r"[^.]*\bin background-mode")
 
@@ -39,7 +46,9 @@ class Operators:
                 recognition.add(symbol.path, 0.98, "error message")
                 if _SAYS_WHY.match(query, match.end()):
                     continue
-                recognition.notes.append(context_for(symbol))
+                recognition.notes.append(
+                    context_for(symbol, self._said_to_want(symbol, query[match.end() :]))
+                )
                 add_guide(ON_OPERATORS, self._reader, recognition)
                 recognition.add(OVERRIDE, 0.82, "error message")
         for match in forms.first_matches(forms.WRONG_TYPE, query):
@@ -59,3 +68,14 @@ class Operators:
                 if entry := self._reader.entry(f"bmesh.ops.{name}"):
                     recognition.add(entry.path, max(0.82, 0.95 * alike), "similar name")
             recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")
+
+    def _said_to_want(self, operator: Symbol, message: str) -> str:
+        """What all operators of a module want in the context that are known to want one thing, if nothing is known of
+        this one, and its message names that: ``asset.clear`` wants the ``id`` that ``asset.mark`` does. "" for none.
+        """
+        if operator_needs(operator) or refused_nothing(operator):
+            return ""
+        others = map(self._reader.symbol, self._reader.operators_of(operator.owner.removeprefix("bpy.ops.")))
+        given = {operator_given(other) for other in others if other} - {""}
+        member = given.pop() if len(given) == 1 else ""
+        return member if member and _SAID.get(member, member.replace("_", " ")) in message else ""

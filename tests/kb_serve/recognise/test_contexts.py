@@ -50,6 +50,15 @@ def test_a_failed_poll_says_what_helps(kb: KnowledgeBase, path: str, said: str) 
     assert said in note
 
 
+def test_a_poll_that_names_what_its_like_want_says_so(kb: KnowledgeBase) -> None:
+    message = (
+        "RuntimeError: Operator bpy.ops.asset.clear.poll() No data-block selected that is marked as asset"
+    )
+    assert "`with bpy.context.temp_override(id=ob): bpy.ops.asset.clear()`" in kb.query(message).notes[0]
+    other = "RuntimeError: Operator bpy.ops.asset.clear.poll() failed, context is incorrect"
+    assert "temp_override(id=" not in kb.query(other).text
+
+
 @pytest.mark.parametrize(
     ("old", "now"),
     [

@@ -106,6 +106,9 @@ bpy.data.images.new("i", 8, 8).save()
 nodes()["Input_2"]
 tree().interface.items["x"]
 ob.dimensions = 1
+bpy.ops.constraint.followpath_path_animate(constraint="Follow Path")
+scene.render.engine = "CYCLES"; bpy.ops.object.bake(type="COMBINED", pass_filter={"DIRECT", "COLOR"})
+ob.asset_mark(); marked()
 """.splitlines()
 _RUN = """
 import json, os, sys, tempfile
@@ -172,6 +175,10 @@ def cycle():
 
 def drawing():
     return bpy.data.grease_pencils.new("g").layers.new("l").frames.new(1).drawing
+
+def marked():
+    with bpy.context.temp_override(id=ob):
+        bpy.ops.asset.mark()
 
 def film():
     scene.render.engine = "CYCLES"

@@ -7,6 +7,13 @@ from kb_serve.recognise.messages.nameless.message import NamelessMessage
 _T = "bpy.types."
 ANIMATION = (
     NamelessMessage(
+        ("Follow Path constraint not found",),
+        ("bpy.ops.constraint.followpath_path_animate", f"{_T}FollowPathConstraint"),
+        "The operator looks for a constraint of that name on the active object: "
+        "`with bpy.context.temp_override(active_object=obj, object=obj): "
+        "bpy.ops.constraint.followpath_path_animate(constraint=con.name)`.",
+    ),
+    NamelessMessage(
         ("the track does not have any space to accommodate this new strip",),
         (f"{_T}NlaStrips.new", f"{_T}NlaTracks.new"),
         "The track has a strip in these frames: give another `start`, or add it to a new track "

@@ -7,6 +7,12 @@ from kb_serve.recognise.messages.nameless.message import NamelessMessage
 _T = "bpy.types."
 FILES = (
     NamelessMessage(
+        ("Selected data-blocks are already assets",),
+        ("bpy.ops.asset.mark", f"{_T}ID.asset_mark", f"{_T}ID.asset_data"),
+        "All of them are assets already (their `asset_data` is not None), or of a type that cannot be one. "
+        "`ob.asset_mark()` marks one data-block, needs no context, and raises nothing if it is marked.",
+    ),
+    NamelessMessage(
         ("Cannot read '", "No such file or directory"),
         (f"{_T}BlendDataImages.load", "bpy.path.abspath"),
         "There is no such file where Blender looks: `//` begins a path beside the saved .blend; any other relative "

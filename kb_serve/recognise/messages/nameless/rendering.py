@@ -24,6 +24,13 @@ RENDERING = (
         "`settings.file_format = 'PNG'`.",
     ),
     NamelessMessage(
+        ("Combined bake pass requires Emission",),
+        (f"{_O}bake",),
+        "`pass_filter` lacks what the pass is made of: it needs `'EMIT'`, or `'DIRECT'` or `'INDIRECT'` together "
+        "with one of `'DIFFUSE'`, `'GLOSSY'`, `'TRANSMISSION'`: "
+        "`bpy.ops.object.bake(type='COMBINED', pass_filter={'DIRECT', 'INDIRECT', 'DIFFUSE'})`.",
+    ),
+    NamelessMessage(
         ("Current render engine does not support baking",),
         (f"{_O}bake", f"{_T}RenderSettings.engine"),
         "Cycles does: `scene.render.engine = 'CYCLES'`.",
