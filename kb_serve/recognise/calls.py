@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import split_arguments
+from kb_serve.recognise.call_texts import arguments
 from kb_serve.recognise.contexts import NO_OVERRIDE, with_context
 from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.signatures import signature_arguments
@@ -18,29 +18,10 @@ if TYPE_CHECKING:
 
 _NESTED = re.compile(r"""\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}|'[^']*'|"[^"]*\"""")
 _KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
-_ARGUMENT = re.compile(r"\s*(?:(\w+)\s*=(?!=))?\s*(.*)", re.DOTALL)
-_STRINGS = re.compile(r"""(["'])((?:(?!\1).)*)\1""")
 _VALUE = re.compile(r"""(["'])[^"']*\1|-?[\d.]+""")  # a text, a number
 _FRACTION = re.compile(r"-?(?:\d+\.\d*|\.\d+)")
 _EXECUTION_CONTEXT = re.compile(r"(?:INVOKE|EXEC)_\w+")
 _DEPTH = 5
-
-
-def arguments(text: str) -> Iterator[tuple[str, str]]:
-    """(keyword or "", text) of each argument between a call's brackets."""
-    return map(_argument, split_arguments(text))
-
-
-def _argument(text: str) -> tuple[str, str]:
-    match = _ARGUMENT.fullmatch(text)
-    return (match[1] or "", match[2].strip()) if match else ("", text.strip())
-
-
-def texts_in(argument: str) -> list[str]:
-    """The quoted texts that an argument is: one, or those in a set."""
-    if argument[:1] not in set("'\"{"):
-        return []
-    return [match[2] for match in _STRINGS.finditer(argument)]
 
 
 def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.records import NOT_TAKEN
 from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
-from kb_serve.recognise.calls import arguments, places_of, texts_in
+from kb_serve.recognise.call_texts import arguments, texts_in
+from kb_serve.recognise.calls import places_of
 from kb_serve.recognise.likely_values import likely_items
 
 if TYPE_CHECKING:

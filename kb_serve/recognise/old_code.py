@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, words
 from kb_serve.reader import TYPES
-from kb_serve.recognise.calls import arguments, texts_in
+from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.lost_names import LostName, LostNames, is_telling

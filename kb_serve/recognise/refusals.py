@@ -8,7 +8,7 @@ import ast
 import math
 from typing import TYPE_CHECKING
 
-from kb_serve.recognise.calls import arguments
+from kb_serve.recognise.call_texts import arguments
 
 if TYPE_CHECKING:
     from kb_build.records import Symbol
