@@ -11,6 +11,7 @@ from kb_build.flow.core import ANY, DEEPEST_RUN
 from kb_build.flow.expressions import constants
 from kb_build.flow.facts import (
     BMESH_RESULTS,
+    CLASS_NAMES,
     DERIVED_BY_SCRIPTS,
     NAME_OF_PROPERTY,
     OPEN_CALLS,
@@ -18,6 +19,7 @@ from kb_build.flow.facts import (
     T,
 )
 from kb_build.flow.narrowing import Narrowing
+from kb_build.flow.texts import passed
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
@@ -113,6 +115,8 @@ class Calls(Narrowing):
         """A call of one of several: an argument is recorded for all of them, and is none where none takes it."""
         parts = [*node.keywords, *(part for argument in node.args for part in constants(argument))]
         parts += [part for keyword in node.keywords for part in constants(keyword.value)]
+        given = [*node.args, *(keyword.value for keyword in node.keywords)]
+        parts += [part for part in given if isinstance(part, ast.Name)]
         called = [member for member in callee.members if member is not NONE]
         results: list[Type] = []
         rows: dict[ast.AST, list[Resolution]] = defaultdict(list)
@@ -255,7 +259,14 @@ class Calls(Narrowing):
             for item in nodes:
                 for constant in constants(item) if isinstance(item, (ast.Constant, ast.IfExp)) else ():
                     if constant in self.types:  # else it is of a branch for other versions
-                        self.resolve_value(constant, (symbol.path,), parameter.name)
+                        self.resolve_value(constant, constant.value, (symbol.path,), parameter.name)
+                if isinstance(item, ast.Name):
+                    self.check_carried(item, (symbol.path,), parameter.name)
+        elif isinstance(node, ast.Name) and CLASS_NAMES.get(symbol.path) == parameter.name:
+            self.resolutions.pop(node, None)
+            text = self.carried_text(node)
+            if text and not self.api.is_class(T + text):
+                self.resolve(node, "class", text, missing=(f"{symbol.path}({parameter.name})",))
 
     def _decided(
         self,
@@ -403,32 +414,36 @@ class Calls(Narrowing):
         if any(isinstance(argument, ast.Starred) for argument in node.args):
             arguments = []
         values = arguments if callee.receiver is None else [callee.receiver, *arguments]
-        self._pass(callee.number, values, {keyword.arg or "": kind for keyword, kind in keywords})
+        given = self._pass(callee.number, values, {keyword.arg or "": kind for keyword, kind in keywords})
         self._run_now(callee.number)
-        # What it returns is not known where it was not read with what this call passes.
-        is_read = function.running or not function.stale
-        return (self.returned(callee.number) if is_read else None) or UNKNOWN
+        if any(isinstance(part, ast.Starred) for part in node.args) or "" in given or function.running:
+            # What it returns is not known where it was not read with what this call passes.
+            is_read = function.running or not function.stale
+            return (self.returned(callee.number) if is_read else None) or UNKNOWN
+        return self.result_of_call(callee.number, given, node)
 
     def _run_now(self, number: int) -> None:
         """Reads a function for what it returns, or for what it binds, unless it is known or too far inside."""
         function = self.functions[number]
         if (
             function.stale
+            and not self.tries
             and not function.running
             and self.depth < DEEPEST_RUN
             and function.runs < _MOST_RUNS
         ):
             self.run(number)
 
-    def _pass(self, number: int, values: list[Type], keywords: dict[str, Type]) -> None:
-        """Adds what a call passes to what a function is known to receive."""
+    def _pass(self, number: int, values: list[Type], keywords: dict[str, Type]) -> dict[str, Type]:
+        """Adds what a call passes to what a function is known to receive; gives it by parameter."""
         function = self.functions[number]
         parameters = function.node.args
         names = [argument.arg for argument in (*parameters.posonlyargs, *parameters.args)]
         given = {**dict(zip(names, values, strict=False)), **keywords}
         for name, kind in given.items():
             if name:
-                self._receive(function, name, kind)
+                self._receive(function, name, passed(kind))
+        return given
 
     @staticmethod
     def _receive(function: FunctionDefinition, name: str, kind: Type) -> None:

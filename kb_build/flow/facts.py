@@ -113,6 +113,9 @@ BMESH_RESULTS = {
     "region": ("BMFace",), "new_geom": ("BMVert", "BMEdge", "BMFace"), "split": ("BMVert", "BMEdge", "BMFace"),
 }  # fmt: skip
 
+# Functions that take the name of a class of nodes or sockets: path → parameter.
+CLASS_NAMES = {f"{T}Nodes.new": "type", f"{T}NodeTreeInterface.new_socket": "socket_type"}
+
 # Properties that RNA declares wider than they are: path → class.
 NARROWER = {
     "bpy.types.SpaceNodeEditor.edit_tree": "NodeTree",

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 EVERYTHING = "*"  # a chain that stands for all of them
+CHOSEN = "=*"  # what stands here may not be come to with every text that comes from elsewhere
 _DEEPEST_CHAIN = 8
 _NESTED = (ListType, Tuple, Mapping, Union, Instance, Function, Builtin, LocalFunction)
 
@@ -39,7 +40,7 @@ class State:
     """What is known at one place of one scope: of names, and of chains (``context.object``) by their text.
 
     ``doubted`` are names and chains of which the script has found here that they lack a member, as those of another
-    Blender do: what it reads from them is not for this one; members (``.draw_type``) that it has asked for; or
+    Blender do: what it reads from them is not for this one; members (``.draw_type``) that it has asked for; CHOSEN; or
     EVERYTHING.
     """
 
