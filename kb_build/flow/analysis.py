@@ -77,7 +77,7 @@ class Analyzer(Statements, Functions, Calls):
         self._follow_calls()
 
     def _follow_calls(self) -> None:
-        """Adds to what is found in files what the texts come to that are passed by calls, or that a loop goes through."""
+        """Adds to what is found in files what the texts come to that calls pass, or that a loop goes through."""
         hidden = {id(file): _nodes_in(file.doubted) for file in self.sources}
         waiting = [(file, reader) for file, reader in self._readers() if self.is_current(reader)]
         followed: set[tuple[int, Given]] = set()

@@ -17,6 +17,8 @@ from kb_build.flow.facts import (
     OPEN_CALLS,
     VERSION,
     T,
+    leaves_active,
+    made_by,
 )
 from kb_build.flow.narrowing import Narrowing
 from kb_build.flow.texts import passed
@@ -104,10 +106,28 @@ class Calls(Narrowing):
         arguments = [self.evaluate(argument) for argument in node.args]
         keywords = [(keyword, self.evaluate(keyword.value)) for keyword in node.keywords]
         if callee is UNKNOWN:
-            return self._made_by_class_name(node, arguments, keywords)
-        if isinstance(callee, Union):
-            return self._one_of_several(callee, node, arguments, keywords)
-        return self._one_call(callee, node, arguments, keywords)
+            result = self._made_by_class_name(node, arguments, keywords)
+        elif isinstance(callee, Union):
+            result = self._one_of_several(callee, node, arguments, keywords)
+        else:
+            result = self._one_call(callee, node, arguments, keywords)
+        self.scope.state.active = self._active_after(callee)
+        return result
+
+    def _active_after(self, callee: Type) -> Type | None:
+        """The active object behind a call, where an operator has made it and nothing may have changed that."""
+        match callee:
+            case Operator(path=path) if kind := made_by(path):
+                data = self.api.object_data(kind)
+                return Instance(_OBJECT, (("data", data),)) if data is not UNKNOWN else None
+            case Operator(path=path) if not leaves_active(path):
+                return None
+            case Function(path=path) if path.endswith((".temp_override", ".remove", ".link", ".unlink")):
+                return None
+            case Operator() | Function() | ClassObject() | Builtin():
+                return self.scope.state.active
+            case _:
+                return None
 
     def _one_of_several(
         self, callee: Union, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]

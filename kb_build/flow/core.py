@@ -179,7 +179,7 @@ class Core:
         return self.function or self.file
 
     def comes_surely(self, text: str) -> bool:
-        """Whether a text that a name holds surely is what is used here: nothing asks for it, nor chooses among several."""
+        """Whether a text that a name holds surely is what is used here: nothing asks for it, or chooses by it."""
         state = self.scope.state
         is_chosen = CHOSEN in state.doubted or state.doubts(name_doubt(text))
         return not (self.tolerant or self.guessing or is_chosen)

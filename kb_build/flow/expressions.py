@@ -8,7 +8,7 @@ import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, SUMS, VERSION, T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import chain_text, name_doubt
 from kb_build.flow.trees import children
@@ -132,7 +132,8 @@ class Expressions(Members):
             )  # fmt: skip
         if known is not None:
             return known
-        return found.type
+        made = self.scope.state.active
+        return made if made is not None and READ_ACTIVE.issuperset(found.symbols or "?") else found.type
 
     def _subscript(self, node: ast.Subscript) -> Type:
         owner = self.evaluate(node.value)
