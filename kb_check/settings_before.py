@@ -65,8 +65,10 @@ def set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Sy
 
 
 def made_just_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Symbol) -> str:
-    """What has made the owner of a setting before a statement of the same body, with nothing between that may matter: the
-    ``new`` that a name is bound to, or the operator of whose new object the owner is the data; empty for none.
+    """What has made the owner of a setting before a statement of the same body, with nothing between that may matter.
+
+    That is the ``new`` that a name is bound to, or the operator of whose new object the owner is the data; empty for
+    none.
     """
     if statement not in places(script):
         return ""

@@ -69,9 +69,11 @@ class Analyzer(Statements, Functions, Calls):
         """Reads every module, then every function with what it is known to receive."""
         for file in self.sources:
             self.read_file(file)
+        self.rounds = True
         for _ in range(_MOST_ROUNDS):
             if not self._read_functions():
                 break
+        self.settled, self.depth = True, 0
         self.doubt_denials()
         doubt_what_others_use(self.sources, self.numbers, self._is_called_by_blender)
         self._follow_calls()
@@ -90,7 +92,7 @@ class Analyzer(Statements, Functions, Calls):
                 if (number, received) in followed or call in hidden[id(file)]:
                     continue
                 followed.add((number, received))
-                reading = self.functions[number].calls.get(received)
+                reading = self.reading_for(number, received)
                 if reading is not None and self.is_current(reading):
                     waiting.append((reading.file or file, reading))
 
@@ -157,7 +159,6 @@ class Analyzer(Statements, Functions, Calls):
             self.depth, self.steps_left = 0, file.steps_left
             try:
                 self.run(number)
-                self.read_calls_again(number)
             except RecursionError:
                 file.unread.add(self.functions[number].node.args)
             except StepsExhausted:

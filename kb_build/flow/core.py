@@ -72,6 +72,8 @@ class Core:
         self.tolerant = 0
         self.guessing = False
         self.tries = False  # reads again, for one call or one turn of a loop alone
+        self.rounds = False  # all modules were read, their functions are
+        self.settled = False  # and no function will be read again for all its calls
         self.turning = False  # it is one turn of a loop
         self.dictionaries = 0  # around what is being read
         self.depth = 0
@@ -101,6 +103,10 @@ class Core:
 
     def result_of_call(self, number: int, given: dict[str, Type], node: ast.Call) -> Type:
         """What a function of the script returns to a call that passes this; it was read for all calls before."""
+        raise NotImplementedError
+
+    def returns_still(self, number: int, received: Given, kind: Type | None) -> bool:
+        """Whether a function of the script is still known to return something to a call that passes this."""
         raise NotImplementedError
 
     def read_file(self, file: SourceFile) -> None:
@@ -164,13 +170,23 @@ class Core:
 
     def is_current(self, reader: Reader) -> bool:
         """Whether what a function or a module took from other definitions is still all that is known of them."""
-        return all(self._known(number, name) == kind for (number, name), kind in reader.readings.items())
+        return all(
+            self._known(number, name) == kind
+            if isinstance(name, str)
+            else self.returns_still(number, name, kind)
+            for (number, name), kind in reader.readings.items()
+        )
 
     def doubt_denials(self) -> None:
         """Marks as unsure what was found missing in what turned out to be more, and was not read again."""
+        current: dict[int, bool] = {}
         for resolutions, node, reader in self._denials:
             row = resolutions.get(node)
-            if row is not None and row.missing and row.sure and not self.is_current(reader):
+            if row is None or not row.missing or not row.sure:
+                continue
+            if id(reader) not in current:
+                current[id(reader)] = self.is_current(reader)
+            if not current[id(reader)]:
                 resolutions[node] = replace(row, sure=False)
 
     @property
@@ -184,10 +200,7 @@ class Core:
         is_chosen = CHOSEN in state.doubted or state.doubts(name_doubt(text))
         return not (self.tolerant or self.guessing or is_chosen)
 
-    def _known(self, number: int, name: str | Given) -> Type | None:
-        if not isinstance(name, str):
-            call = self.functions[number].calls.get(name)
-            return call.returned if call else None
+    def _known(self, number: int, name: str) -> Type | None:
         if not name:
             return self.functions[number].returned
         found = self._find_attribute(number, name)

@@ -26,8 +26,8 @@ class FunctionDefinition:
     run took from other definitions, ``uses`` the calls that it made, ``carried`` what texts were found to be in it that
     come from elsewhere.
 
-    ``calls`` has a reading for what each call passes, where it was read so: a definition of its own, ``exact``, whose
-    ``received`` is that alone.
+    ``passed`` is what single calls pass; ``calls`` has a reading for each, where it was read so: a definition of its
+    own, ``exact``, whose ``received`` is that alone.
     """
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -51,6 +51,7 @@ class FunctionDefinition:
     uses: Uses = field(default_factory=Uses)
     carried: Carried = field(default_factory=Carried)
     calls: dict[Given, FunctionDefinition] = field(default_factory=dict[Given, "FunctionDefinition"])
+    passed: set[Given] = field(default_factory=set[Given])
     exact: bool = False
 
 

@@ -12,7 +12,21 @@ from kb_build.flow.scopes import CHOSEN, Scope, State, kept, name_doubt
 from kb_build.flow.texts import for_one_call, has_passed, texts_in, without_texts
 from kb_build.flow.trees import default_values
 from kb_build.flow.trials import Trials
-from kb_build.flow.types import NONE, UNKNOWN, Given, Type, join
+from kb_build.flow.types import (
+    NONE,
+    PASSED,
+    UNKNOWN,
+    Given,
+    Instance,
+    Mapping,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    Union,
+    Unknown,
+    join,
+)
 
 if TYPE_CHECKING:
     from kb_build.flow.definitions import FunctionDefinition
@@ -66,19 +80,28 @@ class Functions(Parameters, Trials):
         """See :class:`core.Core`."""
         function = self.functions[number]
         whole = self._with_defaults(function, given)
-        call = self._reading_for(number, whole)
-        if call is None:
-            return (UNKNOWN if function.stale else self.returned(number)) or UNKNOWN
-        received, reading = call
-        self.note(number, received, reading.returned)
-        texts = [text for kind in whole.values() for text in texts_in(kind)]
-        state = self.scope.state
-        is_open = self.tolerant or state.doubts() or CHOSEN in state.doubted
-        if not is_open and not any(has_passed(kind) for kind in whole.values()):
-            asked_for = (name_doubt(str(text.value)) for text in texts)
-            if state.doubted.isdisjoint(asked_for):
-                self.reader.uses.add((number, received, node))
-        return reading.returned or UNKNOWN
+        received = _as_one_call(function, whole)
+        has_texts = any(True for kind in whole.values() for _ in texts_in(kind))
+        if has_texts and self._comes_surely(whole):
+            self.reader.uses.add((number, received, node))
+        returned = function.returned
+        is_used = not (isinstance(self.statement, ast.Expr) and self.statement.value is node)
+        if is_used and (
+            function.stale or not self._is_enough(function, returned, received, has_texts=has_texts)
+        ):
+            call = self.reading_for(number, received)
+            returned = call.returned if call else UNKNOWN if function.stale else returned
+        if is_used:
+            self.note(number, received, returned)
+        return (UNKNOWN if function.stale and not is_used else returned) or UNKNOWN
+
+    def returns_still(self, number: int, received: Given, kind: Type | None) -> bool:
+        """Whether a function is still known to return something to a call that passes this."""
+        function = self.functions[number]
+        if function.returned == kind and not function.stale:
+            return True
+        call = self.reading_for(number, received) if self.settled else function.calls.get(received)
+        return call is not None and call.returned == kind
 
     def _with_defaults(self, function: FunctionDefinition, given: dict[str, Type]) -> dict[str, Type]:
         """What each parameter receives from a call, its default where that gives nothing."""
@@ -93,39 +116,58 @@ class Functions(Parameters, Trials):
                 found[argument.arg] = types.get(default, UNKNOWN)
         return found
 
-    def _reading_for(self, number: int, whole: dict[str, Type]) -> tuple[Given, FunctionDefinition] | None:
-        """A reading of a function for what one call passes, or for calls like it where there are too many."""
-        function = self.functions[number]
-        exact = tuple((name, for_one_call(kind)) for name, kind in whole.items())
-        alike = tuple((name, without_texts(kind)) for name, kind in whole.items())
-        unknown = tuple((name, UNKNOWN) for name in whole)
-        for received, most in ((exact, _MOST_CALLS), (alike, _MOST_CALLS + _MOST_KINDS), (unknown, 0)):
-            known = function.calls.get(received)
-            if known is not None:
-                return received, known
-            if len(function.calls) < most or received is unknown:
-                call = self._read_call(number, received)
-                if call is None:
-                    return None
-                function.calls[received] = call
-                return received, call
-        return None
+    def _comes_surely(self, whole: dict[str, Type]) -> bool:
+        """Whether a call surely happens where it is read, with texts that are those of this call."""
+        state = self.scope.state
+        if self.tolerant or state.doubts() or CHOSEN in state.doubted or any(map(has_passed, whole.values())):
+            return False
+        texts = (str(text.value) for kind in whole.values() for text in texts_in(kind))
+        return not state.doubted or state.doubted.isdisjoint(map(name_doubt, texts))
 
-    def read_calls_again(self, number: int) -> None:
-        """Reads a function, which was read again for all its calls, again for each of them."""
+    def _is_enough(
+        self, function: FunctionDefinition, returned: Type | None, received: Given, *, has_texts: bool
+    ) -> bool:
+        """Whether what a function returns to all its calls is as much as could be known of one of them."""
+        if returned is None or (not has_texts and _is_alone(function, received)):
+            return True
+        if returned is UNKNOWN:
+            return all(kind is UNKNOWN for _, kind in received)
+        return self._is_one(returned, has_texts=has_texts)
+
+    def _is_one(self, kind: Type, *, has_texts: bool) -> bool:  # noqa: PLR0911 - one return a type
+        """Whether a type is not several, nor one of which a text may decide more."""
+        match kind:
+            case Union() | Unknown():
+                return False
+            case Instance():
+                return not (has_texts and self.api.descendants(kind.cls))
+            case Plain(source=source):
+                return source != PASSED
+            case Tuple(items=items):
+                return all(self._is_one(item, has_texts=has_texts) for item in items)
+            case Sequence():
+                return self._is_one(kind.element, has_texts=has_texts)
+            case Mapping():
+                return self._is_one(kind.value, has_texts=has_texts)
+            case _:
+                return True
+
+    def reading_for(self, number: int, received: Given) -> FunctionDefinition | None:
+        """A function as it is for one call; None where that is too deep inside, or too much to read."""
         function = self.functions[number]
-        for received in function.calls:
-            again = self._read_call(number, received)
-            if again is None:  # too much to read: it may return anything that it returns to any call
-                again = replace(function.calls[received], returned=function.returned, uses=set(), carried={})
-            function.calls[received] = again
+        known = function.calls.get(received)
+        # While its module is read, what a function returned before is what it returns.
+        if known is not None and (not self.rounds or known.seen == self.stamp(function)):
+            return known
+        call = self._read_call(number, received)
+        if call is None:
+            function.calls.pop(received, None)
+            return None
+        function.calls[received] = call
+        return call
 
     def _read_call(self, number: int, received: Given) -> FunctionDefinition | None:
-        """A function as it is for one call; None where that is too deep inside, or too much."""
         function = self.functions[number]
-        file = function.file or self.file
-        if self._is_alone(function, received):
-            return replace(function, uses=set(), carried={}, calls={}, exact=True)
         if function.running or self.depth >= DEEPEST_RUN:
             return None
         call = replace(
@@ -138,21 +180,33 @@ class Functions(Parameters, Trials):
             carried={},
             calls={},
             exact=True,
+            seen=self.stamp(function),
         )
         function.running = True
         try:
-            with self.inside(file, self._scope_of(function), call):
+            with self.inside(function.file or self.file, self._scope_of(function), call):
                 is_read = self.try_reading(lambda: self._read_function(call))
         finally:
             function.running = False
         return call if is_read else None
 
-    @staticmethod
-    def _is_alone(function: FunctionDefinition, received: Given) -> bool:
-        """Whether a function was read for all its calls, and they are all like this one, without any text."""
-        if function.stale or any(True for _, kind in received for _ in texts_in(kind)):
-            return False
-        given = dict(received)
-        return all(
-            name in given and for_one_call(kind) == given[name] for name, kind in function.received.items()
-        ) and all(given.get(name) is UNKNOWN for name in function.unknown)
+
+def _as_one_call(function: FunctionDefinition, whole: dict[str, Type]) -> Given:
+    """What one call passes; of too many calls, without the texts, or without anything."""
+    exact = tuple((name, for_one_call(kind)) for name, kind in whole.items())
+    if exact in function.passed or len(function.passed) < _MOST_CALLS:
+        function.passed.add(exact)
+        return exact
+    alike = tuple((name, without_texts(kind)) for name, kind in whole.items())
+    if alike in function.passed or len(function.passed) < _MOST_CALLS + _MOST_KINDS:
+        function.passed.add(alike)
+        return alike
+    return tuple((name, UNKNOWN) for name in whole)
+
+
+def _is_alone(function: FunctionDefinition, received: Given) -> bool:
+    """Whether all calls of a function, which was read for all of them, pass the same."""
+    given = dict(received)
+    return all(
+        name in given and for_one_call(kind) == given[name] for name, kind in function.received.items()
+    ) and all(given.get(name) is UNKNOWN for name in function.unknown)

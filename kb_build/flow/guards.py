@@ -71,6 +71,8 @@ class Guards(Expressions):
 
     def choosing(self, test: ast.expr) -> frozenset[str]:
         """CHOSEN where a condition, which was read, may hold of some texts that come from elsewhere but not of all."""
+        if CHOSEN in self.scope.state.doubted:
+            return frozenset()
         names = (part for part in walk(test) if isinstance(part, ast.Name))
         return frozenset({CHOSEN} if any(map(self._may_choose, names)) else ())
 

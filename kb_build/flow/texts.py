@@ -11,10 +11,13 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 _NUMBERS = frozenset({"int", "float"})
+_WITH_PARTS = (Plain, Tuple, Union, Sequence, Mapping)
 
 
 def texts_in(kind: Type) -> Iterator[Plain]:
     """The text literals in a type."""
+    if not isinstance(kind, _WITH_PARTS):
+        return
     match kind:
         case Plain(kind="str", value=str()):
             yield kind
@@ -76,12 +79,15 @@ def _each_plain(  # noqa: PLR0911 - one return a type
 ) -> Type:
     """A type with each plain part changed; with ``numbers``, a tuple of numbers is one of fractions."""
 
+    if not isinstance(kind, _WITH_PARTS):
+        return kind
+    if isinstance(kind, Plain):
+        return change(kind)
+
     def each(part: Type) -> Type:
         return _each_plain(part, change, numbers=numbers)
 
     match kind:
-        case Plain():
-            return change(kind)
         case Tuple(items=items):
             if numbers and items and all(isinstance(one, Plain) and one.kind in _NUMBERS for one in items):
                 return Tuple((FLOAT,) * len(items))
@@ -93,5 +99,3 @@ def _each_plain(  # noqa: PLR0911 - one return a type
         case Mapping():
             pairs = tuple((name, each(value)) for name, value in kind.items)
             return Mapping(_change_key(kind, change), each(kind.value), pairs)
-        case _:
-            return kind

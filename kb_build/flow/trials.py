@@ -34,7 +34,7 @@ class Trials(Core):
             for row in self.resolutions.values():
                 if _comes_from_elsewhere(row):
                     self.reader.carried.setdefault((row.node, row.value), row)
-        except StepsExhausted:
+        except (StepsExhausted, RecursionError):
             if outer[2]:  # which is a part of another such reading
                 raise
             return False
