@@ -85,15 +85,11 @@ class Functions(Parameters, Trials):
         if has_texts and self._comes_surely(whole):
             self.reader.uses.add((number, received, node))
         returned = function.returned
-        is_used = not (isinstance(self.statement, ast.Expr) and self.statement.value is node)
-        if is_used and (
-            function.stale or not self._is_enough(function, returned, received, has_texts=has_texts)
-        ):
+        if function.stale or not self._is_enough(function, returned, received, has_texts=has_texts):
             call = self.reading_for(number, received)
             returned = call.returned if call else UNKNOWN if function.stale else returned
-        if is_used:
-            self.note(number, received, returned)
-        return (UNKNOWN if function.stale and not is_used else returned) or UNKNOWN
+        self.note(number, received, returned)
+        return returned or UNKNOWN
 
     def returns_still(self, number: int, received: Given, kind: Type | None) -> bool:
         """Whether a function is still known to return something to a call that passes this."""

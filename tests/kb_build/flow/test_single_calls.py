@@ -38,7 +38,7 @@ def test_a_result_is_known_however_many_calls_there_are(api: Api, count: int) ->
 
 def test_beyond_the_bound_the_texts_of_calls_are_left_out(api: Api) -> None:
     api_types = ["ShaderNodeMath", "ShaderNodeMix"]
-    many = "".join(f'node("ShaderNodeMath", "{at}")\n' for at in range(functions._MOST_CALLS))  # noqa: SLF001
+    many = "".join(f'node("ShaderNodeMath", "{at}")\n' for at in range(functions._MOST_CALLS))
     for kind in api_types:
         assert last_type(api, f'{_NODES}node("{kind}")') == {kind}
         assert last_type(api, f'{_NODES}{many}node("{kind}")') == {"Node"}
@@ -50,7 +50,8 @@ def test_beyond_the_bound_the_texts_of_calls_are_left_out(api: Api) -> None:
         (_NODES + "node('ShaderNodeMath')\nnode('ShaderNodeMix')\nnode('ShaderNodeMath')", "ShaderNodeMath"),
         (_NODES + "node('ShaderNodeMix')\nnode(loc=(1, 2), kind='ShaderNodeMath')", "ShaderNodeMath"),
         (
-            _NODES + "def math(x):\n    return node('ShaderNodeMath', x)\nnode('ShaderNodeMix')\nmath((1, 1))",
+            _NODES
+            + "def math(x):\n    return node('ShaderNodeMath', x)\nnode('ShaderNodeMix')\nmath((1, 1))",
             "ShaderNodeMath",
         ),
         (
@@ -64,8 +65,8 @@ def test_beyond_the_bound_the_texts_of_calls_are_left_out(api: Api) -> None:
             "Scene",
         ),
         (
-            "import bpy\nclass B:\n    def add(self, kind):\n        return bpy.context.object.modifiers.new('', kind)\n"
-            "b = B()\nb.add('BEVEL')\nb.add('SUBSURF')",
+            "import bpy\nclass B:\n    def add(self, kind):\n"
+            "        return bpy.context.object.modifiers.new('', kind)\nb = B()\nb.add('BEVEL')\nb.add('SUBSURF')",
             "SubsurfModifier",
         ),
         (
