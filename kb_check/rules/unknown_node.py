@@ -1,16 +1,14 @@
 """A node or a socket type that does not exist, given by its name, or a node that its tree does not take.
 
-Looked at where a literal is given to ``nodes.new`` or to ``interface.new_socket``. A name that only an add-on's node
-could have is left alone, as is a former one that this Blender still takes: reported is what another Blender had, and
-what begins as Blender's own nodes do.
+Looked at where a literal, or a name that surely holds one, is given to ``nodes.new`` or to ``interface.new_socket``. A
+name that only an add-on's node could have is left alone, as is a former one that this Blender still takes: reported is
+what another Blender had, and what begins as Blender's own nodes do.
 
 ```python
 nodes.new("ShaderNodeTexMusgrave")  # reported since 4.1: ShaderNodeTexNoise
 nodes.new("ShaderNodeTexNoise")
-kind = "ShaderNodeTexMusgrave"
-nodes.new(
-    kind
-)  # reported as well, where the name surely holds it: so are arguments, and what a loop goes through
+for kind in ("ShaderNodeMix", "ShaderNodeTexMusgrave"):
+    nodes.new(kind)  # reported: the second
 nodes.new("Noise Texture")  # reported: that is its label
 tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
 tree.nodes.new("ShaderNodeBsdfPrincipled")  # reported: geometry node trees take none
