@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from kb_build.flow.facts import T
+from kb_build.flow.facts import READ_ACTIVE, SET_ACTIVE
 
 # What it is read by, and what it is set by.
-READ = frozenset({f"{T}Context.object", f"{T}Context.active_object"})
-SET = f"{T}LayerObjects.active"
+READ = READ_ACTIVE
+SET = SET_ACTIVE

@@ -70,7 +70,8 @@ class Script:
 
     @cached_property
     def _in_order(self) -> list[Resolution]:
-        return sorted(self.analysis.resolutions.values(), key=lambda row: (_start(row.node), row.kind))
+        rows = [*self.analysis.resolutions.values(), *self.analysis.carried]
+        return sorted(rows, key=lambda row: (_start(row.node), row.kind))
 
     def missing(self, *kinds: str) -> Iterator[Resolution]:
         """The parts that surely stand for nothing that this Blender, or the package, has."""

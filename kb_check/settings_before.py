@@ -15,6 +15,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import made_by
 from kb_build.flow.trees import walk
 from kb_check import active_object
 from kb_check.calls import calls_by_node
@@ -61,6 +62,42 @@ def set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Sy
             return _given_to_maker(script, call, owner, setting)
         case _:
             return None
+
+
+def made_just_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Symbol) -> str:
+    """What has made the owner of a setting before a statement of the same body, with nothing between that may matter.
+
+    That is the ``new`` that a name is bound to, or the operator of whose new object the owner is the data; empty for
+    none.
+    """
+    if statement not in places(script):
+        return ""
+    statements, place = places(script)[statement]
+    body = _body(script, statements[0])
+    place = body.last_before(place, setting.name, owner)
+    last = statements[place] if place >= 0 else None
+    holder = owner.value if isinstance(owner, ast.Attribute) and owner.attr == "data" else None
+    match last:
+        case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call) if (
+            isinstance(owner, ast.Name) and name == owner.id
+        ):
+            path = callee_path(script, call)
+            return path if path.endswith(".new") else ""
+        case ast.Assign(targets=[ast.Name(id=name)], value=value) if (
+            isinstance(holder, ast.Name) and name == holder.id
+        ):
+            holder = value
+            place = body.last_before(place, setting.name, value)
+        case _:
+            pass
+    row = script.analysis.resolutions.get(holder) if holder is not None else None
+    if row is None or not row.symbols or not active_object.READ.issuperset(row.symbols) or place < 0:
+        return ""
+    match statements[place]:
+        case ast.Expr(value=ast.Call() as call) if made_by(callee_path(script, call)):
+            return callee_path(script, call)
+        case _:
+            return ""
 
 
 def _given_to_maker(script: Script, call: ast.Call, owner: ast.expr, setting: Symbol) -> ast.expr | None:

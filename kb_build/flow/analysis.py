@@ -13,12 +13,14 @@ from kb_build.flow.other_versions import doubt_what_others_use
 from kb_build.flow.parse import parsed
 from kb_build.flow.source_files import SourceFile, keeps_annotations, module_name
 from kb_build.flow.statements import Statements
+from kb_build.flow.trees import children
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Mapping, Sequence
+    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
     from kb_build.flow.api import Api
-    from kb_build.flow.types import Resolution, Type
+    from kb_build.flow.core import Reader
+    from kb_build.flow.types import Given, Resolution, Type
 
 MOST_CHARACTERS = 2_000_000
 MOST_STEPS = 4_000_000  # expressions that are read, some more than once
@@ -37,6 +39,8 @@ class Analysis:
     statements, and parts of them, that stand behind a condition on Blender's version which is not decided.
     ``functions`` and ``classes`` are the definitions by the numbers that LocalFunction and LocalClass have.
 
+    ``carried`` is what more is missing where texts are used that come from elsewhere: by calls, by a loop's turns.
+
     What the script, or one that is analysed with it, adds to the API: ``own_operators`` are operators (paths below
     bpy.ops, their modules too), ``registered`` the properties of classes (class, name), ``own_types`` the names of
     classes below bpy.types. A ``*`` stands for any class or name, where the script computes it.
@@ -53,6 +57,7 @@ class Analysis:
     doubted: Collection[ast.stmt | ast.expr] = ()
     functions: Sequence[ast.AST] = ()
     classes: Sequence[ast.ClassDef] = ()
+    carried: Sequence[Resolution] = ()
 
 
 class Analyzer(Statements, Functions, Calls):
@@ -64,11 +69,36 @@ class Analyzer(Statements, Functions, Calls):
         """Reads every module, then every function with what it is known to receive."""
         for file in self.sources:
             self.read_file(file)
+        self.rounds = True
         for _ in range(_MOST_ROUNDS):
             if not self._read_functions():
                 break
+        self.settled, self.depth = True, 0
         self.doubt_denials()
         doubt_what_others_use(self.sources, self.numbers, self._is_called_by_blender)
+        self._follow_calls()
+
+    def _follow_calls(self) -> None:
+        """Adds to what is found in files what the texts come to that calls pass, or that a loop goes through."""
+        hidden = {id(file): _nodes_in(file.doubted) for file in self.sources}
+        waiting = [(file, reader) for file, reader in self._readers() if self.is_current(reader)]
+        followed: set[tuple[int, Given]] = set()
+        for file, reader in waiting:  # it grows
+            for row in reader.carried.values():
+                known = file.resolutions.get(row.node)
+                if known is None or not known.missing or known.value != row.value or not known.sure:
+                    file.carried_rows.append(row)
+            for number, received, call in reader.uses:
+                if (number, received) in followed or call in hidden[id(file)]:
+                    continue
+                followed.add((number, received))
+                reading = self.reading_for(number, received)
+                if reading is not None and self.is_current(reading):
+                    waiting.append((reading.file or file, reading))
+
+    def _readers(self) -> Iterator[tuple[SourceFile, Reader]]:
+        yield from ((file, file) for file in self.sources)
+        yield from ((function.file, function) for function in self.functions if function.file)
 
     def _is_called_by_blender(self, node: ast.AST) -> bool:
         """Whether it is a method that Blender calls, or may: its class's, or one that classes derived from it have."""
@@ -87,13 +117,19 @@ class Analyzer(Statements, Functions, Calls):
         file.module.shared = file.shared_names[file.tree]
         self.importing += 1
         steps_left, depth, self.steps_left = self.steps_left, self.depth, file.steps_left
+        tries, self.tries = self.tries, False
         try:
             with self.inside(file, file.module, None):
                 self._guarded_read(file)
         except StepsExhausted:
             file.complete = False
         finally:
-            file.steps_left, self.steps_left, self.depth = self.steps_left, steps_left, depth
+            file.steps_left, self.steps_left, self.depth, self.tries = (
+                self.steps_left,
+                steps_left,
+                depth,
+                tries,
+            )
             self.importing -= 1
 
     def _guarded_read(self, file: SourceFile) -> None:
@@ -138,6 +174,18 @@ class Analyzer(Statements, Functions, Calls):
         return 1 if function.cls is not None else 2
 
 
+def _nodes_in(parts: Iterable[ast.AST]) -> set[ast.AST]:
+    """The nodes that lie in some of a tree's."""
+    found: set[ast.AST] = set()
+    waiting = [*parts]
+    while waiting:
+        node = waiting.pop()
+        if node not in found:
+            found.add(node)
+            waiting += children(node)
+    return found
+
+
 def analyse(code: str, api: Api, version: tuple[int, ...] = ()) -> Analysis:
     """Reads a script. ``version`` is the Blender that it is read for: branches for others are left out.
 
@@ -169,6 +217,7 @@ def analyse_files(files: Mapping[str, str], api: Api, version: tuple[int, ...] =
             *own,
             source.doubted,
             *definitions,
+            source.carried_rows,
         )
         for path, source in sources.items()
     }

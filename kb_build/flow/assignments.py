@@ -27,6 +27,9 @@ from kb_build.flow.types import (
 )
 
 _TYPES = Module("bpy.types")
+_CHOOSING = frozenset(
+    {"active", "scene", "view_layer", "workspace"}
+)  # which decide what the active object is
 
 
 class Assignments(Guards, Annotations):
@@ -140,8 +143,12 @@ class Assignments(Guards, Annotations):
             case _:
                 pass
 
-    def _store(self, target: ast.Attribute, kind: Type, value: ast.expr | None) -> None:
+    def _store(  # noqa: PLR0912 - one case an owner
+        self, target: ast.Attribute, kind: Type, value: ast.expr | None
+    ) -> None:
         owner = self.evaluate(target.value)
+        if target.attr in _CHOOSING:
+            self.scope.state.active = None
         text = chain_text(target)
         if isinstance(owner, LocalInstance):
             self._store_on_instance(owner, target.attr, kind)

@@ -6,7 +6,7 @@ import ast
 
 from kb_build.flow.expressions import is_decided
 from kb_build.flow.guards import Guards, assigned_names
-from kb_build.flow.scopes import EVERYTHING, State
+from kb_build.flow.scopes import CHOSEN, EVERYTHING, State
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Type, literal
 from kb_build.flow.ways import Ways
@@ -43,7 +43,7 @@ class Branches(Guards, Ways):
         subject = self.evaluate(node.subject)
         before = self.scope.state
         otherwise = before.copy()
-        otherwise.doubted |= self.asked(node.subject)
+        otherwise.doubted |= self.asked(node.subject) | {CHOSEN}
         ways: list[State | None] = []
         whole = False
         for case in node.cases:

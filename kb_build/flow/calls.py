@@ -11,13 +11,17 @@ from kb_build.flow.core import ANY, DEEPEST_RUN
 from kb_build.flow.expressions import constants
 from kb_build.flow.facts import (
     BMESH_RESULTS,
+    CLASS_NAMES,
     DERIVED_BY_SCRIPTS,
     NAME_OF_PROPERTY,
     OPEN_CALLS,
     VERSION,
     T,
+    leaves_active,
+    made_by,
 )
 from kb_build.flow.narrowing import Narrowing
+from kb_build.flow.texts import passed
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
@@ -102,10 +106,28 @@ class Calls(Narrowing):
         arguments = [self.evaluate(argument) for argument in node.args]
         keywords = [(keyword, self.evaluate(keyword.value)) for keyword in node.keywords]
         if callee is UNKNOWN:
-            return self._made_by_class_name(node, arguments, keywords)
-        if isinstance(callee, Union):
-            return self._one_of_several(callee, node, arguments, keywords)
-        return self._one_call(callee, node, arguments, keywords)
+            result = self._made_by_class_name(node, arguments, keywords)
+        elif isinstance(callee, Union):
+            result = self._one_of_several(callee, node, arguments, keywords)
+        else:
+            result = self._one_call(callee, node, arguments, keywords)
+        self.scope.state.active = self._active_after(callee)
+        return result
+
+    def _active_after(self, callee: Type) -> Type | None:
+        """The active object behind a call, where an operator has made it and nothing may have changed that."""
+        match callee:
+            case Operator(path=path) if kind := made_by(path):
+                data = self.api.object_data(kind)
+                return Instance(_OBJECT, (("data", data),)) if data is not UNKNOWN else None
+            case Operator(path=path) if not leaves_active(path):
+                return None
+            case Function(path=path) if path.endswith((".temp_override", ".remove", ".link", ".unlink")):
+                return None
+            case Operator() | Function() | ClassObject() | Builtin():
+                return self.scope.state.active
+            case _:
+                return None
 
     def _one_of_several(
         self, callee: Union, node: ast.Call, arguments: list[Type], keywords: list[tuple[ast.keyword, Type]]
@@ -113,6 +135,8 @@ class Calls(Narrowing):
         """A call of one of several: an argument is recorded for all of them, and is none where none takes it."""
         parts = [*node.keywords, *(part for argument in node.args for part in constants(argument))]
         parts += [part for keyword in node.keywords for part in constants(keyword.value)]
+        given = [*node.args, *(keyword.value for keyword in node.keywords)]
+        parts += [part for part in given if isinstance(part, ast.Name)]
         called = [member for member in callee.members if member is not NONE]
         results: list[Type] = []
         rows: dict[ast.AST, list[Resolution]] = defaultdict(list)
@@ -255,7 +279,14 @@ class Calls(Narrowing):
             for item in nodes:
                 for constant in constants(item) if isinstance(item, (ast.Constant, ast.IfExp)) else ():
                     if constant in self.types:  # else it is of a branch for other versions
-                        self.resolve_value(constant, (symbol.path,), parameter.name)
+                        self.resolve_value(constant, constant.value, (symbol.path,), parameter.name)
+                if isinstance(item, ast.Name):
+                    self.check_carried(item, (symbol.path,), parameter.name)
+        elif isinstance(node, ast.Name) and CLASS_NAMES.get(symbol.path) == parameter.name:
+            self.resolutions.pop(node, None)
+            text = self.carried_text(node)
+            if text and not self.api.is_class(T + text):
+                self.resolve(node, "class", text, missing=(f"{symbol.path}({parameter.name})",))
 
     def _decided(
         self,
@@ -403,32 +434,36 @@ class Calls(Narrowing):
         if any(isinstance(argument, ast.Starred) for argument in node.args):
             arguments = []
         values = arguments if callee.receiver is None else [callee.receiver, *arguments]
-        self._pass(callee.number, values, {keyword.arg or "": kind for keyword, kind in keywords})
+        given = self._pass(callee.number, values, {keyword.arg or "": kind for keyword, kind in keywords})
         self._run_now(callee.number)
-        # What it returns is not known where it was not read with what this call passes.
-        is_read = function.running or not function.stale
-        return (self.returned(callee.number) if is_read else None) or UNKNOWN
+        if any(isinstance(part, ast.Starred) for part in node.args) or "" in given or function.running:
+            # What it returns is not known where it was not read with what this call passes.
+            is_read = function.running or not function.stale
+            return (self.returned(callee.number) if is_read else None) or UNKNOWN
+        return self.result_of_call(callee.number, given, node)
 
     def _run_now(self, number: int) -> None:
         """Reads a function for what it returns, or for what it binds, unless it is known or too far inside."""
         function = self.functions[number]
         if (
             function.stale
+            and not self.tries
             and not function.running
             and self.depth < DEEPEST_RUN
             and function.runs < _MOST_RUNS
         ):
             self.run(number)
 
-    def _pass(self, number: int, values: list[Type], keywords: dict[str, Type]) -> None:
-        """Adds what a call passes to what a function is known to receive."""
+    def _pass(self, number: int, values: list[Type], keywords: dict[str, Type]) -> dict[str, Type]:
+        """Adds what a call passes to what a function is known to receive; gives it by parameter."""
         function = self.functions[number]
         parameters = function.node.args
         names = [argument.arg for argument in (*parameters.posonlyargs, *parameters.args)]
         given = {**dict(zip(names, values, strict=False)), **keywords}
         for name, kind in given.items():
             if name:
-                self._receive(function, name, kind)
+                self._receive(function, name, passed(kind))
+        return given
 
     @staticmethod
     def _receive(function: FunctionDefinition, name: str, kind: Type) -> None:

@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
-from kb_build.flow.scopes import name_doubt
+from kb_build.flow.scopes import CHOSEN, name_doubt
 from kb_build.flow.source_files import SourceFile
 from kb_build.flow.types import (
     UNKNOWN,
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
     from kb_build.flow.api import Api
     from kb_build.flow.scopes import Loop, Scope
+    from kb_build.flow.types import Given
 
 DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other
@@ -70,6 +71,10 @@ class Core:
         self.loops: list[Loop] = []
         self.tolerant = 0
         self.guessing = False
+        self.tries = False  # reads again, for one call or one turn of a loop alone
+        self.rounds = False  # all modules were read, their functions are
+        self.settled = False  # and no function will be read again for all its calls
+        self.turning = False  # it is one turn of a loop
         self.dictionaries = 0  # around what is being read
         self.depth = 0
         self.steps_left = self.file.steps_left
@@ -96,6 +101,14 @@ class Core:
         """Reads a function of the script with what it is known to receive."""
         raise NotImplementedError
 
+    def result_of_call(self, number: int, given: dict[str, Type], node: ast.Call) -> Type:
+        """What a function of the script returns to a call that passes this; it was read for all calls before."""
+        raise NotImplementedError
+
+    def returns_still(self, number: int, received: Given, kind: Type | None) -> bool:
+        """Whether a function of the script is still known to return something to a call that passes this."""
+        raise NotImplementedError
+
     def read_file(self, file: SourceFile) -> None:
         """Reads a file's module, unless that was begun before."""
         raise NotImplementedError
@@ -104,14 +117,19 @@ class Core:
     def inside(self, file: SourceFile, scope: Scope, function: FunctionDefinition | None) -> Generator[None]:
         """Reads at another place, and comes back."""
         outer = self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing
-        outer_file, dictionaries = self.file, self.dictionaries
+        outer_file, dictionaries, types, resolutions = (
+            self.file,
+            self.dictionaries,
+            self.types,
+            self.resolutions,
+        )
         self._enter(file)
         self.scope, self.function, self.loops = scope, function, []
         self.tolerant, self.statement, self.guessing, self.dictionaries = 0, None, False, 0
         try:
             yield
         finally:
-            self._enter(outer_file)
+            self.file, self.types, self.resolutions = outer_file, types, resolutions
             self.dictionaries = dictionaries
             self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing = outer
 
@@ -144,21 +162,43 @@ class Core:
         self.resolutions[node] = Resolution(
             node, kind, value, _once(symbols), _once(missing), _once(possible),
             sure and not self.guessing,
-            guarded or self.tolerant > 0 or self.scope.state.doubts(name_doubt(value)), self.statement,
+            guarded or self.tolerant > 0 or self.scope.state.doubts(name_doubt(value))
+            or (self.tries and CHOSEN in self.scope.state.doubted), self.statement,
         )  # fmt: skip
-        if missing:
+        if missing and not self.tries:
             self._denials.append((self.resolutions, node, self.function or self.file))
 
     def is_current(self, reader: Reader) -> bool:
         """Whether what a function or a module took from other definitions is still all that is known of them."""
-        return all(self._known(number, name) == kind for (number, name), kind in reader.readings.items())
+        return all(
+            self._known(number, name) == kind
+            if isinstance(name, str)
+            else self.returns_still(number, name, kind)
+            for (number, name), kind in reader.readings.items()
+        )
 
     def doubt_denials(self) -> None:
         """Marks as unsure what was found missing in what turned out to be more, and was not read again."""
+        current: dict[int, bool] = {}
         for resolutions, node, reader in self._denials:
             row = resolutions.get(node)
-            if row is not None and row.missing and row.sure and not self.is_current(reader):
+            if row is None or not row.missing or not row.sure:
+                continue
+            if id(reader) not in current:
+                current[id(reader)] = self.is_current(reader)
+            if not current[id(reader)]:
                 resolutions[node] = replace(row, sure=False)
+
+    @property
+    def reader(self) -> Reader:
+        """What is being read: a function, or a file's module."""
+        return self.function or self.file
+
+    def comes_surely(self, text: str) -> bool:
+        """Whether a text that a name holds surely is what is used here: nothing asks for it, or chooses by it."""
+        state = self.scope.state
+        is_chosen = CHOSEN in state.doubted or state.doubts(name_doubt(text))
+        return not (self.tolerant or self.guessing or is_chosen)
 
     def _known(self, number: int, name: str) -> Type | None:
         if not name:
@@ -193,6 +233,8 @@ class Core:
             number = self.numbers[node] = len(self.functions)
             doubted = self.scope.state.doubted_names
             self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file, doubted=doubted))
+        elif not self.tries:
+            self.functions[number].scope = self.scope  # what is around it may know more by now
         return number
 
     def ancestors(self, number: int) -> Iterator[Type]:
@@ -210,17 +252,18 @@ class Core:
         """An attribute that the script gives to a class or to one of its bases: (type, class)."""
         found = self._find_attribute(number, name)
         if found is None or not isinstance(found[0], LocalFunction):
-            self._note(number, name, found[0] if found else None)
+            self.note(number, name, found[0] if found else None)
         return found
 
     def returned(self, number: int) -> Type | None:
         """What a function is known to return so far; None where nothing is known."""
         kind = self.functions[number].returned
-        self._note(number, "", kind)
+        self.note(number, "", kind)
         return kind
 
-    def _note(self, number: int, name: str, kind: Type | None) -> None:
-        (self.function or self.file).readings.setdefault((number, name), kind)
+    def note(self, number: int, name: str | Given, kind: Type | None) -> None:
+        """Remembers what was taken from another definition (see :data:`types.Readings`)."""
+        self.reader.readings.setdefault((number, name), kind)
 
     def _find_attribute(self, number: int, name: str) -> tuple[Type, int] | None:
         for kind in self.ancestors(number):
@@ -265,7 +308,8 @@ class Core:
         if function.is_static:
             return kind
         if function.is_property:
-            if function.returned is None and not function.running and self.depth < DEEPEST_RUN:
+            is_open = function.returned is None and not function.running and not self.tries
+            if is_open and self.depth < DEEPEST_RUN:
                 self.run(kind.number)
             return self.returned(kind.number) or UNKNOWN
         return LocalFunction(kind.number, receiver)

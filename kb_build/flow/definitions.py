@@ -6,7 +6,7 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
 from kb_build.flow.scopes import kept
-from kb_build.flow.types import UNKNOWN, Readings, Type, join
+from kb_build.flow.types import UNKNOWN, Carried, Given, Readings, Type, Uses, join
 
 if TYPE_CHECKING:
     import ast
@@ -23,7 +23,11 @@ class FunctionDefinition:
     something else; ``returned`` is what it returns. ``seen`` is the state of the script's definitions at the last run;
     ``used`` are the attributes that it reads from each name, ``asks_version`` whether it looks at Blender's version,
     once they were asked for. ``file`` is where it stands, ``doubted`` what is doubted there, ``readings`` what the last
-    run took from other definitions.
+    run took from other definitions, ``uses`` the calls that it made, ``carried`` what texts were found to be in it that
+    come from elsewhere.
+
+    ``passed`` is what single calls pass; ``calls`` has a reading for each, where it was read so: a definition of its
+    own, ``exact``, whose ``received`` is that alone.
     """
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -44,6 +48,11 @@ class FunctionDefinition:
     file: SourceFile | None = None
     doubted: frozenset[str] = frozenset()
     readings: Readings = field(default_factory=Readings)
+    uses: Uses = field(default_factory=Uses)
+    carried: Carried = field(default_factory=Carried)
+    calls: dict[Given, FunctionDefinition] = field(default_factory=dict[Given, "FunctionDefinition"])
+    passed: set[Given] = field(default_factory=set[Given])
+    exact: bool = False
 
 
 @dataclass(slots=True)

@@ -8,7 +8,7 @@ import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, SUMS, VERSION, T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS, VERSION, T
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import chain_text, name_doubt
 from kb_build.flow.trees import children
@@ -132,7 +132,8 @@ class Expressions(Members):
             )  # fmt: skip
         if known is not None:
             return known
-        return found.type
+        made = self.scope.state.active
+        return made if made is not None and READ_ACTIVE.issuperset(found.symbols or "?") else found.type
 
     def _subscript(self, node: ast.Subscript) -> Type:
         owner = self.evaluate(node.value)
@@ -429,7 +430,21 @@ class Expressions(Members):
             return
         # Those that were not reached are of a branch for other versions.
         for constant in filter(self.types.__contains__, constants(node)):
-            self.resolve_value(constant, source, use=use)
+            self.resolve_value(constant, constant.value, source, use=use)
+        if use == "value" and isinstance(node, (ast.Name, ast.Subscript)):
+            self.check_carried(node, source)
+
+    def check_carried(self, node: ast.expr, sources: tuple[str, ...], parameter: str = "") -> None:
+        """Records a text that a name or an item holds, where the enumeration that it is given to lacks it."""
+        text = self.carried_text(node)
+        if text is not None:
+            self.resolve_value(node, text, sources, parameter, only_lacking=True)
+
+    def carried_text(self, node: ast.expr) -> str | None:
+        """The text that a name or an item surely holds, though it is written elsewhere."""
+        kind = self.types.get(node)
+        text = literal_text(kind) if isinstance(kind, Plain) and kind.source in {"", VERSION} else None
+        return text if text is not None and self.comes_surely(text) else None
 
     def check_possible(self, owner: Type, name: str, paths: list[str], node: ast.expr) -> None:
         """Records literals given to a property that only classes below the owner's have, enumerations all of them."""
@@ -446,7 +461,7 @@ class Expressions(Members):
             symbol and symbol.type == "enum" and len(symbol.enum_items) >= FEWEST_VALUES for symbol in symbols
         ):
             for constant in filter(self.types.__contains__, constants(node)):
-                self.resolve_value(constant, tuple(paths))
+                self.resolve_value(constant, constant.value, tuple(paths))
 
     @staticmethod
     def source_of(kind: Type) -> tuple[str, ...]:
@@ -460,11 +475,17 @@ class Expressions(Members):
                 return ()
         return tuple(found)
 
-    def resolve_value(
-        self, node: ast.Constant, sources: tuple[str, ...], parameter: str = "", use: str = "value"
+    def resolve_value(  # noqa: PLR0913 - what a value is given to
+        self,
+        node: ast.expr,
+        value: object,
+        sources: tuple[str, ...],
+        parameter: str = "",
+        *,
+        use: str = "value",
+        only_lacking: bool = False,
     ) -> None:
-        """Records a literal as one of the values of properties, or of a parameter of functions."""
-        value = node.value
+        """Records a text as one of the values of properties, or of a parameter of functions."""
         if not isinstance(value, str):
             return
         having: list[str] = []
@@ -496,7 +517,9 @@ class Expressions(Members):
                 lacking.append(name)
             else:
                 unsure = True
-        if having or (lacking and not unsure):
+        if only_lacking:
+            self.resolutions.pop(node, None)
+        if (having and not only_lacking) or (lacking and not having and not unsure):
             self.resolve(node, use, value, having, lacking)
 
     _evaluators: ClassVar[dict[type, Callable[..., Type]]] = {

@@ -13,6 +13,20 @@ OBJECT_DATA = {
     "POINTCLOUD": "PointCloud", "VOLUME": "Volume",
 }  # fmt: skip
 
+# Operators that make an object and leave it as the active one: how their paths begin or are → the object's type.
+MAKERS = {
+    "bpy.ops.mesh.primitive_": "MESH", "bpy.ops.curve.primitive_": "CURVE", "bpy.ops.surface.primitive_": "SURFACE",
+    "bpy.ops.object.text_add": "FONT", "bpy.ops.object.armature_add": "ARMATURE", "bpy.ops.object.camera_add": "CAMERA",
+    "bpy.ops.object.light_add": "LIGHT", "bpy.ops.object.metaball_add": "META", "bpy.ops.object.speaker_add": "SPEAKER",
+}  # fmt: skip
+# Operators that leave the active object as it is: how their paths begin.
+_LEAVING_IT = (
+    "bpy.ops.object.shade_",
+    "bpy.ops.object.transform_apply",
+    "bpy.ops.object.origin_set",
+    "bpy.ops.transform.",
+)
+
 # The add-ons that Blender brings, in any version from 4.2 on: what they register is in the base.
 ADDONS = frozenset(
     {
@@ -113,6 +127,9 @@ BMESH_RESULTS = {
     "region": ("BMFace",), "new_geom": ("BMVert", "BMEdge", "BMFace"), "split": ("BMVert", "BMEdge", "BMFace"),
 }  # fmt: skip
 
+# Functions that take the name of a class of nodes or sockets: path → parameter.
+CLASS_NAMES = {f"{T}Nodes.new": "type", f"{T}NodeTreeInterface.new_socket": "socket_type"}
+
 # Properties that RNA declares wider than they are: path → class.
 NARROWER = {
     "bpy.types.SpaceNodeEditor.edit_tree": "NodeTree",
@@ -173,6 +190,20 @@ ELEMENTS = {
     "bmesh.types.BMEditSelSeq": ("bmesh.types.BMVert", "bmesh.types.BMEdge", "bmesh.types.BMFace"),
     "bmesh.types.BMEditSelIter": ("bmesh.types.BMVert", "bmesh.types.BMEdge", "bmesh.types.BMFace"),
 }  # fmt: skip
+# What reads the active object, and what it is set by.
+READ_ACTIVE = frozenset({f"{T}Context.object", f"{T}Context.active_object"})
+SET_ACTIVE = f"{T}LayerObjects.active"
 LAYER_ITEM = "bmesh.types.BMLayerItem"
 LAYERS = "bmesh.types.BMLayerCollection"
 ELEMENT = "[]"  # the trait that names what an instance holds
+
+
+def made_by(operator: str) -> str:
+    """The type of the object that an operator makes and leaves as the active one; empty for other operators."""
+    is_adding = operator.endswith("_add")
+    return next((kind for path, kind in MAKERS.items() if is_adding and operator.startswith(path)), "")
+
+
+def leaves_active(operator: str) -> bool:
+    """Whether an operator surely leaves the active object as it is."""
+    return operator.startswith(_LEAVING_IT)

@@ -1,19 +1,41 @@
-"""Reads what functions do, each with what it is known to receive."""
+"""Reads what functions do, each with what it is known to receive, and again for what single calls pass."""
 
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.flow.core import DEEPEST_RUN
 from kb_build.flow.parameters import Parameters
-from kb_build.flow.scopes import Scope, State
-from kb_build.flow.types import NONE, UNKNOWN, join
+from kb_build.flow.scopes import CHOSEN, Scope, State, kept, name_doubt
+from kb_build.flow.texts import for_one_call, has_passed, texts_in, without_texts
+from kb_build.flow.trees import default_values
+from kb_build.flow.trials import Trials
+from kb_build.flow.types import (
+    NONE,
+    PASSED,
+    UNKNOWN,
+    Given,
+    Instance,
+    Mapping,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    Union,
+    Unknown,
+    join,
+)
 
 if TYPE_CHECKING:
     from kb_build.flow.definitions import FunctionDefinition
 
+# How many different calls a function is read for, and how many more where their texts are left out.
+_MOST_CALLS, _MOST_KINDS = 24, 8
 
-class Functions(Parameters):
+
+class Functions(Parameters, Trials):
     """Runs functions: binds their parameters, and reads their bodies."""
 
     def run(self, number: int) -> None:
@@ -22,14 +44,18 @@ class Functions(Parameters):
         function.running, function.stale, function.runs = True, False, function.runs + 1
         function.seen = self.stamp(function)
         function.readings = {}
+        function.uses = set()
+        function.carried = {}
         try:
-            file = function.file or self.file
-            shared = file.shared_names.get(function.node, frozenset())
-            scope = Scope(function.scope, state=State(doubted=function.doubted), shared=shared)
-            with self.inside(file, scope, function):
+            with self.inside(function.file or self.file, self._scope_of(function), function):
                 self._read_function(function)
         finally:
             function.running = False
+
+    def _scope_of(self, function: FunctionDefinition) -> Scope:
+        file = function.file or self.file
+        shared = file.shared_names.get(function.node, frozenset())
+        return Scope(function.scope, state=State(doubted=function.doubted), shared=shared)
 
     def _read_function(self, function: FunctionDefinition) -> None:
         self.bind_parameters(function)
@@ -47,3 +73,136 @@ class Functions(Parameters):
         """What changes when a function should be read again: its module's names, its class's attributes."""
         module = function.file.module if function.file else self.file.module
         return module.changes, self.classes[function.cls].changes if function.cls is not None else 0
+
+    # For single calls.
+
+    def result_of_call(self, number: int, given: dict[str, Type], node: ast.Call) -> Type:
+        """See :class:`core.Core`."""
+        function = self.functions[number]
+        whole = self._with_defaults(function, given)
+        received = _as_one_call(function, whole)
+        has_texts = any(True for kind in whole.values() for _ in texts_in(kind))
+        if has_texts and self._comes_surely(whole):
+            self.reader.uses.add((number, received, node))
+        returned = function.returned
+        if function.stale or not self._is_enough(function, returned, received, has_texts=has_texts):
+            call = self.reading_for(number, received)
+            returned = call.returned if call else UNKNOWN if function.stale else returned
+        self.note(number, received, returned)
+        return returned or UNKNOWN
+
+    def returns_still(self, number: int, received: Given, kind: Type | None) -> bool:
+        """Whether a function is still known to return something to a call that passes this."""
+        function = self.functions[number]
+        if function.returned == kind and not function.stale:
+            return True
+        call = self.reading_for(number, received) if self.settled else function.calls.get(received)
+        return call is not None and call.returned == kind
+
+    def _with_defaults(self, function: FunctionDefinition, given: dict[str, Type]) -> dict[str, Type]:
+        """What each parameter receives from a call, its default where that gives nothing."""
+        arguments = function.node.args
+        defaults = default_values(arguments)
+        types = function.file.types if function.file else self.types
+        found: dict[str, Type] = {}
+        for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
+            if argument.arg in given:
+                found[argument.arg] = kept(given[argument.arg])
+            elif (default := defaults.get(argument.arg)) is not None:
+                found[argument.arg] = types.get(default, UNKNOWN)
+        return found
+
+    def _comes_surely(self, whole: dict[str, Type]) -> bool:
+        """Whether a call surely happens where it is read, with texts that are those of this call."""
+        state = self.scope.state
+        if self.tolerant or state.doubts() or CHOSEN in state.doubted or any(map(has_passed, whole.values())):
+            return False
+        texts = (str(text.value) for kind in whole.values() for text in texts_in(kind))
+        return not state.doubted or state.doubted.isdisjoint(map(name_doubt, texts))
+
+    def _is_enough(
+        self, function: FunctionDefinition, returned: Type | None, received: Given, *, has_texts: bool
+    ) -> bool:
+        """Whether what a function returns to all its calls is as much as could be known of one of them."""
+        if returned is None or (not has_texts and _is_alone(function, received)):
+            return True
+        if returned is UNKNOWN:
+            return all(kind is UNKNOWN for _, kind in received)
+        return self._is_one(returned, has_texts=has_texts)
+
+    def _is_one(self, kind: Type, *, has_texts: bool) -> bool:  # noqa: PLR0911 - one return a type
+        """Whether a type is not several, nor one of which a text may decide more."""
+        match kind:
+            case Union() | Unknown():
+                return False
+            case Instance():
+                return not (has_texts and self.api.descendants(kind.cls))
+            case Plain(source=source):
+                return source != PASSED
+            case Tuple(items=items):
+                return all(self._is_one(item, has_texts=has_texts) for item in items)
+            case Sequence():
+                return self._is_one(kind.element, has_texts=has_texts)
+            case Mapping():
+                return self._is_one(kind.value, has_texts=has_texts)
+            case _:
+                return True
+
+    def reading_for(self, number: int, received: Given) -> FunctionDefinition | None:
+        """A function as it is for one call; None where that is too deep inside, or too much to read."""
+        function = self.functions[number]
+        known = function.calls.get(received)
+        # While its module is read, what a function returned before is what it returns.
+        if known is not None and (not self.rounds or known.seen == self.stamp(function)):
+            return known
+        call = self._read_call(number, received)
+        if call is None:
+            function.calls.pop(received, None)
+            return None
+        function.calls[received] = call
+        return call
+
+    def _read_call(self, number: int, received: Given) -> FunctionDefinition | None:
+        function = self.functions[number]
+        if function.running or self.depth >= DEEPEST_RUN:
+            return None
+        call = replace(
+            function,
+            received=dict(received),
+            unknown={name for name, kind in received if kind is UNKNOWN},
+            returned=None,
+            readings={},
+            uses=set(),
+            carried={},
+            calls={},
+            exact=True,
+            seen=self.stamp(function),
+        )
+        function.running = True
+        try:
+            with self.inside(function.file or self.file, self._scope_of(function), call):
+                is_read = self.try_reading(lambda: self._read_function(call))
+        finally:
+            function.running = False
+        return call if is_read else None
+
+
+def _as_one_call(function: FunctionDefinition, whole: dict[str, Type]) -> Given:
+    """What one call passes; of too many calls, without the texts, or without anything."""
+    exact = tuple((name, for_one_call(kind)) for name, kind in whole.items())
+    if exact in function.passed or len(function.passed) < _MOST_CALLS:
+        function.passed.add(exact)
+        return exact
+    alike = tuple((name, without_texts(kind)) for name, kind in whole.items())
+    if alike in function.passed or len(function.passed) < _MOST_CALLS + _MOST_KINDS:
+        function.passed.add(alike)
+        return alike
+    return tuple((name, UNKNOWN) for name in whole)
+
+
+def _is_alone(function: FunctionDefinition, received: Given) -> bool:
+    """Whether all calls of a function, which was read for all of them, pass the same."""
+    given = dict(received)
+    return all(
+        name in given and for_one_call(kind) == given[name] for name, kind in function.received.items()
+    ) and all(given.get(name) is UNKNOWN for name in function.unknown)

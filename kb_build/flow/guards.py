@@ -11,16 +11,20 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.expressions import Expressions, is_decided
 from kb_build.flow.facts import VERSION
-from kb_build.flow.scopes import EVERYTHING, name_doubt
+from kb_build.flow.scopes import CHOSEN, EVERYTHING, name_doubt
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import (
     UNKNOWN,
     LocalFunction,
+    Mapping,
     Plain,
+    Sequence,
+    Tuple,
     Type,
     Union,
     literal,
     literal_text,
+    members,
     telling,
     tells,
 )
@@ -38,7 +42,7 @@ class Guards(Expressions):
         if is_decided(kind):
             asked = frozenset({EVERYTHING}) if literal(kind) is not holds else frozenset[str]()
         else:
-            asked = self.asked(test)
+            asked = self.asked(test) | self.choosing(test)
         self.scope.state.doubted |= asked
 
     def asked(self, node: ast.expr) -> frozenset[str]:
@@ -64,6 +68,20 @@ class Guards(Expressions):
                     pass
             waiting += children(part)
         return frozenset(found)
+
+    def choosing(self, test: ast.expr) -> frozenset[str]:
+        """CHOSEN where a condition, which was read, may hold of some texts that come from elsewhere but not of all."""
+        if CHOSEN in self.scope.state.doubted:
+            return frozenset()
+        names = (part for part in walk(test) if isinstance(part, ast.Name))
+        return frozenset({CHOSEN} if any(map(self._may_choose, names)) else ())
+
+    def _may_choose(self, name: ast.Name) -> bool:
+        """Whether a name holds a plain value, or what is not known."""
+        kind = self.types.get(name, UNKNOWN)
+        return any(
+            one is UNKNOWN or isinstance(one, (Plain, Sequence, Tuple, Mapping)) for one in members(kind)
+        )
 
     def told(self, kind: Type, value: ast.expr | None) -> Type:
         """A value as a name holds it: one that is computed from what Blender told tells it on."""

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import Loop, State, joined
+from kb_build.flow.trials import Trials
+from kb_build.flow.turns import turns
 from kb_build.flow.ways import Ways
 
 if TYPE_CHECKING:
@@ -13,8 +16,10 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Sequence as Rows
 
+    from kb_build.flow.types import Type
 
-class Loops(Members, Ways):
+
+class Loops(Members, Trials, Ways):
     """Reads ``for``, ``while``, and what leaves a turn; each reader tells whether the next statement can be reached."""
 
     def read_for(self, node: ast.For | ast.AsyncFor) -> bool:
@@ -25,7 +30,29 @@ class Loops(Members, Ways):
             self.statement = node
             self.bind_target(node.target, kind)
 
-        return self._loop(node.body, node.orelse, enter)
+        def try_turns(start: State) -> None:
+            for one in turns(node.iter, self.types, node.body):
+                self._try_turn(node, one, start)
+
+        return self._loop(node.body, node.orelse, enter, None if self.turning else try_turns)
+
+    def _try_turn(self, node: ast.For | ast.AsyncFor, kind: Type, start: State) -> None:
+        """Reads one turn of a loop for what its texts come to."""
+        outer, loops, returned = self.scope, self.loops, self.function.returned if self.function else None
+
+        def read() -> None:
+            self.statement = node
+            self.bind_target(node.target, kind)
+            self.read_body(node.body)
+
+        self.scope = replace(outer, state=start.copy(), ever=outer.ever.copy(), asked=outer.asked.copy())
+        self.loops, self.turning = [Loop()], True
+        try:
+            self.try_reading(read)
+        finally:
+            self.scope, self.loops, self.turning = outer, loops, False
+            if self.function:
+                self.function.returned = returned
 
     def read_while(self, node: ast.While) -> bool:
         """Reads ``while``: the condition holds in each turn."""
@@ -49,8 +76,14 @@ class Loops(Members, Ways):
             self.loops[-1].continued.append(self.scope.state)
         return False
 
-    def _loop(self, body: Rows[ast.stmt], orelse: Rows[ast.stmt], enter: Callable[[], None]) -> bool:
-        """Reads a loop's body twice, so that what one turn binds is known in the next."""
+    def _loop(
+        self,
+        body: Rows[ast.stmt],
+        orelse: Rows[ast.stmt],
+        enter: Callable[[], None],
+        try_turns: Callable[[State], None] | None = None,
+    ) -> bool:
+        """Reads a loop's body twice, so that what one turn binds is known in the next; then single turns, if any."""
         before = self.scope.state
         loop = Loop()
         self.loops.append(loop)
@@ -64,6 +97,8 @@ class Loops(Members, Ways):
             if turn == 0 and not _differs(before, start):
                 break
         self.loops.pop()
+        if try_turns is not None:
+            try_turns(start)
         self.scope.state = start.copy()
         reached = self.read_body(orelse) if orelse else True
         return self.meet([self.scope.state if reached else None, *loop.left], start)

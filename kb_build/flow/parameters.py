@@ -18,6 +18,7 @@ from kb_build.flow.types import (
     LocalClass,
     LocalInstance,
     Mapping,
+    Plain,
     Sequence,
     Type,
     can_be_unsure,
@@ -52,7 +53,7 @@ class Parameters(Contradictions, Annotations):
         if arguments.kwarg is not None:
             self.scope.bind(arguments.kwarg.arg, Mapping(STR, UNKNOWN))
 
-    def _parameter(
+    def _parameter(  # noqa: PLR0911 - one return a source
         self, function: FunctionDefinition, argument: ast.arg, declared: Type, default: ast.expr | None
     ) -> Type:
         """A parameter's type: annotated, declared by the API, seen in calls, its default's, or by its name."""
@@ -60,10 +61,14 @@ class Parameters(Contradictions, Annotations):
             kind = self.annotated(argument.annotation)
             if kind is not UNKNOWN:
                 received = function.received.get(argument.arg, UNKNOWN)
-                return join(unsure(kind), received) if self.contradicts(received, kind) else kind
+                if self.contradicts(received, kind):
+                    return join(unsure(kind), received)
+                return received if function.exact and _is_literal(received) else kind
         if declared is not UNKNOWN:
             return declared
         received = function.received.get(argument.arg, UNKNOWN)
+        if function.exact and received is not UNKNOWN and received is not NONE:
+            return received
         if argument.arg in function.unknown and received is not UNKNOWN:
             # Some calls pass what is not known: the others tell no more than what may be passed.
             self.guessing = self.guessing or not can_be_unsure(received)
@@ -112,6 +117,10 @@ class Parameters(Contradictions, Annotations):
             if not known and not (attribute and self.api.had(cls, attribute)):
                 return UNKNOWN
         return Instance(cls, sure=False)
+
+
+def _is_literal(kind: Type) -> bool:
+    return isinstance(kind, Plain) and kind.value is not None
 
 
 def _used_names(function: ast.AST) -> dict[str, set[str]]:

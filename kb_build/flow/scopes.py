@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
 EVERYTHING = "*"  # a chain that stands for all of them
+CHOSEN = "=*"  # what stands here may not be come to with every text that comes from elsewhere
 _DEEPEST_CHAIN = 8
 _NESTED = (ListType, Tuple, Mapping, Union, Instance, Function, Builtin, LocalFunction)
 
@@ -39,17 +40,18 @@ class State:
     """What is known at one place of one scope: of names, and of chains (``context.object``) by their text.
 
     ``doubted`` are names and chains of which the script has found here that they lack a member, as those of another
-    Blender do: what it reads from them is not for this one; members (``.draw_type``) that it has asked for; or
-    EVERYTHING.
+    Blender do: what it reads from them is not for this one; members (``.draw_type``) that it has asked for; CHOSEN; or
+    EVERYTHING. ``active`` is the active object, where an operator has just made it.
     """
 
     names: dict[str, Type] = field(default_factory=dict[str, Type])
     chains: dict[str, Type] = field(default_factory=dict[str, Type])
     doubted: frozenset[str] = frozenset()
+    active: Type | None = None
 
     def copy(self) -> State:
         """The same, to be changed on its own."""
-        return State(self.names.copy(), self.chains.copy(), self.doubted)
+        return State(self.names.copy(), self.chains.copy(), self.doubted, self.active)
 
     def doubts(self, text: str = EVERYTHING) -> bool:
         """Whether what is read here, or from this chain, may be for another Blender."""
@@ -75,7 +77,8 @@ def joined(states: Sequence[State]) -> State:
         for name, kind in other.names.items():
             names[name] = join(names[name], kind) if name in names else kind
         chains = {text: kind for text, kind in chains.items() if other.chains.get(text) == kind}
-    return State(names, dict(chains), frozenset.intersection(*(state.doubted for state in states)))
+    active = first.active if all(other.active == first.active for other in others) else None
+    return State(names, dict(chains), frozenset.intersection(*(state.doubted for state in states)), active)
 
 
 @dataclass(slots=True)

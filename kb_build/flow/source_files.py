@@ -12,7 +12,7 @@ from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.scopes import Scope
 from kb_build.flow.shared_names import shared_names
 from kb_build.flow.trees import walk
-from kb_build.flow.types import Readings
+from kb_build.flow.types import Carried, Readings, Uses
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -29,6 +29,10 @@ class SourceFile:
     statements and parts of them that may all be for another Blender, ``left_out`` those that a run of this one does not
     come to, ``unread`` what was too deep inside to be read at some time. ``quoted`` are its
     quoted annotations with what they say.
+
+    ``trial_steps`` is what may be spent on reading parts of it again, for one call or one turn of a loop alone;
+    ``uses`` and ``carried`` are those of its module (see :class:`definitions.FunctionDefinition`), ``carried_rows``
+    all that was found in it so, and that surely is.
     """
 
     name: str
@@ -47,8 +51,15 @@ class SourceFile:
     quoted: dict[ast.Constant, ast.expr | None] = field(
         default_factory=dict["ast.Constant", "ast.expr | None"]
     )
+    uses: Uses = field(default_factory=Uses)
+    carried: Carried = field(default_factory=Carried)
+    carried_rows: list[Resolution] = field(default_factory=list["Resolution"])
+    trial_steps: int = field(init=False)
     started: bool = False
     complete: bool = True
+
+    def __post_init__(self) -> None:
+        self.trial_steps = self.steps_left // 2
 
     @cached_property
     def nodes(self) -> Sequence[ast.AST]:

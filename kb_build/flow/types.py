@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     import ast
     from collections.abc import Iterable, Iterator
 
+PASSED = "?"
 DEEPEST_TYPE = 6  # parts within each other of what a name holds
 MOST_MEMBERS = 8  # of a union; more are UNKNOWN
 
@@ -34,7 +35,8 @@ class Plain:
     """A number, a text, a truth value. ``value`` is the literal where it is known, else None.
 
     ``source`` is the property or parameter that it was read from, which knows its values; of what tells of this very
-    Blender, it is ``bpy.app.version``, or the names that Blender was asked for, each behind a dot: ``.draw_type``.
+    Blender, it is ``bpy.app.version``, or the names that Blender was asked for, each behind a dot: ``.draw_type``. Of a
+    text that some call passes, and others may not, it is PASSED.
     """
 
     kind: str
@@ -191,8 +193,15 @@ Type = (
     | Union
 )
 
-# What was known of other definitions when they were read: (class, attribute), or (function, "") for what it returns.
-Readings = dict[tuple[int, str], Type | None]
+# What one call passes: parameter → type, of all that have one.
+Given = tuple[tuple[str, Type], ...]
+# What was known of other definitions when they were read: (class, attribute), or of a function what it returns: "" to
+# any call, or what one call passes.
+Readings = dict[tuple[int, str | Given], Type | None]
+# (function, what is passed, where) of the calls that surely happen where what they are in is run.
+Uses = set[tuple[int, Given, "ast.Call"]]
+# (where, text) → what a text that comes from elsewhere is found to be there.
+Carried = dict[tuple["ast.AST", str], "Resolution"]
 
 UNKNOWN = Unknown()
 NONE = NoneValue()
@@ -217,7 +226,7 @@ def without_none(kind: Type) -> Type:
 def general(kind: Type) -> Type:
     """A type without its literal value: what a name can hold besides its first value."""
     if isinstance(kind, Plain) and kind.value is not None:
-        return Plain(kind.kind, None, kind.source)
+        return Plain(kind.kind, None, "" if kind.source == PASSED else kind.source)
     return kind
 
 
@@ -279,7 +288,7 @@ def telling(kind: Type, source: str, *, value: bool = False) -> Type:
         return kind
     if isinstance(kind, Union):
         return union(telling(member, source) for member in kind.members)
-    if isinstance(kind, Plain) and not kind.source:
+    if isinstance(kind, Plain) and kind.source in {"", PASSED}:
         return Plain(kind.kind, kind.value if value else None, source)
     return kind
 
@@ -375,7 +384,9 @@ class Resolution:
     one is compared with), ``item`` (ast.Subscript, or the literal key
     of a call to ``get``), ``text`` (a literal that names a property: ``keyframe_insert("location")``), ``button`` (a
     literal that names the property or the operator that a layout shows), ``product`` (a multiplication that mathutils
-    refuses: ``missing`` are the classes of its two sides), ``sum`` (a sum or a quotient that it refuses, alike).
+    refuses: ``missing`` are the classes of its two sides), ``sum`` (a sum or a quotient that it refuses, alike),
+    ``class`` (a name that holds that of a class which the API lacks, given to what takes names of classes). The node of
+    a ``value`` too may be a name or an item that holds the text.
     """
 
     node: ast.AST

@@ -46,10 +46,10 @@ from kb_check.made_here import (
 from kb_check.opening import OPENING
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
-from kb_check.settings_before import set_before
+from kb_check.settings_before import made_just_before, set_before
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Iterator
+    from collections.abc import Callable, Iterable, Iterator
 
     from kb_build.flow.types import Resolution
     from kb_build.records import EnumItem, NewValue, Symbol
@@ -64,6 +64,7 @@ _TEXT = re.compile(r"'([^']*)'")
 _OF = re.compile(r"(.+) of an? (\w+)")
 _BY = re.compile(r"(only|not) by ([^…]+)")
 _SCENE, _NODE = f"{T}Scene", f"{T}Node"
+_OPERATORS = "bpy.ops."
 _RESETTING = "bpy.ops.wm.read_factory_settings"
 
 
@@ -181,12 +182,13 @@ def _refused_by_setting(
             yield _finding(
                 script, statement.value, item, setting.symbol.path, f"`{name}` is {before.value!r} here"
             )
+    elif (own := _own_value(script, statement, target.value, setting.symbol)) is not None:
+        if setting.refuses(own):
+            told = "nothing sets it before" if name in named_words(script) else "this script does not set it"
+            why = f"`{name}` of a new one is {own!r}: {told}"
+            yield _finding(script, statement.value, item, setting.symbol.path, why)
     elif name in named_words(script):
         return
-    elif (own := _own_value(script, target.value, setting.symbol)) is not None:
-        if setting.refuses(own):
-            why = f"`{name}` of a new one is {own!r}: this script does not set it"
-            yield _finding(script, statement.value, item, setting.symbol.path, why)
     elif owner := _new_owner(script, target.value, setting.symbol):
         value = owner.value
         if setting.refuses(value):
@@ -223,18 +225,39 @@ def _refused_beside(
         yield replace(_finding(script, statement.value, item, f"{owner}.{found[1]}", why), severity="warning")
 
 
-def _own_value(script: Script, node: ast.expr, setting: Symbol) -> object:
-    """What a setting is on what a name stands for, which the script has made; None where that is not known."""
+def _own_value(script: Script, statement: ast.stmt, node: ast.expr, setting: Symbol) -> object:
+    """What a setting is on what the script has made, where it is not set: on what a name stands for, or on the data of
+    the object that an operator has just made; None where that is not known.
+    """
     cls = _class_of(script, node)
     symbol = script.api.symbols.symbol(cls) if cls else None
-    if symbol is None or not knows_all(script) or not isinstance(node, ast.Name) or not is_new(script, node):
-        return None
-    if not all(isinstance(value, ast.Call) for value in bindings(script).get(node.id, [])):
+    if symbol is None or not knows_all(script):
         return None
     label = symbol.label.lower()
+    maker = made_just_before(script, statement, node, setting)
+    if maker.startswith(_OPERATORS):
+        made = f"{label} by {maker.removeprefix(_OPERATORS)}("
+        ways = [new for new in setting.new_values if not new.when and any(map(_begins(made), new.made))]
+        usual = [new for new in setting.new_values if not new.when and not new.made]
+        return next((new.value for new in (*ways, *usual)), usual_default(setting))
+    if not maker and (setting.name in named_words(script) or not _is_new_name(script, node)):
+        return None
     values = [new.value for new in setting.new_values if not new.when and (label in new.made or not new.made)]
     own = [new.value for new in setting.new_values if not new.when and label in new.made]
     return (own or values or [usual_default(setting)])[0]
+
+
+def _is_new_name(script: Script, node: ast.expr) -> bool:
+    """Whether a name stands for nothing but what the script's calls have made."""
+    return (
+        isinstance(node, ast.Name)
+        and is_new(script, node)
+        and all(isinstance(value, ast.Call) for value in bindings(script).get(node.id, []))
+    )
+
+
+def _begins(text: str) -> Callable[[str], bool]:
+    return lambda longer: longer.startswith(text)
 
 
 def _new_owner(script: Script, node: ast.expr, setting: Symbol) -> NewValue | None:

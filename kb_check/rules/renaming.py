@@ -39,7 +39,7 @@ _TAKES = {
 
 def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     """Writes the right name in the place of a wrong one, where only the name differs."""
-    if not lacking.replacement:
+    if not lacking.replacement or (row.kind == "value" and not isinstance(row.node, ast.Constant)):
         return None
     if lacking.replacement.startswith(_OPS) and row.kind == "attribute":
         return _renamed_operator(script, row, lacking)

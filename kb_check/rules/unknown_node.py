@@ -1,12 +1,14 @@
 """A node or a socket type that does not exist, given by its name, or a node that its tree does not take.
 
-Looked at where a literal is given to ``nodes.new`` or to ``interface.new_socket``. A name that only an add-on's node
-could have is left alone, as is a former one that this Blender still takes: reported is what another Blender had, and
-what begins as Blender's own nodes do.
+Looked at where a literal, or a name that surely holds one, is given to ``nodes.new`` or to ``interface.new_socket``. A
+name that only an add-on's node could have is left alone, as is a former one that this Blender still takes: reported is
+what another Blender had, and what begins as Blender's own nodes do.
 
 ```python
 nodes.new("ShaderNodeTexMusgrave")  # reported since 4.1: ShaderNodeTexNoise
 nodes.new("ShaderNodeTexNoise")
+for kind in ("ShaderNodeMix", "ShaderNodeTexMusgrave"):
+    nodes.new(kind)  # reported: the second
 nodes.new("Noise Texture")  # reported: that is its label
 tree = bpy.data.node_groups.new("Scatter", "GeometryNodeTree")
 tree.nodes.new("ShaderNodeBsdfPrincipled")  # reported: geometry node trees take none
@@ -20,7 +22,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.flow.facts import CLASS_NAMES, T
 from kb_build.flow.types import Collection, Instance
 from kb_build.records import last_name
 from kb_build.symbol_lines import NODE_FAMILIES, alike_nodes
@@ -37,14 +39,13 @@ if TYPE_CHECKING:
     from kb_check.known_names import Lacking
     from kb_check.script import Script
 
-_TAKERS = {f"{T}Nodes.new": "type", f"{T}NodeTreeInterface.new_socket": "socket_type"}
 _BLENDERS_OWN = re.compile(rf"({'|'.join(NODE_FAMILIES)}|NodeSocket)[A-Z]\w+")
 _NODE, _TREE = f"{T}Node", f"{T}NodeTree"
 
 
 def _check(script: Script) -> Iterator[Finding]:
     for call in calls(script):
-        wanted = _TAKERS.get(call.callee.symbol.path)
+        wanted = CLASS_NAMES.get(call.callee.symbol.path)
         for parameter, node in call.arguments() if wanted else ():
             if (
                 parameter.name != wanted
@@ -68,12 +69,22 @@ def _check(script: Script) -> Iterator[Finding]:
             ):
                 yield _label_finding(script, node, called)
                 continue
-            if script.names.was("bpy.types", name) or _BLENDERS_OWN.fullmatch(name):
-                lacking = _lacking(script, name)
-                yield Finding(
-                    RULE.id, "error", script.span(node), lacking.message, lacking.symbol,
-                    tuple(path for path in lacking.instead if script.api.is_class(path)),
-                )  # fmt: skip
+            yield from _unknown(script, node, name)
+    for row in script.missing("class"):
+        name = row.value
+        is_own = name in script.own_identifiers or script.package.has(("bpy.types",), name)
+        if not is_own and not script.names.still_works(f"{T}{name}"):
+            yield from _unknown(script, row.node, name)
+
+
+def _unknown(script: Script, node: ast.AST, name: str) -> Iterator[Finding]:
+    """A name that another Blender had, or that is like those of Blender's own nodes."""
+    if script.names.was("bpy.types", name) or _BLENDERS_OWN.fullmatch(name):
+        lacking = _lacking(script, name)
+        yield Finding(
+            RULE.id, "error", script.span(node), lacking.message, lacking.symbol,
+            tuple(path for path in lacking.instead if script.api.is_class(path)),
+        )  # fmt: skip
 
 
 @once_for_each

@@ -1,9 +1,10 @@
 """A value that an enumeration does not have.
 
-Looked at where a literal is assigned or given to a call, or is an attribute of a class that Blender registers; a
-comparison is the rule ``never-true``'s. Enumerations whose values Blender puts together while it runs (images,
-installed engines) are left out. Of node trees, add-ons may have classes of their own: reported is a name that begins as
-those of Blender's nodes do, or the type of a tree. Icons of other Blenders are reported whatever they are given to.
+Looked at where a literal, or a name that surely holds one, is assigned or given to a call, or where a literal is an
+attribute of a class that Blender registers; a comparison is the rule ``never-true``'s. Enumerations whose values
+Blender puts together while it runs (images, installed engines) are left out. Of node trees, add-ons may have classes of
+their own: reported is a name that begins as those of Blender's nodes do, or the type of a tree. Icons of other Blenders
+are reported whatever they are given to.
 
 ```python
 scene.render.engine = "BLENDER_EEVEE_NEXT"  # reported in 5.0: BLENDER_EEVEE

@@ -1,0 +1,58 @@
+"""Reads code again for one case alone: what one call passes, what one turn of a loop has.
+
+What such a reading finds is kept apart, and so is what it costs. Of its findings, only those stay that the first
+reading could not have: of texts that come from elsewhere (see :class:`definitions.FunctionDefinition`).
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.core import Core, StepsExhausted
+from kb_build.flow.layers import TypesAbove
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from kb_build.flow.types import Resolution
+
+
+class Trials(Core):
+    """Reads parts again."""
+
+    def try_reading(self, read: Callable[[], None]) -> bool:
+        """Reads something again; whether that came to an end."""
+        outer = self.types, self.resolutions, self.tries, self.depth, self.steps_left
+        file, statement = self.file, self.statement
+        self.types, self.resolutions = TypesAbove(self.types), {}
+        if not self.tries:
+            self.steps_left = file.trial_steps
+        self.tries = True
+        try:
+            read()
+            for row in self.resolutions.values():
+                if _comes_from_elsewhere(row):
+                    self.reader.carried.setdefault((row.node, row.value), row)
+        except (StepsExhausted, RecursionError):
+            if outer[2]:  # which is a part of another such reading
+                raise
+            return False
+        finally:
+            spent = self.steps_left
+            self.types, self.resolutions, self.tries, self.depth, self.steps_left = outer
+            self.statement = statement
+            if self.tries:
+                self.steps_left = spent
+            else:
+                file.trial_steps = spent
+        return True
+
+
+def _comes_from_elsewhere(row: Resolution) -> bool:
+    """Whether a text that is not written where it is used surely is wrong there."""
+    if not row.missing or row.symbols or row.possible or not row.sure or row.guarded:
+        return False
+    if row.kind == "item":
+        return isinstance(row.node, ast.Subscript) and not isinstance(row.node.slice, ast.Constant)
+    return row.kind in {"value", "class"} and not isinstance(row.node, ast.Constant)
