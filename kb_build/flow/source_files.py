@@ -19,6 +19,8 @@ if TYPE_CHECKING:
 
     from kb_build.flow.types import Resolution, Type
 
+_OF_ALL_STEPS = 8  # the part of a file's steps that may be spent on reading parts of it again
+
 
 @dataclass
 class SourceFile:
@@ -59,7 +61,7 @@ class SourceFile:
     complete: bool = True
 
     def __post_init__(self) -> None:
-        self.trial_steps = self.steps_left // 2
+        self.trial_steps = self.steps_left // _OF_ALL_STEPS
 
     @cached_property
     def nodes(self) -> Sequence[ast.AST]:
