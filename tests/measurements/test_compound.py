@@ -41,7 +41,7 @@ def test_a_name_is_given_with_its_class_and_an_argument_with_its_operator(name: 
 @pytest.mark.parametrize("name", SETS)
 def test_every_question_wants_at_least_two_things(name: str) -> None:
     queries = read_compound(QUERIES / f"{name}.jsonl")
-    assert len({query.query for query in queries}) == len(queries) == 120
+    assert len({query.query for query in queries}) == len(queries) > 100
     assert all(len(query.expect_all) > 1 and all(query.expect_all) for query in queries)
 
 
