@@ -27,7 +27,7 @@ class FunctionDefinition:
     come from elsewhere.
 
     ``passed`` is what single calls pass; ``calls`` has a reading for each, where it was read so: a definition of its
-    own, ``exact``, whose ``received`` is that alone.
+    own, ``exact``, whose ``received`` is that alone. ``in_vain`` are those of the last of them that brought nothing.
     """
 
     node: ast.FunctionDef | ast.AsyncFunctionDef | ast.Lambda
@@ -52,6 +52,7 @@ class FunctionDefinition:
     carried: Carried = field(default_factory=Carried)
     calls: dict[Given, FunctionDefinition] = field(default_factory=dict[Given, "FunctionDefinition"])
     passed: set[Given] = field(default_factory=set[Given])
+    in_vain: int = 0
     exact: bool = False
 
 

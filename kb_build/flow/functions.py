@@ -33,6 +33,7 @@ if TYPE_CHECKING:
 
 # How many different calls a function is read for, and how many more where their texts are left out.
 _MOST_CALLS, _MOST_KINDS = 24, 8
+_MOST_IN_VAIN = 2  # readings for single calls, one after the other, that bring no more than that for all
 
 
 class Functions(Parameters, Trials):
@@ -85,8 +86,15 @@ class Functions(Parameters, Trials):
         if has_texts and self._comes_surely(whole):
             self.reader.uses.add((number, received, node))
         returned = function.returned
-        if function.stale or not self._is_enough(function, returned, received, has_texts=has_texts):
+        if function.stale or (
+            function.in_vain < _MOST_IN_VAIN
+            and not self._is_enough(function, returned, received, has_texts=has_texts)
+        ):
+            is_new = received not in function.calls
             call = self.reading_for(number, received)
+            if is_new and not function.stale:
+                brought = call is not None and call.returned != returned
+                function.in_vain = 0 if brought else function.in_vain + 1
             returned = call.returned if call else UNKNOWN if function.stale else returned
         self.note(number, received, returned)
         return returned or UNKNOWN
@@ -164,7 +172,7 @@ class Functions(Parameters, Trials):
 
     def _read_call(self, number: int, received: Given) -> FunctionDefinition | None:
         function = self.functions[number]
-        if function.running or self.depth >= DEEPEST_RUN:
+        if function.running or self.depth >= DEEPEST_RUN or not self.may_try(function.file or self.file):
             return None
         call = replace(
             function,

@@ -19,7 +19,8 @@ if TYPE_CHECKING:
 
     from kb_build.flow.types import Resolution, Type
 
-_OF_ALL_STEPS = 8  # the part of a file's steps that may be spent on reading parts of it again
+# The part of a file's steps that may be spent on reading parts of it again, and no more than so many.
+_OF_ALL_STEPS, _MOST_AGAIN = 8, 10_000
 
 
 @dataclass
@@ -61,7 +62,7 @@ class SourceFile:
     complete: bool = True
 
     def __post_init__(self) -> None:
-        self.trial_steps = self.steps_left // _OF_ALL_STEPS
+        self.trial_steps = min(self.steps_left // _OF_ALL_STEPS, _MOST_AGAIN)
 
     @cached_property
     def nodes(self) -> Sequence[ast.AST]:

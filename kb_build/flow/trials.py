@@ -15,14 +15,21 @@ from kb_build.flow.layers import TypesAbove
 if TYPE_CHECKING:
     from collections.abc import Callable
 
+    from kb_build.flow.source_files import SourceFile
     from kb_build.flow.types import Resolution
 
 
 class Trials(Core):
     """Reads parts again."""
 
+    def may_try(self, file: SourceFile) -> bool:
+        """Whether anything is left to spend on such readings in a file."""
+        return (self.steps_left if self.tries else file.trial_steps) > 0
+
     def try_reading(self, read: Callable[[], None]) -> bool:
         """Reads something again; whether that came to an end."""
+        if not self.may_try(self.file):
+            return False
         outer = self.types, self.resolutions, self.tries, self.depth, self.steps_left
         file, statement = self.file, self.statement
         self.types, self.resolutions = TypesAbove(self.types), {}

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter
 from dataclasses import dataclass, replace
-from functools import cached_property
+from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -81,6 +81,7 @@ class Searcher:
         self._reader = reader
         self.index = InvertedIndex(reader)
         self._names: dict[int, frozenset[str]] = {}  # of operators, of which there are some thousands at most
+        self.concepts = lru_cache(maxsize=8)(self._concepts)  # a query's are asked for more than once
 
     # The query
 
@@ -102,7 +103,7 @@ class Searcher:
         )
         return ranked[0][0] if ranked else ""
 
-    def concepts(self, text: str) -> list[Concept]:
+    def _concepts(self, text: str) -> list[Concept]:
         """The query's distinct words, each with its stem in this corpus."""
         asked: dict[str, str] = {}
         for word in words(text)[:_MAX_WORDS]:

@@ -23,6 +23,7 @@ _ROWS = 5  # of what was found, the first, whose classes may have more
 _CLASSES = 2
 _MOST = 3
 _READ = 6  # members of a class whose entries are read
+_LITTLE = 1.0  # what a member says of a word, less of which is never in its name
 _SAYS = 1.4  # what a member says of a word (see StemPostings) that its label may have
 _ELSEWHERE = 0.3  # what such a word counts, next to one in its name
 _MUCH, _SPOKEN = 1.9, 0.25  # what it says of a word that it speaks of much, and how much of that counts
@@ -134,6 +135,7 @@ class Siblings:
             numbers = postings.numbers[: postings.units]
             places = np.searchsorted(numbers, members)
             places = places[numbers.take(places, mode="clip") == members]
+            places = places[postings.saturated[places] >= _LITTLE]
             for number, says in zip(
                 numbers[places].tolist(), postings.saturated[places].tolist(), strict=True
             ):
@@ -206,6 +208,6 @@ def _said_by(*entries: SymbolEntry) -> set[str]:
     return {word for entry in entries for name in (entry.name, entry.label) for word in _stems(name)}
 
 
-@lru_cache(maxsize=1_500)
+@lru_cache(maxsize=500)
 def _stems(name: str) -> frozenset[str]:
     return frozenset(map(stem, words(name)))
