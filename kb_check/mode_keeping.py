@@ -6,8 +6,8 @@ import ast
 import builtins
 from typing import TYPE_CHECKING
 
+from kb_build.flow.facts import SET_ACTIVE
 from kb_build.flow.trees import children
-from kb_check import active_object
 from kb_check.calls import calls_by_node
 from kb_check.computing import CALLING, RUNNING, STORING
 from kb_check.made_here import bindings, knows_all, stored_names
@@ -104,7 +104,7 @@ def sets_active(script: Script, node: ast.Attribute) -> bool:
     if node.attr != "active":
         return False
     row = script.analysis.resolutions.get(node)
-    return row is None or active_object.SET in row.symbols or not row.symbols
+    return row is None or SET_ACTIVE in row.symbols or not row.symbols
 
 
 def is_harmless(script: Script, node: ast.Call) -> bool:

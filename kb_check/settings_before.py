@@ -15,9 +15,8 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import made_by
+from kb_build.flow.facts import READ_ACTIVE, made_by
 from kb_build.flow.trees import walk
-from kb_check import active_object
 from kb_check.calls import calls_by_node
 from kb_check.made_here import callee_path, places
 from kb_check.script import once_for_each
@@ -91,7 +90,7 @@ def made_just_before(script: Script, statement: ast.stmt, owner: ast.expr, setti
         case _:
             pass
     row = script.analysis.resolutions.get(holder) if holder is not None else None
-    if row is None or not row.symbols or not active_object.READ.issuperset(row.symbols) or place < 0:
+    if row is None or not row.symbols or not READ_ACTIVE.issuperset(row.symbols) or place < 0:
         return ""
     match statements[place]:
         case ast.Expr(value=ast.Call() as call) if made_by(callee_path(script, call)):
@@ -104,7 +103,7 @@ def _given_to_maker(script: Script, call: ast.Call, owner: ast.expr, setting: Sy
     """What an operator that makes the active object is given for a setting of what belongs to that."""
     row = script.analysis.resolutions.get(owner.value) if isinstance(owner, ast.Attribute) else None
     site = calls_by_node(script).get(call)
-    if row is None or not row.symbols or not active_object.READ.issuperset(row.symbols):
+    if row is None or not row.symbols or not READ_ACTIVE.issuperset(row.symbols):
         return None
     if site is None or not site.callee.symbol.name.endswith("_add"):
         return None

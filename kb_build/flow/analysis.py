@@ -81,7 +81,11 @@ class Analyzer(Statements, Functions, Calls):
     def _follow_calls(self) -> None:
         """Adds to what is found in files what the texts come to that calls pass, or that a loop goes through."""
         hidden = {id(file): _nodes_in(file.doubted) for file in self.sources}
-        waiting = [(file, reader) for file, reader in self._readers() if self.is_current(reader)]
+        waiting = [
+            (file, reader)
+            for file, reader in self._readers()
+            if (reader.carried or reader.uses) and self.is_current(reader)
+        ]
         followed: set[tuple[int, Given]] = set()
         for file, reader in waiting:  # it grows
             for row in reader.carried.values():

@@ -166,7 +166,7 @@ class Core:
             or (self.tries and CHOSEN in self.scope.state.doubted), self.statement,
         )  # fmt: skip
         if missing and not self.tries:
-            self._denials.append((self.resolutions, node, self.function or self.file))
+            self._denials.append((self.resolutions, node, self.reader))
 
     def is_current(self, reader: Reader) -> bool:
         """Whether what a function or a module took from other definitions is still all that is known of them."""

@@ -14,7 +14,7 @@ OBJECT_DATA = {
 }  # fmt: skip
 
 # Operators that make an object and leave it as the active one: how their paths begin or are → the object's type.
-MAKERS = {
+_MAKERS = {
     "bpy.ops.mesh.primitive_": "MESH", "bpy.ops.curve.primitive_": "CURVE", "bpy.ops.surface.primitive_": "SURFACE",
     "bpy.ops.object.text_add": "FONT", "bpy.ops.object.armature_add": "ARMATURE", "bpy.ops.object.camera_add": "CAMERA",
     "bpy.ops.object.light_add": "LIGHT", "bpy.ops.object.metaball_add": "META", "bpy.ops.object.speaker_add": "SPEAKER",
@@ -201,7 +201,7 @@ ELEMENT = "[]"  # the trait that names what an instance holds
 def made_by(operator: str) -> str:
     """The type of the object that an operator makes and leaves as the active one; empty for other operators."""
     is_adding = operator.endswith("_add")
-    return next((kind for path, kind in MAKERS.items() if is_adding and operator.startswith(path)), "")
+    return next((kind for path, kind in _MAKERS.items() if is_adding and operator.startswith(path)), "")
 
 
 def leaves_active(operator: str) -> bool:

@@ -27,12 +27,17 @@ def texts_in(kind: Type) -> Iterator[Plain]:
         case Sequence():
             yield from texts_in(kind.element)
         case Mapping():
-            source = kind.key.source if isinstance(kind.key, Plain) else ""
-            yield from (Plain("str", name, source) for name, _ in kind.items)
+            yield from (name for name, _ in pairs_of(kind))
             for part in (kind.value, *(value for _, value in kind.items)):
                 yield from texts_in(part)
         case _:
             pass
+
+
+def pairs_of(kind: Mapping) -> list[tuple[Plain, Type]]:
+    """The items of a dictionary whose keys are written out: key and value."""
+    source = kind.key.source if isinstance(kind.key, Plain) else ""
+    return [(Plain("str", name, source), value) for name, value in kind.items]
 
 
 def has_passed(kind: Type) -> bool:

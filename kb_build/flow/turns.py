@@ -5,9 +5,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.texts import has_passed, texts_in
+from kb_build.flow.texts import has_passed, pairs_of, texts_in
 from kb_build.flow.trees import walk
-from kb_build.flow.types import INT, Builtin, Mapping, Plain, Tuple, Type
+from kb_build.flow.types import INT, Builtin, Mapping, Tuple, Type
 
 if TYPE_CHECKING:
     from collections.abc import Mapping as Rows
@@ -41,12 +41,12 @@ def _items(  # noqa: PLR0911 - one return a form
     if isinstance(kind, Tuple):
         return list(kind.items)
     if isinstance(kind, Mapping):
-        return [name for name, _ in _pairs(kind)]
+        return [name for name, _ in pairs_of(kind)]
     called = types.get(node.func) if isinstance(node, ast.Call) else None
     if not isinstance(node, ast.Call) or not isinstance(called, Builtin) or node.keywords:
         return None
     if isinstance(called.receiver, Mapping) and not node.args:
-        pairs = _pairs(called.receiver)
+        pairs = pairs_of(called.receiver)
         match called.name:
             case "items":
                 return [Tuple(pair) for pair in pairs]
@@ -65,8 +65,3 @@ def _items(  # noqa: PLR0911 - one return a form
     if called.name == "enumerate":
         return [Tuple((INT, item)) for item in columns[0]]
     return columns[0] if called.name in _SAME_ITEMS else None
-
-
-def _pairs(kind: Mapping) -> list[tuple[Type, Type]]:
-    source = kind.key.source if isinstance(kind.key, Plain) else ""
-    return [(Plain("str", name, source), value) for name, value in kind.items]

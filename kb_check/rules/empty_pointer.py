@@ -23,11 +23,10 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.flow.facts import READ_ACTIVE, T
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
 from kb_build.symbol_lines import empty_when_new, fillers
-from kb_check import active_object
 from kb_check.findings import Finding
 from kb_check.made_here import (
     asked_names,
@@ -258,7 +257,7 @@ def _is_primitive(script: Script, node: ast.expr) -> bool:
 
 def _is_active(script: Script, node: ast.Attribute) -> bool:
     row = script.analysis.resolutions.get(node)
-    if row is None or not active_object.READ.issuperset(row.symbols) or "active" in named_words(script):
+    if row is None or not READ_ACTIVE.issuperset(row.symbols) or "active" in named_words(script):
         return False
     before = _first_primitive(script) <= (node.lineno, node.col_offset)
     return before and not _computes_members(script) and has_plain_operators_only(script)

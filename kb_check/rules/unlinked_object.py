@@ -16,9 +16,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.flow.facts import SET_ACTIVE, T
 from kb_build.flow.types import Instance
-from kb_check import active_object
 from kb_check.calls import calls_by_node
 from kb_check.edit_bones import bound_in, names_of_others, run_in, surely_run
 from kb_check.findings import Finding
@@ -73,7 +72,7 @@ def _refused(script: Script, statement: ast.stmt, unlinked: set[str]) -> Iterato
                 is_refused = path in _REFUSED and isinstance(given, ast.Constant) and given.value is True
             case ast.Assign(targets=[ast.Attribute() as target], value=ast.Name(id=name)):
                 path, place, what = member_path(script, target), target, "active"
-                is_refused = path == active_object.SET
+                is_refused = path == SET_ACTIVE
             case _:
                 continue
         if is_refused and name in unlinked and not is_tried(script, place):

@@ -145,7 +145,7 @@ class QueryRanker:
         first = max(_ALWAYS, sum(row.why != "found" for row in ranked))
         told = {row.id for row in ranked[:first]}
         nodes = [node for node in named_nodes(asked, self._reader) if node not in told]
-        members = self._siblings.of(ranked, self.searcher.concepts(asked), *([1] if named else []))
+        members = self._siblings.of(ranked, self.searcher.concepts(asked), is_named=named)
         more = [*nodes[:_MOST_NODES], *members]
         last = ranked[:first][-1].score if ranked else SURE
         rest = [row for row in ranked[first:] if row.id not in more]

@@ -55,7 +55,9 @@ def _spans(said: Sequence[str]) -> Iterator[tuple[int, int]]:
 
 def _called(label: str, reader: BaseReader) -> str:
     """The node with a label, in small letters and without spaces; empty for none."""
-    found = [reader.entry(path) for _, path in reader.by_key(label)]
+    paths = [path for _, path in reader.by_key(label)]
+    reader.entry.load(paths)
+    found = map(reader.entry, paths)
     nodes = [
         entry for entry in found if entry and _is_called(entry, label) and reader.descends(entry.path, _NODE)
     ]

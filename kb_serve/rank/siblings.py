@@ -60,16 +60,17 @@ class Siblings:
         self._index = index
         self._topic = lru_cache(maxsize=64)(self._topic_of)
 
-    def of(self, rows: Sequence[RankedId], concepts: Iterable[Concept], classes: int = _CLASSES) -> list[str]:
-        """Members of the first ``classes`` classes of what was found, in whose names or labels are words of the
-        question that nothing of that class has which was found; and the other end of a range.
+    def of(self, rows: Sequence[RankedId], concepts: Iterable[Concept], *, is_named: bool) -> list[str]:
+        """Members of the first classes of what was found, in whose names or labels are words of the question that
+        nothing of that class has which was found; and the other end of a range. Of one class, where the question names
+        the best (``is_named``).
         """
         asked = {concept.stem: concept.idf for concept in concepts if concept.stem}
         first = rows[:_ROWS]
         known = {row.id for row in first} | {f"{row.id}.{name}" for row in first for name in row.members}
         likely = [
             (left, self._likely(cls.path, left, known))
-            for cls in self._classes(first, asked)[:classes]
+            for cls in self._classes(first, asked)[: 1 if is_named else _CLASSES]
             if (left := _left(asked, (*_stems(cls.path.rpartition(".")[2]), *_said_by(*cls.found))))
         ]
         self._reader.entry.load(self._index.levels[0].refs[number] for _, own in likely for number in own)
