@@ -20,6 +20,7 @@ class Branches(Guards, Ways):
         test = self.evaluate(node.test)
         # Only another version's code is left out: a switch may be set by whoever reads the script.
         truth = literal(test) if is_decided(test) else None
+        asked = self.asked(node.test, chooses=True) if truth is None else frozenset({EVERYTHING})
         before = self.scope.state
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
@@ -27,15 +28,13 @@ class Branches(Guards, Ways):
                 self.file.left_out.update(body)
                 continue
             self.scope.state = before.copy()
-            self.narrow(node.test, holds=holds)
+            self.narrow(node.test, holds=holds, asked=asked)
             ways.append(self.way(self.scope.state, body))
         reached = self.meet(ways, before)
         if None not in ways:
             self.scope.state.doubted = before.doubted
         if flags := assigned_names([*node.body, *node.orelse]):
-            decided = truth is not None
-            asked = frozenset({EVERYTHING}) if decided else self.asked(node.test)
-            self.tell(flags, asked, decided=decided)
+            self.tell(flags, asked - {CHOSEN}, decided=truth is not None)
         return reached
 
     def read_match(self, node: ast.Match) -> bool:

@@ -460,9 +460,10 @@ class Calls(Narrowing):
         parameters = function.node.args
         names = [argument.arg for argument in (*parameters.posonlyargs, *parameters.args)]
         given = {**dict(zip(names, values, strict=False)), **keywords}
-        for name, kind in given.items():
-            if name:
-                self._receive(function, name, passed(kind))
+        if not self.tries:  # where it is read again, what it passes is a part of what it passed before
+            for name, kind in given.items():
+                if name:
+                    self._receive(function, name, passed(kind))
         return given
 
     @staticmethod

@@ -140,8 +140,8 @@ class Core:
         """Assigns to a name, an attribute, an item, or several of them."""
         raise NotImplementedError
 
-    def narrow(self, test: ast.expr, *, holds: bool) -> None:
-        """Applies what is known once a condition holds or does not."""
+    def narrow(self, test: ast.expr, *, holds: bool, asked: frozenset[str] | None = None) -> None:
+        """Applies what is known once a condition holds or does not; ``asked``: see :meth:`guards.Guards.doubt`."""
         raise NotImplementedError
 
     # Results.

@@ -14,11 +14,11 @@ from kb_build.flow.trees import default_values
 from kb_build.flow.trials import Trials
 from kb_build.flow.types import (
     NONE,
-    PASSED,
     UNKNOWN,
     Given,
     Instance,
     Mapping,
+    NoneValue,
     Plain,
     Sequence,
     Tuple,
@@ -81,14 +81,19 @@ class Functions(Parameters, Trials):
         """See :class:`core.Core`."""
         function = self.functions[number]
         whole = self._with_defaults(function, given)
-        received = _as_one_call(function, whole)
         has_texts = any(True for kind in whole.values() for _ in texts_in(kind))
-        if has_texts and self._comes_surely(whole):
-            self.reader.uses.add((number, received, node))
+        follows = has_texts and self._comes_surely(whole)
         returned = function.returned
-        if function.stale or (
-            function.in_vain < _MOST_IN_VAIN
-            and not self._is_enough(function, returned, received, has_texts=has_texts)
+        is_known = not function.stale and self._is_one(returned, has_texts=has_texts)
+        if is_known and not follows:
+            return self.returned(number) or UNKNOWN
+        received = _as_one_call(function, whole)
+        if follows:
+            self.reader.uses.add((number, received, node))
+        if function.stale and self.rounds and not (self.settled or self.tries):
+            returned = UNKNOWN  # it is read again first
+        elif function.stale or not (
+            is_known or function.in_vain >= _MOST_IN_VAIN or not _tells_more(function, received)
         ):
             is_new = received not in function.calls
             call = self.reading_for(number, received)
@@ -102,8 +107,12 @@ class Functions(Parameters, Trials):
     def returns_still(self, number: int, received: Given, kind: Type | None) -> bool:
         """Whether a function is still known to return something to a call that passes this."""
         function = self.functions[number]
+        if function.stale and not self.settled:
+            return True  # it is read again first
         if function.returned == kind and not function.stale:
             return True
+        if kind is UNKNOWN and (self.settled or not _may_help(function.returned)):
+            return True  # of what nothing was known, nothing was found missing
         call = self.reading_for(number, received) if self.settled else function.calls.get(received)
         return call is not None and call.returned == kind
 
@@ -128,31 +137,21 @@ class Functions(Parameters, Trials):
         texts = (str(text.value) for kind in whole.values() for text in texts_in(kind))
         return not state.doubted or state.doubted.isdisjoint(map(name_doubt, texts))
 
-    def _is_enough(
-        self, function: FunctionDefinition, returned: Type | None, received: Given, *, has_texts: bool
-    ) -> bool:
-        """Whether what a function returns to all its calls is as much as could be known of one of them."""
-        if returned is None or (not has_texts and _is_alone(function, received)):
-            return True
-        if returned is UNKNOWN:
-            return all(kind is UNKNOWN for _, kind in received)
-        return self._is_one(returned, has_texts=has_texts)
-
-    def _is_one(self, kind: Type, *, has_texts: bool) -> bool:  # noqa: PLR0911 - one return a type
-        """Whether a type is not several, nor one of which a text may decide more."""
+    def _is_one(self, kind: Type | None, *, has_texts: bool) -> bool:
+        """Whether a type is one thing, or none that has members, and no text may decide more of it: no call is known to
+        return more than all do.
+        """
         match kind:
-            case Union() | Unknown():
+            case Unknown():
                 return False
+            case Union():
+                things = [one for one in kind.members if _has_things(one)]
+                return len(things) < 2 and all(self._is_one(one, has_texts=has_texts) for one in things)
             case Instance():
                 return not (has_texts and self.api.descendants(kind.cls))
-            case Plain(source=source):
-                return source != PASSED
-            case Tuple(items=items):
-                return all(self._is_one(item, has_texts=has_texts) for item in items)
-            case Sequence():
-                return self._is_one(kind.element, has_texts=has_texts)
-            case Mapping():
-                return self._is_one(kind.value, has_texts=has_texts)
+            case Tuple() | Sequence() | Mapping():
+                parts = filter(_has_things, _parts(kind))
+                return all(self._is_one(part, has_texts=has_texts) for part in parts)
             case _:
                 return True
 
@@ -208,9 +207,38 @@ def _as_one_call(function: FunctionDefinition, whole: dict[str, Type]) -> Given:
     return tuple((name, UNKNOWN) for name in whole)
 
 
-def _is_alone(function: FunctionDefinition, received: Given) -> bool:
-    """Whether all calls of a function, which was read for all of them, pass the same."""
-    given = dict(received)
-    return all(
-        name in given and for_one_call(kind) == given[name] for name, kind in function.received.items()
-    ) and all(given.get(name) is UNKNOWN for name in function.unknown)
+def _tells_more(function: FunctionDefinition, received: Given) -> bool:
+    """Whether one call passes anything that is more than what is known of all calls."""
+    return any(
+        kind is not UNKNOWN
+        and (
+            name in function.unknown
+            or any(True for _ in texts_in(kind))
+            or for_one_call(function.received.get(name, UNKNOWN)) != kind
+        )
+        for name, kind in received
+    )
+
+
+def _may_help(kind: Type | None) -> bool:
+    """Whether it may be worth reading something again where it now knows this, and nothing before."""
+    return kind is not None and (isinstance(kind, Plain) or _has_things(kind))
+
+
+def _has_things(kind: Type) -> bool:
+    """Whether a type has more than plain values, and what is not known, in it."""
+    if isinstance(kind, Union):
+        return any(map(_has_things, kind.members))
+    if isinstance(kind, (Tuple, Sequence, Mapping)):
+        return any(map(_has_things, _parts(kind)))
+    return not isinstance(kind, (Unknown, Plain, NoneValue))
+
+
+def _parts(kind: Tuple | Sequence | Mapping) -> tuple[Type, ...]:
+    match kind:
+        case Tuple(items=items):
+            return items
+        case Sequence():
+            return (kind.element,)
+        case Mapping():
+            return (kind.value,)

@@ -36,17 +36,21 @@ if TYPE_CHECKING:
 class Guards(Expressions):
     """Finds what conditions ask, and which names hold the answers."""
 
-    def doubt(self, test: ast.expr, *, holds: bool) -> None:
-        """Doubts what is read from here on, where a condition, which was read, holds or does not."""
+    def doubt(self, test: ast.expr, *, holds: bool, asked: frozenset[str] | None = None) -> None:
+        """Doubts what is read from here on, where a condition, which was read, holds or does not; ``asked`` is what it
+        asks, where that is known.
+        """
         kind = self.types.get(test, UNKNOWN)
-        if is_decided(kind):
-            asked = frozenset({EVERYTHING}) if literal(kind) is not holds else frozenset[str]()
-        else:
-            asked = self.asked(test) | self.choosing(test)
-        self.scope.state.doubted |= asked
+        if not is_decided(kind):
+            self.scope.state.doubted |= self.asked(test, chooses=True) if asked is None else asked
+        elif literal(kind) is not holds:
+            self.scope.state.doubted |= {EVERYTHING}
 
-    def asked(self, node: ast.expr) -> frozenset[str]:
-        """What an expression, which was read, asks without being decided: doubts, as State has them."""
+    def asked(self, node: ast.expr, *, chooses: bool = False) -> frozenset[str]:
+        """What an expression, which was read, asks without being decided: doubts, as State has them.
+
+        With ``chooses`` that is CHOSEN too, where it may hold of some texts that come from elsewhere but not of all.
+        """
         found: set[str] = set()
         waiting: list[ast.AST] = [node]
         for part in waiting:
@@ -58,6 +62,9 @@ class Guards(Expressions):
             match part:
                 case ast.Name(id="TYPE_CHECKING") | ast.Attribute(attr="TYPE_CHECKING"):
                     found.add(EVERYTHING)  # what follows never runs: it may name what only stubs have
+                case ast.Name() if chooses and self._may_choose(part):
+                    found.add(CHOSEN)
+                    chooses = False
                 case ast.Call():
                     found.update(map(name_doubt, self._texts(part.args)))
                     if self._calls_for_version(part):
@@ -68,13 +75,6 @@ class Guards(Expressions):
                     pass
             waiting += children(part)
         return frozenset(found)
-
-    def choosing(self, test: ast.expr) -> frozenset[str]:
-        """CHOSEN where a condition, which was read, may hold of some texts that come from elsewhere but not of all."""
-        if CHOSEN in self.scope.state.doubted:
-            return frozenset()
-        names = (part for part in walk(test) if isinstance(part, ast.Name))
-        return frozenset({CHOSEN} if any(map(self._may_choose, names)) else ())
 
     def _may_choose(self, name: ast.Name) -> bool:
         """Whether a name holds a plain value, or what is not known."""

@@ -33,9 +33,9 @@ _OBJECT = f"{T}Object"
 class Narrowing(Guards):
     """Applies conditions to what names and chains hold."""
 
-    def narrow(self, test: ast.expr, *, holds: bool) -> None:
+    def narrow(self, test: ast.expr, *, holds: bool, asked: frozenset[str] | None = None) -> None:
         """See :class:`core.Core`."""
-        self.doubt(test, holds=holds)
+        self.doubt(test, holds=holds, asked=asked)
         self._narrow(test, holds=holds)
 
     def _narrow(self, test: ast.expr, *, holds: bool) -> None:  # noqa: PLR0912 - one case a form

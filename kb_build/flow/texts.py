@@ -51,7 +51,7 @@ def passed(kind: Type) -> Type:
 
 
 def for_one_call(kind: Type) -> Type:
-    """A type as one of what a call passes: numbers are any numbers, texts are those of this call."""
+    """A type as one of what a call passes: numbers and truth values are any, texts are those of this call."""
     return _each_plain(kind, _of_one_call, numbers=True)
 
 
@@ -67,7 +67,7 @@ def _as_passed(kind: Plain) -> Type:
 
 
 def _of_one_call(kind: Plain) -> Type:
-    if kind.kind in _NUMBERS:
+    if kind.kind in _NUMBERS or (kind.kind == "bool" and not kind.source):
         return general(kind)
     return Plain(kind.kind, kind.value) if kind.source == PASSED else kind
 

@@ -315,12 +315,14 @@ def join(first: Type, second: Type) -> Type:
     return first if first is second or first == second else union((first, second))
 
 
+_WITHOUT_PARTS = frozenset(
+    {Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalModule, LocalClass, LocalInstance}
+)
+
+
 def bounded(kind: Type, depth: int = DEEPEST_TYPE) -> Type:  # noqa: PLR0911 - one return a type
     """A type whose parts lie at most so deep within each other: a list that holds itself has no end."""
-    if isinstance(
-        kind,
-        (Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalModule, LocalClass, LocalInstance),
-    ):
+    if type(kind) in _WITHOUT_PARTS:
         return kind
     if depth == 0:
         return UNKNOWN
