@@ -43,7 +43,7 @@ _CONTINUED = re.compile(r"\s*\\\s*\n\s*")
 _LITERAL = re.compile(r"\bLiteral(\[[^\[\]]*\])")
 _LISTED = re.compile(r"\b(?:enum|string|str) in ([\[{(][^\[\]{}()]*[\]})])", re.IGNORECASE)
 _BMESH_ELEMENTS = {"vert": "BMVert", "verts": "BMVert", "edges": "BMEdge", "faces": "BMFace"}
-_REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "ref", "exc", "const", "obj", "doc")
+_REFERENCE_ROLES = ("class", "func", "meth", "attr", "data", "mod", "exc", "const", "obj", "doc")
 _QUIET = 5
 
 
@@ -103,6 +103,15 @@ def _literal_role(
     return [nodes.literal(rawtext, name.lstrip("~!"))], []
 
 
+def _label_role(
+    _name: str, _rawtext: str, text: str, *_position: object, **_options: object
+) -> tuple[list[nodes.Node], list[nodes.system_message]]:
+    """A reference to a place of the documentation is its title, or what its label says: ``page-custom_properties``."""
+    title, _, label = text.rpartition(" <")
+    own = label.partition("-")[2] if "_" in label else label
+    return [nodes.Text(title or own.replace("_", " ").replace("-", " "))], []
+
+
 class _Declared(nodes.General, nodes.Element):
     """A method or attribute within the docstring of a class; ``calls`` are its signatures."""
 
@@ -149,6 +158,7 @@ def _parser() -> tuple[Parser, Any]:
         directives.register_directive(_OWN + name, _Remark)
     for role in _REFERENCE_ROLES:
         roles.register_local_role(role, cast("Any", _literal_role))
+    roles.register_local_role("ref", cast("Any", _label_role))
     settings: Any = get_default_settings(Parser())
     settings.report_level = settings.halt_level = _QUIET
     settings.file_insertion_enabled = settings.raw_enabled = False

@@ -47,6 +47,7 @@ _OF_MODULE, _SELF = (
     "(self",
 )  # how ``inside/modules.py`` marks functions of modules written in Python
 _BOUND = re.compile(r"^\((?:self|cls)\b(?:, /)?(?:, )?")  # what a method gets from the dot before it
+_ROLE = re.compile(r":class:`~?([^`]+)`")  # which some of RNA's descriptions have
 _SHARED_ENUM = re.compile(r"\brna_enum_\w+")
 # Values that are listed where the module is described: ``**`UNIFORM_COLOR`**: Attributes…``.
 _LISTED_BY_MODULE = re.compile(r"One of the builtin \w+ names\.?")
@@ -195,13 +196,24 @@ def read_docstring(row: Mapping[str, Any]) -> Docstring:
     return replace(parsed, parameters=(Parameter("self", required=True), *parsed.parameters))
 
 
+def _without_roles(text: str) -> str:
+    return _ROLE.sub(r"`\1`", text)
+
+
 def _symbol(row: dict[str, Any]) -> Symbol:
     """One line of the extract, its docstring read and its call spelled out."""
     parsed = read_docstring(row) if row.get("docstring") or row.get("signature") else None
     fields = symbol_fields(row)
     fields.pop("docstring", None)
     fields.pop(_OF_MODULE, None)
-    path, kind, parameters = row["path"], row["kind"], fields.get("parameters", ())
+    fields["description"] = _without_roles(row.get("description", ""))
+    path, kind = row["path"], row["kind"]
+    fields["parameters"] = parameters = tuple(
+        replace(parameter, description=_without_roles(parameter.description))
+        if ":class:" in parameter.description
+        else parameter
+        for parameter in fields.get("parameters", ())
+    )
     if parsed is not None:
         call = with_sets(parsed.signature, parameters)
         fields["description"] = parsed.description

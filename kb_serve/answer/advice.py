@@ -46,7 +46,10 @@ def _of(*names: str) -> frozenset[str]:
     return frozenset(f"{_TYPES}{name}" for name in names)
 
 
-_STAYING = f"Loading a file removes a handler, before `load_post` runs it too, unless it has `@{_PERSISTENT}` above it."
+_STAYING = (
+    f"A handler without `@{_PERSISTENT}` above it is gone after a file is loaded: it is removed before `load_post` "
+    "would run it."
+)
 _TAGGED = (
     "A driver does not see a custom property that a script has just set, and stays invalid: after "
     '`owner["name"] = 3.0` call `owner.id_data.update_tag()`, also after each later change. One that is invalid '
@@ -96,7 +99,15 @@ _BAKED = (
     "What is left out is not the default that is listed here, but what `scene.render.bake` has, where it has a setting "
     "of that name: `target`, `margin`, `use_clear`, `normal_space` …"
 )
-_ALL = "`indices=[]` {}, as if it were left out: call it only `if indices:`."
+_ALL = "`{}(indices=[])` {}, as if it were left out: call it only `if indices:`."
+_COMPRESSED = (
+    "Left out, `compress` is not False: the file is compressed as the one that is open, and a new one where "
+    "`bpy.context.preferences.filepaths.use_file_compression` is on. Write `compress=False` to have it uncompressed."
+)
+_UNREAD = (
+    "`bpy.data.images['Render Result']` has no pixels to read, its size is 0 × 0: save it "
+    "(`image.save_render(path)`), load that (`bpy.data.images.load(path)`), and read the loaded one's `pixels`."
+)
 
 ADVICE: tuple[Advice, ...] = (
     Advice(
@@ -127,6 +138,8 @@ ADVICE: tuple[Advice, ...] = (
     ),
     Advice(_FALLS, _of("ClothSettings.gravity")),
     Advice(_BAKED, frozenset({"bpy.ops.object.bake"})),
+    Advice(_COMPRESSED, frozenset({"bpy.ops.wm.save_as_mainfile", "bpy.ops.wm.save_mainfile"})),
+    Advice(_UNREAD, _of("Image.pixels", "Image"), asked=_stems("result")),
     Advice(_MOVED, frozenset({_RIGID_BODY}), chapters_of=_RIGID_BODY),
     Advice(
         _MOVED,
@@ -170,8 +183,8 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_EVERY_POINT, frozenset(f"{_STROKE}Point{name}" for name in ("", ".opacity", ".radius"))),
     Advice(_NO_SIZES.format("strokes"), _of("GreasePencilDrawing.add_strokes")),
     Advice(_NO_SIZES.format("curves"), _of("Curves.add_curves")),
-    Advice(_ALL.format("removes all strokes"), _of("GreasePencilDrawing.remove_strokes")),
-    Advice(_ALL.format("sets the type of all strokes"), _of("GreasePencilDrawing.set_types")),
-    Advice(_ALL.format("removes all curves"), _of("Curves.remove_curves")),
-    Advice(_ALL.format("sets the type of all curves"), _of("Curves.set_types")),
+    Advice(_ALL.format("remove_strokes", "removes all strokes"), _of("GreasePencilDrawing.remove_strokes")),
+    Advice(_ALL.format("set_types", "sets the type of all strokes"), _of("GreasePencilDrawing.set_types")),
+    Advice(_ALL.format("remove_curves", "removes all curves"), _of("Curves.remove_curves")),
+    Advice(_ALL.format("set_types", "sets the type of all curves"), _of("Curves.set_types")),
 )

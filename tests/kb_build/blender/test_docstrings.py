@@ -50,6 +50,10 @@ def test_a_full_docstring_is_taken_apart() -> None:
             "See :func:`~bpy.utils.register_class` and :meth:`x <Y.x>`.",
             "See `bpy.utils.register_class` and `x`.",
         ),
+        (
+            "Limited to :ref:`types-custom_properties`, :ref:`built-in-shaders`, :ref:`these <some-label>`.",
+            "Limited to custom properties, built in shaders, these.",
+        ),
         ("``code`` and *emphasis* and **strong**", "`code` and emphasis and strong"),
         ("* one\n* two", "- one\n- two"),
         ("term\n   what it is", "**term**: what it is"),
@@ -328,7 +332,7 @@ def test_remarks_that_only_sphinx_knows_are_kept(text: str, expected: str) -> No
 
 
 MARKUP = re.compile(
-    r"\bLiteral(?=\[)|^\s*\.\. include:: \S+\.rst$"
+    r":ref:`[^`]*`|\bLiteral(?=\[)|^\s*\.\. include:: \S+\.rst$"
     r"|^\s*\.\. (\|\w+\| replace:: .*|[\w-]+:: ?(python|glsl)?)|^\s*:(arg|param|type|returns?|rtype)\b"
     r"|:\w+:(?=`)|<https?:[^>]*>|https?:\S+|^BMeshOpFunc |-> dict",
     re.MULTILINE,

@@ -277,7 +277,7 @@ def test_no_sizes_crash_blender(reader: BaseReader, path: str, data: str) -> Non
     ],
 )
 def test_no_indices_mean_all(reader: BaseReader, path: str) -> None:
-    assert "`indices=[]` " in said(reader, TYPES + path)
+    assert f"`{path.partition('.')[2]}(indices=[])` " in said(reader, TYPES + path)
     drawing = new_drawing()
     curves: Any = bpy.data.hair_curves.new("h")
     drawing.add_strokes([2, 2])
@@ -292,6 +292,38 @@ def test_no_indices_mean_all(reader: BaseReader, path: str) -> None:
         drawing.remove_strokes(indices=[])
         curves.remove_curves(indices=[])
         assert (len(drawing.strokes), len(curves.curves)) == (0, 0)
+
+
+def test_what_is_left_out_is_compressed_as_the_open_file_is(reader: BaseReader, tmp_path: Path) -> None:
+    assert "Left out, `compress` is not False" in said(reader, "bpy.ops.wm.save_as_mainfile")
+    path = tmp_path / "a.blend"
+    kept = bpy.context.preferences.filepaths.use_file_compression
+    for new in (False, True):
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        bpy.context.preferences.filepaths.use_file_compression = new
+        bpy.ops.wm.save_as_mainfile(filepath=str(path))
+        assert (path.read_bytes()[:7] != b"BLENDER") is new
+        for asked in (False, True):
+            bpy.ops.wm.save_as_mainfile(filepath=str(path), compress=asked)
+            bpy.ops.wm.open_mainfile(filepath=str(path))
+            bpy.ops.wm.save_mainfile()
+            assert (path.read_bytes()[:7] != b"BLENDER") is asked
+    bpy.context.preferences.filepaths.use_file_compression = kept
+
+
+def test_a_render_has_no_pixels_until_it_is_saved(reader: BaseReader, tmp_path: Path) -> None:
+    question = "bpy.data.images['Render Result'].pixels"
+    assert "has no pixels to read" in said(reader, f"{TYPES}Image.pixels", question)
+    assert "has no pixels" not in said(reader, f"{TYPES}Image.pixels", "image.pixels")
+    scene = bpy.context.scene
+    scene.render.engine, scene.cycles.samples = "CYCLES", 1
+    scene.render.resolution_x = scene.render.resolution_y = 4
+    scene.camera = bpy.data.objects.new("Camera", bpy.data.cameras.new("Camera"))
+    bpy.ops.render.render()
+    result = bpy.data.images["Render Result"]
+    assert (tuple(result.size), len(result.pixels)) == ((0, 0), 0)
+    result.save_render(str(tmp_path / "a.png"))
+    assert len(bpy.data.images.load(str(tmp_path / "a.png")).pixels) == 4 * 4 * 4
 
 
 STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"

@@ -38,8 +38,9 @@ RENDERING = (
     NamelessMessage(
         ("No active ", "image ", "found in material "),
         (f"{_O}bake", f"{_T}Nodes.active"),
-        "A bake writes into the image of each material's active node: add one (`nodes.new('ShaderNodeTexImage')`), "
-        "give it an image, and make it active: `nodes.active = node`.",
+        "A bake writes into the image of each material's active node, which must be selected, too: add one "
+        "(`node = nodes.new('ShaderNodeTexImage')`), give it an image, then `nodes.active = node` and "
+        "`node.select = True`.",
     ),
     NamelessMessage(
         ("No active image found, add a material",),
