@@ -68,13 +68,19 @@ def tokens(text: str) -> list[str]:
 
 def words_in(token: str) -> list[str]:
     """The words of a token without stop words."""
-    return [word for word in _words_in(token) if word not in STOP_WORDS]
+    return [word for word in _split(token) if word not in STOP_WORDS]
 
 
 @lru_cache(maxsize=100_000)
 def terms_in(token: str) -> tuple[str, ...]:
     """The stems of the words of a token without stop words."""
     return tuple(map(stem, words_in(token)))
+
+
+@lru_cache(maxsize=1_000)
+def stems_of(name: str) -> frozenset[str]:
+    """The stems of a name's words."""
+    return frozenset(stem(word) for token in tokens(name) for word in _split(token))
 
 
 def terms(text: str) -> list[str]:

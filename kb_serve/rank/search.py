@@ -16,7 +16,7 @@ import numpy as np
 from rapidfuzz import process
 from rapidfuzz.distance import OSA
 
-from kb_build.index.analysis import STOP_WORDS, stem, words
+from kb_build.index.analysis import STOP_WORDS, stem, stems_of, words
 from kb_build.schema import DOCUMENT_KINDS
 from kb_serve.rank.inverted_index import InvertedIndex
 from kb_serve.rank.scoring import Concept, score_all
@@ -80,7 +80,6 @@ class Searcher:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
         self.index = InvertedIndex(reader)
-        self._names: dict[int, frozenset[str]] = {}  # of operators, of which there are some thousands at most
         self.concepts = lru_cache(maxsize=8)(self._concepts)  # a query's are asked for more than once
 
     # The query
@@ -220,19 +219,13 @@ class Searcher:
         said = frozenset(asked)
         kinds = said & _KINDS
         called: Scores | None = None
+        refs = self.index.levels[0].refs
         for place in are_operators[:_NEAREST].nonzero()[0].tolist():
-            name = self._name_of(int(numbers[place]))
+            name = stems_of(refs[numbers[place]].rpartition(".")[2])
             if len(name) >= _WORDS_OF_A_NAME and name <= said and name >= kinds:
                 called = np.zeros(len(numbers), np.float32) if called is None else called
                 called[place] = sum(asked[part] for part in name) / sum(asked.values())
         return are_operators, called
-
-    def _name_of(self, number: int) -> frozenset[str]:
-        """The stems of a unit's own name."""
-        if (known := self._names.get(number)) is None:
-            name = self.index.levels[0].refs[number].rpartition(".")[2]
-            known = self._names[number] = frozenset(map(stem, words(name)))
-        return known
 
     def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
         """How nearly the query is, word by word, what units or their topics are asked for, from 0: nothing.

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from kb_build.index.analysis import stem, words
+from kb_build.index.analysis import stem, stems_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -71,7 +71,7 @@ class Siblings:
         likely = [
             (left, self._likely(cls.path, left, known))
             for cls in self._classes(first, asked)[: 1 if is_named else _CLASSES]
-            if (left := _left(asked, (*_stems(cls.path.rpartition(".")[2]), *_said_by(*cls.found))))
+            if (left := _left(asked, (*stems_of(cls.path.rpartition(".")[2]), *_said_by(*cls.found))))
         ]
         self._reader.entry.load(self._index.levels[0].refs[number] for _, own in likely for number in own)
         chosen: list[SymbolEntry] = []
@@ -151,7 +151,7 @@ class Siblings:
         own = self._words_of(cls, left)
 
         def near(number: int) -> float:
-            name = _stems(refs[number].rpartition(".")[2])
+            name = stems_of(refs[number].rpartition(".")[2])
             in_name = sum(left[word] for word in own[number] if word in name)
             elsewhere = sum(
                 left[word] for word, says in own[number].items() if says >= _SAYS and word not in name
@@ -166,7 +166,7 @@ class Siblings:
     ) -> float:
         """What speaks for a member beside the words that it is looked for by."""
         again = sum(idf for word, idf in asked.items() if word in member.told and word not in left)
-        unasked = len(_stems(member.entry.name).difference(asked))
+        unasked = len(stems_of(member.entry.name).difference(asked))
         return _SHARE * again - _UNASKED * unasked + _COUNTS * float(self._index.counts[number])
 
     def _other_end(self, rows: Sequence[RankedId], known: set[str]) -> Iterator[SymbolEntry]:
@@ -184,7 +184,7 @@ class Siblings:
 
 def _is_named(cls: str, asked: Mapping[str, float]) -> bool:
     """Whether a question says what makes a class's name."""
-    name = _stems(cls.rpartition(".")[2]) - _KINDS
+    name = stems_of(cls.rpartition(".")[2]) - _KINDS
     return bool(name) and name.issubset(asked)
 
 
@@ -206,9 +206,4 @@ def _new(member: _Member, left: Mapping[str, float]) -> float:
 
 def _said_by(*entries: SymbolEntry) -> set[str]:
     """The stems of the names and labels of some symbols."""
-    return {word for entry in entries for name in (entry.name, entry.label) for word in _stems(name)}
-
-
-@lru_cache(maxsize=500)
-def _stems(name: str) -> frozenset[str]:
-    return frozenset(map(stem, words(name)))
+    return {word for entry in entries for name in (entry.name, entry.label) for word in stems_of(name)}
