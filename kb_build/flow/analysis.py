@@ -13,10 +13,10 @@ from kb_build.flow.other_versions import doubt_what_others_use
 from kb_build.flow.parse import parsed
 from kb_build.flow.source_files import SourceFile, keeps_annotations, module_name
 from kb_build.flow.statements import Statements
-from kb_build.flow.trees import children
+from kb_build.flow.trees import nodes_in
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
+    from collections.abc import Collection, Iterator, Mapping, Sequence
 
     from kb_build.flow.api import Api
     from kb_build.flow.core import Reader
@@ -80,7 +80,7 @@ class Analyzer(Statements, Functions, Calls):
 
     def _follow_calls(self) -> None:
         """Adds to what is found in files what the texts come to that calls pass, or that a loop goes through."""
-        hidden = {id(file): _nodes_in(file.doubted) for file in self.sources}
+        hidden = {id(file): nodes_in(file.doubted) for file in self.sources}
         waiting = [
             (file, reader)
             for file, reader in self._readers()
@@ -176,18 +176,6 @@ class Analyzer(Statements, Functions, Calls):
         if getattr(function.node, "name", "").startswith("register"):
             return 0
         return 1 if function.cls is not None else 2
-
-
-def _nodes_in(parts: Iterable[ast.AST]) -> set[ast.AST]:
-    """The nodes that lie in some of a tree's."""
-    found: set[ast.AST] = set()
-    waiting = [*parts]
-    while waiting:
-        node = waiting.pop()
-        if node not in found:
-            found.add(node)
-            waiting += children(node)
-    return found
 
 
 def analyse(code: str, api: Api, version: tuple[int, ...] = ()) -> Analysis:

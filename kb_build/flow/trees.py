@@ -6,7 +6,7 @@ import ast
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterable, Iterator
 
 # What stands in no place of its own: texts and numbers, how a name is used, operators.
 _NO_NODES = frozenset(
@@ -78,6 +78,18 @@ def walk(node: ast.AST) -> Iterator[ast.AST]:
     for each in waiting:
         waiting += children(each)
         yield each
+
+
+def nodes_in(parts: Iterable[ast.AST]) -> set[ast.AST]:
+    """The nodes of some of a tree's parts, which may lie in each other, and of all below them."""
+    found: set[ast.AST] = set()
+    waiting = [*parts]
+    while waiting:
+        node = waiting.pop()
+        if node not in found:
+            found.add(node)
+            waiting += children(node)
+    return found
 
 
 def default_values(arguments: ast.arguments) -> dict[str, ast.expr]:
