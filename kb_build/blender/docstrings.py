@@ -104,10 +104,15 @@ def _literal_role(
 
 
 def _label_role(
-    _name: str, _rawtext: str, text: str, *_position: object, **_options: object
+    _name: str, rawtext: str, text: str, *_position: object, **_options: object
 ) -> tuple[list[nodes.Node], list[nodes.system_message]]:
-    """A reference to a place of the documentation is its title, or what its label says: ``page-custom_properties``."""
+    """A reference to a place of the documentation is its title, or what its label says: ``page-custom_properties``.
+
+    A label of one word is an identifier: of an enumeration that functions share.
+    """
     title, _, label = text.rpartition(" <")
+    if not title and "-" not in label:
+        return [nodes.literal(rawtext, label)], []
     own = label.partition("-")[2] if "_" in label else label
     return [nodes.Text(title or own.replace("_", " ").replace("-", " "))], []
 

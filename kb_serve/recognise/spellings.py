@@ -13,7 +13,7 @@ from kb_serve.recognise.enum_values import is_quoted_value, is_value
 from kb_serve.recognise.recognition import WHOLE_LABEL
 
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
 
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
@@ -30,6 +30,7 @@ _LABEL_WITHIN = (
 )
 _OF_A_LABEL = 2
 _KINDS = frozenset({"modifier", "constraint"})  # last words of labels, which may stand anywhere in a question
+_USUAL, _BESIDE_USUAL = 0.98, 0.97  # … the class that plain words usually mean, and what is spelled so
 _OTHERWISE = 0.85  # how sure a name is that shares only its key with the query
 
 
@@ -118,11 +119,17 @@ class Spellings:
         is_long = text.count(" ") + 1 >= _LONG_LABEL
         strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
         typed = 0 in strange.values() or self._is_enum_item(text) or self._is_removed(text)
-        weights = self._reader.weights(strange) if len(rows) > 1 else {}
+        weights = self._reader.weights(strange) if len(rows) > 1 or not plain else {}
+        usual = "" if plain or dotted else self._usual_class(rows, weights)
+        if usual:
+            recognition.add(usual, _USUAL, "label")
         for form, identifier in sorted(rows, key=lambda row: (strange[row[1]], -weights.get(row[1], 0.0))):
             if form == FORM_PATH or (form == FORM_SHORT and "/" not in identifier):
                 # ``view_layers`` and ``ViewLayers`` share a key: the one in another spelling is hardly meant.
-                recognition.add(identifier, _OTHERWISE if typed and strange[identifier] > 1 else 1.0, "exact")
+                is_meant = not (typed and strange[identifier] > 1)
+                recognition.add(
+                    identifier, _BESIDE_USUAL if usual else 1.0 if is_meant else _OTHERWISE, "exact"
+                )
             elif form in {FORM_NAME, FORM_LABEL} and not dotted:
                 same = self._last_part(identifier) == text
                 sure = 0.9 if same and plain and "_" in text else WHOLE_LABEL if is_long else 0.7
@@ -131,6 +138,21 @@ class Spellings:
                 recognition.add(identifier, sure, "name")
             else:
                 recognition.add(identifier, WHOLE_LABEL if is_long else 0.75, "title")
+
+    def _usual_class(self, rows: Sequence[tuple[int, str]], weights: Mapping[str, float]) -> str:
+        """The class whose whole label plain words are, if it counts more than what has them as its name; empty for
+        none: ``noise texture`` is the node, before the brush's texture.
+        """
+        others = {identifier for form, identifier in rows if form != FORM_LABEL}
+        labelled = [
+            entry
+            for form, identifier in rows
+            if form == FORM_LABEL and identifier not in others and (entry := self._reader.entry(identifier))
+        ]
+        classes = [entry.path for entry in labelled if entry.kind == "class"]
+        best = max(classes, key=lambda path: weights.get(path, 0.0), default="")
+        most = max((weights.get(path, 0.0) for path in others), default=0.0)
+        return best if best and weights.get(best, 0.0) > most else ""
 
     def _labelled(self, text: str, recognition: Recognition) -> None:
         """Adds classes and operators with exactly this label; for modifiers, Blender's default name will do."""

@@ -51,8 +51,8 @@ def test_a_full_docstring_is_taken_apart() -> None:
             "See `bpy.utils.register_class` and `x`.",
         ),
         (
-            "Limited to :ref:`types-custom_properties`, :ref:`built-in-shaders`, :ref:`these <some-label>`.",
-            "Limited to custom properties, built in shaders, these.",
+            "To :ref:`types-custom_properties`, :ref:`built-in-shaders`, :ref:`these <some-label>`, :ref:`rna_enum_x`.",
+            "To custom properties, built in shaders, these, `rna_enum_x`.",
         ),
         ("``code`` and *emphasis* and **strong**", "`code` and emphasis and strong"),
         ("* one\n* two", "- one\n- two"),

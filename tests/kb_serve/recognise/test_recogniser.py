@@ -609,6 +609,22 @@ def test_what_a_part_of_a_question_is_called_is_told(
     assert set(told) <= {hit.id for hit in kb.query(question).hits}
 
 
+@pytest.mark.parametrize(
+    ("question", "first"),
+    [
+        ("noise texture", ["bpy.types.ShaderNodeTexNoise", "bpy.types.NoiseTexture"]),
+        ("Image Texture", ["bpy.types.ShaderNodeTexImage", "bpy.types.ImageTexture"]),
+        ("magic texture", ["bpy.types.MagicTexture", "bpy.types.ShaderNodeTexMagic"]),
+        ("NoiseTexture", ["bpy.types.NoiseTexture"]),
+        ("color balance", ["bpy.types.CompositorNodeColorBalance"]),
+    ],
+)
+def test_words_that_are_a_name_and_a_label_mean_what_is_used_more(
+    kb: KnowledgeBase, question: str, first: list[str]
+) -> None:
+    assert [hit.id for hit in kb.query(question).hits][: len(first)] == first
+
+
 def test_icons_are_told_only_of_who_asks_for_icons(kb: KnowledgeBase) -> None:
     assert "bl_icon" not in kb.query("push action to NLA strip").text
     assert "bpy.types.Node.bl_icon" in {hit.id for hit in kb.query("icon NLA of a node").hits}
