@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.index.analysis import STOP_WORDS, words
 from kb_serve.rank.deprecated import replacement
 from kb_serve.rank.named_nodes import named_nodes
+from kb_serve.rank.opposites import opposites_last
 from kb_serve.rank.ranked_id import RankedId
 from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
@@ -127,7 +128,7 @@ class QueryRanker:
         hits = self.searcher.search(
             asked, max(limit, _LEAST_HITS), failed=is_message(query), about=f"{about} {code}".strip()
         )
-        ranked = self._replaced(self._merged(recognition, hits))
+        ranked = opposites_last(self._replaced(self._merged(recognition, hits)), asked)
         if not SCRIPT_WORDS.isdisjoint(word.strip(_MARKS) for word in query.lower().split()):
             ranked = self._name_first(ranked)
         if not operators:
