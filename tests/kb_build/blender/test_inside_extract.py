@@ -512,6 +512,14 @@ def test_ways_and_modes_of_making_are_told_apart(symbols: dict[str, Symbol]) -> 
     ]
 
 
+def test_what_a_mode_gives_to_some_is_not_told_of_what_began_in_it(symbols: dict[str, Symbol]) -> None:
+    """A scene's images are of 8 bit, and those of a File Output node that is switched to images of 16."""
+    depths = symbols["bpy.types.ImageFormatSettings.color_depth"].new_values
+    assert [(new.value, new.made) for new in depths if new.when == "media_type='IMAGE'"] == [
+        ("16", ("CompositorNodeOutputFile",))
+    ]
+
+
 @pytest.mark.parametrize(
     ("path", "calls"),
     [

@@ -74,6 +74,8 @@ class Observer:
         self.in_modes = {}
         # mode → [(label, ancestry)] of all that was put into it
         self.put_into = {}
+        # mode → [(label, first values)] of all that began in it
+        self.began_in = {}
         # path → {items: Contexts}
         self.items = {}
         # path → {identifier: (name, description)}
@@ -278,9 +280,12 @@ class Observer:
         for field in self.layout(struct).modes:
             start = before.get(field)
             for item in refused_value_items(struct, field.name):
-                if item == start or not put(struct, field.name, item):
-                    continue
                 mode = f"{field.name}={item!r}"
+                if item == start:
+                    self.began_in.setdefault(mode, []).append((label, before))
+                    continue
+                if not put(struct, field.name, item):
+                    continue
                 has_changed_others = self.compare(struct, label, mode, field, before)
                 if empty:
                     now = self.empty_pointers(struct)
@@ -451,7 +456,11 @@ class Observer:
         cls = path.split(".")[-2]
         rows = []
         for value, mode, labels in self.in_modes.get(path, ()):
-            others = {label for label, names in self.put_into[mode] if cls in names} - set(labels)
+            others = {label for label, names in self.put_into[mode] if cls in names}
+            for label, before in self.began_in.get(mode, ()):
+                first = [kept for field, kept in before.items() if field.path == path]
+                others |= {label for kept in first if not same(plain(kept), value)}
+            others -= set(labels)
             rows.append({"value": value, "when": mode, "made": list(dict.fromkeys(labels)) if others else []})
         return rows
 
