@@ -96,6 +96,11 @@ _BAKED = (
     "What is left out is not the default that is listed here, but what `scene.render.bake` has, where it has a setting "
     "of that name: `target`, `margin`, `use_clear`, `normal_space` …"
 )
+_SLOTTED = (
+    "An action moves nothing until one of its slots is given, too, which `x.action = action` need not do: set "
+    "`x.action_slot = x.action_suitable_slots[0]` after it, or, of an action that has no slot yet, "
+    "`x.action_slot = action.slots.new(obj.id_type, obj.name)`. `obj.keyframe_insert(…)` makes and gives one itself."
+)
 _ALL = "`indices=[]` {}, as if it were left out: call it only `if indices:`."
 
 ADVICE: tuple[Advice, ...] = (
@@ -139,6 +144,19 @@ ADVICE: tuple[Advice, ...] = (
         frozenset({_RANGES}),
         explained=_RANGES,
         about=_stems("property custom limit range min max slider ui"),
+    ),
+    Advice(
+        _SLOTTED,
+        _of(
+            "ActionConstraint.action",
+            "ActionSlots.new",
+            "AnimData.action",
+            "BlendDataActions.new",
+            "NlaStrip.action",
+            "NlaStrips.new",
+        ),
+        about=_stems("action"),
+        needs=f"{_TYPES}AnimData.action_slot",
     ),
     Advice(WITH_AT, frozenset(CLASSES)),
     Advice(

@@ -147,3 +147,24 @@ def test_an_operator_is_run_in_the_mode_that_heads_what_the_manual_says_of_it(
             told = " ".join(told_of(own, "assignment", (), ("object.material_slot_assign",)))
         assert "material_slot_assign()" in told
         assert ("mode_set(mode='EDIT')" in told) is entered
+
+
+def test_an_action_is_given_with_the_slot_that_moves_things(reader: BaseReader) -> None:
+    """Of an object and of a strip; the channels that are made then are of that slot."""
+    found = steps(reader, "actions", "Action", "ActionSlot", "ActionChannelbag")
+    (given,) = [number for number, line in enumerate(found) if "animation_data.action = action`" in line]
+    assert "`slot = action.slots.new(" in found[given + 1]
+    assert "`obj.animation_data.action_slot = slot`" in found[given + 2]
+    assert sum("`slot = " in line for line in found) == 1
+    (bag,) = [number for number, line in enumerate(found) if "channelbags.new(slot)" in line]
+    assert bag > given
+    strips = steps(reader, "nla", "NlaTrack", "NlaStrip")
+    assert "`strip.action_slot = slot`" in " ".join(strips)
+    assert are_done(found)
+    assert are_done(strips)
+
+
+def test_where_an_action_is_a_setting_so_is_its_slot(reader: BaseReader) -> None:
+    (settings,) = [line for line in steps(reader, "action", "ActionConstraint") if "set on" in line]
+    assert "`action` = None (Action), `action_slot` = None (ActionSlot)" in settings
+    assert "action_slot_handle" not in settings
