@@ -21,6 +21,7 @@ _SELDOM = (
     "render/freestyle/",
     "editors/texture_node/",
 )  # seldom meant by who does not say so
+_BONES, _OF_OBJECTS = "animation/armatures/bones/", "objects"  # of what is done to both objects are meant
 _WHAT_IS = re.compile(r"(?:what(?:'s|\s(?:is|are))|explain)\s(?:an?\s|the\s)?", re.I)
 _MADE_FROM = re.compile(
     r"(?:(?:make|get|create|build)\s+)?(?:an?\s+|the\s+)?(?P<made>\w.*?)\s+from\s+(?:an?\s+|the\s+)?(?P<source>\w.*)",
@@ -153,6 +154,9 @@ class TopicPages:
         self._reader.by_key.load((*keys, key(plain)))
         titled = [{slug for _, slug in self._reader.by_key(title)} for title in keys]
         titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._reader.page_children(slug)}
+        if titled[0] and all(slug.startswith(_BONES) for slug in titled[0]):
+            of_objects = {slug for _, slug in self._reader.by_key(topic_key(f"{plain} {_OF_OBJECTS}"))}
+            titled[0] = of_objects or titled[0]
         titled = [
             self._without_nodes({slug for slug in slugs if slug.startswith(chapter)}, plain)
             for slugs in titled
