@@ -143,12 +143,17 @@ class TopicMembers:
         words = [word for title in titles for word in title.lower().split()]
         does = {path.rpartition(".")[2] for path in self._reader.symbols_of_page(slug)}
         if does.isdisjoint((*words, *terms(" ".join(words)))):
-            own = (self._reader.entry(f"{_OPERATORS}{word}.{word}") for word in words)
-            called += filter(None, own)
+            own = filter(None, (self._reader.entry(f"{_OPERATORS}{word}.{word}") for word in words))
+            called += [entry for entry in own if self._is_of_chapter(entry.path, slug)]
         for entry in called:
             parts = {link.partition("/")[0] for link in self._reader.manual_links(entry.path)}
             if entry.kind == "operator" and slug.partition("/")[0] in parts:
                 yield entry.path
+
+    def _is_of_chapter(self, path: str, slug: str) -> bool:
+        """Whether the first page of a chapter that a page is in explains something."""
+        links = (link.partition("#")[0] for link in self._reader.manual_links(path))
+        return any(link.endswith("index") and slug.startswith(link.removesuffix("index")) for link in links)
 
     def _worked_on(self, slug: str, paths: Collection[str]) -> Iterator[str]:
         """What most operators of a chapter work on, where nothing of it can be made: what is in the thing that a call

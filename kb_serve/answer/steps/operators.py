@@ -147,7 +147,7 @@ def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
     for gate, value in switches_off(operator, scene.reader):
         owner = scene.reader.symbol(gate.owner)
         reached = scene.variables.there(gate.owner) or (owner.reached if owner else "")
-        within = scene.pointers.reach(held(scene.variables.within(reached))) if reached else None
+        within = scene.pointers.reach(held(scene.variables.within(reached)), makes=True) if reached else None
         if within is not None:
             yield from within.steps
             yield from scene.pointers.setting(f"{within.expression}.{gate.name}", value)
