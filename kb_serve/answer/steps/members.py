@@ -41,7 +41,7 @@ def settings_of(cls: str, reader: BaseReader) -> str:
     for entry in reader.heaviest(entries)[:_MOST_SETTINGS]:
         told.append(_short(entry))
         if part := parts.get(entry.name):
-            told.append(_short(part))
+            told.append(f"`{part.name}` (after `{entry.name}`){_NONE} ({part.target})")
     return ", ".join(told)
 
 

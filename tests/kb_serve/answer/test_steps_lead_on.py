@@ -166,5 +166,6 @@ def test_an_action_is_given_with_the_slot_that_moves_things(reader: BaseReader) 
 
 def test_where_an_action_is_a_setting_so_is_its_slot(reader: BaseReader) -> None:
     (settings,) = [line for line in steps(reader, "action", "ActionConstraint") if "set on" in line]
-    assert "`action` = None (Action), `action_slot` = None (ActionSlot)" in settings
+    assert "`action` = None (Action), `action_slot` (after `action`) = None (ActionSlot)" in settings
     assert "action_slot_handle" not in settings
+    assert are_done(steps(reader, "action", "ActionConstraint"))
