@@ -201,7 +201,7 @@ class TopicPages:
         says no nodes.
         """
         titles = {slug: page.title for slug in slugs if (page := self._reader.page_entry(slug))}
-        exact = {slug for slug, title in titles.items() if key(title) == key(plain)}
+        exact = {slug for slug, title in titles.items() if topic_key(title) == topic_key(plain)}
         of_nodes = {slug for slug, title in titles.items() if title.endswith(_CHAPTER_OF_NODES)}
         return slugs - (of_nodes - exact) if any(map(self._reader.page_children, exact)) else slugs
 
