@@ -105,7 +105,9 @@ class TopicMembers:
         explains = any(path in self._classes for path in self._reader.symbols_of_page(slug))
         named, kind = terms(title), terms(last)
         is_shorter = len(kind) < len(named)
-        return explains and not self._reader.page_children(slug) and is_shorter and named[-len(kind) :] == kind
+        return (
+            explains and not self._reader.page_children(slug) and is_shorter and named[-len(kind) :] == kind
+        )
 
     def _is_of_another_part(self, path: str, slug: str) -> bool:
         """Whether pages of other parts of the manual alone explain something."""
@@ -135,8 +137,8 @@ class TopicMembers:
         return self._is_of_another_part(path, slug)
 
     def _called_operators(self, slug: str, titles: Sequence[str]) -> Iterator[str]:
-        """The operators that are called as a topic is, and that its part of the manual explains; or else the one that is
-        called as its module and a word of the title, as that which renders.
+        """The operators that are called as a topic is, and that its part of the manual explains; or else the one of its
+        chapter that is called as its module and a word of the title, as that which renders.
         """
         names = {"_".join(words) for title in titles for words in (title.lower().split(), terms(title))}
         called = [entry for name in names for entry in self._reader.by_name(name)]

@@ -12,6 +12,8 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.enum_values import is_quoted_value
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from kb_serve.answer.topic_settings import TopicSettings
     from kb_serve.reader import BaseReader, PageEntry
 
@@ -126,7 +128,7 @@ class TopicPages:
         words = [word for word in spoken if word not in _AIMS] if len(spoken) <= _EVERYDAY_WORDS else []
         if len(words) == 1 and words[0] in _SIMULATED:
             return self._called(_SIMULATED[words[0]])
-        known = load_first_terms() if words else {}
+        known: Mapping[str, str] = load_first_terms() if words else {}
         if not all(word in known for word in words) or any(map(self._is_name, words)):
             return ""
         meant = max((known[word] for word in words), key=lambda term: len(terms(term)), default="")
