@@ -104,7 +104,7 @@ class TopicMembers:
         """
         explains = any(path in self._classes for path in self._reader.symbols_of_page(slug))
         named, kind = terms(title), terms(last)
-        is_shorter = len(kind) < len(named)
+        is_shorter = len(set(kind)) < len(set(named))
         return (
             explains and not self._reader.page_children(slug) and is_shorter and named[-len(kind) :] == kind
         )

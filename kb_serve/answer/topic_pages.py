@@ -24,7 +24,8 @@ _SELDOM = (
     "render/freestyle/",
     "editors/texture_node/",
 )  # seldom meant by who does not say so
-_BONES, _OF_OBJECTS = "animation/armatures/bones/", "objects"  # of what is done to both objects are meant
+# Where the same is done to bones and to objects, who does not say to which means objects.
+_BONES, _OF_OBJECTS = "animation/armatures/bones/", "objects"
 _WHAT_IS = re.compile(r"(?:what(?:'s|\s(?:is|are))|explain)\s(?:an?\s|the\s)?", re.I)
 _MADE_FROM = re.compile(
     r"(?:(?:make|get|create|build)\s+)?(?:an?\s+|the\s+)?(?P<made>\w.*?)\s+from\s+(?:an?\s+|the\s+)?(?P<source>\w.*)",

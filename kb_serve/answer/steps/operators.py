@@ -51,7 +51,7 @@ UNDO = frozenset(
         "unpack",
     }
 )  # fmt: skip
-_SHOW = frozenset({"play", "show"})  # what is done already
+_SHOW = frozenset({"play", "show"})  # what has been done
 _MAKE_OR_REMOVE = UNDO | frozenset(
     {
         "add",
