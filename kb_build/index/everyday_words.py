@@ -27,8 +27,19 @@ _MOST = 100  # documents that a term lends: those that say most of it
 
 def load_everyday_words() -> EverydayWords:
     """The table of everyday words; {} where the package came without it."""
+    return read_everyday_words(_lines())
+
+
+@cache
+def load_first_terms() -> Mapping[str, str]:
+    """Everyday word → the most likely of its terms, both as they are written."""
+    rows = (line.partition(": ") for line in _lines() if not line.startswith("#"))
+    return {word: told.partition(",")[0].strip() for word, _, told in rows}
+
+
+def _lines() -> list[str]:
     source = files("corpora").joinpath("words", "everyday_words.txt")
-    return read_everyday_words(source.read_text(encoding="utf-8").splitlines()) if source.is_file() else {}
+    return source.read_text(encoding="utf-8").splitlines() if source.is_file() else []
 
 
 def read_everyday_words(lines: Iterable[str]) -> EverydayWords:

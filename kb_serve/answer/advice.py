@@ -108,6 +108,11 @@ _UNREAD = (
     "`bpy.data.images['Render Result']` has no pixels to read, its size is 0 × 0: save it "
     "(`image.save_render(path)`), load that (`bpy.data.images.load(path)`), and read the loaded one's `pixels`."
 )
+_SLOTTED = (
+    "An action moves nothing until one of its slots is given, too, which `x.action = action` need not do: set "
+    "`x.action_slot = x.action_suitable_slots[0]` after it, or, of an action that has no slot yet, "
+    "`x.action_slot = action.slots.new(obj.id_type, obj.name)`. `obj.keyframe_insert(…)` makes and gives one itself."
+)
 
 ADVICE: tuple[Advice, ...] = (
     Advice(
@@ -152,6 +157,19 @@ ADVICE: tuple[Advice, ...] = (
         frozenset({_RANGES}),
         explained=_RANGES,
         about=_stems("property custom limit range min max slider ui"),
+    ),
+    Advice(
+        _SLOTTED,
+        _of(
+            "ActionConstraint.action",
+            "ActionSlots.new",
+            "AnimData.action",
+            "BlendDataActions.new",
+            "NlaStrip.action",
+            "NlaStrips.new",
+        ),
+        about=_stems("action"),
+        needs=f"{_TYPES}AnimData.action_slot",
     ),
     Advice(WITH_AT, frozenset(CLASSES)),
     Advice(

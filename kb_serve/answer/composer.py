@@ -170,7 +170,7 @@ class AnswerComposer:
             pages = [place for place, hit in enumerate(hits) if hit.is_page]
             chosen = [*names[:_NAMES_OF_A_PART], *pages[:_PAGES_OF_A_PART]]
             lines = [f"- {self._lines.line(hits[place], rows[place])}" for place in chosen]
-            lines = [*self._topics.first_steps(part.text, _STEPS_OF_A_PART), *lines]
+            lines = [*self._topics.first_steps(part.topic, _STEPS_OF_A_PART), *lines]
             blocks.append(AnswerBlock("\n".join((f"**{number}. {part.text}**", *lines)), part.text))
             found.append([rows[place] for place in sorted(chosen)])
         # In turns, as each part is one of several answers.

@@ -8,6 +8,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
+from kb_build.symbol_lines import operator_areas
 from kb_serve.answer.steps.operators import calls_needed
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.steps.variable_names import class_called
@@ -15,7 +16,7 @@ from kb_serve.answer.topic_pages import CHAPTERS, PAGES_OF_NODES, SHORT_FOR, sub
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Collection, Iterable, Iterator
+    from collections.abc import Collection, Iterator, Sequence
 
     from kb_serve.reader import BaseReader
 
@@ -41,6 +42,9 @@ class TopicMembers:
         last = _without_place(slug.removesuffix("/index").rpartition("/")[2].replace("_", " "))
         title = _without_place(title)
         words = dict.fromkeys((frozenset(terms(title)), frozenset(terms(last))))
+        is_kind = self._is_only_kind(slug, title, last)
+        if is_kind:
+            del words[frozenset(terms(last))]
         names = TopicNames(
             frozenset({key(title), key(last)}),
             tuple(filter(None, words)),
@@ -69,7 +73,12 @@ class TopicMembers:
         for path in self._called_operators(slug, (title, last)):
             nearness.setdefault(path, _NEAR)
         nearness |= dict.fromkeys(
-            (path for module in names.keys for path in self._reader.operators_of(module)),
+            (
+                path
+                for module in names.keys
+                if not (is_kind and module == key(last))
+                for path in self._operators_of(module, slug)
+            ),
             _ON_ITS_MODULE * _NEAR,
         )
         nearness = dict.fromkeys(self._worked_on(slug, nearness), _NEAR) | nearness
@@ -89,6 +98,35 @@ class TopicMembers:
         names.operators = dict(sorted(names.operators.items(), key=lambda row: -row[1]))
         return names
 
+    def _is_only_kind(self, slug: str, title: str, last: str) -> bool:
+        """Whether the address of a page that explains classes says only of what kind these are, and the title which
+        ones of it: modifiers, of F-curves.
+        """
+        explains = any(path in self._classes for path in self._reader.symbols_of_page(slug))
+        named, kind = terms(title), terms(last)
+        is_shorter = len(set(kind)) < len(set(named))
+        return (
+            explains and not self._reader.page_children(slug) and is_shorter and named[-len(kind) :] == kind
+        )
+
+    def _is_of_another_part(self, path: str, slug: str) -> bool:
+        """Whether pages of other parts of the manual alone explain something."""
+        parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
+        return bool(parts) and slug.partition("/")[0] not in parts
+
+    def _operators_of(self, module: str, slug: str) -> list[str]:
+        """The operators of a module; none if most are an editor's that other parts of the manual explain: what the Text
+        Editor does to texts is nothing that is done to objects.
+        """
+        paths = [*self._reader.operators_of(module)]
+        explained = [path for path in paths if self._reader.manual_links(path)]
+        elsewhere = sum(self._is_of_another_part(path, slug) for path in explained)
+        if elsewhere <= len(explained) / 2:
+            return paths
+        symbols = [symbol for path in paths if (symbol := self._reader.symbol(path))]
+        in_editor = sum(bool(operator_areas(symbol)) for symbol in symbols)
+        return [] if in_editor > len(symbols) / 2 else paths
+
     def _is_elsewhere(self, path: str, words: frozenset[str], names: TopicNames, slug: str) -> bool:
         """Whether a class has the words of a page's address and others, the page explains other classes, and those of
         another part of the manual alone explain this one: the baking of textures is none of physics.
@@ -96,16 +134,28 @@ class TopicMembers:
         is_own = names.is_called(path) or any(wanted <= words for wanted in names.words[:1])
         if is_own or names.explained.isdisjoint(self._classes):
             return False
-        parts = {link.partition("/")[0] for link in self._reader.manual_links(path)}
-        return bool(parts) and slug.partition("/")[0] not in parts
+        return self._is_of_another_part(path, slug)
 
-    def _called_operators(self, slug: str, titles: Iterable[str]) -> Iterator[str]:
-        """The operators that are called as a topic is, and that its part of the manual explains."""
+    def _called_operators(self, slug: str, titles: Sequence[str]) -> Iterator[str]:
+        """The operators that are called as a topic is, and that its part of the manual explains; or else the one of its
+        chapter that is called as its module and a word of the title, as that which renders.
+        """
         names = {"_".join(words) for title in titles for words in (title.lower().split(), terms(title))}
-        for entry in (entry for name in names for entry in self._reader.by_name(name)):
+        called = [entry for name in names for entry in self._reader.by_name(name)]
+        words = [word for title in titles for word in title.lower().split()]
+        does = {path.rpartition(".")[2] for path in self._reader.symbols_of_page(slug)}
+        if does.isdisjoint((*words, *terms(" ".join(words)))):
+            own = filter(None, (self._reader.entry(f"{_OPERATORS}{word}.{word}") for word in words))
+            called += [entry for entry in own if self._is_of_chapter(entry.path, slug)]
+        for entry in called:
             parts = {link.partition("/")[0] for link in self._reader.manual_links(entry.path)}
             if entry.kind == "operator" and slug.partition("/")[0] in parts:
                 yield entry.path
+
+    def _is_of_chapter(self, path: str, slug: str) -> bool:
+        """Whether the first page of a chapter that a page is in explains something."""
+        links = (link.partition("#")[0] for link in self._reader.manual_links(path))
+        return any(link.endswith("index") and slug.startswith(link.removesuffix("index")) for link in links)
 
     def _worked_on(self, slug: str, paths: Collection[str]) -> Iterator[str]:
         """What most operators of a chapter work on, where nothing of it can be made: what is in the thing that a call

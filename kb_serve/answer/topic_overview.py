@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 
 _EDITOR = f"{TYPES}Space"
 _MOST_SETTINGS = 10
+_LATEST_MAKER = 5  # among the first steps
 _DONE = ("set on `", "` → `", "` makes `", "`obj.")  # in steps that make, set or call something
 _OVERVIEW_TOKENS = 1_200
 _FIRST = (10, 8, 6, 5, 4, 3)  # entries of each list, as many as fit; the others follow all lists
@@ -114,11 +115,17 @@ class Topics:
         return self._reader.heaviest(labelled)[:_MOST_SETTINGS] if len(pages) > 1 else []
 
     def first_steps(self, text: str, most: int) -> list[str]:
-        """The first steps of a topic; none for what is no topic."""
+        """The first steps of a topic; more where what its page explains is made in a later one, as a node is in a tree;
+        none for what is no topic.
+        """
         slug = self.find(text)
         page = self._reader.page_entry(slug)
-        steps = [*Steps(self._reader, self._members.names(slug, page.title)).blocks()] if page else []
-        return steps[0].text.split("\n")[1 : most + 1] if steps else []
+        names = self._members.names(slug, page.title) if page else None
+        steps = [*Steps(self._reader, names).blocks()] if names else []
+        lines = steps[0].text.split("\n")[1:] if steps else []
+        made = {f"→ `{path.removeprefix(TYPES)}`" for path in names.explained} if names else set[str]()
+        first = next((number for number, line in enumerate(lines, 1) if any(one in line for one in made)), 0)
+        return lines[: max(most, first if first <= _LATEST_MAKER else 0)]
 
     def members(self, slug: str) -> frozenset[str]:
         """All classes and operators that belong to a topic."""

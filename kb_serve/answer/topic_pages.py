@@ -7,10 +7,13 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
+from kb_build.index.everyday_words import load_first_terms
 from kb_serve.reader import TYPES
 from kb_serve.recognise.enum_values import is_quoted_value
 
 if TYPE_CHECKING:
+    from collections.abc import Mapping
+
     from kb_serve.answer.topic_settings import TopicSettings
     from kb_serve.reader import BaseReader, PageEntry
 
@@ -21,6 +24,8 @@ _SELDOM = (
     "render/freestyle/",
     "editors/texture_node/",
 )  # seldom meant by who does not say so
+# Where the same is done to bones and to objects, who does not say to which means objects.
+_BONES, _OF_OBJECTS = "animation/armatures/bones/", "objects"
 _WHAT_IS = re.compile(r"(?:what(?:'s|\s(?:is|are))|explain)\s(?:an?\s|the\s)?", re.I)
 _MADE_FROM = re.compile(
     r"(?:(?:make|get|create|build)\s+)?(?:an?\s+|the\s+)?(?P<made>\w.*?)\s+from\s+(?:an?\s+|the\s+)?(?P<source>\w.*)",
@@ -60,6 +65,10 @@ CHAPTERS = {
     "shader": "render/shader_nodes/",
 }
 _MAX_WORDS = 4
+# What simulations are called by what they are of, and words for what else is done with what a word stands for.
+_SIMULATED = {"fire": "fluid", "smoke": "fluid"}
+_EVERYDAY_WORDS = 2
+_AIMS = frozenset({"effect", "light", "lighting", "simulation"})
 _CALLED_SO = 4  # pages
 _CHAPTER = 100  # pages and symbols of what is meant before a single page
 _KINDS = ("modifier", "constraint", "node")  # how titles of pages end
@@ -108,7 +117,30 @@ class TopicPages:
             or self._with_more_words(plain)
             or self._with_more_words(made)
             or self._with_socket(plain)
+            or self._in_other_words(plain)
         )
+
+    def _in_other_words(self, plain: str) -> str:
+        """The page of what the documentation calls otherwise, in an everyday word, or in two that stand for the same:
+        HDRI lighting, volumetric fog. Words that Blender's names have stand for themselves, and a term of one word may
+        mean several things.
+        """
+        spoken = plain.lower().split()
+        words = [word for word in spoken if word not in _AIMS] if len(spoken) <= _EVERYDAY_WORDS else []
+        if len(words) == 1 and words[0] in _SIMULATED:
+            return self._called(_SIMULATED[words[0]])
+        known: Mapping[str, str] = load_first_terms() if words else {}
+        if not all(word in known for word in words) or any(map(self._is_name, words)):
+            return ""
+        meant = max((known[word] for word in words), key=lambda term: len(terms(term)), default="")
+        is_one_thing = all(set(terms(known[word])) <= set(terms(meant)) for word in words)
+        if " " not in meant or not is_one_thing:
+            return ""
+        return self._called(meant) or self._called(f"{meant} {_KINDS[-1]}")
+
+    def _is_name(self, word: str) -> bool:
+        """Whether something of Blender's is called so."""
+        return bool(self._reader.by_name(word) or self._reader.by_key(key(word)))
 
     def _with_socket(self, plain: str) -> str:
         """The page of a zone that is asked for with the name of one of its sockets: the iterations of a repeat zone."""
@@ -153,6 +185,9 @@ class TopicPages:
         self._reader.by_key.load((*keys, key(plain)))
         titled = [{slug for _, slug in self._reader.by_key(title)} for title in keys]
         titled[0] |= {slug for _, slug in self._reader.by_key(key(plain)) if self._reader.page_children(slug)}
+        if titled[0] and all(slug.startswith(_BONES) for slug in titled[0]):
+            of_objects = {slug for _, slug in self._reader.by_key(topic_key(f"{plain} {_OF_OBJECTS}"))}
+            titled[0] = of_objects or titled[0]
         titled = [
             self._without_nodes({slug for slug in slugs if slug.startswith(chapter)}, plain)
             for slugs in titled
@@ -169,7 +204,7 @@ class TopicPages:
         says no nodes.
         """
         titles = {slug: page.title for slug in slugs if (page := self._reader.page_entry(slug))}
-        exact = {slug for slug, title in titles.items() if key(title) == key(plain)}
+        exact = {slug for slug, title in titles.items() if topic_key(title) == topic_key(plain)}
         of_nodes = {slug for slug, title in titles.items() if title.endswith(_CHAPTER_OF_NODES)}
         return slugs - (of_nodes - exact) if any(map(self._reader.page_children, exact)) else slugs
 

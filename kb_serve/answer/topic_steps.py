@@ -24,6 +24,7 @@ from kb_serve.answer.steps.places import PlaceSteps
 from kb_serve.answer.steps.reached import ReachedSettings, is_of_interface
 from kb_serve.answer.steps.settings import OTHERS_ELEMENT, SettingSteps
 from kb_serve.answer.steps.trees import EMBEDDED_TREES, TreeSteps
+from kb_serve.answer.steps.variable_names import OBJECT
 from kb_serve.reader import STRUCT, TYPES
 
 if TYPE_CHECKING:
@@ -82,6 +83,7 @@ class Steps:
     def _steps(self) -> Iterator[str]:
         """All steps in their order; what is told depends on what has been told before."""
         yield from self._functions()
+        yield from self._given_objects()
         yield from made_by_subscript(self._names, self._reader)
         is_made = self._is_made()
         makes_first = is_made or self._is_on_made()
@@ -209,6 +211,17 @@ class Steps:
         )
         for entry in self._reader.heaviest(entry for entry in entries if entry)[:_FUNCTIONS]:
             yield f"`obj.{call_of(entry)}` — {entry.line.partition(' — ')[2]}"
+
+    def _given_objects(self) -> Iterator[str]:
+        """The pointers of an object to another that are called as the topic is: ``parent``."""
+        members = self._reader.members(OBJECT)
+        for name in self._names.stems():
+            pointer = members.get(name)
+            if pointer is None or pointer.target != OBJECT.removeprefix(TYPES) or pointer.is_read_only:
+                continue
+            yield f"`obj.{name} = other` — {pointer.line.partition(' — ')[2]}"
+            if (inverse := f"matrix_{name}_inverse") in members:
+                yield f"`obj.{inverse} = other.matrix_world.inverted()` — it stays where it is"
 
     def _make(self) -> Iterator[str]:
         groups = [

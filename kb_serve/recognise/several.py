@@ -33,6 +33,7 @@ _ALSO_NAMES = frozenset(
 _OBJECTS = frozenset(
     "a an all another both each every everything him it its my one our that the their them these this those two".split()  # noqa: SIM905
 )
+_PRONOUNS = frozenset("him it that them these this those".split())  # noqa: SIM905
 _MOST = 5
 
 
@@ -41,6 +42,12 @@ class QuestionPart(NamedTuple):
 
     text: str
     about: str = ""
+
+    @property
+    def topic(self) -> str:
+        """What may be a topic of its own; empty for a verb of what the first part is about: assign it."""
+        verb, _, rest = _FRAME.sub("", self.text, count=1).lower().partition(" ")
+        return "" if self.about and verb in _VERBS and rest in _PRONOUNS else self.text
 
 
 def parts_of(query: str) -> tuple[QuestionPart, ...]:

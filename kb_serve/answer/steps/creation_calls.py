@@ -62,7 +62,9 @@ class CreationCalls:
             and self._scene.obj.is_made_on(on, other)
             and (on != "tree" or self._trees.is_made_for(cls))
         ]
-        return [*steps, made + _also([one for one in choices if f"'{one}'" not in creation.call])]
+        also = _also([one for one in choices if f"'{one}'" not in creation.call])
+        new = self._scene.variables.of(main)
+        return [*steps, made + also, *self._instances.parts_given(main, ready.expression, new)]
 
     def _before(self, cls: str, call: str) -> Iterator[str]:
         """The steps that make what must be there before an operator makes an instance of a class."""

@@ -11,15 +11,16 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbol_lines import held
+from kb_serve.answer.steps.members import part_given_with
 from kb_serve.answer.steps.pointer_fills import Ready
 from kb_serve.answer.steps.variable_names import MESH, OBJECT, TREE
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Iterator
 
     from kb_serve.answer.steps.new_scene import NewScene
-    from kb_serve.reader import Creation
+    from kb_serve.reader import Creation, SymbolEntry
 
 _DEEPEST = 6  # holders of holders
 _EDIT_BONES = "edit_bones"
@@ -45,6 +46,31 @@ class Instances:
     def of(self, cls: str) -> Ready | None:
         """An instance of a class; None where nothing is known to make one."""
         return self._of(cls, 1)
+
+    def part_of(self, pointer: SymbolEntry, expression: str) -> Iterator[str]:
+        """The steps that set what must be set along with a pointer of ``expression`` that has been set: the slot of an
+        action.
+        """
+        part = part_given_with(pointer, self._reader)
+        target = f"{TYPES}{part.target}" if part else ""
+        if part is None or (ready := self.of(target)) is None:
+            return
+        self._scene.shown.add(target)
+        yield from ready.steps
+        yield f"`{expression}.{part.name} = {ready.expression}` — without it `{pointer.name}` does nothing"
+
+    def parts_given(self, cls: str, call: str, expression: str) -> Iterator[str]:
+        """The steps that set what must be set along with what a call has been given and keeps in a pointer, where
+        ``expression`` is the new thing.
+        """
+        given = re.findall(r"[(,] ?(\w+)(?=[,)])", call)
+        for pointer in self._reader.members(cls).values():
+            if (
+                pointer.type == "pointer"
+                and pointer.name in given
+                and self._scene.variables.there(f"{TYPES}{pointer.target}") == pointer.name
+            ):
+                yield from self.part_of(pointer, expression)
 
     def _call(self, creation: Creation, depth: int) -> Ready | None:
         head, maker, rest = creation.call.rpartition(f".{creation.maker.rpartition('.')[2]}(")

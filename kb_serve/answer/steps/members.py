@@ -29,7 +29,41 @@ def settings_of(cls: str, reader: BaseReader) -> str:
         and (_is_given(entry, reader) or entry.type not in {"pointer", "collection"})
         and not (entry.is_read_only or entry.is_deprecated)
     ]
-    return ", ".join(_short(entry) for entry in reader.heaviest(entries)[:_MOST_SETTINGS])
+    parts = {
+        entry.name: part
+        for entry in entries
+        if entry.type == "pointer" and (part := part_given_with(entry, reader))
+    }
+    # What only stores which part it is counts for nothing beside that.
+    stored = tuple(f"{part.name}_" for part in parts.values())
+    entries = [entry for entry in entries if not (stored and entry.name.startswith(stored))]
+    told: list[str] = []
+    for entry in reader.heaviest(entries)[:_MOST_SETTINGS]:
+        told.append(_short(entry))
+        if part := parts.get(entry.name):
+            told.append(f"`{part.name}` (after `{entry.name}`){_NONE} ({part.target})")
+    return ", ".join(told)
+
+
+def part_given_with(pointer: SymbolEntry, reader: BaseReader) -> SymbolEntry | None:
+    """The pointer that must be set along with another, to a part of what that leads to, which is no data-block of its
+    own: the slot of an action, without which the action does nothing there. None where a thing is used as a whole.
+    """
+    parts = {
+        f"{TYPES}{entry.target}"
+        for entry in reader.members(f"{TYPES}{pointer.target}").values()
+        if entry.type == "collection" and not reader.descends(f"{TYPES}{entry.target}", f"{TYPES}ID")
+    }
+    members = reader.members(pointer.owner).values() if parts else ()
+    fitting = (
+        entry
+        for entry in members
+        if entry.type == "pointer"
+        and entry.name.startswith(f"{pointer.name}_")
+        and f"{TYPES}{entry.target}" in parts
+        and not entry.is_read_only
+    )
+    return next(fitting, None)
 
 
 def _is_given(entry: SymbolEntry, reader: BaseReader) -> bool:

@@ -13,14 +13,20 @@ from kb_build.symbol_lines import written
 from kb_serve.reader import EXTEND, TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Generator, Iterator
 
     from kb_serve.answer.steps.new_scene import NewScene
     from kb_serve.answer.steps.node_items import NodeItems
 
 SHADER_TREE = f"{TYPES}ShaderNodeTree"
+_WORLD_END, _LIGHT_END = f"{TYPES}ShaderNodeOutputWorld", f"{TYPES}ShaderNodeOutputLight"
 OF_WORLDS = frozenset(
-    {f"{TYPES}ShaderNodeTexSky", f"{TYPES}ShaderNodeTexEnvironment", f"{TYPES}ShaderNodeBackground"}
+    {
+        f"{TYPES}ShaderNodeTexSky",
+        f"{TYPES}ShaderNodeTexEnvironment",
+        f"{TYPES}ShaderNodeBackground",
+        _WORLD_END,
+    }
 )
 _END = "tree.get_output_node('ALL')"
 _END_NODE = f"{TYPES}ShaderNodeOutputMaterial"  # what that gives
@@ -29,6 +35,10 @@ _IDENTIFIER, _TYPED_BY = "identifier:", "type-by:"  # flags of sockets
 _DISPLACES = "displacement_method = 'DISPLACEMENT'"
 _PRINCIPLED = 'tree.nodes["Principled BSDF"]'
 _BACKGROUND = 'tree.nodes["Background"].inputs["Color"]'
+# What goes into a node that takes shaders: what ended the tree before, of a material mostly; then a further shader.
+_FIRST_SHADER = f'{_PRINCIPLED}.outputs["BSDF"]'
+_FIRST_SHADER_OF = {_WORLD_END: 'tree.nodes["Background"].outputs["Background"]', _LIGHT_END: ""}
+_MORE_SHADERS = ('emission = tree.nodes.new("ShaderNodeEmission")', 'emission.outputs["Emission"]')
 
 
 class _Group(NamedTuple):
@@ -122,8 +132,7 @@ class NodeLinks:
             yield from into
             yield from self._beside(node, f"{variable}.{own}", own, source)
             return
-        if taken or by_items:
-            yield from into
+        yield from into
         if taken or source:
             told = f"{variable}.{taken}" if taken else source
             yield f"`tree.links.new({told}, {_GROUP_END}.inputs[0])`"
@@ -278,7 +287,10 @@ class NodeLinks:
         yield f'`{_GROUP_END} = tree.nodes.new("NodeGroupOutput")`'
 
     def _to_end(self, node: str, variable: str) -> Iterator[str]:
-        """The link from a shader node: to the tree's end, or to the usual shader's input of the kind of its output."""
+        """The links of a shader node: from the shaders that it takes, and to the tree's end, or to the usual shader's
+        input of the kind of its output.
+        """
+        takes = yield from self._shaders_into(node, variable)
         if shader := self._socket(node, "outputs", ("shader",)):
             called = shader.replace("outputs", "inputs", 1)
             known = self._reader.members(_END_NODE)
@@ -290,6 +302,8 @@ class NodeLinks:
             yield f'`tree.links.new({variable}.outputs["Displacement"], {_END}.inputs["Displacement"])`'
             if material := self._scene.variables.there(f"{TYPES}Material"):
                 yield f"`{material}.{_DISPLACES}` — a new one has 'BUMP', by which nothing is moved"
+        elif takes and (color := self._socket(node, "outputs", ("rgba",))):
+            yield f'`tree.links.new({variable}.{color}, {_END}.inputs["Surface"])`'
         elif color := self._socket(node, "outputs", ("rgba",)):
             to = _BACKGROUND if node in OF_WORLDS else f'{_PRINCIPLED}.inputs["Base Color"]'
             yield f"`tree.links.new({variable}.{color}, {to})`"
@@ -297,6 +311,21 @@ class NodeLinks:
             yield f'`tree.links.new({variable}.outputs["Normal"], {_PRINCIPLED}.inputs["Normal"])`'
         elif value := self._socket(node, "outputs", ("value",)):
             yield f'`tree.links.new({variable}.{value}, {_PRINCIPLED}.inputs["Roughness"])`'
+
+    def _shaders_into(self, node: str, variable: str) -> Generator[str, None, bool]:
+        """The steps that link shaders to a node which takes some: one to the first input, and another to each further
+        one that is called alike, as those of a mix are. Returns whether it takes any.
+        """
+        first = self._socket(node, "inputs", ("shader",))
+        before = _FIRST_SHADER_OF.get(node, _FIRST_SHADER)
+        if not (first and before):
+            return False
+        yield f"`tree.links.new({before}, {variable}.{first})`"
+        alike = [name for name in self._reader.members(node) if name.startswith(f"{first[:-2]}_")]
+        if alike:
+            yield f"`{_MORE_SHADERS[0]}`"
+            yield from (f"`tree.links.new({_MORE_SHADERS[1]}, {variable}.{name})`" for name in alike)
+        return True
 
     def _socket(self, node: str, side: str, kinds: tuple[str, ...]) -> str:
         """The first socket of a side that is there in a new node and of the first kind that one is of; of any, if none

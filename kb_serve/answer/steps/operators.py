@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections import defaultdict
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
@@ -19,7 +20,7 @@ from kb_serve.answer.panel_lines import panel_lines, switches_off
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Iterator, Mapping
 
     from kb_build.records import Symbol
     from kb_serve.answer.steps.new_scene import NewScene
@@ -38,6 +39,11 @@ _FILE = "filepath"
 _ASKS = "check_existing"  # before a file is written, in a window
 _ADDED = re.compile(r"what (`.*`) adds")  # what must have been called before an operator runs
 _BAKE = "bake"  # what runs what has been set, wherever it is
+# What operators must find set or made, though they run without it, and an argument without which nothing is kept.
+_WORKS_WITH = {
+    "bpy.ops.dpaint.bake": ("`obj.data.uv_layers.new()` — without a UV map no image is baked", ""),
+    "bpy.ops.render.render": ('`scene.render.filepath = "//render.png"`', "write_still=True"),
+}
 # What takes away what steps have made and set.
 UNDO = frozenset(
     {
@@ -45,6 +51,7 @@ UNDO = frozenset(
         "unpack",
     }
 )  # fmt: skip
+_SHOW = frozenset({"play", "show"})  # what has been done
 _MAKE_OR_REMOVE = UNDO | frozenset(
     {
         "add",
@@ -72,12 +79,13 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
     """
     reader = scene.reader
     weights = reader.weights(list(names.operators))
+    runnable = {path: symbol for path in names.operators if _runs(path) and (symbol := reader.symbol(path))}
+    others = _modules_of_others(runnable, scene)
     operators = [
         path
-        for path in names.operators
-        if _runs(path)
-        and (symbol := reader.symbol(path)) is not None
-        and not (_never_ran(symbol) or _wants_a_path(symbol))
+        for path, symbol in runnable.items()
+        if not (_never_ran(symbol) or _wants_a_path(symbol) or scene.obj.is_refused_by(symbol))
+        and path.split(".")[2] not in others
         and weights.get(path, 0) >= (1 if path.split(".")[2] in names.keys else _USED_ELSEWHERE)
         and not (is_made and _is_beside(path, names, reader))
     ]
@@ -85,10 +93,25 @@ def runs(names: TopicNames, scene: NewScene, *, is_cached: bool, is_made: bool) 
         operators = [*_bakes(reader), *operators]
     modifiers = _of_modifiers(names, scene)
     operators = [*modifiers, *(path for path in operators if path not in modifiers)]
-    for path in operators[:_MOST]:
+    told = operators[:_MOST]
+    for path in [path for path in told if not _only_shows(path)] or told:
         if symbol := reader.symbol(path):
             yield from before(symbol, scene)
-            yield _line(symbol, reader, modifiers.get(path, ""))
+            step, argument = _WORKS_WITH.get(path, ("", modifiers.get(path, "")))
+            if step:
+                yield step
+            yield _line(symbol, reader, argument)
+
+
+def _modules_of_others(operators: Mapping[str, Symbol], scene: NewScene) -> set[str]:
+    """The modules whose operators work on objects of other types than the one that steps have made: those of hair,
+    where a curve was made.
+    """
+    refuses: dict[str, set[bool]] = defaultdict(set)
+    for path, symbol in operators.items():
+        if operator_active(symbol)[0] is not None:
+            refuses[path.split(".")[2]].add(scene.obj.is_refused_by(symbol))
+    return {module for module, all_ in refuses.items() if all_ == {True}}
 
 
 def _of_modifiers(names: TopicNames, scene: NewScene) -> dict[str, str]:
@@ -124,7 +147,7 @@ def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
     for gate, value in switches_off(operator, scene.reader):
         owner = scene.reader.symbol(gate.owner)
         reached = scene.variables.there(gate.owner) or (owner.reached if owner else "")
-        within = scene.pointers.reach(held(scene.variables.within(reached))) if reached else None
+        within = scene.pointers.reach(held(scene.variables.within(reached)), makes=True) if reached else None
         if within is not None:
             yield from within.steps
             yield from scene.pointers.setting(f"{within.expression}.{gate.name}", value)
@@ -161,12 +184,11 @@ def _is_taken(call: str, scene: NewScene) -> bool:
 def _is_beside(path: str, names: TopicNames, reader: BaseReader) -> bool:
     """Whether neither an operator nor its module is called as the topic is, or it waits for a window."""
     _, _, module, name = path.split(".")
-    if names.has_title(name) or names.title.removesuffix("s") in key(name) or _BAKE in name.split("_"):
+    if names.has_title(name) or names.title.removesuffix("s") in key(name):
         return False
-    if key(module) != names.title:
-        return True
     symbol = reader.symbol(path)
-    return symbol is not None and (bool(operator_areas(symbol)) or _never_ran(symbol))
+    waits = symbol is not None and (bool(operator_areas(symbol)) or _never_ran(symbol))
+    return waits if key(module) == names.title or _BAKE in name.split("_") else True
 
 
 def _never_ran(operator: Symbol) -> bool:
@@ -191,6 +213,10 @@ def _runs(path: str) -> bool:
     return _MAKE_OR_REMOVE.isdisjoint(path.rpartition(".")[2].split("_"))
 
 
+def _only_shows(path: str) -> bool:
+    return not _SHOW.isdisjoint(path.rpartition(".")[2].split("_"))
+
+
 def _wants_a_path(operator: Symbol) -> bool:
     """Whether an operator works on what a path in a string names, and on nothing where none is given."""
     return any(parameter.name == _PATH and not parameter.default for parameter in operator.parameters)
@@ -212,7 +238,8 @@ def _line(operator: Symbol, reader: BaseReader, argument: str = "") -> str:
     aside = [*of_file_browser(operator), _ASKS]
     names = {parameter.name for parameter in operator.parameters}
     files = [argument] if argument else [f"{_FILE}={_FILE}"] if len(aside) > 1 and _FILE in names else []
-    given = [p for p in operator.parameters if p.default is not None and p.name not in aside]
+    once = (*aside, argument.partition("=")[0])
+    given = [p for p in operator.parameters if p.default is not None and p.name not in once]
     arguments = [*files, *(f"{p.name}={literal(p.default)}" for p in given)][:_ARGUMENTS]
     left = len(names.difference(aside)) - len(arguments)
     entry = reader.entry(operator.path)

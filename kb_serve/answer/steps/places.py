@@ -61,6 +61,7 @@ class PlaceSteps:
                     re.search(rf"[(,] ?{variable}[,)]", step) for step in ready.steps[-1:]
                 ):  # given already
                     yield f"`{ready.expression}.{pointer.name} = {variable}`"
+                    yield from self._instances.part_of(pointer, ready.expression)
                 return
 
     def _is_on_object(self, cls: str) -> bool:

@@ -31,6 +31,14 @@ class Ready(NamedTuple):
     expression: str
 
 
+class _Made(NamedTuple):
+    """A new element: its class, what it is called, and the step that makes it."""
+
+    cls: str
+    variable: str
+    step: str
+
+
 def stays_empty(pointer: Symbol) -> bool:
     """Whether a pointer is None on new things, and nothing is known to fill it."""
     return empty_when_new(pointer) is not None and not fillers(pointer)
@@ -79,14 +87,15 @@ class PointerFills:
             ("instead: " if is_other else "") + step for step in self.calls([f"{expression} = {value!r}"])
         ]
 
-    def reach(self, expression: str, *, adds: bool = True) -> Ready | None:
+    def reach(self, expression: str, *, adds: bool = True, makes: bool = False) -> Ready | None:
         """An expression, and what fills pointers on its way that are None on new things; None where one stays so.
 
-        ``adds``: whether an operator may add an element that is on its way.
+        ``adds``: whether an operator may add an element that is on its way; ``makes``: whether a function of the object
+        may make one, as a modifier.
         """
         before = self._state()
         restore = (self._obj.restoring(), self._variables.restoring())
-        ready = self._reach(expression, adds=adds)
+        ready = self._reach(expression, adds=adds, makes=makes)
         if ready is None:  # nothing is told
             self._filled, self._chosen, self._called, self._whole = before
             for undo in restore:
@@ -96,7 +105,7 @@ class PointerFills:
     def _state(self) -> tuple[set[str], dict[str, str], set[str], set[str]]:
         return set(self._filled), dict(self._chosen), set(self._called), set(self._whole)
 
-    def _reach(self, expression: str, *, adds: bool) -> Ready | None:
+    def _reach(self, expression: str, *, adds: bool, makes: bool) -> Ready | None:
         steps: list[str] = []
         above, *names = _PARTS.split(expression)
         owner = class_called(above) or self._variables.class_of(above)
@@ -106,6 +115,10 @@ class PointerFills:
                 above, owner = f"{above}.{name}", self._obj.data_class()
                 continue
             entry = self._reader.member([one.path for one in self._reader.lineage(owner)], name)
+            if is_element and makes and entry and (made := self._made(entry, above, part)):
+                steps.append(made.step)
+                above, owner = made.variable, made.cls
+                continue
             if is_element:
                 added = [] if above in self._whole else self._adding(entry) if entry and adds else None
                 if entry is None or added is None:
@@ -163,6 +176,21 @@ class PointerFills:
             if symbol is not None and holder and any(result.type == cls for result in symbol.returns):
                 return f"bpy.data.{holder}.load(filepath)"
         return ""
+
+    def _made(self, collection: SymbolEntry, above: str, element: str) -> _Made | None:
+        """What makes the element of the object's collection that a key names, of a kind that only has that; None if no
+        such is known.
+        """
+        kinds = [kind.path for kind in self._reader.descendants(f"{TYPES}{collection.target}")]
+        begins = f"{OBJ}.{collection.name}.new({element.partition('[')[2].rstrip(']')},"
+        made = self._reader.creations(kinds).items() if above == OBJ else ()
+        cls, call = next(((kind, one.call) for kind, one in made if one.call.startswith(begins)), ("", ""))
+        if not cls or call in self._called:
+            return None
+        self._called.add(call)
+        variable = self._variables.of(cls)
+        self._variables.add(cls, variable)
+        return _Made(cls, variable, f"`{variable} = {call}` → `{cls.removeprefix(TYPES)}`")
 
     def _adding(self, collection: SymbolEntry) -> list[str] | None:
         """The steps by which an operator adds an element to a collection of the object; None if no such is known."""

@@ -112,6 +112,11 @@ class WorkingObject:
             return self.activation()
         return self.to_mode(_OBJECT_MODE if modes.is_others else modes.names[0])
 
+    def is_refused_by(self, operator: Symbol) -> bool:
+        """Whether an operator works on objects of other types than the one that steps have made."""
+        types, _ = operator_active(operator)
+        return types is not None and self._variables.is_made(OBJECT) and not types.takes(self._kind)
+
     def mesh_object(self) -> str:
         """What a mesh object is called."""
         return OBJ if self._kind == _MESH else OTHER

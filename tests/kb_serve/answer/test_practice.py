@@ -173,6 +173,39 @@ def test_cloth_does_not_use_its_own_gravity(reader: BaseReader) -> None:
     assert fallen(use_gravity=False, own=9.81) == 0.0
 
 
+# Actions
+
+
+@pytest.mark.parametrize("path", ["AnimData.action", "NlaStrip.action", "ActionConstraint.action"])
+def test_an_action_moves_nothing_without_its_slot(reader: BaseReader, path: str) -> None:
+    assert "`x.action_slot = x.action_suitable_slots[0]`" in said(reader, TYPES + path)
+    keyed, obj = new_object("keyed"), new_object("obj")
+    for frame, x in ((1, 0.0), (10, 5.0)):
+        keyed.location.x = x
+        keyed.keyframe_insert("location", frame=frame)
+    data = obj.animation_data_create()
+    data.action = keyed.animation_data.action
+    bpy.context.scene.frame_set(10)
+    assert (data.action_slot, obj.location.x) == (None, 0.0)
+    data.action_slot = data.action_suitable_slots[0]
+    bpy.context.scene.frame_set(9)
+    bpy.context.scene.frame_set(10)
+    assert obj.location.x == 5.0
+
+
+def test_a_new_actions_slot_is_made_by_keys_or_by_hand(reader: BaseReader) -> None:
+    assert "`obj.keyframe_insert(…)` makes and gives one" in said(reader, "bpy.types.BlendDataActions.new")
+    obj = new_object("obj")
+    data = obj.animation_data_create()
+    data.action = action = bpy.data.actions.new("a")
+    assert len(action.slots) == 0
+    data.action_slot = action.slots.new(obj.id_type, obj.name)
+    assert data.action_slot == action.slots[0]
+    data.action = bpy.data.actions.new("b")
+    obj.keyframe_insert("location", frame=1)
+    assert data.action_slot is not None
+
+
 # Retiming
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from contextlib import closing
 from typing import TYPE_CHECKING
 
+import pytest
 from asking import TYPES, steps
 
 from kb_build.records import Link, Page, Section
@@ -28,6 +29,7 @@ def told_of(
         (frozenset(topic.split()),),
         classes={f"{TYPES}{name}": 10.0 - place for place, name in enumerate(classes)},
         operators={f"bpy.ops.{name}": 10.0 - place for place, name in enumerate(operators)},
+        title=topic.replace(" ", ""),
     )
     return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
 
@@ -147,3 +149,90 @@ def test_an_operator_is_run_in_the_mode_that_heads_what_the_manual_says_of_it(
             told = " ".join(told_of(own, "assignment", (), ("object.material_slot_assign",)))
         assert "material_slot_assign()" in told
         assert ("mode_set(mode='EDIT')" in told) is entered
+
+
+def test_an_action_is_given_with_the_slot_that_moves_things(reader: BaseReader) -> None:
+    """Of an object and of a strip; the channels that are made then are of that slot."""
+    found = steps(reader, "actions", "Action", "ActionSlot", "ActionChannelbag")
+    (given,) = [number for number, line in enumerate(found) if "animation_data.action = action`" in line]
+    assert "`slot = action.slots.new(" in found[given + 1]
+    assert "`obj.animation_data.action_slot = slot`" in found[given + 2]
+    assert sum("`slot = " in line for line in found) == 1
+    (bag,) = [number for number, line in enumerate(found) if "channelbags.new(slot)" in line]
+    assert bag > given
+    strips = steps(reader, "nla", "NlaTrack", "NlaStrip")
+    assert "`strip.action_slot = slot`" in " ".join(strips)
+    assert are_done(found)
+    assert are_done(strips)
+
+
+def test_where_an_action_is_a_setting_so_is_its_slot(reader: BaseReader) -> None:
+    (settings,) = [line for line in steps(reader, "action", "ActionConstraint") if "set on" in line]
+    assert "`action` = None (Action), `action_slot` (after `action`) = None (ActionSlot)" in settings
+    assert "action_slot_handle" not in settings
+    assert are_done(steps(reader, "action", "ActionConstraint"))
+
+
+def test_a_node_that_ends_a_tree_is_linked_to_what_goes_through_it(reader: BaseReader) -> None:
+    told = steps(reader, "viewer", "CompositorNodeViewer")
+    assert '`tree.links.new(render_layers.outputs["Image"], viewer.inputs["Image"])`' in " ".join(told)
+    assert are_done(told)
+    told = steps(reader, "output", "ShaderNodeOutputWorld")
+    assert '.new(tree.nodes["Background"].outputs["Background"], ' in told[-1]
+    assert are_done(told)
+
+
+@pytest.mark.parametrize("node", ["ShaderNodeMixShader", "ShaderNodeAddShader"])
+def test_a_node_that_joins_shaders_has_one_in_each_input(reader: BaseReader, node: str) -> None:
+    told = steps(reader, "shader", node)
+    links = [line for line in told if "links.new(" in line]
+    assert 'tree.nodes["Principled BSDF"].outputs["BSDF"], shader.inputs["Shader"]' in links[0]
+    assert 'emission.outputs["Emission"], shader.inputs["Shader_001"]' in links[1]
+    assert "tree.get_output_node('ALL').inputs[\"Surface\"]" in links[2]
+    assert are_done(told)
+
+
+def test_what_makes_a_colour_of_a_shader_is_shown_itself(reader: BaseReader) -> None:
+    told = steps(reader, "shader to rgb", "ShaderNodeShaderToRGB")
+    assert 'outputs["BSDF"], rgb.inputs["Shader"]' in told[-2]
+    assert "tree.get_output_node('ALL').inputs[\"Surface\"]" in told[-1]
+    assert are_done(told)
+
+
+def test_operators_on_objects_of_another_type_than_is_made_are_no_steps(reader: BaseReader) -> None:
+    """Nor are others of their module, that work on the same."""
+    of_hair = ("curves.split", "curves.convert_from_particle_system")
+    for cls, runs in (("Curve", False), ("Curves", True)):
+        told = " ".join(told_of(reader, "curves", (cls,), of_hair))
+        assert "objects.link(obj)" in told
+        assert ("`bpy.ops.curves.split()`" in told) is runs
+        assert ("bpy.ops.curves." in told) is runs
+
+
+def test_what_only_shows_what_is_done_is_no_step_beside_what_does_it(reader: BaseReader) -> None:
+    shows = ("render.play_rendered_anim", "render.view_show")
+    told = told_of(reader, "render", (), ("render.render", *shows))
+    assert [line.partition("`")[2].partition("(")[0] for line in told[1:]] == ["bpy.ops.render.render"]
+    assert "play_rendered_anim" in " ".join(told_of(reader, "render", (), shows))
+
+
+def test_a_render_is_kept_in_a_file(reader: BaseReader) -> None:
+    path, run = told_of(reader, "render", (), ("render.render",))
+    assert "`scene.render.filepath = " in path
+    assert "render(write_still=True, " in run
+    assert run.count("write_still") == 1
+
+
+def test_what_a_bake_is_of_is_made_before_it(reader: BaseReader) -> None:
+    told = told_of(reader, "gas", (), ("fluid.bake_noise",))
+    assert "`modifier = obj.modifiers.new(\"Fluid\", 'FLUID')`" in told[0]
+    assert "`modifier.domain_settings.use_noise = True`" in " ".join(told)
+    assert "`bpy.ops.fluid.bake_noise()`" in told[-1]
+    assert are_done(told)
+
+
+def test_an_object_is_given_its_parent_and_stays_where_it_is(reader: BaseReader) -> None:
+    told = told_of(reader, "parent", (), ("object.parent_set",))
+    assert "`obj.parent = other`" in told[0]
+    assert "`obj.matrix_parent_inverse = other.matrix_world.inverted()`" in told[1]
+    assert are_done(told)

@@ -145,6 +145,7 @@ CHAPTERS = {
     [
         ("hair", "physics/particles/hair/index"),
         ("hair nodes", "modeling/geometry_nodes/hair/index"),
+        ("hairs", "physics/particles/hair/index"),
         ("closure", "interface/controls/nodes/types/closure/closure"),
     ],
 )
@@ -212,3 +213,110 @@ def test_a_chapter_works_on_what_its_operators_need_made(tmp_path: Path, reader:
     assert {f"{TYPES}SoundStrip", f"{TYPES}MovieStrip"} <= chapter.classes.keys()
     assert "scene.sequence_editor.strips.new_" in told
     assert f"{TYPES}SoundStrip" not in single.classes
+
+
+def test_an_address_that_says_only_the_kind_takes_no_others_of_that_kind(
+    tmp_path: Path, reader: BaseReader
+) -> None:
+    slug = "editors/graph_editor/fcurves/modifiers"
+    names = names_of(
+        tmp_path,
+        reader,
+        slug,
+        "F-Curve Modifiers",
+        {"FModifierNoise": slug},
+        ["FluidModifier", "EchoModifier"],
+    )
+    assert names.classes.keys() == {f"{TYPES}FModifierNoise"}
+    # Where the address is what the title names, it counts.
+    slug = "render/lights/world"
+    folder = tmp_path / "world"
+    folder.mkdir()
+    names = names_of(folder, reader, slug, "World Environment", {"World": slug}, ["WorldMistSettings"])
+    assert f"{TYPES}WorldMistSettings" in names.classes
+
+
+@pytest.mark.parametrize(
+    ("other", "belongs"), [("editors/text_editor", False), ("modeling/texts/edit", True)]
+)
+def test_what_an_editor_does_belongs_to_the_part_of_the_manual_that_explains_it(
+    tmp_path: Path, reader: BaseReader, other: str, *, belongs: bool
+) -> None:
+    slug, paths = "modeling/texts/index", ("bpy.ops.text.cut", "bpy.ops.text.run_script")
+    symbols = [symbol for path in paths if (symbol := reader.symbol(path))]
+    assert len(symbols) == len(paths)
+    links = [Link(path, other, "manual") for path in paths]
+    pages = (page(slug, "Text"), page(other, "Other Things"))
+    write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        assert (set(paths) <= TopicMembers(own).names(slug, "Text").operators.keys()) is belongs
+
+
+@pytest.mark.parametrize(("title", "belongs"), [("Render Output", True), ("Output", False)])
+def test_what_a_chapter_does_belongs_to_its_pages_that_say_so(
+    tmp_path: Path, reader: BaseReader, title: str, *, belongs: bool
+) -> None:
+    render = reader.symbol("bpy.ops.render.render")
+    assert render
+    slug = "render/output/properties"
+    pages = (page(slug, title), page("render/index", "Rendering"))
+    links = (Link(render.path, "render/index", "manual"),)
+    write_base(tmp_path / "base.sqlite", Contents([render], pages, links, {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        assert (render.path in TopicMembers(own).names(slug, title).operators) is belongs
+
+
+BONES, OBJECTS = "animation/armatures/bones/editing/parenting", "scene_layout/object/editing/parent"
+FOG, SKY, FLUID = (
+    "render/shader_nodes/shader/volume_scatter",
+    "render/shader_nodes/textures/environment",
+    "physics/fluid/index",
+)
+FOUND = {
+    BONES: ("Parenting", "bpy.ops.armature.parent_set"),
+    OBJECTS: ("Parenting Objects", "bpy.ops.object.parent_set"),
+    FOG: ("Volume Scatter", "bpy.types.ShaderNodeVolumeScatter"),
+    SKY: ("Environment Texture Node", "bpy.types.ShaderNodeTexEnvironment"),
+    FLUID: ("Fluid", "bpy.types.FluidModifier"),
+}
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("parenting", OBJECTS),
+        ("parent", OBJECTS),
+        ("fog", FOG),
+        ("volumetric fog", FOG),
+        ("HDRI lighting", SKY),
+        ("smoke simulation", FLUID),
+        # What stands for other things, or of which more is said.
+        ("environment fog", ""),
+        ("remove fog", ""),
+        ("fog in the morning", ""),
+    ],
+)
+def test_a_topic_is_found_by_what_people_call_it(
+    tmp_path: Path, reader: BaseReader, text: str, found: str
+) -> None:
+    symbols = [symbol for _, path in FOUND.values() if (symbol := reader.symbol(path))]
+    pages = [page(slug, title) for slug, (title, _) in FOUND.items()]
+    links = [Link(path, slug, "manual") for slug, (_, path) in FOUND.items()]
+    write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        assert Topics(own).find(text) == found
+
+
+def test_the_first_steps_of_a_topic_make_what_it_is_about(tmp_path: Path, reader: BaseReader) -> None:
+    node = f"{TYPES}ShaderNodeVolumeScatter"
+    made_in = ("Material", "Object", "BlendData", "BlendDataMaterials", "Nodes", "NodeTree", "ShaderNodeTree")
+    owners = [node, *(f"{TYPES}{name}" for name in made_in), *(base.path for base in reader.lineage(node))]
+    paths = [*owners, *(entry.path for owner in owners for entry in reader.members(owner).values())]
+    symbols = [symbol for path in dict.fromkeys(paths) if (symbol := reader.symbol(path))]
+    write_base(
+        tmp_path / "base.sqlite",
+        Contents(symbols, (page(FOG, "Volume Scatter"),), (Link(node, FOG, "manual"),), {}),
+    )
+    with closing(BaseReader(tmp_path / "base.sqlite")) as own:
+        (*_, last) = Topics(own).first_steps("volume scatter", 2)
+    assert "ShaderNodeVolumeScatter" in last

@@ -38,7 +38,9 @@ def test_a_brush_that_paints_is_toggled_before_it_is_set(reader: BaseReader) -> 
 
 def test_an_operator_says_what_it_takes_and_what_must_be_set(reader: BaseReader) -> None:
     names = TopicNames(frozenset({"fluid"}), (), operators={"bpy.ops.fluid.bake_all": 1.0})
-    (run,) = [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+    *made, run = [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+    assert "`modifier.fluid_type = 'DOMAIN'` makes `modifier.domain_settings`" in made[1]
+    assert made[2:] == ["3. `modifier.domain_settings.cache_type = 'ALL'`"]
     assert "Bake Entire Fluid Simulation (takes an active object; offered by Blender's panels only if" in run
     assert "`FluidDomainSettings.cache_type` is 'ALL' (a new one has `'REPLAY'`)" in run
 
@@ -260,10 +262,11 @@ def test_a_canvas_is_made_and_kept_in_images_before_it_is_baked(reader: BaseRead
     bake = {"bpy.ops.dpaint.bake": 9.0}
     words = (frozenset({"dynamic", "paint"}),)
     told = _told(reader, TopicNames(frozenset({"dynamicpaint"}), words, classes=classes, operators=bake))
-    assert "`bpy.ops.dpaint.type_toggle(type='CANVAS')` makes `modifier.canvas_settings`" in told[-3]
-    assert told[-2].endswith("`modifier.canvas_settings.canvas_surfaces.active.surface_format = 'IMAGE'`")
+    assert "`bpy.ops.dpaint.type_toggle(type='CANVAS')` makes `modifier.canvas_settings`" in told[-4]
+    assert told[-3].endswith("`modifier.canvas_settings.canvas_surfaces.active.surface_format = 'IMAGE'`")
     assert "bpy.ops.dpaint.bake()" in told[-1]
     assert _done_in_blender(told)
+    assert "`obj.data.uv_layers.new()`" in told[-2]
 
 
 def test_what_an_operator_only_finds_in_the_context_is_not_made_by_it(reader: BaseReader) -> None:

@@ -43,3 +43,15 @@ def test_actions_are_taken_apart_and_their_objects_are_not(query: str, parts: tu
 def test_later_parts_are_about_the_object_of_the_first() -> None:
     parts = parts_of("how do I add a sun lamp, make it warm and render the scene")
     assert [part.about for part in parts] == ["", "a sun lamp", "a sun lamp"]
+
+
+@pytest.mark.parametrize(
+    ("query", "topics"),
+    [
+        ("create an action and assign it", ["create an action", ""]),
+        ("make a cube fall and bake it", ["make a cube fall", "bake it"]),
+        ("create a material and assign it to the cube", ["create a material", "assign it to the cube"]),
+    ],
+)
+def test_a_bare_verb_of_what_the_first_part_is_about_is_no_topic(query: str, topics: list[str]) -> None:
+    assert [part.topic for part in parts_of(query)] == topics
