@@ -15,6 +15,7 @@ gpu.types.GPUShader(
     vertex, fragment
 )  # reported since 5.0: functions make it, such as `gpu.shader.create_from_info`
 bpy.data.meshes.remove(ob.to_mesh())  # reported: ob.to_mesh_clear()
+repeat_input.pair_with_output(simulation_output)  # reported: of another zone
 ```
 
 What returns None instead of raising an error is a warning, and so is what ends Blender in a new file. Not reported:
@@ -29,7 +30,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.types import ClassObject, Instance
-from kb_build.records import ENDS_WITHOUT, last_name
+from kb_build.records import ENDS_WITHOUT, PAIRS, last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
@@ -41,6 +42,7 @@ from kb_check.made_here import (
     is_named_before,
     knows_all,
 )
+from kb_check.node_trees import tree_of
 from kb_check.removed import OUTSIDE_MAIN
 from kb_check.repeated_calls import follows
 from kb_check.rule import Rule
@@ -61,6 +63,7 @@ _GREASE_PENCIL, _FORMER_MODIFIERS = "GreasePencil", f"{T}GpencilModifier"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
+_NODE, _FIRST_OF_ZONE, _SECOND_OF_ZONE = f"{T}Node", "Input", "Output"
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
 
@@ -72,6 +75,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for call in calls(script):
         yield from _ending(script, call)
         yield from _removing_of_object(script, call)
+        yield from _mispaired(script, call)
         refusals = call.callee.symbol.refusals
         if not refusals or call.has_unpacking or not isinstance(call.node.func, ast.Attribute):
             continue
@@ -181,6 +185,29 @@ def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
     )  # fmt: skip
 
 
+def _mispaired(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A zone's first node that is paired with what is not the second one of such a zone."""
+    zone, _, function = call.callee.symbol.path.rpartition(".")
+    output = f"{zone.removesuffix(_FIRST_OF_ZONE)}{_SECOND_OF_ZONE}"
+    if function != PAIRS or not zone.endswith(_FIRST_OF_ZONE) or not script.api.is_class(output):
+        return
+    given = next((node for _, node in call.arguments()), None)
+    kind = script.type_of(given) if given is not None else None
+    if (
+        isinstance(kind, Instance)
+        and kind.sure
+        and kind.cls != output
+        and _NODE in script.api.lineage(kind.cls)
+        and not script.api.descends(output, kind.cls)
+        and not is_tried(script, call.node)
+    ):
+        yield Finding(
+            RULE.id, "error", script.span(call.node),
+            f"`{call.callee.symbol.path}` takes a `{output}`, the other node of its zone, and no `{kind.cls}`.",
+            call.callee.symbol.path, (output,),
+        )  # fmt: skip
+
+
 def _called_properties(script: Script) -> Iterator[Finding]:
     """Calls of what is a value: Blender says that it is not callable."""
     for node in script.all(ast.Call):
@@ -252,6 +279,9 @@ def _labels(script: Script, thing: ast.expr) -> Iterator[str]:
         return
     if made_as := _made_as(script, thing):
         yield f"{made_as} {symbol.label.lower()}"
+    tree = script.api.symbols.symbol(f"{T}{tree_of(script, thing)}")
+    if tree is not None:
+        yield f"{symbol.label.lower()} in a {tree.label.lower()}"
     if kind.sure:
         yield symbol.label.lower()
     data = dict(kind.traits).get("data") if kind.cls == _OBJECT else None

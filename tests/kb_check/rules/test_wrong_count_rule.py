@@ -54,7 +54,8 @@ faces, edges, verts = bmesh.ops.bevel(bm, geom=bm.edges[:], offset=0.1, segments
 
 
 def test_what_cannot_be_unpacked_is_reported_and_nothing_else(check: Check, tmp_path: Path) -> None:
-    answers = run_statements(tmp_path, _CODE.splitlines())
+    lines: list[str] = [*_CODE.splitlines()]
+    answers = run_statements(tmp_path, lines)
     refused = {place for place, (error, _, _) in enumerate(answers, start=1) if error}
     assert all("unpack" in answers[place - 1][0] for place in refused)
     assert {finding.span.line for finding in check("wrong-count", _CODE)} == refused
