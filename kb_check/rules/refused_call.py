@@ -15,11 +15,14 @@ gpu.types.GPUShader(
     vertex, fragment
 )  # reported since 5.0: functions make it, such as `gpu.shader.create_from_info`
 bpy.data.meshes.remove(ob.to_mesh())  # reported: ob.to_mesh_clear()
+bpy.ops.sculpt.face_sets_create(
+    mode="ALL"
+)  # reported without bpy.ops.ed.undo_push(): ends Blender without a window
 repeat_input.pair_with_output(simulation_output)  # reported: of another zone
 ```
 
-What returns None instead of raising an error is a warning, and so is what ends Blender in a new file. Not reported:
-what depends on the mode (see not-in-edit-mode).
+What returns None instead of raising an error is a warning, and so is what ends Blender in a new file, or without a
+window. Not reported: what depends on the mode (see not-in-edit-mode).
 """
 
 from __future__ import annotations
@@ -30,7 +33,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.types import ClassObject, Instance
-from kb_build.records import ENDS_WITHOUT, PAIRS, last_name
+from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS, last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
@@ -38,6 +41,7 @@ from kb_check.literals import number
 from kb_check.made_here import (
     OBJECTS_NEW,
     bindings,
+    called_operators,
     callee_path,
     is_named_before,
     knows_all,
@@ -64,6 +68,7 @@ _GREASE_PENCIL, _FORMER_MODIFIERS = "GreasePencil", f"{T}GpencilModifier"
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
 _NODE, _FIRST_OF_ZONE, _SECOND_OF_ZONE = f"{T}Node", "Input", "Output"
+_ENTERING = frozenset({"bpy.ops.object.mode_set", "bpy.ops.sculpt.sculptmode_toggle"})
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
 
@@ -74,6 +79,7 @@ def _check(script: Script) -> Iterator[Finding]:
     earlier: dict[tuple[str, str, str], CallSite] = {}
     for call in calls(script):
         yield from _ending(script, call)
+        yield from _ending_without_step(script, call)
         yield from _removing_of_object(script, call)
         yield from _mispaired(script, call)
         refusals = call.callee.symbol.refusals
@@ -120,6 +126,31 @@ def _ending(script: Script, call: CallSite) -> Iterator[Finding]:
                 RULE.id, "warning", script.span(call.node),
                 f"`{path}` ends Blender while `{needed}` is None, as it is in a new file: set it before.", path,
             )  # fmt: skip
+
+
+def _ending_without_step(script: Script, call: CallSite) -> Iterator[Finding]:
+    """An operator that ends a Blender without a window, where the script enters its mode and makes no undo step."""
+    path = call.callee.symbol.path
+    for before in call.callee.symbol.flagged(ENDS_BEFORE):
+        if (
+            not _ENTERING.isdisjoint(called_operators(script))
+            and knows_all(script)
+            and not _waits_for_people(script)
+            and not is_named_before(script, last_name(before.partition("(")[0]), call.node)
+        ):
+            yield Finding(
+                RULE.id, "warning", script.span(call.node),
+                f"`{path}` ends a Blender without a window while there is no undo step: call `{before}` before the "
+                "mode is entered.", path,
+            )  # fmt: skip
+
+
+@once_per_script
+def _waits_for_people(script: Script) -> bool:
+    """Whether a script registers what people call, who have a window."""
+    return any(node.name == "register" for node in script.all(ast.FunctionDef)) or bool(
+        script.own_identifiers
+    )
 
 
 def _is_made(script: Script, owner: ast.expr) -> bool:
