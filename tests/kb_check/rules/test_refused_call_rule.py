@@ -58,7 +58,7 @@ g = curve.id_data and bpy.data.objects.new("curve", curve).modifiers.new("Array"
 
 
 def test_what_is_refused_is_reported_and_nothing_else(check: Check, tmp_path: Path) -> None:
-    lines = _CODE.splitlines()
+    lines: list[str] = [*_CODE.splitlines()]
     values = {place: line.partition(" = ")[0] for place, line in enumerate(lines) if line[1:4] == " = "}
     answers = run_statements(tmp_path, lines, values)
     refused = {place + 1 for place, (error, _, after) in enumerate(answers) if error or after == "None"}

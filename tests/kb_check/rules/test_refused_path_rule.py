@@ -213,6 +213,14 @@ def test_what_is_refused_is_reported_and_nothing_else(check: Check, tmp_path: Pa
     assert {finding.span.line for finding in check("refused-path", _CODE)} == refused
 
 
+def test_a_data_block_without_animation_data_is_told(check: Check) -> None:
+    code = "import bpy\nbpy.data.images.new('i', 4, 4).keyframe_insert('alpha_mode')\n"
+    (found,) = check("refused-path", code)
+    assert found.message.endswith("cannot be animated. A `bpy.types.Image` has no animation data.")
+    (other,) = check("refused-path", "import bpy\nbpy.data.objects['Cube'].keyframe_insert('name')\n")
+    assert other.message == "`bpy.types.ID.name` cannot be animated."
+
+
 @pytest.mark.parametrize(
     ("code", "fixed"),
     [
