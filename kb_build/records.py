@@ -49,6 +49,9 @@ GIVEN = "given:"
 ALSO = "also:"
 # How a flag begins that says what must not be None: Blender ends when the function is called.
 ENDS_WITHOUT = "ends-without:"
+# How a flag begins that says what must be called before an operator's mode is entered: else Blender ends where there is
+# no undo step yet, as in one without a window.
+ENDS_BEFORE = "ends-before:"
 # How the flag of an operator begins that adds an object whose data RNA has no class for, before what to call instead.
 BARE_DATA = "bare-data:"
 # The flag of a switch that some panel shows the other way round.

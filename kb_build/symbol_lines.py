@@ -15,6 +15,7 @@ from kb_build.records import (
     ANY,
     AREAS,
     EMPTY,
+    ENDS_BEFORE,
     ENDS_WITHOUT,
     FACTORY,
     FILLED_BY,
@@ -242,6 +243,10 @@ def refusal_lines(symbol: Symbol) -> list[str]:
     """
     fatal = [
         f"while `{needed}` is None, which ends Blender: set it" for needed in symbol.flagged(ENDS_WITHOUT)
+    ]
+    fatal += [
+        f"without an undo step, as in a Blender without a window, which ends it: `{call}` before the mode is entered"
+        for call in symbol.flagged(ENDS_BEFORE)
     ]
     own = [f"taken only by {_REGISTERED}"] if _is_of_own_nodes(symbol) else []
     return [*fatal, *own] + [

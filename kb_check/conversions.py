@@ -187,6 +187,9 @@ def _whole_misfit(script: Script, node: ast.expr, kind: Type, length: int, takes
     if kind == NONE:
         return Misfit(takes, "None") if isinstance(written(script, node), ast.Constant) else None
     given = describe(kind)
+    if isinstance(kind, Plain) and kind.kind in {"int", "float"}:
+        text = shown(script, node, "")
+        return Misfit(takes, f"the single number {text}" if text else given)
     if isinstance(kind, Mapping) or (isinstance(kind, Plain) and kind.kind != "bytes"):
         return Misfit(takes, shown(script, node, given))
     if isinstance(kind, Instance):

@@ -32,7 +32,7 @@ _MATH = "mathutils"
 _RULES = (
     "callback-signature", "given-callback", "list-attribute", "missing-argument", "no-custom-properties",
     "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call", "refused-path",
-    "refused-property", "refused-value", "wrong-type",
+    "refused-property", "refused-value", "wrong-count", "wrong-type",
 )  # fmt: skip
 _GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
 _SIGNS = "=([*"  # one of which such code has

@@ -19,6 +19,7 @@ from kb_build.blender.call_texts import (
 from kb_build.blender.context_members import name_classes
 from kb_build.blender.docstrings import parse_docstring
 from kb_build.blender.manual_links import manual_links
+from kb_build.blender.owners_animated import unmark_unanimated
 from kb_build.blender.tried_facts import ADDED, add_items
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
@@ -330,6 +331,7 @@ def read_extract(path: Path) -> Extract:
             raw.symbols[holder]["target"] = tree
     _name_active_items(raw.symbols)
     name_classes(raw.symbols)
+    unmark_unanimated(raw.symbols)
     _substitute(raw.symbols.values())
     described = [*_described_members(raw.symbols.values())]
     symbols = {row_path: _symbol(row) for row_path, row in raw.symbols.items()}

@@ -14,6 +14,7 @@ from kb_build.records import (
     BARE_DATA,
     CALLS,
     EMPTY,
+    ENDS_BEFORE,
     ENDS_WITHOUT,
     EVALUATED,
     FILLED_BY,
@@ -110,6 +111,12 @@ def _add_refusals(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
             row["flags"] = [*row.get("flags", ()), ENDS_WITHOUT + without]
 
 
+def _add_undo_step(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds what must be called before the mode of an operator that ends Blender without an undo step."""
+    if row is not None:
+        row["flags"] = [*row.get("flags", ()), ENDS_BEFORE + seen["before"]]
+
+
 def _add_left_out(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     """Adds what an argument is where it is left out, in place of RNA's default. A factor has no unit."""
     for parameter in (row or {}).get("parameters", ()):
@@ -204,4 +211,5 @@ ADDED = {
     "limits": _add_limits,
     "locked": _add_locked,
     "own_class": _add_own_class,
+    "undo_step": _add_undo_step,
 }

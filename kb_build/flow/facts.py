@@ -107,6 +107,8 @@ NODES_WITH_SOCKETS_OF_THEIR_OWN = (
     "ClosureInput", "ClosureOutput", "ClosureToList", "FieldToGrid", "FieldToList", "ShaderNodeRaycast",
     "FormatString", "CryptomatteV2", "RLayers", "Image", "Reroute", "Custom",
 )  # fmt: skip
+# Of these, the ones whose sockets change what they hold, and keep their names.
+NODES_THAT_KEEP_NAMES = frozenset({"bpy.types.NodeReroute"})
 
 # Modules whose base classes and imported names the symbols do not tell (Iterator has what Interface0DIterator has).
 HALF_KNOWN = ("freestyle",)

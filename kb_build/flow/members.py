@@ -12,6 +12,7 @@ from kb_build.flow.facts import (
     DERIVED_BY_SCRIPTS,
     HALF_KNOWN,
     LAYER_ITEM,
+    NODES_THAT_KEEP_NAMES,
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
     VERSION,
@@ -318,7 +319,8 @@ class Members(Core):
     def _of_value(self, kind: Type, name: str, found: Lookup) -> None:
         if isinstance(kind, Sequence) and kind.kind == "array" and (member := self.api.member(ARRAY, name)):
             found.symbols.append(member.symbol.path)
-        if hasattr(_python_class(kind), name):
+            found.types.append(self._held(member.type, kind, name))
+        elif hasattr(_python_class(kind), name):
             found.types.append(Builtin(name, kind))
 
     # Items.
@@ -426,7 +428,8 @@ class Members(Core):
             found = always[:1] or found
             found = found or [socket for socket in sockets if value in {socket.name, socket.identifier}]
         if not found:
-            if isinstance(value, str) and not _has_sockets_of_its_own(owner.cls):
+            keeps_names = owner.cls in NODES_THAT_KEEP_NAMES or not _has_sockets_of_its_own(owner.cls)
+            if isinstance(value, str) and keeps_names:
                 self.resolve(node, "item", value, missing=(owner.cls,), sure=owner.sure)
             return None
         self.resolve(node, "item", str(value), [symbol.path for symbol in found], sure=owner.sure)

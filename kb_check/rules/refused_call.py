@@ -15,10 +15,14 @@ gpu.types.GPUShader(
     vertex, fragment
 )  # reported since 5.0: functions make it, such as `gpu.shader.create_from_info`
 bpy.data.meshes.remove(ob.to_mesh())  # reported: ob.to_mesh_clear()
+bpy.ops.sculpt.face_sets_create(
+    mode="ALL"
+)  # reported without bpy.ops.ed.undo_push(): ends Blender without a window
+repeat_input.pair_with_output(simulation_output)  # reported: of another zone
 ```
 
-What returns None instead of raising an error is a warning, and so is what ends Blender in a new file. Not reported:
-what depends on the mode (see not-in-edit-mode).
+What returns None instead of raising an error is a warning, and so is what ends Blender in a new file, or without a
+window. Not reported: what depends on the mode (see not-in-edit-mode).
 """
 
 from __future__ import annotations
@@ -29,7 +33,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.types import ClassObject, Instance
-from kb_build.records import ENDS_WITHOUT, last_name
+from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS, last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
@@ -37,10 +41,12 @@ from kb_check.literals import number
 from kb_check.made_here import (
     OBJECTS_NEW,
     bindings,
+    called_operators,
     callee_path,
     is_named_before,
     knows_all,
 )
+from kb_check.node_trees import tree_of
 from kb_check.removed import OUTSIDE_MAIN
 from kb_check.repeated_calls import follows
 from kb_check.rule import Rule
@@ -61,6 +67,8 @@ _GREASE_PENCIL, _FORMER_MODIFIERS = "GreasePencil", f"{T}GpencilModifier"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
+_NODE, _FIRST_OF_ZONE, _SECOND_OF_ZONE = f"{T}Node", "Input", "Output"
+_ENTERING = frozenset({"bpy.ops.object.mode_set", "bpy.ops.sculpt.sculptmode_toggle"})
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
 
@@ -71,7 +79,9 @@ def _check(script: Script) -> Iterator[Finding]:
     earlier: dict[tuple[str, str, str], CallSite] = {}
     for call in calls(script):
         yield from _ending(script, call)
+        yield from _ending_without_step(script, call)
         yield from _removing_of_object(script, call)
+        yield from _mispaired(script, call)
         refusals = call.callee.symbol.refusals
         if not refusals or call.has_unpacking or not isinstance(call.node.func, ast.Attribute):
             continue
@@ -116,6 +126,31 @@ def _ending(script: Script, call: CallSite) -> Iterator[Finding]:
                 RULE.id, "warning", script.span(call.node),
                 f"`{path}` ends Blender while `{needed}` is None, as it is in a new file: set it before.", path,
             )  # fmt: skip
+
+
+def _ending_without_step(script: Script, call: CallSite) -> Iterator[Finding]:
+    """An operator that ends a Blender without a window, where the script enters its mode and makes no undo step."""
+    path = call.callee.symbol.path
+    for before in call.callee.symbol.flagged(ENDS_BEFORE):
+        if (
+            not _ENTERING.isdisjoint(called_operators(script))
+            and knows_all(script)
+            and not _waits_for_people(script)
+            and not is_named_before(script, last_name(before.partition("(")[0]), call.node)
+        ):
+            yield Finding(
+                RULE.id, "warning", script.span(call.node),
+                f"`{path}` ends a Blender without a window while there is no undo step: call `{before}` before the "
+                "mode is entered.", path,
+            )  # fmt: skip
+
+
+@once_per_script
+def _waits_for_people(script: Script) -> bool:
+    """Whether a script registers what people call, who have a window."""
+    return any(node.name == "register" for node in script.all(ast.FunctionDef)) or bool(
+        script.own_identifiers
+    )
 
 
 def _is_made(script: Script, owner: ast.expr) -> bool:
@@ -179,6 +214,29 @@ def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
         f"`{clearing}` removes it.",
         path, (clearing,), Fix(f"Write {clear}", (edit,)) if edit else None,
     )  # fmt: skip
+
+
+def _mispaired(script: Script, call: CallSite) -> Iterator[Finding]:
+    """A zone's first node that is paired with what is not the second one of such a zone."""
+    zone, _, function = call.callee.symbol.path.rpartition(".")
+    output = f"{zone.removesuffix(_FIRST_OF_ZONE)}{_SECOND_OF_ZONE}"
+    if function != PAIRS or not zone.endswith(_FIRST_OF_ZONE) or not script.api.is_class(output):
+        return
+    given = next((node for _, node in call.arguments()), None)
+    kind = script.type_of(given) if given is not None else None
+    if (
+        isinstance(kind, Instance)
+        and kind.sure
+        and kind.cls != output
+        and _NODE in script.api.lineage(kind.cls)
+        and not script.api.descends(output, kind.cls)
+        and not is_tried(script, call.node)
+    ):
+        yield Finding(
+            RULE.id, "error", script.span(call.node),
+            f"`{call.callee.symbol.path}` takes a `{output}`, the other node of its zone, and no `{kind.cls}`.",
+            call.callee.symbol.path, (output,),
+        )  # fmt: skip
 
 
 def _called_properties(script: Script) -> Iterator[Finding]:
@@ -252,6 +310,9 @@ def _labels(script: Script, thing: ast.expr) -> Iterator[str]:
         return
     if made_as := _made_as(script, thing):
         yield f"{made_as} {symbol.label.lower()}"
+    tree = script.api.symbols.symbol(f"{T}{tree_of(script, thing)}")
+    if tree is not None:
+        yield f"{symbol.label.lower()} in a {tree.label.lower()}"
     if kind.sure:
         yield symbol.label.lower()
     data = dict(kind.traits).get("data") if kind.cls == _OBJECT else None

@@ -8,6 +8,7 @@ obj.keyframe_insert("location.x")  # reported: keyframe_insert("location", index
 obj.keyframe_insert("location", index=3)  # reported: 0 to 2
 obj.keyframe_insert("hide_render", index=0)  # reported: one value, which has no index
 obj.keyframe_insert("name")  # reported: no animatable property
+image.keyframe_insert("alpha_mode")  # reported: images have no animation data
 lamp.keyframe_insert("data.energy")  # reported: lamp.data.keyframe_insert("energy")
 obj.driver_add('modifiers["Array"].number')  # reported: no modifier has it
 obj.keyframe_insert("modifiers['Array'].count")  # reported: double quotes
@@ -43,6 +44,7 @@ if TYPE_CHECKING:
 _DRIVING = f"{T}bpy_struct.driver_add"  # it takes no keywords
 _CALLS = frozenset({f"{T}bpy_struct.keyframe_insert", f"{T}bpy_struct.keyframe_delete", _DRIVING})
 _UNBRACKETED = (ast.Name, ast.Attribute, ast.Subscript, ast.Call)  # a dot may stand behind these as they are
+_ID, _KEPT_IN = f"{T}ID", "animation_data"
 _ALL = -1  # the index that stands for every item
 
 
@@ -81,7 +83,7 @@ def _of_text(script: Script, call: CallSite, node: ast.expr, index: ast.expr | N
     return (
         _elsewhere(script, call, followed, node)
         or _of_item(script, call, followed, node, index)
-        or _of_end(followed)
+        or _of_end(script, followed)
     )
 
 
@@ -144,18 +146,21 @@ def _of_item(
     )  # fmt: skip
 
 
-def _of_end(followed: Followed) -> _Fault | None:
+def _of_end(script: Script, followed: Followed) -> _Fault | None:
     """A path to what cannot be animated."""
     if not followed.properties or any("animatable" in symbol.flags for symbol in followed.properties):
         return None
     first = followed.properties[0]
     if first.kind == "function":
         return _Fault(f"`{first.path}` is a function, and no property.", first.path)
-    return _Fault(f"`{first.path}` cannot be animated.{_instead(first)}", first.path)
+    return _Fault(f"`{first.path}` cannot be animated.{_instead(script, first)}", first.path)
 
 
-def _instead(symbol: Symbol) -> str:
-    """What moves an object where a matrix or the size of its box is meant."""
+def _instead(script: Script, symbol: Symbol) -> str:
+    """Why nothing of such a data-block can be; what moves an object where a matrix or the size of its box is meant."""
+    owner = symbol.owner
+    if owner != _ID and script.api.descends(owner, _ID) and script.api.member(owner, _KEPT_IN) is None:
+        return f" A `{owner}` has no animation data."
     if symbol.owner != f"{T}Object":
         return ""
     if symbol.name.startswith("matrix_"):

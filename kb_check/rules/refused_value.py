@@ -11,6 +11,8 @@ tree.interface.new_socket(
 )  # reported: geometry node trees have it only
 compare = tree.nodes.new("FunctionNodeCompare")
 compare.data_type = "BOOLEAN"  # reported: RNA lists it for other nodes
+mix = material.node_tree.nodes.new("ShaderNodeMix")
+mix.data_type = "ROTATION"  # reported: geometry node trees have it only
 ```
 
 What a script sets before decides. Where it names the other setting nowhere, what a new scene has does, which a file
@@ -43,6 +45,7 @@ from kb_check.made_here import (
     member_path,
     named_words,
 )
+from kb_check.node_trees import is_refused_in, tree_of
 from kb_check.opening import OPENING
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
@@ -98,6 +101,8 @@ def _check(script: Script) -> Iterator[Finding]:
             yield from _refused_beside(script, statement, node, symbol.owner, item)
         elif item.where == NOT_TAKEN and script.api.descends(symbol.owner, _NODE):
             yield _never_taken(script, statement.value, item, symbol)
+        elif is_refused_in(tree := tree_of(script, node.value), item):
+            yield _finding(script, statement.value, item, symbol.path, f"this node is in a {tree}")
         elif kind := _other_kind(script, node.value, item):
             yield _finding(script, statement.value, item, symbol.path, f"this is a {kind}")
     for call in calls(script):
@@ -120,7 +125,7 @@ def _item(items: Iterable[EnumItem], value: ast.expr) -> EnumItem | None:
 
 
 def _finding(script: Script, node: ast.expr, item: EnumItem, path: str, why: str) -> Finding:
-    where = item.where.replace("only by", "only by a").replace(", ", " or a ")
+    where = item.where.partition(", and there ")[0].replace("only by", "only by a").replace(", ", " or a ")
     taken = f"is not taken {where[4:]}" if where.startswith("not ") else f"is taken {where}"
     return Finding(RULE.id, "error", script.span(node), f"{item.identifier!r} {taken}, and {why}.", path)
 

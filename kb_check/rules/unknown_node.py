@@ -23,12 +23,12 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.facts import CLASS_NAMES, T
-from kb_build.flow.types import Collection, Instance
 from kb_build.records import last_name
 from kb_build.symbol_lines import NODE_FAMILIES, alike_nodes
 from kb_check.calls import CallSite, calls
 from kb_check.findings import Finding, Fix
 from kb_check.mode_keeping import own_names
+from kb_check.node_trees import tree_added_to
 from kb_check.rule import Rule
 from kb_check.script import once_for_each, once_per_script
 
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _BLENDERS_OWN = re.compile(rf"({'|'.join(NODE_FAMILIES)}|NodeSocket)[A-Z]\w+")
-_NODE, _TREE = f"{T}Node", f"{T}NodeTree"
+_NODE = f"{T}Node"
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -94,7 +94,7 @@ def _lacking(script: Script, name: str) -> Lacking:
 
 def _labelled(script: Script, call: CallSite, name: str) -> list[Symbol]:
     """The nodes that are called so in Blender's menus: those of the tree, where it is known."""
-    tree = _tree(script, call)
+    tree = tree_added_to(script, call)
     found = _by_label(script).get(name.casefold(), [])
     return [symbol for symbol in found if not tree or tree in symbol.trees]
 
@@ -130,7 +130,7 @@ def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Itera
     symbol = script.api.symbols.symbol(f"{T}{name}")
     if symbol is None or not script.api.descends(symbol.path, _NODE):
         return
-    tree = _tree(script, call)
+    tree = tree_added_to(script, call)
     if not symbol.trees:
         said = f"`{symbol.path}` is a class of nodes that no tree takes: `nodes.new` refuses it"
     elif tree and tree not in symbol.trees:
@@ -140,15 +140,6 @@ def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Itera
     others = _others(script, name, tree) if tree else ()
     instead = f" Use {' or '.join(f'`{other}`' for other in others)}." if others else ""
     yield Finding(RULE.id, "error", script.span(node), f"{said}.{instead}", symbol.path, others)
-
-
-def _tree(script: Script, call: CallSite) -> str:
-    """The type of the tree whose nodes are added to; empty where that is not sure."""
-    nodes = script.type_of(call.node.func.value) if isinstance(call.node.func, ast.Attribute) else None
-    tree = nodes.owner if isinstance(nodes, Collection) else None
-    if not isinstance(tree, Instance) or not tree.sure or tree.cls == _TREE:
-        return ""
-    return last_name(tree.cls) if script.api.descends(tree.cls, _TREE) else ""
 
 
 def _others(script: Script, name: str, tree: str) -> tuple[str, ...]:

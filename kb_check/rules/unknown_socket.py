@@ -32,8 +32,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import Instance
-from kb_build.records import NEVER_BY_IDENTIFIER
+from kb_build.flow.types import Instance, Resolution
+from kb_build.records import NEVER_BY_IDENTIFIER, WHEN_PAIRED
 from kb_build.symbol_lines import subscripts_text
 from kb_check.findings import Finding
 from kb_check.group_inputs import makes_all_groups, named_inputs
@@ -46,7 +46,6 @@ from kb_check.socket_modes import is_internal
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.flow.types import Resolution
     from kb_build.records import Symbol
     from kb_check.script import Script
 
@@ -78,12 +77,25 @@ def _check(script: Script) -> Iterator[Finding]:
                 f"{subscripts_text(first)}.", first.path,
             )  # fmt: skip
     for node, cls, how in lacking_own(script):
-        key = node.slice.value if isinstance(node.slice, ast.Constant) else ""
+        key = str(node.slice.value) if isinstance(node.slice, ast.Constant) else ""
+        if misspelt := _misspelt(script, node, cls, key):
+            yield misspelt
+            continue
         comes = f": {how} comes before" if how else ", as the `new` of its items would"
         told = f"Nothing in this script gives this `{cls}` a socket {key!r}{comes}."
         yield Finding(RULE.id, "error", script.span(node), told, cls)
     if script.version >= _RENAMED_IN and makes_all_groups(script):
         yield from _former_inputs(script)
+
+
+def _misspelt(script: Script, node: ast.Subscript, cls: str, key: str) -> Finding | None:
+    """A key that is nearly that of a socket which a node has anyway; None for others."""
+    side = node.value.attr if isinstance(node.value, ast.Attribute) else ""
+    sockets = (socket for socket in script.api.sockets(cls, side) if not is_internal(socket))
+    names = [_asked_by(socket) for socket in sockets if WHEN_PAIRED not in socket.flags]
+    lacking = script.names.socket(cls, key, dict.fromkeys(names))
+    row = Resolution(node, "item", missing=(cls,), value=key)
+    return lacking_finding(script, RULE.id, row, lacking) if lacking.replacement else None
 
 
 def _former_inputs(script: Script) -> Iterator[Finding]:

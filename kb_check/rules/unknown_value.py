@@ -31,6 +31,7 @@ from kb_check.findings import Finding
 from kb_check.given import assigned, class_values
 from kb_check.literals import written
 from kb_check.made_here import knows_all
+from kb_check.node_trees import is_refused_in, tree_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
@@ -57,7 +58,10 @@ def _check(script: Script) -> Iterator[Finding]:
             key=lambda path: (_likeness(script, path, row.value), weights.get(_class_of(path), 0.0)),
         )
         yield lacking_finding(
-            script, RULE.id, row, script.names.value(owner, row.value, _taken(script, owner))
+            script,
+            RULE.id,
+            row,
+            script.names.value(owner, row.value, _taken(script, owner, _tree(script, row))),
         )
     yield from _of_classes(script)
     yield from _computed(script)
@@ -111,8 +115,17 @@ def _times(script: Script) -> Counter[object]:
     return Counter(node.value for node in script.all(ast.Constant))
 
 
-def _taken(script: Script, owner: str) -> list[str]:
-    """The values of an enumeration, but for those of which it is known that none takes them."""
+def _tree(script: Script, row: Resolution) -> str:
+    """The class of the tree of the node whose setting a value is assigned to; empty where that is not known."""
+    match row.statement:
+        case ast.Assign(targets=[ast.Attribute(value=node)]):
+            return tree_of(script, node)
+        case _:
+            return ""
+
+
+def _taken(script: Script, owner: str, tree: str) -> list[str]:
+    """The values of an enumeration, but for those that nothing takes, as is known, or no node of a tree."""
     symbol, argument = script.api.symbols.symbol(owner.partition("(")[0]), owner.partition("(")[2][:-1]
     refusals = symbol.refusals if symbol else ()
     refused = {
@@ -122,7 +135,11 @@ def _taken(script: Script, owner: str) -> list[str]:
         for value in refusal.values
     }
     if symbol and not argument:
-        refused |= {item.identifier for item in symbol.enum_items if item.where == NOT_TAKEN}
+        refused |= {
+            item.identifier
+            for item in symbol.enum_items
+            if item.where == NOT_TAKEN or is_refused_in(tree, item)
+        }
     return [value for value in script.api.values_of(owner) if value not in refused]
 
 

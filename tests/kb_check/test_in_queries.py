@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 @pytest.mark.parametrize(
     ("query", "told"),
     [
-        ("obj.scale = 2", "`bpy.types.Object.scale` takes 3 floats, not 2."),
+        ("obj.scale = 2", "`bpy.types.Object.scale` takes 3 floats, not the single number 2."),
         ("obj.location = (1, 2)", "`bpy.types.Object.location` takes 3 floats, not 2 items."),
         ("cam.data.lens = 'wide'", "`bpy.types.Camera.lens` takes a number, not 'wide'."),
         ("r = bmesh.ops.create_cube(bm, size=1)\nr['faces']", "gives `verts`, and no 'faces'."),
@@ -28,10 +28,10 @@ if TYPE_CHECKING:
         ("blf.size(0, 20, 72)", "takes 2 arguments by place"),
         ("pb.rotation_euler = (0, 0)", "`bpy.types.PoseBone.rotation_euler` takes 3 floats"),
         ("v = Vector((1, 0, 0))\nobj.location = v.length", "takes 3 floats, not a float."),
-        ("Is this right?\nobj.scale = 2", "takes 3 floats, not 2."),
-        ("obj.scale = 2\nWhy does that fail?", "takes 3 floats, not 2."),
-        ("why does `obj.scale = 2` fail", "takes 3 floats, not 2."),
-        ("What is wrong?\n```python\nobj.scale = 2\n```", "takes 3 floats, not 2."),
+        ("Is this right?\nobj.scale = 2", "takes 3 floats, not the single number 2."),
+        ("obj.scale = 2\nWhy does that fail?", "takes 3 floats, not the single number 2."),
+        ("why does `obj.scale = 2` fail", "takes 3 floats, not the single number 2."),
+        ("What is wrong?\n```python\nobj.scale = 2\n```", "takes 3 floats, not the single number 2."),
     ],
 )
 def test_what_blender_refuses_of_code_is_told(query: str, told: str, kb: KnowledgeBase) -> None:

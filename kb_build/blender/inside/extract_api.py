@@ -15,7 +15,18 @@ import traceback
 
 import bpy
 
-from . import context, left_out, modules, nodes, operator_needs, operators, own_classes, refusals, rna
+from . import (
+    context,
+    left_out,
+    modules,
+    nodes,
+    operator_needs,
+    operators,
+    own_classes,
+    refusals,
+    rna,
+    undo_steps,
+)
 from .apart import Beside, can_work_apart
 from .instances import evaluated, limits, new_things, own_names, pointer_fillers, startup
 from .instances.neighbours import Neighbours
@@ -85,6 +96,7 @@ def start_beside(_write, found):
             refusals.find_all(write, observer)
             limits.find_all(write, observer)
             left_out.find_all(write)
+            undo_steps.find_all(write)
 
         found["refusals"] = Beside("refusals", tried)
         found["needs"] = Beside("needs", lambda write: operator_needs.find_alone(write, skipped))

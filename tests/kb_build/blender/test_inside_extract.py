@@ -14,7 +14,7 @@ import pytest
 from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
-from kb_build.records import ENDS_WITHOUT, WITHOUT_ACTIVE, WITHOUT_AREA, NewValue
+from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, WITHOUT_ACTIVE, WITHOUT_AREA, NewValue
 from kb_build.symbol_lines import (
     fillers,
     never_taken,
@@ -864,6 +864,18 @@ def test_what_ends_blender_in_a_new_file_is_known(symbols: dict[str, Symbol]) ->
     ended = subprocess.run([sys.executable, "-c", ADD_MODIFIER], capture_output=True, check=False)
     known = symbols["bpy.types.StripModifiers.new"].flagged(ENDS_WITHOUT)
     assert known == (("bpy.context.workspace.sequencer_scene",) if ended.returncode else ())
+
+
+@pytest.mark.parametrize(
+    "operator", ["sculpt.face_sets_create", "paint.mask_flood_fill", "sculpt.dynamic_topology_toggle"]
+)
+def test_what_ends_blender_without_an_undo_step_is_known(symbols: dict[str, Symbol], operator: str) -> None:
+    lines = ["import bpy", "bpy.ops.object.mode_set(mode='SCULPT')", f"bpy.ops.{operator}()"]
+    ended = subprocess.run([sys.executable, "-c", "\n".join(lines)], capture_output=True, check=False)
+    lines.insert(1, "bpy.ops.ed.undo_push()")
+    subprocess.run([sys.executable, "-c", "\n".join(lines)], capture_output=True, check=True)
+    known = symbols[f"bpy.ops.{operator}"].flagged(ENDS_BEFORE)
+    assert known == (("bpy.ops.ed.undo_push()",) if ended.returncode < 0 else ())
 
 
 def test_what_python_code_returns_has_the_type_of_its_elements(symbols: dict[str, Symbol]) -> None:

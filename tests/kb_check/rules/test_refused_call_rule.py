@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import subprocess
+import sys
 from typing import TYPE_CHECKING
 
 import pytest
@@ -56,7 +58,7 @@ g = curve.id_data and bpy.data.objects.new("curve", curve).modifiers.new("Array"
 
 
 def test_what_is_refused_is_reported_and_nothing_else(check: Check, tmp_path: Path) -> None:
-    lines = _CODE.splitlines()
+    lines: list[str] = [*_CODE.splitlines()]
     values = {place: line.partition(" = ")[0] for place, line in enumerate(lines) if line[1:4] == " = "}
     answers = run_statements(tmp_path, lines, values)
     refused = {place + 1 for place, (error, _, after) in enumerate(answers) if error or after == "None"}
@@ -124,3 +126,40 @@ strip.modifiers.new("modifier", "CURVES")
 """,
     )
     assert [(finding.span.line, finding.severity) for finding in found] == [(6, "warning")] * (not before)
+
+
+_SCULPT = "import bpy\n{}\nbpy.ops.object.mode_set(mode='SCULPT')\n{}\n"
+_CREATE = "bpy.ops.sculpt.face_sets_create(mode='ALL')"
+_STEP = "bpy.ops.ed.undo_push(message='before')"
+
+
+@pytest.mark.parametrize(
+    ("before", "code"),
+    [
+        ("", _CREATE),
+        (_STEP, _CREATE),
+        ("bpy.ops.mesh.primitive_cube_add()", "bpy.ops.paint.mask_flood_fill(mode='VALUE', value=0.5)"),
+        ("", "bpy.ops.sculpt.symmetrize()"),
+        ("", "bpy.ops.sculpt.dynamic_topology_toggle()"),
+        ("", "bpy.ops.object.mode_set(mode='VERTEX_PAINT')\nbpy.ops.paint.vertex_color_set()"),
+    ],
+)
+def test_an_operator_that_ends_blender_without_an_undo_step_is_found(
+    check: Check, before: str, code: str
+) -> None:
+    script = _SCULPT.format(before, code)
+    ended = subprocess.run([sys.executable, "-c", script], capture_output=True, check=False)
+    found = [finding.severity for finding in check("refused-call", script)]
+    assert found == ["warning"] * (ended.returncode < 0)
+
+
+@pytest.mark.parametrize(
+    "code",
+    [
+        _CREATE,
+        f"import bpy\ndef register():\n    bpy.ops.object.mode_set(mode='SCULPT')\n    {_CREATE}\n",
+        f"import bpy, helpers\nbpy.ops.object.mode_set(mode='SCULPT')\n{_CREATE}\n",
+    ],
+)
+def test_what_may_have_an_undo_step_is_left_alone(check: Check, code: str) -> None:
+    assert not check("refused-call", code)

@@ -34,6 +34,8 @@ bpy.ops.object.mode_set(mode="EDIT")
 rig.data.edit_bones.new("Bone").tail = (0, 0, 1)
 bpy.ops.object.mode_set(mode="OBJECT")
 bone = rig.pose.bones["Bone"]
+image = bpy.data.images.new("image", 4, 4)
+brush = bpy.data.brushes.new("brush")
 ob.keyframe_insert("location")
 ob.keyframe_insert(data_path="location", index=2)
 ob.keyframe_insert(data_path="location", index=3)
@@ -192,6 +194,14 @@ ob.keyframe_insert("game.x")
 ob.keyframe_insert("visible_camera")
 ob.keyframe_insert("delta_location", index=0, frame=1)
 ob.keyframe_insert("lock_rotations_4d")
+image.keyframe_insert("alpha_mode")
+image.keyframe_insert("pixels", index=0)
+image.driver_add("alpha_mode")
+brush.keyframe_insert("strength")
+bpy.data.texts.new("text").keyframe_insert("indentation")
+bpy.context.preferences.view.keyframe_insert("ui_scale")
+scene.keyframe_insert("display.shading.light")
+scene.keyframe_insert("cycles.samples")
 ob.keyframe_insert("show_axis")
 """
 
@@ -201,6 +211,14 @@ def test_what_is_refused_is_reported_and_nothing_else(check: Check, tmp_path: Pa
     answers = run_statements(tmp_path, lines)
     refused = {place for place, (error, _, _) in enumerate(answers, start=1) if error}
     assert {finding.span.line for finding in check("refused-path", _CODE)} == refused
+
+
+def test_a_data_block_without_animation_data_is_told(check: Check) -> None:
+    code = "import bpy\nbpy.data.images.new('i', 4, 4).keyframe_insert('alpha_mode')\n"
+    (found,) = check("refused-path", code)
+    assert found.message.endswith("cannot be animated. A `bpy.types.Image` has no animation data.")
+    (other,) = check("refused-path", "import bpy\nbpy.data.objects['Cube'].keyframe_insert('name')\n")
+    assert other.message == "`bpy.types.ID.name` cannot be animated."
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,56 @@
+"""The trees that nodes are in, where a script's own calls of ``nodes.new`` tell."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.flow.facts import T
+from kb_build.flow.types import Collection, Instance
+from kb_build.records import last_name
+from kb_check.calls import calls_by_node
+from kb_check.made_here import bindings
+from kb_check.script import once_for_each
+
+if TYPE_CHECKING:
+    from kb_build.records import EnumItem
+    from kb_check.calls import CallSite
+    from kb_check.script import Script
+
+# How an item of an enumeration tells the trees whose nodes take it (see kb_build.blender.enum_contexts).
+_IN = re.compile(r"(only|not) in (an? \w+(?: or an? \w+)*)(?:, and there .*)?")
+_NEW_NODE, _TREE = f"{T}Nodes.new", f"{T}NodeTree"
+
+
+def tree_added_to(script: Script, call: CallSite) -> str:
+    """The class of the tree whose nodes a call adds to; empty where that is not sure."""
+    nodes = script.type_of(call.node.func.value) if isinstance(call.node.func, ast.Attribute) else None
+    tree = nodes.owner if isinstance(nodes, Collection) else None
+    if not isinstance(tree, Instance) or not tree.sure or tree.cls == _TREE:
+        return ""
+    return last_name(tree.cls) if script.api.descends(tree.cls, _TREE) else ""
+
+
+def tree_of(script: Script, node: ast.expr) -> str:
+    """The class of the tree in which a node was made; empty where that is not sure."""
+    if isinstance(node, ast.Name):
+        return _tree_of_name(script, node.id)
+    return _tree_of_made(script, node)
+
+
+@once_for_each
+def _tree_of_name(script: Script, name: str) -> str:
+    found = {_tree_of_made(script, value) for value in bindings(script).get(name, [])}
+    return found.pop() if len(found) == 1 else ""
+
+
+def _tree_of_made(script: Script, value: ast.expr | None) -> str:
+    call = calls_by_node(script).get(value) if isinstance(value, ast.Call) else None
+    return tree_added_to(script, call) if call and call.callee.symbol.path == _NEW_NODE else ""
+
+
+def is_refused_in(tree: str, item: EnumItem) -> bool:
+    """Whether it is known that nodes of a tree do not take an item; never of an empty one."""
+    found = _IN.fullmatch(item.where) if tree else None
+    return found is not None and (tree in found[2].split()) != (found[1] == "only")
