@@ -10,6 +10,7 @@ from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.calls import places_of
 from kb_serve.recognise.likely_values import likely_items
+from kb_serve.recognise.refusals import never_taken
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -33,7 +34,9 @@ def wrong_values(chain: Chain, symbol: Symbol, removed: Collection[str], reader:
         for parameter, value in _given(symbol, chain.steps[-1].text):
             owner = f"{symbol.path}({parameter.name})"
             if f"{owner}:{value}" not in removed:
-                yield from _wrong(owner, value, parameter.enum_items, reader, _refused(symbol, parameter))
+                yield from _wrong(
+                    owner, value, parameter.enum_items, reader, never_taken(symbol, parameter.name)
+                )
 
 
 def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str]]:
@@ -45,14 +48,6 @@ def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str]]:
         parameter = by_name.get(name or next(left, ""))
         if parameter and not parameter.is_open:
             yield from ((parameter, value) for value in texts_in(given))
-
-
-def _refused(symbol: Symbol, parameter: Parameter) -> frozenset[str]:
-    """The values that a call refused of everything that it was tried with."""
-    rows = (row for row in symbol.refusals if row.argument == parameter.name)
-    return frozenset(
-        value for row in rows if not (row.by or row.taken_by or row.given) for value in row.values
-    )
 
 
 def _wrong(

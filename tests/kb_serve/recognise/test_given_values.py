@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     ("query", "said"),
     [
         ("obj.display_type = 'WIREFRAME'", "Closest: `'WIRE'`"),
+        # What is refused a second time only, or in a mode, is taken.
+        ("fcurve.modifiers.new(type='CYCLE')", "Closest: `'CYCLES'`."),
+        ("obj.modifiers.new('c', 'CLOTHS')", "Closest: `'CLOTH'`."),
         ("mesh.attributes.new('x', 'FLOAT3', 'POINT')", "`'FLOAT3'` is not a value of"),
         # Loops are said to be face corners. What is in no scene may be a mesh's, or a point cloud's: all take the same.
         (
