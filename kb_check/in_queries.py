@@ -28,11 +28,11 @@ _SPAN = re.compile(r"`([^`\n]+)`")
 _FENCED = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 _MATH = "mathutils"
 # What is wrong in a piece of a script too, whatever stands around it. Names, values of enumerations, keywords, sockets
-# and products are left out: of these an answer tells by itself.
+# and products are left out: of these an answer tells by itself, as it does of nodes that other Blenders have.
 _RULES = (
     "callback-signature", "given-callback", "list-attribute", "missing-argument", "no-custom-properties",
     "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call", "refused-path",
-    "refused-property", "refused-value", "wrong-type",
+    "refused-property", "refused-value", "unknown-node", "wrong-type",
 )  # fmt: skip
 _GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
 _SIGNS = "=([*"  # one of which such code has

@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.schema import FORM_NAME, FORM_SHORT
+from kb_serve.recognise.animated_paths import path_given
 from kb_serve.recognise.broken_expressions import (
     CLEAR,
     LEAST,
@@ -29,6 +30,7 @@ from kb_serve.recognise.broken_expressions import (
 from kb_serve.recognise.chain_starts import LEAST_OF_COLLECTION
 from kb_serve.recognise.enum_values import is_value
 from kb_serve.recognise.names_beside import NamesBeside, said_in_words
+from kb_serve.recognise.node_names import is_like_a_node, nodes_meant
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.recognition import MissingName
@@ -59,6 +61,8 @@ _CALLED = 0.9  # from here on, a named operator's or function's arguments may st
 _BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 
+_BEHIND_A_CALL = 0.05  # how much less sure than the function is what a path that it is given may mean
+_NODE_MEANT = 0.93  # how sure a node is that a name which none has may mean
 _BARE = 0.78  # how sure a class is with a call or an index behind it
 _OF_NAMED = 0.86  # … what a name with ``_`` holds, behind what is called so
 _MADE_BY_CALL = ("mathutils.", "bmesh.types.", "bpy.types.")
@@ -127,6 +131,7 @@ class Expressions:
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
         self._expressions(chains, recognition)
+        self._paths_given(chains, recognition)
         self._beside.recognise(chains, recognition)
 
     def _taking(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
@@ -180,6 +185,23 @@ class Expressions:
                     self._broken.tell(chain, broken, later, recognition)
                 is_own = not chain.steps or chain.steps[0].kind == "call"
                 self._loose_name(chain, prose, recognition, is_variable=is_own and is_script)
+
+    def _paths_given(self, chains: list[Chain], recognition: Recognition) -> None:
+        """Adds what is wrong with the paths that are given to be animated, ``rotation`` of
+        ``obj.keyframe_insert("rotation")``: as if each were read of the very thing.
+        """
+        for chain in chains:
+            given = path_given(chain)
+            readings = self._resolver.resolve(given) if given else []
+            broken = likeliest_broken(given, readings) if given else None
+            if given is None or broken is None:
+                continue
+            if old := self._old.in_chain(given, readings):
+                self._old_name(old, _BEHIND_A_CALL, recognition)
+            elif not any(one.complete and one.fit >= LIKELY * broken.fit for one in readings) and not (
+                self._corrected(given, readings, _BEHIND_A_CALL, recognition)
+            ):
+                self._broken.tell(given, broken, _BEHIND_A_CALL, recognition)
 
     def _operator(self, chain: Chain) -> SymbolEntry | None:
         """The operator that a chain names without ``bpy.ops``: ``wm.append``."""
@@ -320,6 +342,9 @@ class Expressions:
             for form, identifier in self._reader.by_key(key(name))
             if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
         ]
+        if not (rows or chain.steps or is_variable) and is_like_a_node(name):
+            self._like_nodes(name, recognition)
+            return
         same = [entry for entry in rows if entry.name == name]  # before the same letters
         rows = same or ([] if name.isupper() and is_value(name, self._reader) else rows)
         lone = not chain.attributes or len(name) >= _LONG
@@ -340,6 +365,12 @@ class Expressions:
             elif entry.kind == "class" and chain.steps:
                 sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
             recognition.add(entry.path, sure - 0.03 * rank, "name")
+
+    def _like_nodes(self, name: str, recognition: Recognition) -> None:
+        """Adds the nodes that a name like theirs may mean, which none has."""
+        for rank, path in enumerate(nodes_meant(name, self._reader)):
+            recognition.add(path, _NODE_MEANT - 0.01 * rank, SIMILAR)
+        recognition.missing.append(MissingName(name))
 
     def _parts(self, chain: Chain, recognition: Recognition) -> None:
         """Adds the names that one which never was is made of, each as the likeliest class has it."""
