@@ -16,8 +16,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, terms
-from kb_build.schema import FORM_NAME, FORM_SHORT
+from kb_build.index.analysis import key
 from kb_serve.recognise.animated_paths import path_given
 from kb_serve.recognise.broken_expressions import (
     CLEAR,
@@ -28,10 +27,8 @@ from kb_serve.recognise.broken_expressions import (
     likeliest_broken,
 )
 from kb_serve.recognise.chain_starts import LEAST_OF_COLLECTION
-from kb_serve.recognise.enum_values import is_value
+from kb_serve.recognise.loose_names import LooseNames
 from kb_serve.recognise.names_beside import NamesBeside, said_in_words
-from kb_serve.recognise.node_names import is_like_a_node, nodes_meant
-from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
@@ -56,17 +53,14 @@ _DEPRECATED = "Deprecated"  # in the description of what is on its way out, not 
 _FILE_ENDINGS = frozenset(
     "abc avi blend exr fbx glb gltf hdr jpg json mkv mov mp4 obj ply png py stl tif usd usdc vdb wav zip".split()  # noqa: SIM905
 )
-_LONG = 12  # letters from which on a name is corrected without knowing what it belongs to
 _CALLED = 0.9  # from here on, a named operator's or function's arguments may stand behind it
 _BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 
 _BEHIND_A_CALL = 0.05  # how much less sure than the function is what a path that it is given may mean
-_NODE_MEANT = 0.93  # how sure a node is that a name which none has may mean
 _BARE = 0.78  # how sure a class is with a call or an index behind it
 _OF_NAMED = 0.86  # … what a name with ``_`` holds, behind what is called so
 _MADE_BY_CALL = ("mathutils.", "bmesh.types.", "bpy.types.")
-_CALLED_OR_SET = frozenset({"property", "function", "operator"})
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
@@ -127,6 +121,7 @@ class Expressions:
         self._custom = CustomProperties(reader)
         self._broken = BrokenExpressions(reader, resolver, old)
         self._beside = NamesBeside(reader, resolver, old)
+        self._loose = LooseNames(reader, corrector)
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
@@ -184,7 +179,7 @@ class Expressions:
                 if broken:
                     self._broken.tell(chain, broken, later, recognition)
                 is_own = not chain.steps or chain.steps[0].kind == "call"
-                self._loose_name(chain, prose, recognition, is_variable=is_own and is_script)
+                self._loose.recognise(chain, prose, recognition, is_variable=is_own and is_script)
 
     def _paths_given(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what is wrong with the paths that are given to be animated, ``rotation`` of
@@ -293,6 +288,9 @@ class Expressions:
         if readings[0].keyed:
             name = next(step.text for step in reversed(chain.steps) if step.kind == "key")
             recognition.notes.append(self._custom.note(readings[0].keyed, name))
+        given = self._reader.symbol(readings[0].symbols[-1])
+        if given and chain.attributes[-1:] not in {(), (given.name,)}:
+            recognition.notes += filter(None, (self._custom.on_operators(given, chain.attributes[-1]),))
         for step, path in enumerate(reversed(readings[0].symbols[:-1])):
             recognition.add(path, 0.5 - 0.05 * step - later, "on the way")
             symbol = self._reader.symbol(path)
@@ -329,72 +327,3 @@ class Expressions:
         for step, symbol in enumerate(reversed(resolved.symbols[:-1])):
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
         return True
-
-    def _loose_name(
-        self, chain: Chain, prose: set[str], recognition: Recognition, *, is_variable: bool
-    ) -> None:
-        """Adds the owners of a name without its owner (``thickness_outer``), by the words around it. What may well be a
-        variable, beside other code, is not corrected, nor denied.
-        """
-        name = chain.attributes[-1] if chain.attributes else chain.root
-        rows = [
-            entry
-            for form, identifier in self._reader.by_key(key(name))
-            if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
-        ]
-        if not (rows or chain.steps or is_variable) and is_like_a_node(name):
-            self._like_nodes(name, recognition)
-            return
-        same = [entry for entry in rows if entry.name == name]  # before the same letters
-        rows = same or ([] if name.isupper() and is_value(name, self._reader) else rows)
-        lone = not chain.attributes or len(name) >= _LONG
-        lone = lone and not name.isupper() and not is_variable
-        if not rows and lone and (correction := self._corrector.member(name)):
-            recognition.corrections.append(correction)
-            rows = [entry for entry in self._reader.by_name(correction.meant) if entry.group != "ui"]
-        if not (rows or prose or chain.steps or is_variable):
-            self._parts(chain, recognition)
-        if chain.attributes and len(rows) > _FEW:
-            return  # a common name that its owner in the query does not have
-        weights = self._reader.weights([entry.path for entry in rows]) if len(rows) > 1 else {}
-        rows.sort(key=lambda entry: (-self._affinity(entry, prose), -weights.get(entry.path, 0.0)))
-        for rank, entry in enumerate(rows[:5]):
-            sure = 0.9 if len(rows) == 1 else 0.84
-            if chain.attributes and (len(rows) > 1 or "_" not in name):
-                sure = 0.55
-            elif entry.kind == "class" and chain.steps:
-                sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
-            recognition.add(entry.path, sure - 0.03 * rank, "name")
-
-    def _like_nodes(self, name: str, recognition: Recognition) -> None:
-        """Adds the nodes that a name like theirs may mean, which none has."""
-        for rank, path in enumerate(nodes_meant(name, self._reader)):
-            recognition.add(path, _NODE_MEANT - 0.01 * rank, SIMILAR)
-        recognition.missing.append(MissingName(name))
-
-    def _parts(self, chain: Chain, recognition: Recognition) -> None:
-        """Adds the names that one which never was is made of, each as the likeliest class has it."""
-        name = chain.root
-        entries = [entry for part in self._corrector.parts(name) for entry in self._reader.by_name(part)]
-        entries = [entry for entry in entries if entry.group != "ui" and entry.kind in _CALLED_OR_SET]
-        weights = self._reader.weights([entry.path for entry in entries])
-        best: dict[str, str] = {}
-        about = set(terms(name))
-        # ``select_all_objects`` is hardly the one of bones.
-        entries.sort(key=lambda entry: (-len(about & set(terms(entry.owner))), -weights.get(entry.path, 0.0)))
-        for entry in entries:
-            best.setdefault(entry.name, entry.path)
-        for rank, path in enumerate(list(best.values())[:_FEW]):
-            recognition.add(path, 0.84 - 0.01 * rank, SIMILAR)
-        is_name = "_" in name and not chain.assigned and not self._reader.by_key(key(name))
-        is_name = is_name and not self._reader.is_written(name)
-        if best or is_name:
-            recognition.missing.append(MissingName(name))
-
-    def _affinity(self, entry: SymbolEntry, prose: set[str]) -> float:
-        """How many words around a name belong to its owner, and how usual the owner is."""
-        owner = self._reader.entry(entry.owner)
-        about = set(terms(entry.owner.replace("bpy.types.", "") + " " + (owner.label if owner else "")))
-        about |= set(terms(entry.label))
-        usual = 0.2 if entry.group != "ui" and entry.kind in {"property", "function", "operator"} else 0.0
-        return len(about & prose) - 0.05 * len(about) + usual

@@ -56,7 +56,7 @@ class Messages:
             owners,
             imports,
             PythonTypes(reader, absent),
-            LackingOwners(reader, resolver, removed, symbols, owners),
+            LackingOwners(reader, resolver, removed, symbols),
         )
         # In this order: some say nothing where an earlier one was sure, and notes are read in it.
         self._recognisers: tuple[Callable[[str, Recognition], None], ...] = (
