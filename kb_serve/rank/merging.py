@@ -37,7 +37,7 @@ _HARDLY_WORSE = 0.85  # share of the best page's score from which on a name come
 _NEAR = 8  # of the best ids
 _LEAST_BESIDE = 3  # words beside code that are a question of their own
 _MARKS = ".,:;?!()'\""
-_ROOT = re.compile(r"(?<![\w.])([^\W\d]\w*)(?=(\.[^\W\d]|\[|\())")  # of an expression, and what follows
+_ROOT = re.compile(r"(?<![\w.])([^\W\d]\w*)(?=(\.[^\W\d]|\[|\((?!\))))")  # of an expression, and what follows
 _FUNCTIONS = frozenset(name for name in dir(builtins) if name.islower())
 _OPERATORS = "bpy.ops"
 _MOST_NODES = 2  # that a question calls by their labels, beside what was found

@@ -86,6 +86,14 @@ def _is_file_name(chain: Chain) -> bool:
     return len(chain.steps) == 1 and set(chain.attributes) <= _FILE_ENDINGS and chain.steps[0].kind == "attr"
 
 
+def _is_named_after(chain: Chain, broken: ResolvedChain, resolved: ResolvedChain) -> bool:
+    """Whether a variable is called as the very class that lacks what is read, of which the one that has it says less:
+    ``layer_collection`` is no Collection.
+    """
+    lacking, having = (key(reading.symbols[0].rpartition(".")[2]) for reading in (broken, resolved))
+    return key(chain.root) == lacking != having and having in lacking
+
+
 def _makes(chain: Chain, resolved: ResolvedChain) -> bool:
     """Whether a chain calls a class by its name: ``Euler((0, 0, 0), 'XYZ')``."""
     called = chain.steps[0].kind == "call" and chain.root[:1].isupper()
@@ -169,7 +177,10 @@ class Expressions:
             told = readings and not (readings[0].fit < LIKELY and self._operator(chain))
             if told and self._trusted(chain, readings[0], broken) and not self._misspelt(chain, readings[0]):
                 self._reading(chain, readings, later, recognition)
-                if broken and not later and broken.fit >= CLEAR and readings[0].fit < LIKELY:
+                is_doubted = broken and (
+                    readings[0].fit < LIKELY or _is_named_after(chain, broken, readings[0])
+                )
+                if broken and is_doubted and not later and broken.fit >= CLEAR:
                     self._broken.tell_if(chain, broken, recognition)
             elif operator := self._operator(chain):
                 recognition.add(operator.path, 0.97 - later, "expression")

@@ -124,6 +124,8 @@ _NAMES = {
     "Library UserAssetLibrary": "lib",
     "Volume": "volume vol",
     "bmesh.types.BMesh": "bm bmesh",
+    "mathutils.bvhtree.BVHTree": "bvh bvhtree bvh_tree",
+    "mathutils.kdtree.KDTree": "kd kdtree kd_tree",
 }  # fmt: skip
 
 
@@ -184,10 +186,10 @@ def is_guess(variable: str) -> bool:
 
 @lru_cache(maxsize=500)
 def is_short_form(variable: str) -> bool:
-    """Whether a name only shortens the class that scripts use it for, and is no word of it: ``obj``, ``mat``."""
+    """Whether a name only shortens the class that scripts use it for, and has no word of it: ``obj``, ``mat``."""
     classes = [path.rpartition(".")[2] for path in usual_classes(variable)]
     named = any(variable_fit(variable, cls) for cls in classes)
-    return named and all(variable.lower() not in words(cls) for cls in classes)
+    return named and all(set(words(variable)).isdisjoint(words(cls)) for cls in classes)
 
 
 class Variables:
