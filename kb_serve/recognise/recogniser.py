@@ -43,6 +43,7 @@ from kb_serve.recognise.spellings import Spellings
 from kb_serve.recognise.subscripts import asked_of_inputs
 
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
+_ID = f"{TYPES}ID"
 _FEW = 3
 _SURE = 0.9
 _MANY = 12
@@ -256,9 +257,13 @@ class Recogniser:
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
 
     def _within(self, missing: MissingName, recognition: Recognition) -> bool:
-        """Adds the name on what the class points to, ``overlay`` of a SpaceView3D; whether there is any."""
+        """Adds the name on what the class points to, ``overlay`` of a SpaceView3D; whether there is any. What all
+        data-blocks have is not looked for: any that something points to has it.
+        """
+        if not missing.told or self._reader.entry(f"{_ID}.{missing.name}"):
+            return False
         found = members_within(missing.owner, missing.name, self._reader)
-        if not 0 < len(found) <= _FEW or not missing.told:
+        if not 0 < len(found) <= _FEW:
             return False
         for rank, (pointer, member) in enumerate(found):
             recognition.add(member.path, _SURE - 0.01 * rank, "within")
