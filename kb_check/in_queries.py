@@ -10,7 +10,6 @@ import textwrap
 from typing import TYPE_CHECKING
 
 from kb_build.flow.parse import parsed
-from kb_build.index.analysis import key
 from kb_check.beside import checker_beside
 from kb_check.source import split_lines
 from kb_check.summary import mended
@@ -136,7 +135,7 @@ def _having(name: str, attributes: Collection[str], reader: BaseReader) -> list[
     is_own = name in _INSTANCES or name[:1].isupper()  # a class of the script's, or one that it imports
     for attribute in () if is_own else filter(is_telling, attributes):
         owners = {entry.owner for entry in reader.by_name(attribute)}
-        if any(path.endswith(f".{attribute}") for path in reader.removed_by_key(key(attribute))):
+        if any(path.endswith(f".{attribute}") for path in reader.removed_named(attribute)):
             continue  # another class had it, and may be meant
         cls = reader.entry(owners.pop()) if len(owners) == 1 else None
         if cls is not None and cls.kind == "class" and cls.group == "data" and cls.path.startswith(_OF_DATA):
