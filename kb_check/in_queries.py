@@ -13,10 +13,11 @@ from kb_build.flow.parse import parsed
 from kb_check.beside import checker_beside
 from kb_check.source import split_lines
 from kb_check.summary import mended
+from kb_serve.recognise.lost_names import is_telling
 from kb_serve.recognise.variables import is_guess, usual_classes
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Sequence
+    from collections.abc import Collection, Iterator, Sequence
 
     from kb_check.checker import Checker
     from kb_check.findings import Finding
@@ -26,14 +27,19 @@ _MOST = 4
 _LONGEST = 100  # characters of a line that is shown
 _SPAN = re.compile(r"`([^`\n]+)`")
 _FENCED = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
-_MATH = "mathutils"
-# What is wrong in a piece of a script too, whatever stands around it. Names, values of enumerations, keywords, sockets
-# and products are left out: of these an answer tells by itself.
+_IMPORTED = ("mathutils", "mathutils.bvhtree", "mathutils.kdtree")  # whose classes scripts import by name
+_OF_DATA = ("bpy.types.", "mathutils.")
+_INSTANCES = frozenset({"self", "cls"})  # of the script's own classes
+# What is wrong in a piece of a script too, whatever stands around it. Names, keywords, sockets, products and the values
+# of properties are left out: of these an answer tells by itself, as it does of what other Blenders have.
 _RULES = (
     "callback-signature", "given-callback", "list-attribute", "missing-argument", "no-custom-properties",
     "not-subscriptable", "operator-idname", "positional-argument", "read-only", "refused-call", "refused-path",
-    "refused-property", "refused-value", "wrong-count", "wrong-type",
+    "refused-property", "refused-value", "unknown-node", "unknown-value", "wrong-count", "wrong-type",
 )  # fmt: skip
+_NO_VALUE = "unknown-value"
+_IS_NONE = re.compile(r" is no(?:t a)? value of ")  # what is said of a value that no Blender has
+_ARGUMENT = "("  # in the path of an argument: of the values of properties an answer tells by itself
 _GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
 _SIGNS = "=([*"  # one of which such code has
 # What code does that is more than a name.
@@ -85,13 +91,13 @@ def _bindings(tree: ast.Module, checker: Checker) -> str:
     """A line that imports what a piece of code uses of modules, and says what its variables hold."""
     bound: set[str] = set()
     read: dict[str, None] = {}
-    owners: set[str] = set()
+    attributes: dict[str, set[str]] = {}
     for node in ast.walk(tree):
         match node:
             case ast.Name(id=name, ctx=ast.Load()):
                 read[name] = None
-            case ast.Attribute(value=ast.Name(id=name)):
-                owners.add(name)
+            case ast.Attribute(value=ast.Name(id=name), attr=attribute):
+                attributes.setdefault(name, set()).add(attribute)
             case ast.Name(id=name) | ast.arg(arg=name) | ast.alias(asname=str(name)):
                 bound.add(name)
             case ast.alias(name=name):
@@ -102,23 +108,39 @@ def _bindings(tree: ast.Module, checker: Checker) -> str:
                 pass
     free = [name for name in read if name not in bound and not hasattr(builtins, name)]
     return "; ".join(
-        ("import bpy", *filter(None, (_binding(name, name in owners, checker) for name in free)))
+        ("import bpy", *filter(None, (_binding(name, attributes.get(name, ()), checker) for name in free)))
     )
 
 
-def _binding(name: str, is_owner: bool, checker: Checker) -> str:
+def _binding(name: str, attributes: Collection[str], checker: Checker) -> str:
+    """A line that says what a name stands for of which some attributes are read; empty where that is not known."""
     known = checker.names.reader.entry
     if (entry := known(name)) is not None and entry.kind == "module":
         return f"import {name}"
-    if known(f"{_MATH}.{name}") is not None:
-        return f"from {_MATH} import {name}"
+    for module in _IMPORTED:
+        if known(f"{module}.{name}") is not None:
+            return f"from {module} import {name}"
     # What only stands as a value is not told by its name: ``mat`` may be a matrix.
-    is_told = is_owner and not is_guess(name)
+    is_told = bool(attributes) and not is_guess(name)
     classes = [path for path in usual_classes(name) if known(path)] if is_told else []
-    modules = {path.partition(".")[0] for path in classes}
+    classes = classes or _having(name, attributes, checker.names.reader)
+    modules = {path.rpartition(".")[0] for path in classes}
     return "; ".join(
         (*(f"import {module}" for module in modules), f"{name}: {' | '.join(classes)}") if classes else ()
     )
+
+
+def _having(name: str, attributes: Collection[str], reader: BaseReader) -> list[str]:
+    """The class of a variable that one of its attributes tells, as it alone has one of that name."""
+    is_own = name in _INSTANCES or name[:1].isupper()  # a class of the script's, or one that it imports
+    for attribute in () if is_own else filter(is_telling, attributes):
+        owners = {entry.owner for entry in reader.by_name(attribute)}
+        if any(path.endswith(f".{attribute}") for path in reader.removed_named(attribute)):
+            continue  # another class had it, and may be meant
+        cls = reader.entry(owners.pop()) if len(owners) == 1 else None
+        if cls is not None and cls.kind == "class" and cls.group == "data" and cls.path.startswith(_OF_DATA):
+            return [cls.path]
+    return []
 
 
 def _news(findings: Sequence[Finding]) -> Iterator[Finding]:
@@ -127,8 +149,10 @@ def _news(findings: Sequence[Finding]) -> Iterator[Finding]:
     for finding in findings:
         span = finding.span
         is_behind = span.line in gone and gone[span.line] < span.column
-        is_told = finding.rule == _GONE or finding.absent or is_behind
-        if finding.severity == "error" and span.line > 1 and not is_told:
+        is_value = finding.rule == _NO_VALUE and _ARGUMENT in finding.symbol
+        is_value = is_value and _IS_NONE.search(finding.message) is not None
+        is_told = finding.rule == _GONE or (bool(finding.absent) and not is_value) or is_behind
+        if (finding.severity == "error" or is_value) and span.line > 1 and not is_told:
             yield finding
 
 

@@ -7,12 +7,14 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
+from kb_build.records import last_name
 from kb_check.likely_names import by_label
 from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.corrections import by_first_word, is_misspelling, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.likely_values import likely_values
+from kb_serve.recognise.node_names import is_like_a_node, nodes_meant
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.operator_words import OPERATORS, OperatorWords
 from kb_serve.recognise.removed_symbols import RemovedSymbolLookup, for_reading
@@ -181,7 +183,10 @@ class KnownNames:
             for found in self.reader.member_names(owner)
             if found not in machinery or found not in _PLURALS
         ]
-        found = self._alike(name, names)
+        if f"{owner}." == TYPES and is_like_a_node(name):
+            found = [last_name(path) for path in nodes_meant(name, self.reader)]
+        else:
+            found = self._alike(name, names)
         misspelt = [found for found in found if is_misspelling(name, found, self._vocabulary)]
         similar = [found for found in found if found not in machinery or found in misspelt]
         operators = [] if misspelt else self._operators.having(owner, name)

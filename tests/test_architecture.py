@@ -86,15 +86,17 @@ RULES = (
     Rule("kb_build.unlisted", ("kb_build", "kb_check")),
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
     Rule("kb_build.index.analysis", ("kb_build",)),
+    Rule("kb_build.index.everyday_table", ("kb_build",)),
     Rule("kb_serve", others("simworlds", "kb_build", "kb_serve"), through=True),
     Rule(
         "kb_serve",
         ("kb_build",),
-        # What a base holds, and one way to make it.
+        # What a base holds, which words it lends each other, and one way to make it.
         (
             "kb_build.records",
             "kb_build.schema",
             "kb_build.index.analysis",
+            "kb_build.index.everyday_table",
             "kb_build.symbol_lines",
             "kb_build.unlisted",
             "kb_build.pipeline",

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from functools import cache, partial
-from importlib.resources import files
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from kb_build.index.analysis import stem, terms
+from kb_build.index.everyday_table import everyday_lines
 from kb_build.index.postings import NOWHERE, PostingList
 
 if TYPE_CHECKING:
@@ -27,19 +27,7 @@ _MOST = 100  # documents that a term lends: those that say most of it
 
 def load_everyday_words() -> EverydayWords:
     """The table of everyday words; {} where the package came without it."""
-    return read_everyday_words(_lines())
-
-
-@cache
-def load_first_terms() -> Mapping[str, str]:
-    """Everyday word → the most likely of its terms, both as they are written."""
-    rows = (line.partition(": ") for line in _lines() if not line.startswith("#"))
-    return {word: told.partition(",")[0].strip() for word, _, told in rows}
-
-
-def _lines() -> list[str]:
-    source = files("corpora").joinpath("words", "everyday_words.txt")
-    return source.read_text(encoding="utf-8").splitlines() if source.is_file() else []
+    return read_everyday_words(everyday_lines())
 
 
 def read_everyday_words(lines: Iterable[str]) -> EverydayWords:

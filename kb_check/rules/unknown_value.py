@@ -36,6 +36,7 @@ from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
+from kb_serve.recognise.refusals import never_taken
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -127,19 +128,13 @@ def _tree(script: Script, row: Resolution) -> str:
 def _taken(script: Script, owner: str, tree: str) -> list[str]:
     """The values of an enumeration, but for those that nothing takes, as is known, or no node of a tree."""
     symbol, argument = script.api.symbols.symbol(owner.partition("(")[0]), owner.partition("(")[2][:-1]
-    refusals = symbol.refusals if symbol else ()
-    refused = {
-        value
-        for refusal in refusals
-        if refusal.argument == argument and not (refusal.by or refusal.given or refusal.mode or refusal.again)
-        for value in refusal.values
-    }
+    refused = never_taken(symbol, argument) if symbol and argument else frozenset[str]()
     if symbol and not argument:
-        refused |= {
+        refused = frozenset(
             item.identifier
             for item in symbol.enum_items
             if item.where == NOT_TAKEN or is_refused_in(tree, item)
-        }
+        )
     return [value for value in script.api.values_of(owner) if value not in refused]
 
 

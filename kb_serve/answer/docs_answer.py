@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
 AnswerKind = Literal["schema", "page", "candidates", "none"]
 _FOOTER_TOKENS = 70
 _NOTES_TOKENS = 500
+_NO_VALUE = re.compile(r"'([^'\n]+)'`? is no(?:t a)? value of ")  # what notes say of a value that is none
 
 
 @dataclass(frozen=True, slots=True)
@@ -53,8 +55,13 @@ def draft_of(
 
 
 def with_notes(notes: Sequence[str], draft: Draft) -> Draft:
-    """A draft with further notes, above its own, unless these say the same."""
-    news = [note for note in notes if not any(own in note for own in draft.notes)]
+    """A draft with further notes, above its own, unless these say the same, or that the same value is none."""
+    told = {value for own in draft.notes for value in _NO_VALUE.findall(own)}
+    news = [
+        note
+        for note in notes
+        if not any(own in note for own in draft.notes) and told.isdisjoint(_NO_VALUE.findall(note))
+    ]
     if not news:
         return draft
     return replace(draft, notes=(*news, *draft.notes), parts=(*cut(_above(news)), *draft.parts))

@@ -7,7 +7,7 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
-from kb_build.index.everyday_words import load_first_terms
+from kb_build.index.everyday_table import load_first_terms
 from kb_serve.reader import TYPES
 from kb_serve.recognise.enum_values import is_quoted_value
 

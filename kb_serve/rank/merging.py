@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import builtins
+import re
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -16,6 +18,7 @@ from kb_serve.recognise.message_patterns import is_message, prose_of
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recogniser import Recogniser
 from kb_serve.recognise.unwanted import without_unwanted
+from kb_serve.recognise.variables import is_short_form
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -35,6 +38,8 @@ _HARDLY_WORSE = 0.85  # share of the best page's score from which on a name come
 _NEAR = 8  # of the best ids
 _LEAST_BESIDE = 3  # words beside code that are a question of their own
 _MARKS = ".,:;?!()'\""
+_ROOT = re.compile(r"(?<![\w.])([^\W\d]\w*)(?=(\.[^\W\d]|\[|\((?!\))))")  # of an expression, and what follows
+_FUNCTIONS = frozenset(name for name in dir(builtins) if name.islower())
 _OPERATORS = "bpy.ops"
 _MOST_NODES = 2  # that a question calls by their labels, beside what was found
 _LEAST_HITS = 20  # of the search, so that it also finds alternatives to a named class, and names beside pages
@@ -91,6 +96,17 @@ def _without_code(prose: str, recognition: Recognition) -> tuple[str, str]:
     return rest, " ".join(code)
 
 
+def _without_roots(text: str) -> str:
+    """A text without what its code begins with and no question is about: short names of variables, Python's own
+    functions. As words, ``obj`` is a file format, and ``len`` a lens.
+    """
+    return _ROOT.sub(lambda root: " " if _tells_nothing(root[1], root[2]) else root[0], text)
+
+
+def _tells_nothing(name: str, behind: str) -> bool:
+    return name in _FUNCTIONS if behind == "(" else is_short_form(name)
+
+
 class QueryRanker:
     """Ranks the ids that a query names or describes."""
 
@@ -126,7 +142,10 @@ class QueryRanker:
         prose = prose_of(query)
         asked, code = _without_code(prose, recognition)
         hits = self.searcher.search(
-            asked, max(limit, _LEAST_HITS), failed=is_message(query), about=f"{about} {code}".strip()
+            _without_roots(asked),
+            max(limit, _LEAST_HITS),
+            failed=is_message(query),
+            about=f"{about} {code}".strip(),
         )
         ranked = opposites_last(self._replaced(self._merged(recognition, hits)), asked)
         if not SCRIPT_WORDS.isdisjoint(word.strip(_MARKS) for word in query.lower().split()):

@@ -63,6 +63,8 @@ def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ())
 def _by_place_to_operator(symbol: Symbol, text: str) -> Iterator[str]:
     """Operators take by place an execution context and a truth value alone."""
     given = next((written for name, written in arguments(text) if not name), "")
+    if any(one.name == given for one in symbol.parameters):
+        yield f"`{symbol.path}` takes its arguments by name only: `{given}={given}`."
     if not _VALUE.fullmatch(given) or _EXECUTION_CONTEXT.fullmatch(given[1:-1]):
         return
     named = [

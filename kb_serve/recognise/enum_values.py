@@ -88,10 +88,7 @@ class EnumValues:
             rest = rest.replace(value, " ")
         around = set(terms(rest))
         alone = not around
-        owners = list(self.owners(values, around))
-        if alone:  # nothing else tells which is meant
-            weights = self._reader.weights([owner.partition("(")[0] for owner, _ in owners])
-            owners.sort(key=lambda row: (-row[1], -weights.get(row[0].partition("(")[0], 0.0)))
+        owners = self._by_use(list(self.owners(values, around)), set() if alone else around)
         told = (row for row in owners if alone or _ICON in around or not _is_of_icons(row[0]))
         for rank, (owner, share) in enumerate(islice(told, _MOST_TOLD)):
             least = max(_FITTING_WORD, _SHARE * len(around)) if self._is_word(owner, values) else _FITTING
@@ -99,6 +96,20 @@ class EnumValues:
             fits = fits and (bool(quoted) or not _is_a_label(recognition))
             sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
             recognition.add(owner.partition("(")[0], sure, "enum item")
+
+    def _by_use(self, owners: list[tuple[str, float]], around: set[str]) -> list[tuple[str, float]]:
+        """Owners with their shares of the values, of those that fit the words around as well those that count most
+        first; with no words all, as nothing else tells which is meant.
+        """
+        fit = (
+            {owner: self._owner_fit(owner, around) for owner, _ in owners[:_MOST_COMPARED]} if around else {}
+        )
+        compared = [row for row in owners if not around or row[0] in fit]
+        weights = self._reader.weights([owner.partition("(")[0] for owner, _ in compared])
+        compared.sort(
+            key=lambda row: (-row[1], -fit.get(row[0], 0.0), -weights.get(row[0].partition("(")[0], 0.0))
+        )
+        return [*compared, *owners[len(compared) :]]
 
     @staticmethod
     def values(query: str) -> list[str]:

@@ -16,8 +16,8 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key, terms
-from kb_build.schema import FORM_NAME, FORM_SHORT
+from kb_build.index.analysis import key
+from kb_serve.recognise.animated_paths import path_given
 from kb_serve.recognise.broken_expressions import (
     CLEAR,
     LEAST,
@@ -27,9 +27,8 @@ from kb_serve.recognise.broken_expressions import (
     likeliest_broken,
 )
 from kb_serve.recognise.chain_starts import LEAST_OF_COLLECTION
-from kb_serve.recognise.enum_values import is_value
+from kb_serve.recognise.loose_names import LooseNames
 from kb_serve.recognise.names_beside import NamesBeside, said_in_words
-from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
@@ -54,15 +53,14 @@ _DEPRECATED = "Deprecated"  # in the description of what is on its way out, not 
 _FILE_ENDINGS = frozenset(
     "abc avi blend exr fbx glb gltf hdr jpg json mkv mov mp4 obj ply png py stl tif usd usdc vdb wav zip".split()  # noqa: SIM905
 )
-_LONG = 12  # letters from which on a name is corrected without knowing what it belongs to
 _CALLED = 0.9  # from here on, a named operator's or function's arguments may stand behind it
 _BEHIND = 0.995  # what follows from a removed name's successor comes second
 _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, not a variable
 
+_BEHIND_A_CALL = 0.05  # how much less sure than the function is what a path that it is given may mean
 _BARE = 0.78  # how sure a class is with a call or an index behind it
 _OF_NAMED = 0.86  # … what a name with ``_`` holds, behind what is called so
 _MADE_BY_CALL = ("mathutils.", "bmesh.types.", "bpy.types.")
-_CALLED_OR_SET = frozenset({"property", "function", "operator"})
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
@@ -86,6 +84,14 @@ def _is_api(chain: Chain) -> bool:
 def _is_file_name(chain: Chain) -> bool:
     """Whether a chain is a name and an ending that files have: ``file.blend``."""
     return len(chain.steps) == 1 and set(chain.attributes) <= _FILE_ENDINGS and chain.steps[0].kind == "attr"
+
+
+def _is_named_after(chain: Chain, broken: ResolvedChain, resolved: ResolvedChain) -> bool:
+    """Whether a variable is called as the very class that lacks what is read, of which the one that has it says less:
+    ``layer_collection`` is no Collection.
+    """
+    lacking, having = (key(reading.symbols[0].rpartition(".")[2]) for reading in (broken, resolved))
+    return key(chain.root) == lacking != having and having in lacking
 
 
 def _makes(chain: Chain, resolved: ResolvedChain) -> bool:
@@ -123,10 +129,12 @@ class Expressions:
         self._custom = CustomProperties(reader)
         self._broken = BrokenExpressions(reader, resolver, old)
         self._beside = NamesBeside(reader, resolver, old)
+        self._loose = LooseNames(reader, corrector)
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
         """Adds what the expressions among ``chains`` resolve to, and what bare words name."""
         self._expressions(chains, recognition)
+        self._paths_given(chains, recognition)
         self._beside.recognise(chains, recognition)
 
     def _taking(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
@@ -169,7 +177,10 @@ class Expressions:
             told = readings and not (readings[0].fit < LIKELY and self._operator(chain))
             if told and self._trusted(chain, readings[0], broken) and not self._misspelt(chain, readings[0]):
                 self._reading(chain, readings, later, recognition)
-                if broken and not later and broken.fit >= CLEAR and readings[0].fit < LIKELY:
+                is_doubted = broken and (
+                    readings[0].fit < LIKELY or _is_named_after(chain, broken, readings[0])
+                )
+                if broken and is_doubted and not later and broken.fit >= CLEAR:
                     self._broken.tell_if(chain, broken, recognition)
             elif operator := self._operator(chain):
                 recognition.add(operator.path, 0.97 - later, "expression")
@@ -179,7 +190,24 @@ class Expressions:
                 if broken:
                     self._broken.tell(chain, broken, later, recognition)
                 is_own = not chain.steps or chain.steps[0].kind == "call"
-                self._loose_name(chain, prose, recognition, is_variable=is_own and is_script)
+                self._loose.recognise(chain, prose, recognition, is_variable=is_own and is_script)
+
+    def _paths_given(self, chains: list[Chain], recognition: Recognition) -> None:
+        """Adds what is wrong with the paths that are given to be animated, ``rotation`` of
+        ``obj.keyframe_insert("rotation")``: as if each were read of the very thing.
+        """
+        for chain in chains:
+            given = path_given(chain)
+            readings = self._resolver.resolve(given) if given else []
+            broken = likeliest_broken(given, readings) if given else None
+            if given is None or broken is None:
+                continue
+            if old := self._old.in_chain(given, readings):
+                self._old_name(old, _BEHIND_A_CALL, recognition)
+            elif not any(one.complete and one.fit >= LIKELY * broken.fit for one in readings) and not (
+                self._corrected(given, readings, _BEHIND_A_CALL, recognition)
+            ):
+                self._broken.tell(given, broken, _BEHIND_A_CALL, recognition)
 
     def _operator(self, chain: Chain) -> SymbolEntry | None:
         """The operator that a chain names without ``bpy.ops``: ``wm.append``."""
@@ -271,6 +299,9 @@ class Expressions:
         if readings[0].keyed:
             name = next(step.text for step in reversed(chain.steps) if step.kind == "key")
             recognition.notes.append(self._custom.note(readings[0].keyed, name))
+        given = self._reader.symbol(readings[0].symbols[-1])
+        if given and chain.attributes[-1:] not in {(), (given.name,)}:
+            recognition.notes += filter(None, (self._custom.on_operators(given, chain.attributes[-1]),))
         for step, path in enumerate(reversed(readings[0].symbols[:-1])):
             recognition.add(path, 0.5 - 0.05 * step - later, "on the way")
             symbol = self._reader.symbol(path)
@@ -307,63 +338,3 @@ class Expressions:
         for step, symbol in enumerate(reversed(resolved.symbols[:-1])):
             recognition.add(symbol, 0.5 - 0.05 * step - later, "on the way")
         return True
-
-    def _loose_name(
-        self, chain: Chain, prose: set[str], recognition: Recognition, *, is_variable: bool
-    ) -> None:
-        """Adds the owners of a name without its owner (``thickness_outer``), by the words around it. What may well be a
-        variable, beside other code, is not corrected, nor denied.
-        """
-        name = chain.attributes[-1] if chain.attributes else chain.root
-        rows = [
-            entry
-            for form, identifier in self._reader.by_key(key(name))
-            if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
-        ]
-        same = [entry for entry in rows if entry.name == name]  # before the same letters
-        rows = same or ([] if name.isupper() and is_value(name, self._reader) else rows)
-        lone = not chain.attributes or len(name) >= _LONG
-        lone = lone and not name.isupper() and not is_variable
-        if not rows and lone and (correction := self._corrector.member(name)):
-            recognition.corrections.append(correction)
-            rows = [entry for entry in self._reader.by_name(correction.meant) if entry.group != "ui"]
-        if not (rows or prose or chain.steps or is_variable):
-            self._parts(chain, recognition)
-        if chain.attributes and len(rows) > _FEW:
-            return  # a common name that its owner in the query does not have
-        weights = self._reader.weights([entry.path for entry in rows]) if len(rows) > 1 else {}
-        rows.sort(key=lambda entry: (-self._affinity(entry, prose), -weights.get(entry.path, 0.0)))
-        for rank, entry in enumerate(rows[:5]):
-            sure = 0.9 if len(rows) == 1 else 0.84
-            if chain.attributes and (len(rows) > 1 or "_" not in name):
-                sure = 0.55
-            elif entry.kind == "class" and chain.steps:
-                sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
-            recognition.add(entry.path, sure - 0.03 * rank, "name")
-
-    def _parts(self, chain: Chain, recognition: Recognition) -> None:
-        """Adds the names that one which never was is made of, each as the likeliest class has it."""
-        name = chain.root
-        entries = [entry for part in self._corrector.parts(name) for entry in self._reader.by_name(part)]
-        entries = [entry for entry in entries if entry.group != "ui" and entry.kind in _CALLED_OR_SET]
-        weights = self._reader.weights([entry.path for entry in entries])
-        best: dict[str, str] = {}
-        about = set(terms(name))
-        # ``select_all_objects`` is hardly the one of bones.
-        entries.sort(key=lambda entry: (-len(about & set(terms(entry.owner))), -weights.get(entry.path, 0.0)))
-        for entry in entries:
-            best.setdefault(entry.name, entry.path)
-        for rank, path in enumerate(list(best.values())[:_FEW]):
-            recognition.add(path, 0.84 - 0.01 * rank, SIMILAR)
-        is_name = "_" in name and not chain.assigned and not self._reader.by_key(key(name))
-        is_name = is_name and not self._reader.is_written(name)
-        if best or is_name:
-            recognition.missing.append(MissingName(name))
-
-    def _affinity(self, entry: SymbolEntry, prose: set[str]) -> float:
-        """How many words around a name belong to its owner, and how usual the owner is."""
-        owner = self._reader.entry(entry.owner)
-        about = set(terms(entry.owner.replace("bpy.types.", "") + " " + (owner.label if owner else "")))
-        about |= set(terms(entry.label))
-        usual = 0.2 if entry.group != "ui" and entry.kind in {"property", "function", "operator"} else 0.0
-        return len(about & prose) - 0.05 * len(about) + usual

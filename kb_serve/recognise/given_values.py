@@ -10,6 +10,7 @@ from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.calls import places_of
 from kb_serve.recognise.likely_values import likely_items
+from kb_serve.recognise.refusals import never_taken
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -18,6 +19,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.chains import Chain
 
+_QUOTES = ("'", '"')
 _MOST = 8  # items that are all named
 _OPEN = frozenset({"bpy.types.RenderSettings.engine"})  # to which add-ons add
 _CLASS = re.compile(r"[A-Z]\w*[a-z]")  # ``GeometryNodeTree``
@@ -30,29 +32,29 @@ def wrong_values(chain: Chain, symbol: Symbol, removed: Collection[str], reader:
             if not symbol.enum_computed and f"{symbol.path}:{value}" not in removed:
                 yield from _wrong(symbol.path, value, symbol.enum_items, reader)
     elif chain.steps and chain.steps[-1].kind == "call" and symbol.kind in {"function", "operator"}:
-        for parameter, value in _given(symbol, chain.steps[-1].text):
+        for parameter, value, given in _given(symbol, chain.steps[-1].text):
             owner = f"{symbol.path}({parameter.name})"
+            if parameter.type.startswith("set[") and given[:1] in _QUOTES and value in _names(parameter):
+                yield f"`{parameter.name}` of `{symbol.path}` takes a set: `{{{value!r}}}`."
             if f"{owner}:{value}" not in removed:
-                yield from _wrong(owner, value, parameter.enum_items, reader, _refused(symbol, parameter))
+                yield from _wrong(
+                    owner, value, parameter.enum_items, reader, never_taken(symbol, parameter.name)
+                )
 
 
-def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str]]:
-    """(argument, text) of the texts that a call gives to enumerations."""
+def _names(parameter: Parameter) -> set[str]:
+    return {item.identifier for item in parameter.enum_items}
+
+
+def _given(symbol: Symbol, text: str) -> Iterator[tuple[Parameter, str, str]]:
+    """(argument, text, all that is given) of the texts that a call gives to enumerations."""
     by_name = {parameter.name: parameter for parameter in symbol.parameters}
     places = places_of(symbol) if symbol.kind == "function" else None
     left = iter(places[0] if places else ())
     for name, given in arguments(text):
         parameter = by_name.get(name or next(left, ""))
         if parameter and not parameter.is_open:
-            yield from ((parameter, value) for value in texts_in(given))
-
-
-def _refused(symbol: Symbol, parameter: Parameter) -> frozenset[str]:
-    """The values that a call refused of everything that it was tried with."""
-    rows = (row for row in symbol.refusals if row.argument == parameter.name)
-    return frozenset(
-        value for row in rows if not (row.by or row.taken_by or row.given) for value in row.values
-    )
+            yield from ((parameter, value, given) for value in texts_in(given))
 
 
 def _wrong(

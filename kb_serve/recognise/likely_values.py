@@ -35,13 +35,22 @@ def likely_values(written: str, items: Sequence[str]) -> list[str]:
     if begun := [item for item in items if "_" in item and said.startswith(item)]:
         return sorted(begun, key=len, reverse=True)[:_MOST]
     if similar := [item for item, _ in nearest(written, items)]:
-        return similar
+        return _with_alike(said, similar, items)
     similar = [item for item in items if len(item) >= _LONG and said.startswith(item.upper())]
     similar = similar or [item for item in items if len(said) >= _SHORT and item.upper().startswith(said)]
     if similar:
         return similar
     own = set(words(written))
     return sorted((item for item in items if set(words(item)) <= own), key=len, reverse=True)[:1]
+
+
+def _with_alike(said: str, similar: list[str], items: Iterable[str]) -> list[str]:
+    """Items that one may mean, and behind the one that it only begins with those that begin so, too: ``VERTEX_3``
+    behind ``VERTEX`` for ``VERTEX_TRI``.
+    """
+    if len(similar) > 1 or not said.startswith(f"{similar[0]}_"):
+        return similar
+    return [*similar, *(item for item in items if item.startswith(f"{similar[0]}_"))][:_MOST]
 
 
 def likely_items(written: str, items: Sequence[EnumItem], reader: BaseReader) -> list[str]:

@@ -81,6 +81,9 @@ INCOMPATIBLE = re.compile(r"class (?P<class>\w+), function (?P<function>\w+): in
 NO_PROPERTY = re.compile(r"'\w+' (?P<kind>\w+Property) could not register")
 NO_PARENT = re.compile(r"Registering panel class: parent '(?P<parent>\w*)' for '\w*' not found")
 NO_NODE_TYPE = re.compile(r"Node type (?P<type>\w+) undefined")
+NO_PATH = re.compile(
+    r"\b(?:keyframe_(?:insert|delete)|driver_(?:add|remove))\(\):? property \"(?P<name>\w+)\" not found"
+)
 
 # The wording of messages that looks like code, or like names of classes and members.
 _WORDING = re.compile(

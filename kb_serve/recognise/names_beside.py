@@ -116,6 +116,7 @@ class NamesBeside:
         named = (self._reader.entry(TYPES + root) for root in bare)
         classes = [entry for entry in named if entry and entry.kind == "class"]
         # ``mass of ClothSettings``
+        assigned = {chain.root for chain in chains if chain.assigned and not chain.steps}
         before = {
             (first, last) for first, of, last in zip(bare, bare[1:], bare[2:], strict=False) if of in _OF
         }
@@ -124,7 +125,7 @@ class NamesBeside:
                 if root == cls.name:
                     continue
                 member = self._resolver.member(cls.path, root)
-                is_said = "_" in root or (root, cls.name) in before
+                is_said = "_" in root or root in assigned or (root, cls.name) in before
                 if member and (is_said or root not in STOP_WORDS):
                     recognition.add(member.path, 0.98 if is_said else 0.96, "class and member")
                 elif not member and is_said and (gone := self._old.member(cls.path, root)):

@@ -7,6 +7,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_serve.reader import STRUCT, TYPES
+from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.enum_values import EnumValues
 
 if TYPE_CHECKING:
@@ -160,7 +161,9 @@ class Notes:
             elif missing.owner and missing.name not in removed_names:
                 yield f"{_if(missing.variable)}{self._lacks(missing)}{closest}"
         if (doubted := recognition.doubted) and not recognition.removed:
-            yield f"{_if(doubted.variable)}{self._lacks(doubted)}"
+            names = nearest(doubted.name, self._reader.member_names(doubted.owner))
+            closest = f" Closest: {_list(f'{doubted.owner}.{name}' for name, _ in names)}." if names else ""
+            yield f"{_if(doubted.variable)}{self._lacks(doubted)}{closest}"
 
     def _lacks(self, missing: MissingName) -> str:
         """A sentence on what a class does not have, and whether it ever had it."""

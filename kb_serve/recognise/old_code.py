@@ -254,10 +254,15 @@ class OldCode:
         return OldName(removed, chain.steps[1:])
 
     def _of_any_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
-        """A member that no class has any more, of a variable that may be anything, or by itself."""
+        """A member that no class has any more, of a variable that may be anything, or by itself; or one that a variable
+        is called as, ``file_slots.new()``.
+        """
         own = chain.root in {"self", "cls"} or chain.root[:1].isupper()
         if own or any(reading.fit >= USUAL for reading in readings):
             return None
+        is_name = bool(chain.steps) and is_telling(chain.root) and not self._reader.by_name(chain.root)
+        if is_name and (removed := self._likeliest(chain.root, chain.root)):
+            return OldName(removed, chain.steps)
         names = [(number, step.text) for number, step in enumerate(chain.steps, 1) if step.kind == "attr"]
         for number, name in names if chain.steps else [(0, chain.root)]:
             if self._reader.by_name(name):

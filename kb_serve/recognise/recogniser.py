@@ -17,6 +17,7 @@ from kb_serve.recognise.corrections import Corrector, by_first_word, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
 from kb_serve.recognise.given_values import wrong_values
+from kb_serve.recognise.members_within import members_within, note_on_within
 from kb_serve.recognise.message_patterns import (
     is_message,
     without_callers_names,
@@ -42,6 +43,7 @@ from kb_serve.recognise.spellings import Spellings
 from kb_serve.recognise.subscripts import asked_of_inputs
 
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
+_ID = f"{TYPES}ID"
 _FEW = 3
 _SURE = 0.9
 _MANY = 12
@@ -251,8 +253,22 @@ class Recogniser:
             for place, name in enumerate(begun):
                 if member := self._resolver.member(missing.owner, name):
                     recognition.add(member.path, _BEGINS_ALIKE - 0.01 * place, SIMILAR)
-            if not self._elsewhere(missing, recognition):
+            if not (self._within(missing, recognition) or self._elsewhere(missing, recognition)):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
+
+    def _within(self, missing: MissingName, recognition: Recognition) -> bool:
+        """Adds the name on what the class points to, ``overlay`` of a SpaceView3D; whether there is any. What all
+        data-blocks have is not looked for: any that something points to has it.
+        """
+        if not missing.told or self._reader.entry(f"{_ID}.{missing.name}"):
+            return False
+        found = members_within(missing.owner, missing.name, self._reader)
+        if not 0 < len(found) <= _FEW:
+            return False
+        for rank, (pointer, member) in enumerate(found):
+            recognition.add(member.path, _SURE - 0.01 * rank, "within")
+            recognition.notes.append(note_on_within(pointer, member))
+        return True
 
     def _elsewhere(self, missing: MissingName, recognition: Recognition) -> bool:
         """Adds the name on other classes (``CollectionObjects.link``), similar ones first; whether there is any."""

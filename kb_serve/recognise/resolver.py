@@ -15,7 +15,7 @@ from kb_serve.recognise.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.owners import Owners
 from kb_serve.recognise.refusals import keywords, lacks_keyword, refuses
-from kb_serve.recognise.subscripts import CustomProperties
+from kb_serve.recognise.subscripts import PROPERTIES_OF_OPERATORS, CustomProperties
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -28,7 +28,6 @@ _RNA, _STRUCT_OF_ALL = ("bl_rna", "rna_type"), f"{TYPES}Struct"
 _MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
 _LINKS = "links"  # of a socket, which lead elsewhere
 _ROWS = {f"{_MATRIX}.col", f"{_MATRIX}.row"}
-_PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
 _GROUP, _GROUPS = f"{TYPES}PropertyGroup", f"{TYPES}bpy_prop_collection_idprop"
 _NODE = f"{TYPES}Node"
 _ELEMENT, _LAYERS = "bmesh.types.BM", "bmesh.types.BMLayerAccess"
@@ -236,6 +235,8 @@ class Resolver:
                 below = [entry for entry in below if self._reader.is_object_data(entry.owner)] or below
             for entry in self._owners.heaviest(below):
                 yield self._values.of(entry, entry.owner)
+        if value.cls == PROPERTIES_OF_OPERATORS:  # of an operator that the base does not have
+            yield ChainValue(value.symbol)
 
     def _has_parameter(self, path: str, name: str) -> bool:
         symbol = self._reader.symbol(path)
@@ -356,7 +357,7 @@ class Resolver:
                 if maker == value.symbol:
                     return ChainValue(value.symbol, cls)
         returned = self._values.returned(value.symbol)
-        if returned == _PROPERTIES_OF_OPERATORS and (operator := self._operator_in(arguments)):
+        if returned == PROPERTIES_OF_OPERATORS and (operator := self._operator_in(arguments)):
             return ChainValue(value.symbol, operator)
         if (
             value.container

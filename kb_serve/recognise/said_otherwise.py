@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 _FEW = 3
 _MAKERS = ("new", "add", "append", "link", "load", "resize")
 _MAKING = frozenset({*_MAKERS, "create", "insert", "push"})
+_LOADERS, _LOADING = ("load", "new"), frozenset({"open", "read"})
 _MANY = 6  # more members than these whose labels end alike are not told apart
 _MOST_CASES = 8
 _NAMES_ANOTHER = frozenset({"between", "for", "from", "in", "of", "on", "per", "to", "with"})
@@ -36,7 +37,8 @@ def said_otherwise(missing: MissingName, operators: OperatorWords, reader: BaseR
         return _operators_called(owner.path, missing.name, reader)
     if owner is None or owner.kind != "class" or not words(missing.name):
         return []
-    if missing.name in _MAKING and (makers := _makers(owner.path, reader)):
+    wanted = _LOADERS if missing.name in _LOADING else _MAKERS if missing.name in _MAKING else ()
+    if makers := _having(owner.path, wanted, reader):
         return makers
     found = labelled(owner.path, missing.name, reader)
     if found or not missing.called:
@@ -49,10 +51,10 @@ def _operators_called(module: str, name: str, reader: BaseReader) -> list[str]:
     return [entry.path for entry in reader.members(module).values() if key(entry.label) == key(name)][:_FEW]
 
 
-def _makers(owner: str, reader: BaseReader) -> list[str]:
-    """What a collection has to add an element, however it is called."""
-    members = reader.members(owner)
-    return [members[name].path for name in _MAKERS if name in members]
+def _having(owner: str, names: Iterable[str], reader: BaseReader) -> list[str]:
+    """The members of some names that a class has: what adds an element to a collection, however it is called."""
+    members = reader.members(owner) if names else {}
+    return [members[name].path for name in names if name in members]
 
 
 def labelled(owner: str, name: str, reader: BaseReader) -> list[str]:

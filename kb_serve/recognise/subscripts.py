@@ -8,9 +8,11 @@ from kb_build.index.analysis import stem, words
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
+    from kb_build.records import Symbol
     from kb_serve.reader import BaseReader
 
 NODES_MODIFIER = f"{TYPES}NodesModifier"
+PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
 _NEW_INPUT = f"{TYPES}NodeTreeInterface.new_socket"
 # The classes whose instances, and whose subclasses' instances, take custom properties.
 _TAKING = frozenset(
@@ -98,6 +100,15 @@ class CustomProperties:
             f'raises KeyError until then; `.get("{name}")` returns None instead.'
         )
         return f"{said} {self.on_registered(name)}".rstrip()
+
+    def on_operators(self, function: Symbol, name: str) -> str:
+        """A sentence on what is read or set of the properties of an operator that a function gives; "" for others."""
+        if not any(f"{TYPES}{given.type}" == PROPERTIES_OF_OPERATORS for given in function.returns):
+            return ""
+        return (
+            f"`{function.path}` gives the properties of the operator that it names: `.{name}` is one of those that the "
+            "operator's own class defines."
+        )
 
     def on_attributes(self) -> str:
         """How an attribute is used as an input of such a modifier; empty where inputs are no custom properties."""

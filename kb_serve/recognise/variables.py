@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import key
+from kb_build.index.analysis import key, words
 from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
@@ -123,6 +124,8 @@ _NAMES = {
     "Library UserAssetLibrary": "lib",
     "Volume": "volume vol",
     "bmesh.types.BMesh": "bm bmesh",
+    "mathutils.bvhtree.BVHTree": "bvh bvhtree bvh_tree",
+    "mathutils.kdtree.KDTree": "kd kdtree kd_tree",
 }  # fmt: skip
 
 
@@ -179,6 +182,14 @@ def classes_of_parts(variable: str) -> list[str]:
 def is_guess(variable: str) -> bool:
     """Whether a name is too short to tell what it holds: a letter, or two that scripts use for no one class."""
     return len(variable) == 1 or (len(variable) == 2 and len(usual_classes(variable)) != 1)
+
+
+@lru_cache(maxsize=500)
+def is_short_form(variable: str) -> bool:
+    """Whether a name only shortens the class that scripts use it for, and has no word of it: ``obj``, ``mat``."""
+    classes = [path.rpartition(".")[2] for path in usual_classes(variable)]
+    named = any(variable_fit(variable, cls) for cls in classes)
+    return named and all(set(words(variable)).isdisjoint(words(cls)) for cls in classes)
 
 
 class Variables:

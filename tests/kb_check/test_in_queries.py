@@ -27,6 +27,12 @@ if TYPE_CHECKING:
         ("scene.collection.objects.link('Cube')", "takes an instance of `bpy.types.Object`, not a str."),
         ("blf.size(0, 20, 72)", "takes 2 arguments by place"),
         ("pb.rotation_euler = (0, 0)", "`bpy.types.PoseBone.rotation_euler` takes 3 floats"),
+        ("nodes.new('ShaderNodeGlass')", "Closest: `ShaderNodeBsdfGlass`."),
+        # One class alone has such items, whatever the variable is called.
+        ("sim_out.state_items.new('COLOR', 'x')", "'COLOR' is not a value of"),
+        ("output.repeat_items.new('GEOMETRYS', 'x')", "Closest: `GEOMETRY`."),
+        ("bpy.ops.object.constraint_add(type='COPY_POS')", "is no value of"),
+        ("kd.find_n((0, 0, 0))", "also needs `n`"),
         ("v = Vector((1, 0, 0))\nobj.location = v.length", "takes 3 floats, not a float."),
         ("Is this right?\nobj.scale = 2", "takes 3 floats, not the single number 2."),
         ("obj.scale = 2\nWhy does that fail?", "takes 3 floats, not the single number 2."),
@@ -65,6 +71,11 @@ def test_what_is_gone_comes_before_what_is_wrong_behind_it(kb: KnowledgeBase) ->
         "ob.matrix_world = mat",  # a value's name tells nothing
         "light.color = (1, 1, 1, 1)",  # an object has four, a light three
         "cam.lens = 'wide'",  # of the name, answers tell
+        "obj.keyframe_insert('rotation')",
+        "data = np.empty(3)",  # a word that only one class has tells none
+        "Menu.draw_preset(self, context)",  # a class's own name is no instance of it
+        "nodes.new('MyAddonNode')",
+        "node.inputs.new('MyAddonSocket', 'x')",
         "def scale(obj):\n    obj.scale = 2",  # whatever it is called with
         "obj.location.x = 1; obj[",
         "x = " + "(" * 5_000,
@@ -79,6 +90,14 @@ def test_nothing_is_said_of_words_of_right_code_and_of_what_is_not_sure(
 def test_what_answers_say_anyway_is_not_said_twice(kb: KnowledgeBase) -> None:
     text = kb.query("blf.size(0, 20, 72)").text
     assert text.count("takes 2 arguments by place") == 1
+
+
+@pytest.mark.parametrize(
+    "query",
+    ["obj.display_type = 'WIREFRAME'", "obj.modifiers.new('c', 'CLOTHS')"],
+)
+def test_a_value_that_is_none_is_told_once(query: str, kb: KnowledgeBase) -> None:
+    assert len(kb.query(query).notes) == 1
 
 
 def test_few_of_many_are_told(kb: KnowledgeBase) -> None:

@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 
 from kb_serve.reader import TYPES
 from kb_serve.recognise.elements import elsewhere
+from kb_serve.recognise.members_within import members_within, note_on_within
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
-    from kb_serve.recognise.messages.unnamed_owners import UnnamedOwners
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
     from kb_serve.recognise.resolver import Resolver
@@ -33,13 +33,11 @@ class LackingOwners:
         resolver: Resolver,
         removed: RemovedSymbolLookup,
         symbols: NamedSymbols,
-        owners: UnnamedOwners,
     ) -> None:
         self._reader = reader
         self._resolver = resolver
         self._removed = removed
         self._symbols = symbols
-        self._owners = owners
 
     def explain(self, written: str, name: str, recognition: Recognition) -> None:
         """Adds what became of the attribute, or the owner, and what it leads to that has the attribute."""
@@ -55,7 +53,7 @@ class LackingOwners:
             removed = next(members, None) or (None if owner else self._of_a_former_class(written, name))
         if removed and owner and self._reader.entry(removed.path.rpartition(".")[0]) is None:
             # Of a class that took another one's place: what it holds has the name rather than what replaced both.
-            removed = None if self._owners.within(owner, name) else removed
+            removed = None if members_within(owner, name, self._reader) else removed
         if removed:
             recognition.add_removed(self._own_first(removed, owner))
         elif owner and not self._resolver.member(owner, name):
@@ -92,6 +90,6 @@ class LackingOwners:
                 f"The data-block that it is part of has it: `.id_data.{name}` (`{of_block.path}`)."
             )
             return
-        for rank, (pointer, member) in enumerate(self._owners.within(owner, name)[:_FEW]):
+        for rank, (pointer, member) in enumerate(members_within(owner, name, self._reader)[:_FEW]):
             recognition.add(member.path, 0.96 - 0.01 * rank, "error message")
-            recognition.notes.append(f"Its `.{pointer}` has it: `.{pointer}.{name}` (`{member.path}`).")
+            recognition.notes.append(note_on_within(pointer, member))

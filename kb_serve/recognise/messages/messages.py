@@ -23,6 +23,7 @@ from kb_serve.recognise.messages.nameless_messages import NamelessMessages
 from kb_serve.recognise.messages.node_types import NodeTypes
 from kb_serve.recognise.messages.none_before import NoneBefore
 from kb_serve.recognise.messages.operators import Operators
+from kb_serve.recognise.messages.paths_not_found import PathsNotFound
 from kb_serve.recognise.messages.python_types import PythonTypes
 from kb_serve.recognise.messages.refused_calls import RefusedCalls
 from kb_serve.recognise.messages.registration import Registration
@@ -55,7 +56,7 @@ class Messages:
             owners,
             imports,
             PythonTypes(reader, absent),
-            LackingOwners(reader, resolver, removed, symbols, owners),
+            LackingOwners(reader, resolver, removed, symbols),
         )
         # In this order: some say nothing where an earlier one was sure, and notes are read in it.
         self._recognisers: tuple[Callable[[str, Recognition], None], ...] = (
@@ -68,6 +69,7 @@ class Messages:
             MadeOtherwise(reader).recognise,
             WaysToRun(reader).recognise,
             NodeTypes(reader, removed).recognise,
+            PathsNotFound(reader).recognise,
             recognise_multiplications,
             Registration(reader).recognise,
             GivenValues(reader, absent).recognise,

@@ -4,17 +4,16 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import words
 from kb_serve.reader import TYPES
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.node_names import nodes_meant
+from kb_serve.recognise.notes import SIMILAR
+from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
-
-_FEW = 3
 
 
 class NodeTypes:
@@ -36,13 +35,7 @@ class NodeTypes:
                     self._like_nodes(match["type"], recognition)
 
     def _like_nodes(self, name: str, recognition: Recognition) -> None:
-        """The nodes that a name which none has may mean: those of its words but one, or else the most like it."""
-        names = [entry.name for entry in self._reader.descendants(f"{TYPES}Node")]
-        said = set(words(name))
-        similar = [one for one in names if (own := set(words(one))) < said and len(own) == len(said) - 1]
-        similar = similar or [one for one, _ in nearest(name, names)]
-        for rank, one in enumerate(similar[:_FEW]):
-            recognition.add(TYPES + one, 0.95 - 0.01 * rank, "similar name")
-        if similar:
-            closest = ", ".join(f"`{TYPES}{one}`" for one in similar[:_FEW])
-            recognition.notes.append(f"No node is called `{name}`; closest: {closest}.")
+        """The nodes that a name which none has may mean."""
+        for rank, path in enumerate(nodes_meant(name, self._reader)):
+            recognition.add(path, 0.95 - 0.01 * rank, SIMILAR)
+        recognition.missing.append(MissingName(name))

@@ -5,10 +5,10 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import COLLECTION, STRUCT, TYPES
+from kb_serve.reader import COLLECTION, TYPES
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
 
@@ -54,16 +54,3 @@ class UnnamedOwners:
         for path, cls in sorted(rows, key=lambda row: -weights.get(row[0], 0)):
             found.setdefault(TYPES + cls, path)
         return found
-
-    def within(self, owner: str, name: str) -> list[tuple[str, SymbolEntry]]:
-        """(pointer, member) for the members of that name which a class's pointers lead to: ``drawing``, ``strokes``."""
-        found = {
-            member: pointer.name
-            for cls in self._reader.lineage(owner)
-            if cls.path != STRUCT
-            for pointer in self._reader.members(cls.path).values()
-            if pointer.type == "pointer" and pointer.target
-            for member in [self._reader.member_of(TYPES + pointer.target, name)]
-            if member and member.owner != STRUCT
-        }
-        return [(found[member], member) for member in self._reader.heaviest(found)]

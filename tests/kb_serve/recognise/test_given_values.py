@@ -17,6 +17,9 @@ if TYPE_CHECKING:
     ("query", "said"),
     [
         ("obj.display_type = 'WIREFRAME'", "Closest: `'WIRE'`"),
+        # What is refused a second time only, or in a mode, is taken.
+        ("fcurve.modifiers.new(type='CYCLE')", "Closest: `'CYCLES'`."),
+        ("obj.modifiers.new('c', 'CLOTHS')", "Closest: `'CLOTH'`."),
         ("mesh.attributes.new('x', 'FLOAT3', 'POINT')", "`'FLOAT3'` is not a value of"),
         # Loops are said to be face corners. What is in no scene may be a mesh's, or a point cloud's: all take the same.
         (
@@ -33,6 +36,11 @@ if TYPE_CHECKING:
         ("bpy.ops.wm.obj_export(filepath='x', forward_axis='-Z')", "Closest: `'NEGATIVE_Z'`"),
         ("constraint.track_axis = 'TRACK_-Z'", "Closest: `'TRACK_NEGATIVE_Z'`"),
         ("bpy.data.lights.new('L', type='POINT', energy=5)", "takes no `energy`"),
+        # Several begin alike.
+        ("obj.parent_type = 'VERTEX_TRI'", "Closest: `'VERTEX'`, `'VERTEX_3'`."),
+        # A set of flags.
+        ("self.report('ERROR', 'x')", "`type` of `bpy.types.Operator.report` takes a set: `{'ERROR'}`."),
+        ("bpy.ops.wm.save_as_mainfile(filepath, copy=True)", "by name only: `filepath=filepath`."),
         ("bpy.ops.object.join(target=1)", "takes no arguments"),
         # The words that say what it is, and not "use"; its label; few of its other arguments say "select".
         ("bpy.ops.export_scene.fbx(use_animation=True)", "takes no `use_animation`; closest: `bake_anim`."),
@@ -51,6 +59,8 @@ def test_what_is_none_is_told(kb: KnowledgeBase, query: str, said: str) -> None:
     [
         "obj.display_type = 'WIRE'",
         "scene.render.engine = 'LUXCORE'",  # an add-on's
+        "self.report({'ERROR'}, 'x')",
+        "bpy.ops.wm.save_as_mainfile(filepath=filepath, copy=True)",
         "mesh = bpy.data.meshes.new('M')\nob = bpy.data.objects.new('O', mesh)",
         "nodes.new('ShaderNodeMath'); links.new(a, b)",
         "track = obj.animation_data.nla_tracks.new()\nstrip = track.strips.new('s', 1, action)",
