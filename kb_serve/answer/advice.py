@@ -166,7 +166,6 @@ ADVICE: tuple[Advice, ...] = (
             "AnimData.action",
             "BlendDataActions.new",
             "NlaStrip.action",
-            "NlaStrips.new",
         ),
         about=_stems("action"),
         needs=f"{_TYPES}AnimData.action_slot",
