@@ -10,6 +10,7 @@ if TYPE_CHECKING:
     from kb_check.checker import Checker
     from kb_serve.reader import BaseReader
 
+_KEPT = 300  # look-ups: the pieces of code in queries are short
 _CHECKERS: WeakKeyDictionary[BaseReader, Checker] = WeakKeyDictionary()
 
 
@@ -19,6 +20,6 @@ def checker_beside(reader: BaseReader) -> Checker:
     if found is None:
         from kb_check.checker import Checker  # noqa: PLC0415 - loaded by the first check
 
-        found = _CHECKERS[reader] = Checker(reader.path)
+        found = _CHECKERS[reader] = Checker(reader.path, _KEPT)
         weakref.finalize(reader, found.close)
     return found

@@ -47,11 +47,14 @@ class Read:
 
 
 class Checker:
-    """Checks scripts against one base. Raises BaseMissing or BaseUnreadable when it cannot be opened."""
+    """Checks scripts against one base. Raises BaseMissing or BaseUnreadable when it cannot be opened.
 
-    def __init__(self, base: Path) -> None:
+    ``kept``: how many look-ups of each kind are kept in memory; None for the usual number.
+    """
+
+    def __init__(self, base: Path, kept: int | None = None) -> None:
         self._reader = BaseReader(base)
-        self._symbols = BaseSymbols(base)
+        self._symbols = BaseSymbols(base) if kept is None else BaseSymbols(base, kept)
         self.names = KnownNames(self._reader)
         self.api = Api(self._symbols, self.names)
         self.version = version_key(self._reader.meta["blender"])

@@ -6,7 +6,7 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import words
+from kb_build.index.analysis import distinct_words
 from kb_build.records import last_name
 from kb_check.likely_names import by_label
 from kb_serve.reader import STRUCT, TYPES
@@ -255,7 +255,7 @@ class KnownNames:
     @cached_property
     def _vocabulary(self) -> set[str]:
         rows = self.reader.rows("SELECT DISTINCT name FROM symbols WHERE kind IN ('property', 'function')")
-        return {word for (name,) in rows for word in words(name) if len(word) > 2}
+        return {word for word in distinct_words("\n".join(name for (name,) in rows)) if len(word) > 2}
 
 
 def _likely(name: str, similar: list[str], labels: dict[str, str]) -> list[str]:

@@ -60,16 +60,16 @@ class SymbolList:
 
 
 class BaseSymbols:
-    """The symbols of a knowledge base, for one thread at a time.
+    """The symbols of a knowledge base, for one thread at a time. ``kept``: how many look-ups of a kind are kept.
 
     Raises FileNotFoundError and schema.NoBase when it cannot be opened.
     """
 
-    def __init__(self, path: Path) -> None:
+    def __init__(self, path: Path, kept: int = _MOST_KEPT) -> None:
         self._connection = open_read_only(path, threads=True)
-        self.symbol = lru_cache(maxsize=_MOST_KEPT)(self._symbol)
-        self.members = lru_cache(maxsize=_MOST_KEPT)(self._owned)
-        self.subclasses = lru_cache(maxsize=_MOST_KEPT)(self._below)
+        self.symbol = lru_cache(maxsize=kept)(self._symbol)
+        self.members = lru_cache(maxsize=kept)(self._owned)
+        self.subclasses = lru_cache(maxsize=kept)(self._below)
 
     def close(self) -> None:
         """Closes the file."""

@@ -4,20 +4,20 @@ from __future__ import annotations
 
 from functools import cache
 from importlib.resources import files
-from typing import TYPE_CHECKING
-
-if TYPE_CHECKING:
-    from collections.abc import Mapping
 
 
 def everyday_lines() -> list[str]:
     """The lines of the table, ``word: term, term``; none where the package came without it."""
-    source = files("corpora").joinpath("words", "everyday_words.txt")
-    return source.read_text(encoding="utf-8").splitlines() if source.is_file() else []
+    return _table().splitlines()
+
+
+def first_term(word: str) -> str:
+    """The most likely of the terms of an everyday word, as it is written; "" for other words."""
+    _, is_known, behind = f"\n{_table()}".partition(f"\n{word}: ")
+    return behind.partition("\n")[0].partition(",")[0].strip() if is_known else ""
 
 
 @cache
-def load_first_terms() -> Mapping[str, str]:
-    """Everyday word → the most likely of its terms, both as they are written."""
-    rows = (line.partition(": ") for line in everyday_lines() if not line.startswith("#"))
-    return {word: told.partition(",")[0].strip() for word, _, told in rows}
+def _table() -> str:
+    source = files("corpora").joinpath("words", "everyday_words.txt")
+    return source.read_text(encoding="utf-8") if source.is_file() else ""

@@ -7,13 +7,11 @@ from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms, topic_key
-from kb_build.index.everyday_table import load_first_terms
+from kb_build.index.everyday_table import first_term
 from kb_serve.reader import TYPES
 from kb_serve.recognise.enum_values import is_quoted_value
 
 if TYPE_CHECKING:
-    from collections.abc import Mapping
-
     from kb_serve.answer.topic_settings import TopicSettings
     from kb_serve.reader import BaseReader, PageEntry
 
@@ -129,11 +127,11 @@ class TopicPages:
         words = [word for word in spoken if word not in _AIMS] if len(spoken) <= _EVERYDAY_WORDS else []
         if len(words) == 1 and words[0] in _SIMULATED:
             return self._called(_SIMULATED[words[0]])
-        known: Mapping[str, str] = load_first_terms() if words else {}
-        if not all(word in known for word in words) or any(map(self._is_name, words)):
+        known = {word: first_term(word) for word in words}
+        if not all(known.values()) or any(map(self._is_name, words)):
             return ""
-        meant = max((known[word] for word in words), key=lambda term: len(terms(term)), default="")
-        is_one_thing = all(set(terms(known[word])) <= set(terms(meant)) for word in words)
+        meant = max(known.values(), key=lambda term: len(terms(term)), default="")
+        is_one_thing = all(set(terms(term)) <= set(terms(meant)) for term in known.values())
         if " " not in meant or not is_one_thing:
             return ""
         return self._called(meant) or self._called(f"{meant} {_KINDS[-1]}")

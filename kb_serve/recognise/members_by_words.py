@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 _MOST_WORDS = 5  # with more of them it is a question, in which the class is one word of many
 _MOST_FOUND = 3  # more members than these are not told apart
 _SHORTEST = 4  # letters of a word that may be a beginning, or misspelt
-_MOST_COMPARED = 20_000  # pairs of words whose likeness is remembered
+_MOST_COMPARED = 4_000  # pairs of words whose likeness is remembered
 _SOCKETS = frozenset({"socket", "sockets"})
 _SLIP = 0.79  # similarity of a word with two letters exchanged
 

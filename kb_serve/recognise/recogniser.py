@@ -260,7 +260,9 @@ class Recogniser:
         """Adds the name on what the class points to, ``overlay`` of a SpaceView3D; whether there is any. What all
         data-blocks have is not looked for: any that something points to has it.
         """
-        if not missing.told or self._reader.entry(f"{_ID}.{missing.name}"):
+        owner = self._reader.entry(missing.owner)
+        is_class = owner is not None and owner.kind == "class"  # a module has nothing but its members
+        if not (missing.told and is_class) or self._reader.entry(f"{_ID}.{missing.name}"):
             return False
         found = members_within(missing.owner, missing.name, self._reader)
         if not 0 < len(found) <= _FEW:
