@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from functools import lru_cache
 
-_MOST_KEPT = 4096  # signatures; a base has about ten thousand
+_MOST_KEPT = 1_024  # signatures; a base has about ten thousand
 
 
 @lru_cache(maxsize=_MOST_KEPT)
