@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.analysis import MOST_CHARACTERS, Analysis, analyse, analyse_files
 from kb_build.flow.api import Api
-from kb_build.flow.symbols import BaseSymbols
+from kb_build.flow.symbols import MOST_KEPT, BaseSymbols
 from kb_check.ignores import UNUSED, Ignores
 from kb_check.known_names import KnownNames
 from kb_check.package import Package
@@ -49,12 +49,12 @@ class Read:
 class Checker:
     """Checks scripts against one base. Raises BaseMissing or BaseUnreadable when it cannot be opened.
 
-    ``kept``: how many look-ups of each kind are kept in memory; None for the usual number.
+    ``kept``: how many look-ups of each kind are kept in memory.
     """
 
-    def __init__(self, base: Path, kept: int | None = None) -> None:
+    def __init__(self, base: Path, kept: int = MOST_KEPT) -> None:
         self._reader = BaseReader(base)
-        self._symbols = BaseSymbols(base) if kept is None else BaseSymbols(base, kept)
+        self._symbols = BaseSymbols(base, kept)
         self.names = KnownNames(self._reader)
         self.api = Api(self._symbols, self.names)
         self.version = version_key(self._reader.meta["blender"])

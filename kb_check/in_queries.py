@@ -13,6 +13,7 @@ from kb_build.flow.parse import parsed
 from kb_check.beside import checker_beside
 from kb_check.source import split_lines
 from kb_check.summary import mended
+from kb_serve.recognise.given_values import NO_VALUE
 from kb_serve.recognise.lost_names import is_telling
 from kb_serve.recognise.variables import is_guess, usual_classes
 
@@ -38,7 +39,7 @@ _RULES = (
     "refused-property", "refused-value", "unknown-node", "unknown-value", "wrong-count", "wrong-type",
 )  # fmt: skip
 _NO_VALUE = "unknown-value"
-_IS_NONE = re.compile(r" is no(?:t a)? value of ")  # what is said of a value that no Blender has
+_IS_NONE = re.compile(NO_VALUE)  # what is said of a value that no Blender has
 _ARGUMENT = "("  # in the path of an argument: of the values of properties an answer tells by itself
 _GONE = "unknown-attribute"  # what is wrong behind a name that is gone, its successor may take otherwise
 _SIGNS = "=([*"  # one of which such code has

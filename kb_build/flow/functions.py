@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.core import DEEPEST_RUN
 from kb_build.flow.parameters import Parameters
 from kb_build.flow.scopes import CHOSEN, Scope, State, kept, name_doubt
-from kb_build.flow.texts import for_one_call, has_passed, texts_in, without_texts
+from kb_build.flow.texts import for_one_call, has_passed, has_texts, texts_in, without_texts
 from kb_build.flow.trees import default_values
 from kb_build.flow.trials import Trials
 from kb_build.flow.types import (
@@ -81,10 +81,10 @@ class Functions(Parameters, Trials):
         """See :class:`core.Core`."""
         function = self.functions[number]
         whole = self._with_defaults(function, given)
-        has_texts = any(True for kind in whole.values() for _ in texts_in(kind))
-        follows = has_texts and self._comes_surely(whole)
+        with_texts = any(map(has_texts, whole.values()))
+        follows = with_texts and self._comes_surely(whole)
         returned = function.returned
-        is_known = not function.stale and self._is_one(returned, has_texts=has_texts)
+        is_known = not function.stale and self._is_one(returned, with_texts=with_texts)
         if is_known and not follows:
             return self.returned(number) or UNKNOWN
         received = _as_one_call(function, whole)
@@ -92,8 +92,8 @@ class Functions(Parameters, Trials):
             self.reader.uses.add((number, received, node))
         if function.stale and self.rounds and not (self.settled or self.tries):
             returned = UNKNOWN  # it is read again first
-        elif function.stale or not (
-            is_known or function.in_vain >= _MOST_IN_VAIN or not _tells_more(function, received)
+        elif function.stale or (
+            not is_known and function.in_vain < _MOST_IN_VAIN and _tells_more(function, received)
         ):
             is_new = received not in function.calls
             call = self.reading_for(number, received)
@@ -137,7 +137,7 @@ class Functions(Parameters, Trials):
         texts = (str(text.value) for kind in whole.values() for text in texts_in(kind))
         return not state.doubted or state.doubted.isdisjoint(map(name_doubt, texts))
 
-    def _is_one(self, kind: Type | None, *, has_texts: bool) -> bool:
+    def _is_one(self, kind: Type | None, *, with_texts: bool) -> bool:
         """Whether a type is one thing, or none that has members, and no text may decide more of it: no call is known to
         return more than all do.
         """
@@ -146,12 +146,12 @@ class Functions(Parameters, Trials):
                 return False
             case Union():
                 things = [one for one in kind.members if _has_things(one)]
-                return len(things) < 2 and all(self._is_one(one, has_texts=has_texts) for one in things)
+                return len(things) < 2 and all(self._is_one(one, with_texts=with_texts) for one in things)
             case Instance():
-                return not (has_texts and self.api.descendants(kind.cls))
+                return not (with_texts and self.api.descendants(kind.cls))
             case Tuple() | Sequence() | Mapping():
                 parts = filter(_has_things, _parts(kind))
-                return all(self._is_one(part, has_texts=has_texts) for part in parts)
+                return all(self._is_one(part, with_texts=with_texts) for part in parts)
             case _:
                 return True
 
@@ -213,7 +213,7 @@ def _tells_more(function: FunctionDefinition, received: Given) -> bool:
         kind is not UNKNOWN
         and (
             name in function.unknown
-            or any(True for _ in texts_in(kind))
+            or has_texts(kind)
             or for_one_call(function.received.get(name, UNKNOWN)) != kind
         )
         for name, kind in received

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
 
-_MOST_KEPT = 20_000
+MOST_KEPT = 20_000
 
 
 class Symbols(Protocol):
@@ -65,7 +65,7 @@ class BaseSymbols:
     Raises FileNotFoundError and schema.NoBase when it cannot be opened.
     """
 
-    def __init__(self, path: Path, kept: int = _MOST_KEPT) -> None:
+    def __init__(self, path: Path, kept: int = MOST_KEPT) -> None:
         self._connection = open_read_only(path, threads=True)
         self.symbol = lru_cache(maxsize=kept)(self._symbol)
         self.members = lru_cache(maxsize=kept)(self._owned)

@@ -40,6 +40,11 @@ def pairs_of(kind: Mapping) -> list[tuple[Plain, Type]]:
     return [(Plain("str", name, source), value) for name, value in kind.items]
 
 
+def has_texts(kind: Type) -> bool:
+    """Whether a type has a text literal."""
+    return next(texts_in(kind), None) is not None
+
+
 def has_passed(kind: Type) -> bool:
     """Whether a type has a text that only some calls pass."""
     return any(text.source == PASSED for text in texts_in(kind))

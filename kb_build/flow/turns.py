@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.texts import has_passed, pairs_of, texts_in
+from kb_build.flow.texts import has_passed, has_texts, pairs_of
 from kb_build.flow.trees import walk
 from kb_build.flow.types import INT, Builtin, Mapping, Tuple, Type
 
@@ -26,7 +26,7 @@ def turns(node: ast.expr, types: Rows[ast.expr, Type], body: Statements[ast.stmt
     found = _items(node, types) or []
     if not 1 < len(found) <= _MOST_TURNS:
         return []
-    followed = [kind for kind in found if not has_passed(kind) and any(True for _ in texts_in(kind))]
+    followed = [kind for kind in found if not has_passed(kind) and has_texts(kind)]
     if len(followed) < len(found):
         return []
     may_end = any(isinstance(part, _LEAVING) for statement in body for part in walk(statement))

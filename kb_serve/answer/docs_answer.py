@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from kb_serve.answer.budget import AnswerBlock, clip, cut, names_of, shown, tokens
 from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
+from kb_serve.recognise.given_values import NO_VALUE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 AnswerKind = Literal["schema", "page", "candidates", "none"]
 _FOOTER_TOKENS = 70
 _NOTES_TOKENS = 500
-_NO_VALUE = re.compile(r"'([^'\n]+)'`? is no(?:t a)? value of ")  # what notes say of a value that is none
+_NO_VALUE = re.compile(rf"'([^'\n]+)'`?{NO_VALUE}")
 
 
 @dataclass(frozen=True, slots=True)

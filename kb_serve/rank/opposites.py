@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.index.analysis import stem, stems_of, words
+from kb_build.index.analysis import stem, stems_of, terms
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -18,7 +18,7 @@ _OPPOSITES = {stem(one): stem(other) for a, b in _PAIRS for one, other in ((a, b
 
 def opposites_last(ranked: Sequence[RankedId], question: str) -> list[RankedId]:
     """The same ids, those that were found and do the opposite of what the question says behind the others."""
-    said = set(map(stem, words(question)))
+    said = set(terms(question))
     unwanted = {_OPPOSITES[word] for word in said & _OPPOSITES.keys()} - said
     if not unwanted:
         return list(ranked)

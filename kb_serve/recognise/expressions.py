@@ -299,9 +299,10 @@ class Expressions:
         if readings[0].keyed:
             name = next(step.text for step in reversed(chain.steps) if step.kind == "key")
             recognition.notes.append(self._custom.note(readings[0].keyed, name))
-        given = self._reader.symbol(readings[0].symbols[-1])
-        if given and chain.attributes[-1:] not in {(), (given.name,)}:
-            recognition.notes += filter(None, (self._custom.on_operators(given, chain.attributes[-1]),))
+        last = self._reader.symbol(readings[0].symbols[-1])
+        own = chain.attributes[-1] if chain.attributes else ""
+        if last and own not in {"", last.name} and (note := self._custom.on_operators(last, own)):
+            recognition.notes.append(note)
         for step, path in enumerate(reversed(readings[0].symbols[:-1])):
             recognition.add(path, 0.5 - 0.05 * step - later, "on the way")
             symbol = self._reader.symbol(path)

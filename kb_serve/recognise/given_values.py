@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.chains import Chain
 
+NO_VALUE = r" is no(?:t a)? value of "  # how notes say that something is none, as a pattern
 _QUOTES = ("'", '"')
 _MOST = 8  # items that are all named
 _OPEN = frozenset({"bpy.types.RenderSettings.engine"})  # to which add-ons add

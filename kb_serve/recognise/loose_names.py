@@ -8,7 +8,7 @@ from kb_build.index.analysis import key, terms
 from kb_build.schema import FORM_NAME, FORM_SHORT
 from kb_serve.reader import TYPES
 from kb_serve.recognise.enum_values import is_value
-from kb_serve.recognise.node_names import is_like_a_node, nodes_meant
+from kb_serve.recognise.node_names import add_nodes_meant, is_like_a_node
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
 
@@ -45,7 +45,7 @@ class LooseNames:
             if form in {FORM_NAME, FORM_SHORT} and (entry := self._reader.entry(identifier))
         ]
         if not (rows or chain.steps or is_variable) and is_like_a_node(name):
-            self._like_nodes(name, recognition)
+            add_nodes_meant(name, _NODE_MEANT, self._reader, recognition)
             return
         same = [entry for entry in rows if entry.name == name]  # before the same letters
         rows = same or ([] if name.isupper() and is_value(name, self._reader) else rows)
@@ -67,12 +67,6 @@ class LooseNames:
             elif entry.kind == "class" and chain.steps:
                 sure = 0.8  # ``BMElemSeq[index]`` in a message: what it says about the class comes first
             recognition.add(entry.path, sure - 0.03 * rank, "name")
-
-    def _like_nodes(self, name: str, recognition: Recognition) -> None:
-        """Adds the nodes that a name like theirs may mean, which none has."""
-        for rank, path in enumerate(nodes_meant(name, self._reader)):
-            recognition.add(path, _NODE_MEANT - 0.01 * rank, SIMILAR)
-        recognition.missing.append(MissingName(name))
 
     def _parts(self, chain: Chain, recognition: Recognition) -> None:
         """Adds the names that one which never was is made of, each as the likeliest class has it."""

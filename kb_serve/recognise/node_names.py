@@ -9,11 +9,14 @@ from kb_build.index.analysis import key, words
 from kb_build.symbol_lines import NODE_FAMILIES
 from kb_serve.reader import TYPES
 from kb_serve.recognise.corrections import is_misspelling, nearest
+from kb_serve.recognise.notes import SIMILAR
+from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
 
 _NODE = f"{TYPES}Node"
 _OWN = re.compile(rf"({'|'.join(NODE_FAMILIES)})([A-Z]\w+)")
@@ -55,6 +58,13 @@ def nodes_meant(name: str, reader: BaseReader) -> list[str]:
         if taken := _of_tree(found, tree, reader):
             return taken
     return []
+
+
+def add_nodes_meant(name: str, sure: float, reader: BaseReader, recognition: Recognition) -> None:
+    """Adds those nodes, the first of them so sure, and that none has the name."""
+    for rank, path in enumerate(nodes_meant(name, reader)):
+        recognition.add(path, sure - 0.01 * rank, SIMILAR)
+    recognition.missing.append(MissingName(name))
 
 
 def _apart(mine: set[str], theirs: set[str]) -> int:

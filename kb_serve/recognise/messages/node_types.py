@@ -6,14 +6,14 @@ from typing import TYPE_CHECKING
 
 from kb_serve.reader import TYPES
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.node_names import nodes_meant
-from kb_serve.recognise.notes import SIMILAR
-from kb_serve.recognise.recognition import MissingName
+from kb_serve.recognise.node_names import add_nodes_meant
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+
+_MEANT = 0.95  # how sure a node is that an undefined type may mean
 
 
 class NodeTypes:
@@ -32,10 +32,4 @@ class NodeTypes:
                 for removed in self._removed.spelled(match["type"]):
                     recognition.add_removed(removed)
                 if not recognition.removed:
-                    self._like_nodes(match["type"], recognition)
-
-    def _like_nodes(self, name: str, recognition: Recognition) -> None:
-        """The nodes that a name which none has may mean."""
-        for rank, path in enumerate(nodes_meant(name, self._reader)):
-            recognition.add(path, 0.95 - 0.01 * rank, SIMILAR)
-        recognition.missing.append(MissingName(name))
+                    add_nodes_meant(match["type"], _MEANT, self._reader, recognition)
