@@ -92,11 +92,15 @@ def _sure_calls(script: Script) -> Iterator[tuple[ast.Call, tuple[Type, ...]]]:
 
 @once_per_script
 def calls(script: Script) -> list[CallSite]:
-    """The calls that surely are of one thing of the API, in the order in which they stand."""
+    """The calls that surely are of one thing of the API, in the order in which they stand.
+
+    What receives it may be one of several: ``object.data.materials.append`` is the same of meshes and curves.
+    """
     found: list[CallSite] = []
     for node, called in _sure_calls(script):
         kinds = [kind for kind in called if kind != NoneValue()]
-        if len(kinds) == 1 and (symbol := _called(script, kinds[0])):
+        symbols = [_called(script, kind) for kind in kinds]
+        if symbols and (symbol := symbols[0]) and all(other == symbol for other in symbols):
             found.append(_site(node, symbol))
     return found
 
@@ -108,7 +112,8 @@ def calls_of_several(script: Script) -> list[CallSite]:
     for node, kinds in _sure_calls(script):
         symbols = [symbol for kind in kinds if (symbol := _called(script, kind))]
         signatures = {symbol.signature for symbol in symbols}
-        if len(kinds) == len(symbols) > 1 and len(signatures) == 1 and all(signatures):
+        paths = {symbol.path for symbol in symbols}
+        if len(kinds) == len(symbols) and len(paths) > 1 and len(signatures) == 1 and all(signatures):
             weights = script.names.reader.weights([symbol.owner for symbol in symbols])
             found.append(_site(node, max(symbols, key=lambda symbol: weights.get(symbol.owner, 0.0))))
     return found

@@ -25,6 +25,7 @@ if TYPE_CHECKING:
         ("obj.modifiers.new('Subdivision')", "also needs `type`"),
         ("me.from_pydata(verts, edges)", "also needs `faces`"),
         ("scene.collection.objects.link('Cube')", "takes an instance of `bpy.types.Object`, not a str."),
+        ("obj.data.materials.append('Mat')", "takes an instance of `bpy.types.Material`, not a str."),
         ("blf.size(0, 20, 72)", "takes 2 arguments by place"),
         ("pb.rotation_euler = (0, 0)", "`bpy.types.PoseBone.rotation_euler` takes 3 floats"),
         ("nodes.new('ShaderNodeGlass')", "Closest: `ShaderNodeBsdfGlass`."),
