@@ -1,6 +1,6 @@
 """Areas of Blender that stand apart: who asks about one of them says so.
 
-They have a pencil, a brush, a strip or a marker for everything, and much of what they say is said elsewhere, too.
+They have a pencil, a brush, a strip, a marker or a driver of their own, and much of what they say is said elsewhere, too.
 """
 
 from __future__ import annotations
@@ -18,6 +18,9 @@ AREAS: dict[str, frozenset[str]] = {
     ),
     "movie_clip/": frozenset(
         "clip footage marker markers mask masking matchmove movie shot tracker tracking video".split()  # noqa: SIM905
+    ),
+    "troubleshooting/gpu/": frozenset(
+        "amd apple card directx gpu graphics intel mac mesa metal nvidia opengl vulkan windows".split()  # noqa: SIM905
     ),
 }
 NO_AREA = len(AREAS)
