@@ -65,7 +65,13 @@ RULES = (
     Rule(
         "kb_build.flow",
         ("kb_build",),
-        ("kb_build.flow", "kb_build.records", "kb_build.schema", "kb_build.unlisted"),
+        (
+            "kb_build.flow",
+            "kb_build.math_classes",
+            "kb_build.records",
+            "kb_build.schema",
+            "kb_build.unlisted",
+        ),
     ),
     # Checking words its findings as the knowledge base words its answers. The server loads the tool by its name.
     Rule("kb_check", others("simworlds", "kb_check", "kb_build", "kb_serve"), through=True),
@@ -84,6 +90,7 @@ RULES = (
     Rule("kb_build.records", ("kb_build", "kb_check")),
     Rule("kb_build.schema", ("kb_build", "kb_check")),
     Rule("kb_build.unlisted", ("kb_build", "kb_check")),
+    Rule("kb_build.math_classes", ("kb_build", "kb_check"), ("kb_build.records",)),
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
     Rule("kb_build.index.analysis", ("kb_build",)),
     Rule("kb_build.index.everyday_table", ("kb_build",)),
@@ -97,6 +104,7 @@ RULES = (
             "kb_build.schema",
             "kb_build.index.analysis",
             "kb_build.index.everyday_table",
+            "kb_build.math_classes",
             "kb_build.symbol_lines",
             "kb_build.unlisted",
             "kb_build.pipeline",

@@ -14,7 +14,6 @@ from kb_build.flow.facts import (
     ELEMENTS,
     LAYER_ITEM,
     LAYERS,
-    MATH_OF_SUBTYPE,
     NARROWER,
     OBJECT_DATA,
     RENAMED,
@@ -43,6 +42,7 @@ from kb_build.flow.types import (
     members,
     union,
 )
+from kb_build.math_classes import math_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -270,26 +270,11 @@ class Api:
             return self.read_type(symbol.type, symbol.path)
         if not symbol.array:
             return Plain("bytes") if symbol.subtype == "BYTE_STRING" else scalar
-        math = MATH_OF_SUBTYPE.get(symbol.subtype, "")
+        if math := math_class(symbol):
+            return Instance(math)
         size = symbol.array[-1]
-        if symbol.type == "float" and self._is_math(math, symbol.array):
-            return Instance(f"mathutils.{math}")
         element: Type = scalar if len(symbol.array) == 1 else Sequence("array", scalar)
         return Instance(ARRAY, ((ELEMENT, element),)) if size else Sequence("array", scalar)
-
-    @staticmethod
-    def _is_math(math: str, array: tuple[int, ...]) -> bool:
-        match math:
-            case "Matrix":
-                return len(array) == 2
-            case "Color" | "Euler":
-                return array == (3,)
-            case "Quaternion":
-                return array == (4,)
-            case "Vector":
-                return len(array) == 1 and 2 <= array[0] <= 4
-            case _:
-                return False
 
     def read_type(self, text: str, scope: str) -> Type:
         """The type that a text spells, seen from a symbol."""

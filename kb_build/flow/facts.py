@@ -154,13 +154,6 @@ PARAMETERS = {
     "driver": "Driver", "col": "UILayout", "row": "UILayout", "box": "UILayout", "addon_prefs": "AddonPreferences",
 }  # fmt: skip
 
-# Python's and the API's names for mathutils in RNA's subtypes.
-MATH_OF_SUBTYPE = {
-    "TRANSLATION": "Vector", "XYZ": "Vector", "DIRECTION": "Vector", "VELOCITY": "Vector", "ACCELERATION": "Vector",
-    "XYZ_LENGTH": "Vector", "COORDINATES": "Vector", "EULER": "Euler", "QUATERNION": "Quaternion",
-    "MATRIX": "Matrix", "COLOR": "Color", "COLOR_GAMMA": "Color",
-}  # fmt: skip
-
 # What mathutils multiplies, of two of its own values, by each operator; it refuses the other pairs.
 _BY_ITEM = frozenset(
     (f"mathutils.{name}", f"mathutils.{name}") for name in ("Matrix", "Quaternion", "Vector")

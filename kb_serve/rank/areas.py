@@ -1,6 +1,6 @@
 """Areas of Blender that stand apart: who asks about one of them says so.
 
-They have a pencil, a brush, a strip, a marker or a driver of their own, and much of what they say is said elsewhere, too.
+They have a pencil, a brush, a marker or a driver of their own, and much of what they say is said elsewhere, too.
 """
 
 from __future__ import annotations

@@ -7,17 +7,13 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from kb_build.math_classes import math_class
 from kb_serve.reader import COLLECTION, TYPES
 from kb_serve.recognise.values import SEQUENCES, VALUES
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
-_MATH = {
-    "TRANSLATION": "Vector", "XYZ": "Vector", "DIRECTION": "Vector", "VELOCITY": "Vector", "ACCELERATION": "Vector",
-    "XYZ_LENGTH": "Vector", "EULER": "Euler", "QUATERNION": "Quaternion", "MATRIX": "Matrix", "COLOR": "Color",
-    "COLOR_GAMMA": "Color",
-}  # fmt: skip
 _ARRAY = f"{TYPES}bpy_prop_array"
 _INSTANCES = {"bpy.context": "bpy.types.Context", "bpy.data": "bpy.types.BlendData"}
 _SEQUENCE = re.compile(r"(?:list|set|tuple)\[(?:bpy\.types\.)?([A-Z]\w*)(?:, \.\.\.)?\]")
@@ -81,9 +77,9 @@ class ChainValues:
     def _value_class(self, entry: SymbolEntry) -> str:
         """The class of a plain property's value: mathutils for coordinates and colours."""
         symbol = self._reader.symbol(entry.path)
-        if symbol and symbol.subtype in _MATH:
-            return f"mathutils.{_MATH[symbol.subtype]}"
-        return _ARRAY if symbol and symbol.array else ""
+        if symbol is None or not symbol.array:
+            return ""
+        return math_class(symbol) or _ARRAY
 
     def _sequence(self, symbol: str, classes: list[str]) -> ChainValue:
         """An instance of the first class; of a sequence, the elements are of the class that it names or creates."""
