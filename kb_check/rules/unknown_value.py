@@ -25,7 +25,7 @@ from kb_build.flow.expressions import constants
 from kb_build.flow.facts import T
 from kb_build.flow.types import UNKNOWN, Resolution
 from kb_build.records import NOT_TAKEN, last_name
-from kb_build.symbol_lines import NODE_FAMILIES
+from kb_build.symbol_lines import NODE_FAMILIES, never_taken
 from kb_check.calls import calls
 from kb_check.findings import Finding
 from kb_check.given import assigned, class_values
@@ -36,7 +36,6 @@ from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
-from kb_serve.recognise.refusals import never_taken
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

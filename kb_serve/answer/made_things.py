@@ -37,7 +37,7 @@ def _class_made(function: Symbol, result: str, choice: str, reader: BaseReader) 
         if maker == function.path:
             return cls
     for cls, _ in makers:
-        if any(base.path == TYPES + result for base in reader.lineage(cls)):
+        if reader.descends(cls, TYPES + result):
             return cls
     return ""
 

@@ -97,7 +97,7 @@ def _key_of(cls: str, reader: BaseReader) -> str:
 
 def _is_node(path: str, reader: BaseReader) -> bool:
     """Whether a class is one of nodes, below the class of all of them."""
-    return path != _NODE and any(base.path == _NODE for base in reader.lineage(path))
+    return path != _NODE and reader.descends(path, _NODE)
 
 
 def _empty_before(cls: Symbol, reader: BaseReader) -> str:

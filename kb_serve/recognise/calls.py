@@ -40,11 +40,10 @@ def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
 
 def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ()) -> Iterator[str]:
     """Sentences on the wrong arguments of a call, as far as its text shows; but on ``removed`` ones, given by path."""
-    last = chain.steps[-1] if chain.steps else None
     is_method = symbol.kind in {"operator", "function"} and not symbol.name.startswith("__")
-    if last is None or last.kind != "call" or not is_method:
+    if chain.call is None or not is_method:
         return
-    text = last.text
+    text = chain.call
     once = {path.rpartition("(")[2].rstrip(")") for path in removed if path.startswith(f"{symbol.path}(")}
     if symbol.kind == "operator" and _gives_context(text, once.union(one.name for one in symbol.parameters)):
         line = with_context(chain)

@@ -77,6 +77,12 @@ class Chain:
         return tuple(step.text for step in self.steps if step.kind == "attr")
 
     @property
+    def call(self) -> str | None:
+        """The text between the brackets of the call that it ends with; None where it ends with none."""
+        last = self.steps[-1] if self.steps else None
+        return last.text if last is not None and last.kind == "call" else None
+
+    @property
     def is_code(self) -> bool:
         """Whether it can only be code, unlike a single word of prose."""
         if self.steps:

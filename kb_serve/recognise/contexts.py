@@ -95,11 +95,10 @@ def _entered(mode: re.Match[str]) -> str:
 
 def with_context(chain: Chain) -> str:
     """The present form of an operator's call with a context as its first argument; empty where it has none."""
-    last = chain.steps[-1] if chain.steps else None
-    if last is None or last.kind != "call":
+    if chain.call is None:
         return ""
     try:
-        call = ast.parse(f"f({last.text})", mode="eval").body
+        call = ast.parse(f"f({chain.call})", mode="eval").body
     except (SyntaxError, ValueError, RecursionError, MemoryError):
         return ""
     if not isinstance(call, ast.Call) or not call.args:

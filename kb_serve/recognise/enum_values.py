@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.records import NOT_TAKEN
+from kb_build.symbol_lines import said_taken
 from kb_serve.recognise.likely_values import explaining
 from kb_serve.recognise.recognition import WHOLE_LABEL
 
@@ -180,8 +181,7 @@ class EnumValues:
         where = self.where(owner, value)
         if not where:
             return ""
-        taken = f"not taken {where[4:]}" if where.startswith("not ") else f"taken {where}"
-        return f"`{owner}` = '{value}' is {taken}."
+        return f"`{owner}` = '{value}' is {said_taken(where)}."
 
     def _difference(self, owner: str, values: set[str]) -> int:
         """How many items an enumeration has more or less than some, in that of its modes in which that is fewest; older

@@ -128,7 +128,7 @@ class Expressions:
         self._old = old
         self._custom = CustomProperties(reader)
         self._broken = BrokenExpressions(reader, resolver, old)
-        self._beside = NamesBeside(reader, resolver, old)
+        self._beside = NamesBeside(reader, old)
         self._loose = LooseNames(reader, corrector)
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
@@ -231,7 +231,7 @@ class Expressions:
         if not resolved.complete or (_is_file_name(chain) and resolved.fit < LIKELY):
             return False
         if broken and broken.fit >= CLEAR and resolved.fit < LIKELY:
-            missing = MissingName(broken.missing, broken.owner, called=chain.steps[-1].kind == "call")
+            missing = MissingName(broken.missing, broken.owner, called=chain.call is not None)
             has_member = broken.steps_left < len(chain.steps)
             if has_member:
                 return False

@@ -6,11 +6,11 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.records import NOT_TAKEN
+from kb_build.symbol_lines import never_taken
 from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.calls import places_of
 from kb_serve.recognise.likely_values import likely_items
-from kb_serve.recognise.refusals import never_taken
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -32,8 +32,8 @@ def wrong_values(chain: Chain, symbol: Symbol, removed: Collection[str], reader:
         for value in chain.values:
             if not symbol.enum_computed and f"{symbol.path}:{value}" not in removed:
                 yield from _wrong(symbol.path, value, symbol.enum_items, reader)
-    elif chain.steps and chain.steps[-1].kind == "call" and symbol.kind in {"function", "operator"}:
-        for parameter, value, given in _given(symbol, chain.steps[-1].text):
+    elif chain.call is not None and symbol.kind in {"function", "operator"}:
+        for parameter, value, given in _given(symbol, chain.call):
             owner = f"{symbol.path}({parameter.name})"
             if parameter.type.startswith("set[") and given[:1] in _QUOTES and value in _names(parameter):
                 yield f"`{parameter.name}` of `{symbol.path}` takes a set: `{{{value!r}}}`."

@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from kb_serve.recognise.chains import Chain
     from kb_serve.recognise.old_code import OldCode
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.resolver import Resolver
 
 _OF = frozenset({"a", "an", "from", "in", "of", "on", "the", "to"})
 
@@ -31,9 +30,8 @@ def said_in_words(chains: Iterable[Chain]) -> set[str]:
 class NamesBeside:
     """Recognises such names against one base."""
 
-    def __init__(self, reader: BaseReader, resolver: Resolver, old: OldCode) -> None:
+    def __init__(self, reader: BaseReader, old: OldCode) -> None:
         self._reader = reader
-        self._resolver = resolver
         self._old = old
 
     def recognise(self, chains: list[Chain], recognition: Recognition) -> None:
@@ -68,7 +66,7 @@ class NamesBeside:
         for name in ("".join(roots[-2:]), *roots[-1:]):
             if name in STOP_WORDS:
                 continue
-            if member := self._resolver.member(cls, name):
+            if member := self._reader.member_of(cls, name):
                 recognition.add(member.path, 0.98, "asked of it")
             elif gone := self._old.member(cls, name):
                 recognition.add_removed(gone)
@@ -112,8 +110,9 @@ class NamesBeside:
         It comes before the class, unless it may be a word of the question.
         """
         bare = [chain.root for chain in chains if not chain.steps]
-        self._reader.entry.load(TYPES + root for root in bare)
-        named = (self._reader.entry(TYPES + root) for root in bare)
+        names = list(dict.fromkeys(bare))
+        self._reader.entry.load(TYPES + root for root in names)
+        named = (self._reader.entry(TYPES + root) for root in names)
         classes = [entry for entry in named if entry and entry.kind == "class"]
         # ``mass of ClothSettings``
         assigned = {chain.root for chain in chains if chain.assigned and not chain.steps}
@@ -121,10 +120,10 @@ class NamesBeside:
             (first, last) for first, of, last in zip(bare, bare[1:], bare[2:], strict=False) if of in _OF
         }
         for cls in classes:
-            for root in bare:
+            for root in names:
                 if root == cls.name:
                     continue
-                member = self._resolver.member(cls.path, root)
+                member = self._reader.member_of(cls.path, root)
                 is_said = "_" in root or root in assigned or (root, cls.name) in before
                 if member and (is_said or root not in STOP_WORDS):
                     recognition.add(member.path, 0.98 if is_said else 0.96, "class and member")

@@ -323,9 +323,8 @@ class OldCode:
         for value in chain.values:
             if removed := self.value(symbol, value):
                 yield removed
-        last = chain.steps[-1] if chain.steps else None
-        if last is not None and last.kind == "call" and symbol.parameters:
-            yield from self._arguments(last.text, symbol)
+        if chain.call is not None and symbol.parameters:
+            yield from self._arguments(chain.call, symbol)
 
     def value(self, symbol: Symbol, value: str) -> RemovedSymbol | None:
         """An item that an enumeration lost; where the items may depend on the build only what a source tells of."""

@@ -85,7 +85,7 @@ class Recogniser:
         self._removed = RemovedSymbolLookup(reader)
         self._spellings = Spellings(reader, self._removed)
         self._enum_values = EnumValues(reader)
-        self._messages = Messages(reader, self._resolver, self._removed, self._enum_values)
+        self._messages = Messages(reader, self._removed, self._enum_values)
         self._old = OldCode(reader, self._resolver, self._removed)
         self._operators = OperatorWords(reader)
         self._expressions = Expressions(reader, self._resolver, self._corrector, self._old, self._operators)
@@ -136,7 +136,7 @@ class Recogniser:
         for chain in chains:
             if _sets_a_socket(chain):
                 recognition.notes.append(_SOCKET_VALUE)
-            called = bool(chain.steps) and chain.steps[-1].kind == "call"
+            called = chain.call is not None
             if not (called or chain.values):
                 continue
             symbol = self._reader.symbol(
@@ -245,13 +245,13 @@ class Recogniser:
                     key=lambda row: (-row[1], not row[0].startswith("set_") and not row[0].endswith("_set"))
                 )
             for place, (name, alike) in enumerate(similar):
-                if member := self._resolver.member(missing.owner, name):
+                if member := self._reader.member_of(missing.owner, name):
                     recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
             if not missing.owner or similar or otherwise:
                 continue
             begun = by_first_word(missing.name, names) if missing.told else ()
             for place, name in enumerate(begun):
-                if member := self._resolver.member(missing.owner, name):
+                if member := self._reader.member_of(missing.owner, name):
                     recognition.add(member.path, _BEGINS_ALIKE - 0.01 * place, SIMILAR)
             if not (self._within(missing, recognition) or self._elsewhere(missing, recognition)):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")

@@ -46,25 +46,9 @@ def lacks_keyword(symbol: Symbol, chain: Chain) -> bool:
     return bool(taken) and not any(name.startswith("*") for name in taken) and not given <= taken
 
 
-def never_taken(symbol: Symbol, argument: str) -> frozenset[str]:
-    """The values of an argument that a function refused in all that was tried: not only in a mode, of some things,
-    without further arguments, or after another call.
-    """
-    rows = (row for row in symbol.refusals if row.argument == argument)
-    return frozenset(
-        value
-        for row in rows
-        if not (row.by or row.taken_by or row.given or row.mode or row.again)
-        for value in row.values
-    )
-
-
 def keywords(chain: Chain) -> set[str]:
     """The names of the arguments of the call that a chain ends with."""
-    last = chain.steps[-1] if chain.steps else None
-    if last is None or last.kind != "call":
-        return set()
-    return {name for name, _ in arguments(last.text) if name}
+    return {name for name, _ in arguments(chain.call or "") if name}
 
 
 def _refuses_literal(symbol: Symbol, chain: Chain) -> bool:

@@ -95,10 +95,6 @@ class Resolver:
         self._custom = CustomProperties(reader)
         self._named = lru_cache(maxsize=64)(self._named_classes)
 
-    def member(self, cls: str, name: str) -> SymbolEntry | None:
-        """A class's own or inherited member."""
-        return self._reader.member_of(cls, name)
-
     def resolve(self, chain: Chain) -> list[ResolvedChain]:
         """Every reading of a chain, best first: most steps resolved, then the likelier class for a variable."""
         readings = [
@@ -217,7 +213,11 @@ class Resolver:
         if value.cls.startswith("bpy.ops.") and self._has_parameter(value.cls, name):
             yield ChainValue(value.cls)
             return
-        own = self.member(value.cls, name) if value.cls else self._reader.member((value.symbol,), name)
+        own = (
+            self._reader.member_of(value.cls, name)
+            if value.cls
+            else self._reader.member((value.symbol,), name)
+        )
         if own:
             after = self._values.of(own, value.cls)
             is_of_socket = "puts[" in value.symbol and not after.many and name != _LINKS
@@ -244,11 +244,11 @@ class Resolver:
 
     def _of_collection(self, value: ChainValue, name: str) -> SymbolEntry | None:
         """A member of a collection: of its own class, of all collections, or of those of property groups."""
-        own = self.member(value.container, name)
+        own = self._reader.member_of(value.container, name)
         if own and own.owner != STRUCT:  # ``get`` of a collection is no struct's
             return own
-        of_groups = self._reader.descends(value.cls, _GROUP) and self.member(_GROUPS, name)
-        return self.member(COLLECTION, name) or of_groups or own
+        of_groups = self._reader.descends(value.cls, _GROUP) and self._reader.member_of(_GROUPS, name)
+        return self._reader.member_of(COLLECTION, name) or of_groups or own
 
     def _is_list(self, path: str) -> bool:
         entry = self._reader.entry(path)
@@ -359,11 +359,7 @@ class Resolver:
         returned = self._values.returned(value.symbol)
         if returned == PROPERTIES_OF_OPERATORS and (operator := self._operator_in(arguments)):
             return ChainValue(value.symbol, operator)
-        if (
-            value.container
-            and returned
-            and any(base.path == returned for base in self._reader.lineage(value.container))
-        ):
+        if value.container and returned and self._reader.descends(value.container, returned):
             returned = value.container
         return ChainValue(value.symbol, returned)
 

@@ -11,7 +11,6 @@ from kb_serve.recognise.messages.guides import ON_FREED, add_guide
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.resolver import Resolver
 
 _FREED = (
     "The variable's data was removed, freed, or moved by an undo or by adding another element: look it up again by "
@@ -31,9 +30,8 @@ _FREED_MESH = (
 class FreedData:
     """Finds in one base what removes data."""
 
-    def __init__(self, reader: BaseReader, resolver: Resolver) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
-        self._resolver = resolver
 
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds what removes such data, and how it is found again."""
@@ -49,6 +47,6 @@ class FreedData:
                 continue
             for entry in self._reader.members(f"{TYPES}BlendData").values():
                 if entry.target == match["type"] and (
-                    remove := self._resolver.member(TYPES + entry.collection, "remove")
+                    remove := self._reader.member_of(TYPES + entry.collection, "remove")
                 ):
                     recognition.add(remove.path, 0.84, "error message")

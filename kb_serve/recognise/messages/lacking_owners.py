@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
-    from kb_serve.recognise.resolver import Resolver
 
 _FEW = 3
 _ID = f"{TYPES}ID"
@@ -30,12 +29,10 @@ class LackingOwners:
     def __init__(
         self,
         reader: BaseReader,
-        resolver: Resolver,
         removed: RemovedSymbolLookup,
         symbols: NamedSymbols,
     ) -> None:
         self._reader = reader
-        self._resolver = resolver
         self._removed = removed
         self._symbols = symbols
 
@@ -56,7 +53,7 @@ class LackingOwners:
             removed = None if members_within(owner, name, self._reader) else removed
         if removed:
             recognition.add_removed(self._own_first(removed, owner))
-        elif owner and not self._resolver.member(owner, name):
+        elif owner and not self._reader.member_of(owner, name):
             recognition.missing.append(MissingName(name, owner, sure=True))
             recognition.add(owner, 0.6, "error message")
             if other := elsewhere(owner, name, self._reader):
@@ -76,7 +73,7 @@ class LackingOwners:
         """What a removed class lacked already, or else the class."""
         cls = next(self._removed.spelled(written), None)
         now = cls.targets[0] if cls and cls.targets else ""
-        member = None if not now or self._resolver.member(now, name) else self._removed.of_member(now, name)
+        member = None if not now or self._reader.member_of(now, name) else self._removed.of_member(now, name)
         return member or cls
 
     def _within(self, owner: str, name: str, recognition: Recognition) -> None:

@@ -38,16 +38,13 @@ if TYPE_CHECKING:
     from kb_serve.recognise.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
-    from kb_serve.recognise.resolver import Resolver
 
 
 class Messages:
     """Recognises error messages against one base."""
 
-    def __init__(
-        self, reader: BaseReader, resolver: Resolver, removed: RemovedSymbolLookup, enum_values: EnumValues
-    ) -> None:
-        symbols = NamedSymbols(reader, resolver)
+    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup, enum_values: EnumValues) -> None:
+        symbols = NamedSymbols(reader)
         absent = Absent(reader)
         imports = Imports(reader, removed)
         owners = UnnamedOwners(reader, removed)
@@ -56,7 +53,7 @@ class Messages:
             owners,
             imports,
             PythonTypes(reader, absent),
-            LackingOwners(reader, resolver, removed, symbols),
+            LackingOwners(reader, removed, symbols),
         )
         # In this order: some say nothing where an earlier one was sure, and notes are read in it.
         self._recognisers: tuple[Callable[[str, Recognition], None], ...] = (
@@ -65,7 +62,7 @@ class Messages:
             AssignedProperties(reader, symbols).recognise,
             Operators(reader).recognise,
             Values(reader, removed, enum_values, symbols).recognise,
-            FreedData(reader, resolver).recognise,
+            FreedData(reader).recognise,
             MadeOtherwise(reader).recognise,
             WaysToRun(reader).recognise,
             NodeTypes(reader, removed).recognise,

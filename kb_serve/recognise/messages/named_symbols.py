@@ -9,15 +9,13 @@ from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
-    from kb_serve.recognise.resolver import Resolver
 
 
 class NamedSymbols:
     """Finds in one base what a message names."""
 
-    def __init__(self, reader: BaseReader, resolver: Resolver) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
-        self._resolver = resolver
 
     def class_path(self, name: str) -> str:
         """The path of a class or module that a message names; empty where there is none."""
@@ -33,7 +31,7 @@ class NamedSymbols:
     def member(self, owner: str, name: str) -> SymbolEntry | None:
         """What a class or module that a message names has of that name."""
         cls = self.class_path(owner)
-        return (self._resolver.member(cls, name) or self._reader.entry(f"{cls}.{name}")) if cls else None
+        return (self._reader.member_of(cls, name) or self._reader.entry(f"{cls}.{name}")) if cls else None
 
     def function(self, written: str) -> str:
         """The path of a function that a message names: ``Object.ray_cast``, ``from_pydata``."""
