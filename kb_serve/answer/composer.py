@@ -8,6 +8,7 @@ from functools import lru_cache
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import stems_of
 from kb_serve.answer.asked_values import ASKED_NOTHING, asked_of, asked_words
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.docs_answer import DocsAnswer, Draft, draft_of, paged, with_notes
@@ -25,7 +26,7 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:
-    from collections.abc import Callable, Iterator, Sequence
+    from collections.abc import Callable, Iterable, Iterator, Sequence
 
     from kb_serve.answer.asked_values import AskedOf
     from kb_serve.answer.hits import Hit
@@ -110,17 +111,22 @@ class AnswerComposer:
             asked = [*self._renderer.arguments(hits[0].id, names)]
             sockets = self._renderer.sockets(hits[0].id, text)
             whole = [*self._whole(hits[0], rows[0], asked_of((), names if asked else ()))]
-            whole[1:1] = self._asked_members(hits[0], rows)
+            whole[1:1] = self._asked_members(hits[0], ranking.ranked, asked_words(text))
             blocks = (*asked, *sockets, *whole, *self._lines.further(hits[1:], rows[1:]))
             return draft_of("page" if hits[0].is_page else "schema", hits, notes, blocks)
-        return draft_of("candidates", hits, notes, self._found(hits, rows, asked_words(text)))
+        asked = asked_words(text)
+        members = self._asked_members(hits[0], ranking.ranked, asked)
+        return draft_of("candidates", hits, notes, self._found(hits, rows, asked, members))
 
-    def _asked_members(self, hit: Hit, rows: Sequence[RankedId]) -> Iterator[AnswerBlock]:
-        """The members that a question asks for of the class that is the best hit, ahead of all that it has."""
+    def _asked_members(
+        self, hit: Hit, rows: Sequence[RankedId], asked: Sequence[str]
+    ) -> Iterator[AnswerBlock]:
+        """The members found of the class that is the best hit, all words of whose names the question has, ahead of all
+        that the class has.
+        """
         own = f"{hit.id}."
-        names = tuple(
-            row.id.removeprefix(own) for row in rows if row.why == "beside" and row.id.startswith(own)
-        )
+        found = (row.id.removeprefix(own) for row in rows if row.id.startswith(own))
+        names = tuple(name for name in found if stems_of(name).issubset(asked))
         if names:
             lines = self._lines.members(hit.id, names)
             yield AnswerBlock("**Asked for**\n" + "\n".join(lines), "members asked for")
@@ -133,16 +139,22 @@ class AnswerComposer:
                 return
 
     def _found(
-        self, hits: Sequence[Hit], rows: Sequence[RankedId], asked: Sequence[str]
+        self,
+        hits: Sequence[Hit],
+        rows: Sequence[RankedId],
+        asked: Sequence[str],
+        members: Iterable[AnswerBlock],
     ) -> Iterator[AnswerBlock]:
-        """The best hit in brief, and the others. A page says how, but code needs names: they follow its heading."""
+        """The best hit in brief, its members that are asked for, and the others. A page says how, but code needs names:
+        they follow its heading.
+        """
         found = self._lines.asked(hits[0], asked)
         names = {value.argument for value in found if value.argument}
         told = [*self._renderer.arguments(hits[0].id, names, unless_all_fit=True)]
         excerpt = self._excerpt(hits[0], rows[0], asked_of(found, names if told else ()))
         others = [*self._lines.further(hits[1:], rows[1:], asked)]
         yield next(excerpt)
-        yield from self._asked_members(hits[0], rows)
+        yield from members
         yield from told
         yield from self._made(hits[0], asked_of(found))
         if hits[0].is_page:
@@ -166,7 +178,6 @@ class AnswerComposer:
             rows = [row for row in self._listed(ranked, limit) if row.id not in told]
             hits = hits_of(rows, self._reader)
             names = [place for place, hit in enumerate(hits) if not hit.is_page]
-            names[1:] = sorted(names[1:], key=lambda place: rows[place].why != "beside")
             pages = [place for place, hit in enumerate(hits) if hit.is_page]
             chosen = [*names[:_NAMES_OF_A_PART], *pages[:_PAGES_OF_A_PART]]
             lines = [f"- {self._lines.line(hits[place], rows[place])}" for place in chosen]

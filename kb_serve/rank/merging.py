@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kb_serve.rank.search import Searcher, SearchHit
-    from kb_serve.rank.siblings import Siblings
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
@@ -122,12 +121,6 @@ class QueryRanker:
 
         return Searcher(self._reader)
 
-    @cached_property
-    def _siblings(self) -> Siblings:
-        from kb_serve.rank.siblings import Siblings  # noqa: PLC0415 - reads the search's index
-
-        return Siblings(self._reader, self.searcher.index)
-
     def rank(self, query: str, limit: int = _LEAST_HITS, about: str = "") -> Ranking:
         """The ids for a query, at least ``limit`` of them if there are; ``about``: see Searcher.search."""
         query, operators = without_unwanted(query)
@@ -157,19 +150,17 @@ class QueryRanker:
         named = named and not recognition.is_open
         alike = self._notes.alike(recognition) if named else ""
         if not is_message(query):
-            ranked = self._with_more(ranked, asked, named=named)
+            ranked = self._with_named_nodes(ranked, asked)
         return Ranking(ranked, recognition, named, self._notes.on(recognition), alike)
 
-    def _with_more(self, ranked: list[RankedId], asked: str, *, named: bool) -> list[RankedId]:
-        """The same ids, with what else the question asks for behind the first of them."""
+    def _with_named_nodes(self, ranked: list[RankedId], asked: str) -> list[RankedId]:
+        """The same ids, with the nodes that the question calls by their labels behind the first of them."""
         first = max(_ALWAYS, sum(row.why != "found" for row in ranked))
         told = {row.id for row in ranked[:first]}
-        nodes = [node for node in named_nodes(asked, self._reader) if node not in told]
-        members = self._siblings.of(ranked, self.searcher.concepts(asked), is_named=named)
-        more = [*nodes[:_MOST_NODES], *members]
+        nodes = [node for node in named_nodes(asked, self._reader) if node not in told][:_MOST_NODES]
         last = ranked[:first][-1].score if ranked else SURE
-        rest = [row for row in ranked[first:] if row.id not in more]
-        return [*ranked[:first], *(RankedId(path, last, "beside") for path in more), *rest]
+        rest = [row for row in ranked[first:] if row.id not in nodes]
+        return [*ranked[:first], *(RankedId(path, last, "beside") for path in nodes), *rest]
 
     def _replaced(self, ranked: list[RankedId]) -> list[RankedId]:
         """The same ids, each deprecated one that was found behind what takes its place."""

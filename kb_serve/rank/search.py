@@ -152,8 +152,7 @@ class Searcher:
         scores = scores_of(evidence)
         order = np.argsort(-scores, kind="stable")
         ranked = _Ranked(numbers[order], scores[order], self.index.levels[0].topics[numbers[order]])
-        best = _spread(ranked.topics.tolist())
-        best = _with_text_first(best, evidence.kinds[order].tolist())
+        best = _with_text_first(evidence.kinds[order].tolist())
         return [self._hit(place, ranked) for place in self._varied(best, ranked, limit)]
 
     def _hit(self, place: int, ranked: _Ranked) -> SearchHit:
@@ -293,24 +292,10 @@ def _float32(values: NDArray[Any]) -> Scores:
     return values.astype(np.float32, copy=False)
 
 
-def _spread(topics: Iterable[int]) -> Iterator[int]:
-    """The places of every topic's first, and of all that have no topic, before any topic's second."""
-    seen: set[int] = set()
-    second: list[int] = []
-    for place, topic in enumerate(topics):
-        if topic in seen:
-            second.append(place)
-        else:
-            yield place
-            if topic >= 0:
-                seen.add(topic)
-    yield from second
-
-
-def _with_text_first(places: Iterable[int], kinds: Sequence[int]) -> Iterator[int]:
-    """The best unit that has a text, if any has, before those of pages without."""
+def _with_text_first(kinds: Sequence[int]) -> Iterator[int]:
+    """The places of units, of which the kinds are given: the best that has a text before those of pages without."""
     hollow: list[int] = []
-    rest = iter(places)
+    rest = iter(range(len(kinds)))
     for place in rest:
         if kinds[place] != _INDEX:
             yield place

@@ -89,12 +89,6 @@ def test_scores_fall_and_no_id_comes_twice(searcher: Searcher) -> None:
         assert len(found) <= 100
 
 
-def test_one_class_gives_one_hit_before_others_had_theirs(searcher: Searcher) -> None:
-    refs = [row.ref for row in searcher.search("fluid domain resolution", 20)]
-    owners = [ref.rpartition(".")[0] for ref in refs if ref.startswith("bpy.types.")]
-    assert len(set(owners[:4])) == len(owners[:4])
-
-
 @pytest.mark.parametrize("limit", [1, 3, 6, 8, 20, 50])
 def test_the_limit_holds_and_the_beginning_is_the_same(searcher: Searcher, limit: int) -> None:
     assert searcher.search("cloth collision", limit) == searcher.search("cloth collision", 60)[:limit]
