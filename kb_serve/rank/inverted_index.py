@@ -124,11 +124,6 @@ class InvertedIndex:
         """1 for each unit that is a symbol, no page."""
         return np.array([not self._reader.is_page(ref) for ref in self.levels[0].refs], np.float32)
 
-    @cached_property
-    def operators(self) -> Scores:
-        """1 for each unit that is an operator."""
-        return np.array([ref.startswith("bpy.ops.") for ref in self.levels[0].refs], np.float32)
-
     def idf(self, stem: str) -> float:
         """How much a stem tells, by the units that have it; 0 for an unknown one."""
         return self.postings(stem).idf

@@ -46,6 +46,7 @@ _DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
 _WORDS_OF_A_NAME = 2  # of an operator's name that a query hardly says by chance
 _KINDS = frozenset(map(stem, ("modifier", "constraint", "node")))  # who says one means no operator without it
+_OPERATORS = "bpy.ops."
 _NEAREST = 100  # units by their texts, among which such an operator is looked for
 _OTHERS = 0.4  # share of what further phrases add to the nearest that counts
 _MEMBERS = 3  # of a class that are told with it
@@ -203,28 +204,27 @@ class Searcher:
             units.chapters[numbers],
             units.kinds[numbers],
             self.index.symbols[numbers],
-            *self._operators(numbers, concepts),
+            self._called(numbers, concepts),
         )
         return numbers, evidence
 
-    def _operators(
-        self, numbers: NDArray[np.intp], concepts: Sequence[Concept]
-    ) -> tuple[Scores, Scores | None]:
-        """Of units, which are operators; and of these the share of the query that their names are, of some words, which
-        the query says whole. None if it says none.
+    def _called(self, numbers: NDArray[np.intp], concepts: Sequence[Concept]) -> Scores | None:
+        """The share of the query that the names of operators are, of some words, which the query says whole; None if it
+        says none.
         """
-        are_operators = self.index.operators[numbers]
         asked = {concept.stem: concept.idf for concept in concepts}
         said = frozenset(asked)
         kinds = said & _KINDS
         called: Scores | None = None
         refs = self.index.levels[0].refs
-        for place in are_operators[:_NEAREST].nonzero()[0].tolist():
-            name = stems_of(refs[numbers[place]].rpartition(".")[2])
+        for place, number in enumerate(numbers[:_NEAREST].tolist()):
+            if not refs[number].startswith(_OPERATORS):
+                continue
+            name = stems_of(refs[number].rpartition(".")[2])
             if len(name) >= _WORDS_OF_A_NAME and name <= said and name >= kinds:
                 called = np.zeros(len(numbers), np.float32) if called is None else called
                 called[place] = sum(asked[part] for part in name) / sum(asked.values())
-        return are_operators, called
+        return called
 
     def _asked(self, found: Scored, numbers: NDArray[np.intp], topic: NDArray[np.int32]) -> Scores:
         """How nearly the query is, word by word, what units or their topics are asked for, from 0: nothing.

@@ -48,7 +48,7 @@ class Evidence:
 
     ``texts``: BM25F of the unit and of the topic around it. ``asked``: how nearly the query is what the unit or its
     topic is asked for by, from 0. ``counts``, ``areas``, ``chapters`` and ``kinds`` are as in the index; ``symbols``
-    and ``operators`` are 1 for those; ``called``: which share of the query, by rarity, an operator's name is that the
+    is 1 for those; ``called``: which share of the query, by rarity, an operator's name is that the
     query says whole; None if it says none. ``words`` are the query's; it is an error's message if ``failed``.
     """
 
@@ -61,7 +61,6 @@ class Evidence:
     chapters: NDArray[np.int32]
     kinds: NDArray[np.uint8]
     symbols: Scores
-    operators: Scores
     called: Scores | None
 
     def of_kind(self, kind: DocumentKind) -> Scores:
@@ -87,12 +86,11 @@ def counts(evidence: Evidence) -> Scores | None:
 def code(evidence: Evidence) -> Scores | None:
     """Whether the unit is about code, or what code calls or sets, where the query asks for code."""
     is_asked = not evidence.words.isdisjoint(CODE_WORDS)
-    return np.maximum(_of_code(evidence), evidence.symbols) if is_asked else None
-
-
-def operator(evidence: Evidence) -> Scores | None:
-    """Whether the unit is an operator, where the query asks for code: that runs one too, if it must."""
-    return None if evidence.words.isdisjoint(CODE_WORDS) else evidence.operators
+    return (
+        np.maximum(evidence.of_kind("code") + evidence.of_kind("removing"), evidence.symbols)
+        if is_asked
+        else None
+    )
 
 
 def called(evidence: Evidence) -> Scores | None:
@@ -100,16 +98,6 @@ def called(evidence: Evidence) -> Scores | None:
     words are by chance.
     """
     return None if evidence.failed else evidence.called
-
-
-def code_of_an_error(evidence: Evidence) -> Scores | None:
-    """Whether the unit is about code, where the query is a message, which a setting may be to blame for too."""
-    is_only_message = evidence.failed and evidence.words.isdisjoint(CODE_WORDS)
-    return _of_code(evidence) if is_only_message else None
-
-
-def _of_code(evidence: Evidence) -> Scores:
-    return evidence.of_kind("code") + evidence.of_kind("removing")
 
 
 def unasked_node(evidence: Evidence) -> Scores | None:
@@ -145,9 +133,7 @@ SIGNALS: dict[str, Signal] = {
     "asked": asked,
     "counts": counts,
     "code": code,
-    "operator": operator,
     "called": called,
-    "code of an error": code_of_an_error,
     "unasked node": unasked_node,
     "unasked area": unasked_area,
     "unasked removal": unasked_removal,

@@ -29,10 +29,9 @@ def evidence(
     counts: tuple[float, ...] = (),
     areas: tuple[int, ...] = (),
     symbols: tuple[float, ...] = (),
-    operators: tuple[float, ...] = (),
     called: tuple[float, ...] = (),
 ) -> Evidence:
-    count = max(map(len, (kinds, asked, counts, areas, symbols, operators, called)))
+    count = max(map(len, (kinds, asked, counts, areas, symbols, called)))
     return Evidence(
         frozenset(words.split()),
         failed,
@@ -43,7 +42,6 @@ def evidence(
         np.arange(count, dtype=np.int32),
         np.array([DOCUMENT_KINDS.index(kind) for kind in kinds or ["data"] * count], np.uint8),
         np.array(symbols or [0] * count, np.float32),
-        np.array(operators or [0] * count, np.float32),
         np.array(called or [0] * count, np.float32),
     )
 
@@ -56,12 +54,10 @@ def test_every_signal_has_a_weight_and_no_weight_is_without() -> None:
     ("words", "failed", "better", "worse"),
     [
         ("bake cloth python", False, "code", "data"),
-        ("bake cloth", True, "code", "data"),
         ("bake cloth", False, "data", "node"),
         ("bake cloth", False, "data", "rarely asked"),
         ("driver with a variable in python", False, "code", "removing"),
         ("remove a variable in python", False, "removing", "data"),
-        ("RuntimeError: variable", True, "removing", "data"),
         ("bake cloth", False, "rarely asked", "index"),
     ],
 )
@@ -86,12 +82,6 @@ def test_a_symbol_of_any_kind_gains_where_code_is_asked_for() -> None:
     assert len(set(scores_of(evidence("active object", symbols=(0.0, 1.0))).tolist())) == 1
 
 
-def test_an_operator_gains_where_code_is_asked_for() -> None:
-    other, operator = scores_of(evidence("export usd python", operators=(0.0, 1.0))).tolist()
-    assert operator > other
-    assert len(set(scores_of(evidence("export usd", operators=(0.0, 1.0))).tolist())) == 1
-
-
 def test_an_operator_gains_by_a_name_that_the_query_says_but_not_in_a_message() -> None:
     other, called = scores_of(evidence(called=(0.0, 0.8))).tolist()
     assert called > other
@@ -114,7 +104,6 @@ def test_a_name_is_said_only_as_a_whole_and_of_several_words(reader: BaseReader)
         named = {ref for ref, share in zip(refs, shares, strict=True) if share}
         assert not said or said in named
         assert not not_said or not_said not in named
-        assert {ref for ref, is_one in zip(refs, seen.operators, strict=True) if is_one} >= named
 
 
 def test_a_unit_gains_by_what_it_counts_but_not_where_a_message_may_be_about_the_rarest() -> None:
