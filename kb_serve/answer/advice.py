@@ -113,6 +113,10 @@ _SLOTTED = (
     "`x.action_slot = x.action_suitable_slots[0]` after it, or, of an action that has no slot yet, "
     "`x.action_slot = action.slots.new(obj.id_type, obj.name)`. `obj.keyframe_insert(…)` makes and gives one itself."
 )
+_UNRENDERED = (
+    "`World.color` colours the viewport alone while `world.use_nodes` is on, as it always is from 5.0: what is "
+    'rendered is `world.node_tree.nodes["Background"].inputs["Color"].default_value = (r, g, b, 1.0)`.'
+)
 
 ADVICE: tuple[Advice, ...] = (
     Advice(
@@ -145,6 +149,7 @@ ADVICE: tuple[Advice, ...] = (
     Advice(_BAKED, frozenset({"bpy.ops.object.bake"})),
     Advice(_COMPRESSED, frozenset({"bpy.ops.wm.save_as_mainfile", "bpy.ops.wm.save_mainfile"})),
     Advice(_UNREAD, _of("Image.pixels", "Image"), asked=_stems("result")),
+    Advice(_UNRENDERED, _of("World.color")),
     Advice(_MOVED, frozenset({_RIGID_BODY}), chapters_of=_RIGID_BODY),
     Advice(
         _MOVED,

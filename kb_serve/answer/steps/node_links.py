@@ -81,6 +81,7 @@ _STORED = {
 _SOCKETS = {"value": "Float", "rgba": "Color", "boolean": "Bool"}  # kinds that their classes call otherwise
 _GRID = "Grid"  # in the names of what takes or gives one
 _STORE = f"{TYPES}GeometryNodeStoreNamedAttribute"
+_INSTANCE = 'inputs["Instance"]'  # without it, points are all that goes in, and nothing comes out
 
 
 class NodeLinks:
@@ -121,6 +122,8 @@ class NodeLinks:
         if (given or not taken) and node.removeprefix(TYPES) not in group.source[0]:
             source = yield from self._beginning(tree, group)
         into = [f"`tree.links.new({source}, {variable}.{given})`"] if given and source else []
+        if into and _INSTANCE in self._reader.members(node):
+            into.append(f"`tree.links.new({source}, {variable}.{_INSTANCE})`")
         if by_items and taken and not given:
             into += self._from_group(node, variable)
         if own_end:

@@ -43,8 +43,8 @@ NAMELESS_MESSAGES = (
 _ANYWHERE = (
     (
         " not found in ()",
-        "The enumeration has no values at present: they come from other data, such as the Menu Switch that a menu is "
-        "linked to.",
+        "The enumeration has no values at present: they come from other data, such as the active object, whose type "
+        "has some modes, or the Menu Switch that a menu is linked to.",
     ),
     (
         "expected a set, not a str",

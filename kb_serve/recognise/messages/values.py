@@ -10,7 +10,7 @@ from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.likely_values import likely_values
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.enum_values import EnumValues
@@ -22,6 +22,8 @@ _FEW = 3
 _MOST_OWNERS = 8  # that are compared
 _NO_ITEM = "`{name}` is not an item of this enum; closest: {similar}."
 _LABELLED = "`{name}` is not an item of this enum; of that label: {items}."
+_NOT_NOW = "`{name}` is a value of `{owner}`, which present data do not allow."
+_OF_OPERATORS = "to operator properties"
 _OF_CLASSES = "validating class"  # what Blender says of classes that it is given to register
 
 
@@ -46,33 +48,40 @@ class Values:
             items = re.findall(r"'([^']+)'", match["items"])
             function = forms.IN_FUNCTION.search(query)
             called = self._symbols.function(function["method"]) if function else ""
+            if not called and _OF_OPERATORS in query:
+                called = "bpy.ops."
             owners = self._enum_values.taking(items, called)
             if _OF_CLASSES in query:
                 owners = self._of_classes(owners) or owners
             owners = owners[:_MOST_OWNERS]
             for rank, owner in enumerate(owners[:2]):
                 recognition.add(owner.partition("(")[0], 0.95 - 0.02 * rank, "error message")
-            removed = self._lost_value(self._enum_values.as_likely_as_the_first(owners, items), match["name"])
-            if removed:
+            likely = self._enum_values.as_likely_as_the_first(owners, items)
+            if removed := self._lost_value(likely, match["name"]):
                 recognition.add_removed(removed)
-            elif owners and (elsewhere := self._of_another_version(owners[0], match["name"], items)):
-                recognition.notes.append(elsewhere)
-            elif owners and (condition := self._enum_values.condition(owners[0], match["name"])):
-                recognition.notes.append(condition)
-            elif owners and (labelled := self._labelled(owners[0], match["name"], items)):
-                listed = ", ".join(f"`{item}`" for item in labelled[:_FEW])
-                recognition.notes.append(_LABELLED.format(name=match["name"], items=listed))
-            elif similar := _closest(match["name"], items) or self._explaining(owners, match["name"]):
-                recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
-            elif (others := self._taking_only(match["name"])) and owners:
-                listed = ", ".join(f"`{other}`" for other in others)
-                recognition.notes.append(f"`{match['name']}` is a value of {listed}.")
+            elif note := next(filter(None, self._notes(owners, match["name"], items)), ""):
+                recognition.notes.append(note)
         for match in forms.first_matches(forms.BAD_TEXT, query):
             once = [path for path in self._reader.removed_named(match["name"]) if "):" in path]
             if once and (removed := self._removed.of_path(once[0])):
                 recognition.add_removed(removed)
             elif similar := _closest(match["name"], re.findall(r"'([^']+)'", match["items"])):
                 recognition.notes.append(_NO_ITEM.format(name=match["name"], similar=similar))
+
+    def _notes(self, owners: Sequence[str], name: str, items: Sequence[str]) -> Iterator[str]:
+        """What may be said of a value that is not among the items in a message, the surest first; empty for nothing."""
+        if owners:
+            owner = owners[0]
+            yield self._of_another_version(owner, name, items)
+            yield self._enum_values.condition(owner, name)
+            if self._enum_values.has(owner, name):
+                yield _NOT_NOW.format(name=name, owner=owner)
+            labelled = ", ".join(f"`{item}`" for item in self._labelled(owner, name, items)[:_FEW])
+            yield labelled and _LABELLED.format(name=name, items=labelled)
+        similar = _closest(name, items) or self._explaining(owners, name)
+        yield similar and _NO_ITEM.format(name=name, similar=similar)
+        others = ", ".join(f"`{other}`" for other in self._taking_only(name)) if owners else ""
+        yield others and f"`{name}` is a value of {others}."
 
     def _labelled(self, owner: str, name: str, items: Sequence[str]) -> list[str]:
         """The other items whose label is a name, where spelling does not tell just these: the label is surer."""

@@ -465,6 +465,38 @@ def test_the_items_in_a_message_tell_whose_they_are(
 
 
 @pytest.mark.blender
+def test_a_mode_that_the_active_object_has_not_is_no_misspelt_one(kb: KnowledgeBase) -> None:
+    bpy = pytest.importorskip("bpy")
+    bpy.ops.object.empty_add()
+    with pytest.raises(TypeError) as caught:
+        bpy.ops.object.mode_set(mode="EDIT")
+    answer = kb.query(f"TypeError: {caught.value}")
+    assert answer.hits[0].id == "bpy.ops.object.mode_set"
+    first, second = answer.notes
+    assert first == "`EDIT` is a value of `bpy.ops.object.mode_set(mode)`, which present data do not allow."
+    assert second.startswith("The active object has no such mode")
+
+
+@pytest.mark.parametrize(
+    ("message", "told"),
+    [
+        (
+            "TypeError: Converting py args to operator properties: enum \"HAIR\" not found in ('MESH', 'CURVE', "
+            "'SURFACE', 'META', 'FONT', 'CURVES')",
+            "Use `bpy.ops.object.select_by_type(type='CURVES')`.",
+        ),
+        (
+            "TypeError: Converting py args to operator properties: enum \"PAINT_GPENCIL\" not found in ('OBJECT', "
+            "'EDIT', 'PAINT_GREASE_PENCIL')",
+            "Use `bpy.ops.object.mode_set(mode='PAINT_GREASE_PENCIL')`.",
+        ),
+    ],
+)
+def test_a_value_of_operator_properties_is_an_operators(kb: KnowledgeBase, message: str, told: str) -> None:
+    assert told in kb.query(message).notes[0]
+
+
+@pytest.mark.blender
 def test_what_python_says_was_meant_tells_which_function_was_called(kb: KnowledgeBase) -> None:
     bpy = pytest.importorskip("bpy")
     with pytest.raises(TypeError) as caught:

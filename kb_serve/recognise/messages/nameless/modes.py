@@ -8,9 +8,9 @@ _T = "bpy.types."
 _O = "bpy.ops.object."
 MODES = (
     NamelessMessage(
-        ("Converting py args to operator properties", "not found in ('OBJECT', 'EDIT'"),
+        ("Converting py args to operator properties", "not found in ('OBJECT'"),
         (f"{_O}mode_set", f"{_T}Object.mode"),
-        "The active object has no such mode: its type decides which there are ('POSE' wants an armature). Make the "
-        "object that is meant active first.",
+        "The active object has no such mode: its type decides which there are ('POSE' wants an armature, and an empty, "
+        "a light or a camera has no 'EDIT'). Make the object that is meant active first.",
     ),
 )
