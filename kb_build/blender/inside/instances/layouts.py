@@ -15,6 +15,7 @@ CHOSEN = frozenset({
     "material_slot", "threads",
 })  # fmt: skip
 CHOSEN_OF = frozenset({
+    ("CurveMapPoint", "location"), ("CurveProfilePoint", "location"), ("FModifierEnvelopeControlPoint", "frame"),
     ("FieldSettings", "seed"), ("TimelineMarker", "frame"), ("ColorRampElement", "position"),
     ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("Driver", "expression"), ("Object", "dimensions"),
     ("EditBone", "length"), ("NodeTreeInterfaceSocket", "socket_type"),

@@ -30,6 +30,7 @@ from .making import (
     remove,
     scratch_scene,
 )
+from .small_parts import small_parts
 
 # It is not new any more: only the items that its enumerations take are asked.
 CONSTRAINT_TO_BONE = "constraint with a bone as target"
@@ -523,7 +524,7 @@ def node_items():
 MAKERS = (
     data_blocks, added_by_operators, modifiers, constraints, particles, children, force_fields, rigid_bodies, strips,
     animation, tracking, armatures, splines, mesh_parts, drawings, scenes, libraries, node_trees,
-    node_items,
+    node_items, small_parts,
 )  # fmt: skip
 
 
