@@ -35,7 +35,8 @@ CHANGED_BY = {
     f"{_T}Paint.brush": (
         "bpy.ops.brush.asset_activate",
         "Brushes are assets: in the mode that paints, `bpy.ops.brush.asset_activate(asset_library_type='ESSENTIALS', "
-        "relative_asset_identifier='brushes/essentials_brushes-mesh_texture.blend/Brush/Blur')` makes one active.",
+        "relative_asset_identifier='brushes/essentials_brushes-mesh_sculpt.blend/Brush/Draw')` makes one active, of "
+        "Sculpt Mode; other modes have theirs in `-mesh_vertex`, `-mesh_weight`, `-mesh_texture`, `-gp_draw` ….",
     ),
     f"{_T}MeshLoop.normal": (
         f"{_T}Mesh.normals_split_custom_set",

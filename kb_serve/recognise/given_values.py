@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from kb_build.records import NOT_TAKEN
 from kb_build.symbol_lines import never_taken
 from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
+from kb_serve.reader import TYPES
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.calls import places_of
 from kb_serve.recognise.likely_values import likely_items
@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 NO_VALUE = r" is no(?:t a)? value of "  # how notes say that something is none, as a pattern
 _QUOTES = ("'", '"')
 _MOST = 8  # items that are all named
-_OPEN = frozenset({"bpy.types.RenderSettings.engine"})  # to which add-ons add
-_CLASS = re.compile(r"[A-Z]\w*[a-z]")  # ``GeometryNodeTree``
+# To which add-ons add, or view layers.
+_OPEN = frozenset({f"{TYPES}RenderSettings.engine", f"{TYPES}CompositorNodeCryptomatteV2.layer_name"})
 
 
 def wrong_values(chain: Chain, symbol: Symbol, removed: Collection[str], reader: BaseReader) -> Iterator[str]:
@@ -68,8 +68,7 @@ def _wrong(
     names = [item.identifier for item in items]
     if len(names) < FEWEST_VALUES or value in names or value in MORE_VALUES.get(owner, ()) or owner in _OPEN:
         return
-    # Those of add-ons are taken as well; entries of menus of sockets are only written so.
-    if all(_CLASS.match(name) for name in names) and "puts[" not in owner:
+    if all(reader.entry(TYPES + name) for name in names):  # classes, of which add-ons have some as well
         return
     taken = [item for item in items if item.identifier not in refused and item.where != NOT_TAKEN]
     if closest := likely_items(value, taken, reader):

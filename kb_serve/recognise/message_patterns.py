@@ -60,6 +60,7 @@ GIVEN = re.compile(
 )
 READ_ONLY = re.compile(
     r"attribute \"(?P<name>\w+)\" from \"(?P<owner>\w+)\" is read-only"
+    r"|bpy_prop \"(?P<array_owner>\w+)\.(?P<array>\w+)\" is read-only"
     r"|Context property \"(?P<context>\w+)\" is read-only"
 )
 FREED = re.compile(r"\b(?:StructRNA|(?P<module>BMesh) data) of type (?P<type>\w+) has been removed")

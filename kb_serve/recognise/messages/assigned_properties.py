@@ -25,9 +25,9 @@ class AssignedProperties:
     def recognise(self, query: str, recognition: Recognition) -> None:
         """Adds the property, and what changes it, where that is known."""
         for match in forms.first_matches(forms.READ_ONLY, query):
-            owner = "bpy.context" if match["context"] else TYPES + match["owner"]
-            entry = self._symbols.member(owner, match["context"] or match["name"])
-            if entry:
+            owner = "bpy.context" if match["context"] else TYPES + (match["owner"] or match["array_owner"])
+            name = match["context"] or match["name"] or match["array"]
+            if entry := self._symbols.member(owner, name):
                 self._read_only(entry.path, recognition)
         for match in forms.first_matches(forms.WRONG_TYPE, query):
             if match["path"] and (entry := self._symbols.member(*match["path"].rpartition(".")[::2])):

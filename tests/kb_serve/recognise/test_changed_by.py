@@ -17,8 +17,8 @@ _TRIED = {
     "Paint.brush": (
         "paint().brush = None",
         "paint(); bpy.ops.brush.asset_activate(asset_library_type='ESSENTIALS', relative_asset_identifier="
-        "'brushes/essentials_brushes-mesh_texture.blend/Brush/Blur')",
-        "paint().brush.name == 'Blur'",
+        "'brushes/essentials_brushes-mesh_sculpt.blend/Brush/Draw Sharp')",
+        "paint().brush.name == 'Draw Sharp'",
     ),
     "MeshLoop.normal": (
         "mesh.loops[0].normal = (1, 0, 0)",
@@ -146,9 +146,9 @@ def end():
     bpy.context.view_layer.objects.active = ob
 
 def paint():
-    if ob.mode != "TEXTURE_PAINT":
-        bpy.ops.object.mode_set(mode="TEXTURE_PAINT")
-    return bpy.context.tool_settings.image_paint
+    if ob.mode != "SCULPT":
+        bpy.ops.object.mode_set(mode="SCULPT")
+    return bpy.context.tool_settings.sculpt
 
 said = {}
 for name, (refused, change, test) in json.load(open(sys.argv[-1])).items():

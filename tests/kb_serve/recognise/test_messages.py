@@ -26,6 +26,7 @@ FIRST = {
     "ShaderNodeBsdfPrincipled": "bpy.types.NodeLinks.new",
     "TypeError: bpy_struct: item.attr = val: Object.data expected a Mesh type, not Object": "bpy.types.Object.data",
     'AttributeError: bpy_struct: attribute "type" from "Object" is read-only': "bpy.types.Object.type",
+    'AttributeError: bpy_prop "MeshLoop.normal" is read-only': "bpy.types.MeshLoop.normal",
     "AttributeError: 'Context' object has no attribute 'active_objct'": "bpy.types.Context.active_object",
     "AttributeError: 'NoneType' object has no attribute 'mass'": "bpy.types.Object.rigid_body",
     "AttributeError: 'NoneType' object has no attribute 'key_blocks'": "bpy.types.Mesh.shape_keys",
