@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar, cast
 
 from kb_build.flow.trees import walk
 from kb_check.findings import Edit, Span
+from kb_check.raised import raised_by
 from kb_check.source import split_lines
 
 if TYPE_CHECKING:
@@ -79,7 +80,12 @@ class Script:
             lacking = row.missing and not row.symbols and not row.possible
             if row.kind == "value" and row.value in self.own_identifiers:
                 continue
-            if lacking and not row.guarded and (row.sure or self._is_former(row)) and not self._is_given(row):
+            if (
+                lacking
+                and not row.is_ready_for(*raised_by(row))
+                and (row.sure or self._is_former(row))
+                and not self._is_given(row)
+            ):
                 yield row
 
     def _is_former(self, row: Resolution) -> bool:
@@ -138,12 +144,23 @@ class Script:
     def _doubted(self) -> list[Span]:
         """The doubted parts in order, without those that lie in others."""
         found: list[Span] = []
-        for span in sorted(
-            map(self.span, self.analysis.doubted), key=lambda one: (_begin(one), [-n for n in _end(one)])
-        ):
+        parts = (*self.analysis.doubted, *self._behind_failures())
+        for span in sorted(map(self.span, parts), key=lambda one: (_begin(one), [-n for n in _end(one)])):
             if not found or _end(span) > _end(found[-1]):
                 found.append(span)
         return found
+
+    def _behind_failures(self) -> Iterator[ast.stmt]:
+        """The statements that this Blender does not reach: the handlers of their ``try`` catch an error before them."""
+        failing = {
+            row.statement
+            for row in self._in_order
+            if row.missing and row.sure and row.caught and not (row.symbols or row.possible)
+            if row.is_ready_for(*raised_by(row))
+        }
+        for node in self.all(ast.Try, ast.TryStar) if failing else ():
+            at = next((at for at, statement in enumerate(node.body) if statement in failing), len(node.body))
+            yield from node.body[at + 1 :]
 
     def span(self, node: ast.AST) -> Span:
         """Where a node stands."""

@@ -25,6 +25,7 @@ from kb_build.symbol_lines import freed_by, is_locked
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import is_of_instance
 from kb_check.made_here import named_words
+from kb_check.raised import LACKS
 from kb_check.rule import Rule
 from kb_serve.recognise.changed_by import changed_by
 
@@ -57,7 +58,7 @@ def _check(script: Script) -> Iterator[Finding]:
         if row.kind == "attribute" and not _is_deleted(row):
             continue
         paths = row.symbols or row.possible
-        if not paths or not row.sure or row.guarded or (row.missing and not row.possible):
+        if not paths or not row.sure or row.is_ready_for(*LACKS) or (row.missing and not row.possible):
             continue
         symbols = [script.api.symbols.symbol(path) for path in paths]
         if row.kind == "store" and len(paths) == 1 and paths[0].startswith(_HANDLERS):

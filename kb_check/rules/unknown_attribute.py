@@ -15,8 +15,8 @@ mesh.vertices.add(1).co = (0, 0, 0)  # reported: the call returns nothing
 A note, no error: what an add-on may register that the script enables and that nobody can look into here. A warning: an
 object's member of a parameter that nothing but its annotation says is the object's data.
 
-Not reported: what stands behind ``hasattr``, in a ``try`` that catches AttributeError, or in a branch for another
-version (``if bpy.app.version < (2, 80, 0)``).
+Not reported: what stands behind ``hasattr``, in a ``try`` that catches AttributeError and goes on, or in a branch for
+another version (``if bpy.app.version < (2, 80, 0)``).
 """
 
 from __future__ import annotations
@@ -32,6 +32,7 @@ from kb_check.annotated_parameters import is_annotated
 from kb_check.calls import nothing_from
 from kb_check.findings import Finding, Fix
 from kb_check.made_here import bindings, callee_path, member_path, words_of
+from kb_check.raised import LACKS
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
@@ -79,7 +80,7 @@ def _check(script: Script) -> Iterator[Finding]:
 def _of_sockets(script: Script) -> Iterator[Finding]:
     """Values of sockets that have none, as settings of their node have it: those of geometry, say."""
     for node in script.all(ast.Attribute):
-        if node.attr != _VALUE or script.analysis.resolutions.get(node) or is_tried(script, node):
+        if node.attr != _VALUE or script.analysis.resolutions.get(node) or is_tried(script, node, LACKS):
             continue
         found = socket_classes(script, node.value)
         if found is not None and not any(script.api.member(cls, _VALUE) for cls in found.classes):
@@ -132,7 +133,11 @@ def _of_libraries(script: Script) -> Iterator[Finding]:
     names = {name for name in given if given.count(name) == len(bindings(script).get(name, ()))}
     for part in script.all(ast.Attribute) if names else ():
         if isinstance(part.value, ast.Name) and part.value.id in names and script.names.had(_DATA, part.attr):
-            if script.type_of(part.value) is None or part.attr in _asked(script) or is_tried(script, part):
+            if (
+                script.type_of(part.value) is None
+                or part.attr in _asked(script)
+                or is_tried(script, part, LACKS)
+            ):
                 continue
             lacking = script.names.member(_DATA, part.attr)
             owner, _, name = lacking.replacement.rpartition(".")
@@ -165,7 +170,7 @@ def _of_python(script: Script) -> Iterator[Finding]:
             path = member_path(script, node.value) if isinstance(node.value, ast.Attribute) else ""
             kind = _scalar(script, path, node)
             told = f"`{path}` is one {kind}: it has no `{node.attr}`." if kind else ""
-        if told and not is_tried(script, node) and node.attr not in _asked(script):
+        if told and not is_tried(script, node, LACKS) and node.attr not in _asked(script):
             yield Finding(RULE.id, "error", script.name_span(node), told, path)
 
 
