@@ -19,13 +19,17 @@ def f(a: "bpy.types.NodeSocketInterface", *b: 'bpy.types.Objekt') -> "list[bpy.t
 x: "bpy.types.NodeSocketInterface" = None
 y: bpy.types.NodeSocketInterface = None
 def g(a: bpy.types.NodeSocketInterface): pass
+def h(): a: bpy.types.NodeSocketInterface = None; h.x: bpy.types.NodeSocketInterface = None
+h()
+class C: a: bpy.types.NodeSocketInterface = None
+def i(): exec("class D:  a: bpy.types.NodeSocketInterface = None")
 """
 
 
 def test_a_quoted_annotation_is_not_read(rule_checker: Checker, tmp_path: Path) -> None:
     lines = _NAMES.splitlines()
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
-    assert [one.span.line for one in rule_checker.check(_NAMES)] == refused == [4, 5]
+    assert [one.span.line for one in rule_checker.check(_NAMES)] == refused == [4, 5, 8]
 
 
 @pytest.mark.parametrize(
