@@ -23,6 +23,8 @@ if TYPE_CHECKING:
     from kb_check.known_names import KnownNames
     from kb_check.package import Package
 
+# The kinds of parts of a script that may stand for what an add-on registers.
+REGISTERED = frozenset({"attribute", "store", "text", "button", "name"})
 _T = TypeVar("_T")
 _Key = TypeVar("_Key", bound="Hashable")
 _Node = TypeVar("_Node", bound=ast.AST)
@@ -82,6 +84,7 @@ class Script:
                 continue
             if (
                 lacking
+                and not self._is_of_enabled(row)
                 and not row.is_ready_for(*raised_by(row))
                 and (row.sure or self._is_former(row))
                 and not self._is_given(row)
@@ -112,6 +115,13 @@ class Script:
                 case _:
                     pass
         return frozenset(found)
+
+    def _is_of_enabled(self, row: Resolution) -> bool:
+        """Whether it is what an add-on registers that Blender brings and that a file of the package enables."""
+        if row.kind not in REGISTERED:
+            return False
+        addons = {self.names.addon_of(owner, row.value) for owner in row.missing}
+        return "" not in addons and addons <= self.package.brought_addons
 
     def _is_given(self, row: Resolution) -> bool:
         """Whether the package has it. A name that is put together is hardly one that Blender has lost."""

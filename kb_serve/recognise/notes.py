@@ -168,8 +168,7 @@ class Notes:
     def _lacks(self, missing: MissingName) -> str:
         """A sentence on what a class does not have, and whether it ever had it."""
         never = self.never(missing.owner, missing.name) if missing.sure else ""
-        aside = " (add-ons and custom properties aside)" if never else ""
-        return f"`{missing.owner}` has no `{missing.name}`{never}{aside}."
+        return f"`{missing.owner}` has no `{missing.name}`{never}."
 
     def never(self, owner: str, name: str) -> str:
         """Since when a class is known not to have had a name, as the end of a sentence; "" where that is not known.
@@ -184,4 +183,6 @@ class Notes:
             owners = {found.owner for found in self._reader.by_name(name)} - {owner, STRUCT}
             if any(self._reader.subclasses(other) for other in owners):
                 return ""
-        return f", and never had it from {self._reader.since(owner) or versions[0]} to {versions[-1]}"
+        aside = "add-ons" if owner.startswith("bpy.ops") else "add-ons and custom properties"
+        since = self._reader.since(owner) or versions[0]
+        return f", and never had it from {since} to {versions[-1]} ({aside} aside)"
