@@ -30,6 +30,8 @@ _NOTHING = "Nothing takes its place."
 _INTERFACE = re.compile(
     r"[A-Z0-9_]+_[A-Z]{2,3}_"
 )  # of whose classes the history has those alone that scripts use
+# The owners that get more while Blender runs → what gives it to them.
+_ASIDE = {"bpy.ops": "add-ons", "bpy.types": "add-ons and custom properties"}
 _UNLISTED = (
     "_",
     "addon_utils",
@@ -183,6 +185,5 @@ class Notes:
             owners = {found.owner for found in self._reader.by_name(name)} - {owner, STRUCT}
             if any(self._reader.subclasses(other) for other in owners):
                 return ""
-        aside = "add-ons" if owner.startswith("bpy.ops") else "add-ons and custom properties"
-        since = self._reader.since(owner) or versions[0]
-        return f", and never had it from {since} to {versions[-1]} ({aside} aside)"
+        aside = next((f" ({told} aside)" for start, told in _ASIDE.items() if owner.startswith(start)), "")
+        return f", and never had it from {self._reader.since(owner) or versions[0]} to {versions[-1]}{aside}"
