@@ -33,7 +33,7 @@ def test_what_is_locked_is_found_as_blender_refuses_it(script: str, check: Check
     assert all(finding.span.line == len(script.splitlines()) for finding in found)
 
 
-_PARTS = """\
+_PARTS: str = """\
 import bpy
 mesh = bpy.data.meshes.new("a")
 mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])

@@ -128,7 +128,7 @@ def test_an_iterable_of_an_annotation_may_be_a_list(rule_checker: Checker) -> No
     assert len(rule_checker.check(code.replace("verts=verts", "verts=set(verts)"), rules=_RULES)) == 1
 
 
-_PRIVATE = """\
+_PRIVATE: str = """\
 import bpy
 from bpy_extras.node_shader_utils import PrincipledBSDFWrapper
 material = bpy.data.materials.new("x")
