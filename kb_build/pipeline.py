@@ -377,6 +377,7 @@ def _meta(work: _Build, extract: Extract, pages: Sequence[Page], run: SummaryRun
         "counts": counts(extract, pages),
         "faults": list(extract.faults),
         "addons": list(extract.addons),
+        "addon_names": extract.addon_names,
         "summaries": summary_facts(run),
         "page_warnings": {page.slug: list(page.warnings) for page in pages if page.warnings},
         "runtime": {

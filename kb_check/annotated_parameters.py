@@ -13,13 +13,50 @@ from kb_check.script import once_for_each
 if TYPE_CHECKING:
     from kb_check.script import Script
 
+ONE_IS_WRONG = "the annotation or the use is wrong"
+_DEEPEST = 6  # elements of elements
 _WORD = re.compile(r"\w+")
 _Function = ast.FunctionDef | ast.AsyncFunctionDef
 
 
 def is_annotated(script: Script, node: ast.expr, cls: str) -> bool:
-    """Whether an expression is a parameter that is of a class by its annotation alone."""
-    return isinstance(node, ast.Name) and cls.rpartition(".")[2] in _annotation_around(script, node)
+    """Whether an expression is a parameter, or an element of one, that is of a class by its annotation alone."""
+    name = _whole(script, node)
+    return name is not None and cls.rpartition(".")[2] in _annotation_around(script, name)
+
+
+def _whole(script: Script, node: ast.expr) -> ast.Name | None:
+    """The name of what something is, or is an element of: of ``each`` in ``for each in meshes``, ``meshes``."""
+    for _ in range(_DEEPEST):
+        match node:
+            case ast.Name():
+                iterated = _iterated(script, node)
+                if iterated is None:
+                    return node
+                node = iterated
+            case ast.Subscript(value=owner):
+                node = owner
+            case _:
+                return None
+    return None
+
+
+@once_for_each
+def _iterated(script: Script, node: ast.Name) -> ast.expr | None:
+    """What the innermost loop around a name gives it, if nothing else does there."""
+    found: tuple[int, ast.expr] | None = None
+    for loop in script.all(ast.For, ast.AsyncFor, ast.ListComp, ast.SetComp, ast.GeneratorExp, ast.DictComp):
+        if loop.lineno <= node.lineno <= (loop.end_lineno or 0) and (
+            found is None or loop.lineno >= found[0]
+        ):
+            turns = [loop] if isinstance(loop, (ast.For, ast.AsyncFor)) else loop.generators
+            given = [
+                one.iter for one in turns if isinstance(one.target, ast.Name) and one.target.id == node.id
+            ]
+            bound = [name for part in walk(loop) for name in bound_names(part)] if given else []
+            if bound.count(node.id) == 1:
+                found = loop.lineno, given[0]
+    return found[1] if found else None
 
 
 @once_for_each

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
 from kb_check.literals import times_bound
 from kb_check.made_here import bindings
-from kb_check.script import once_per_script
+from kb_check.script import once_for_each, once_per_script
 from kb_serve.signatures import signature_arguments
 
 if TYPE_CHECKING:
@@ -83,21 +83,28 @@ class CallSite:
                 yield parameter, keyword.value
 
 
-def _sure_calls(script: Script) -> Iterator[tuple[ast.Call, tuple[Type, ...]]]:
-    """The calls that surely are of the API, each with the types of all that may be called."""
+def _sure_calls(script: Script, errors: tuple[str, ...] = ()) -> Iterator[tuple[ast.Call, tuple[Type, ...]]]:
+    """The calls that surely are of the API, each with the types of all that may be called; without those where the
+    script is ready for one of the errors, of any where none is named.
+    """
     for row in script.resolutions("call"):
-        if isinstance(row.node, ast.Call) and row.sure and not row.guarded:
+        if isinstance(row.node, ast.Call) and row.sure and not row.is_ready_for(*errors):
             yield row.node, members(script.type_of(row.node.func) or NoneValue())
 
 
-@once_per_script
 def calls(script: Script) -> list[CallSite]:
     """The calls that surely are of one thing of the API, in the order in which they stand.
 
     What receives it may be one of several: ``object.data.materials.append`` is the same of meshes and curves.
     """
+    return calls_not_ready_for(script, ())
+
+
+@once_for_each
+def calls_not_ready_for(script: Script, errors: tuple[str, ...]) -> list[CallSite]:
+    """The same, also where the script is ready for other errors than those, which are the names of their classes."""
     found: list[CallSite] = []
-    for node, called in _sure_calls(script):
+    for node, called in _sure_calls(script, errors):
         kinds = [kind for kind in called if kind != NoneValue()]
         symbols = [_called(script, kind) for kind in kinds]
         if symbols and (symbol := symbols[0]) and all(other == symbol for other in symbols):

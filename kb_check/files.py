@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections import Counter
 from dataclasses import dataclass, field
 from fnmatch import fnmatch
 from pathlib import Path
@@ -102,10 +103,14 @@ def _grouped(wanted: dict[Path, Path], excluded: _Excluded) -> Iterator[FileGrou
 
 
 def _joined(parts: Mapping[Path, Iterable[Path]]) -> Iterable[list[Path]]:
-    """The parts that belong together: each with the packages that it uses."""
+    """The parts that belong together: each with the packages that it uses. All are of one project, as long as their
+    names are.
+    """
     groups = {part: [part] for part in parts}
+    times = Counter(part.name for part in parts)
+    named = {part.name: part for part in parts if part.is_dir() and times[part.name] == 1}
     for part, files in parts.items():
-        for package in sorted(packages_used(files, part.parent)):
+        for package in sorted(packages_used(files, part.parent, named)):
             own, other = groups[part], groups.setdefault(package, [package])
             if own is not other:
                 own += other

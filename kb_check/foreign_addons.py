@@ -1,6 +1,7 @@
 """Add-ons that scripts enable and that nobody can look into here: what they register may be anything.
 
-Those are the ones that neither Blender brings nor the files that are checked together are.
+Those are the ones that neither Blender brings nor the files that are checked together are. What those register that
+Blender brings is known.
 """
 
 from __future__ import annotations
@@ -59,6 +60,28 @@ def foreign_addon(analyses: Collection[Analysis], own: Collection[str]) -> str:
             if name not in ADDONS and parts.isdisjoint(name.split(".")):
                 return name
     return ""
+
+
+def brought_addons(analyses: Collection[Analysis]) -> frozenset[str]:
+    """The add-ons that Blender brings which scripts enable, or take something from."""
+    return frozenset(
+        name
+        for analysis in analyses
+        for name in (*_enabled(analysis), *_imported(analysis))
+        if name in ADDONS
+    )
+
+
+def _imported(analysis: Analysis) -> Iterator[str]:
+    """The names of the packages that a script imports."""
+    for node in walk(analysis.tree) if analysis.tree else ():
+        match node:
+            case ast.Import(names=aliases):
+                yield from (alias.name.partition(".")[0] for alias in aliases)
+            case ast.ImportFrom(module=str(module), level=0):
+                yield module.partition(".")[0]
+            case _:
+                pass
 
 
 def _enabled(analysis: Analysis) -> Iterator[str]:

@@ -10,8 +10,9 @@ from typing import TYPE_CHECKING
 from kb_build.flow.api import STRUCT
 from kb_build.flow.facts import T
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
-from kb_check.calls import calls
+from kb_check.calls import calls_not_ready_for
 from kb_check.own_classes import own_classes
+from kb_check.raised import REFUSES
 from kb_check.script import once_per_script
 from kb_check.shown_sockets import socket_classes
 
@@ -89,7 +90,12 @@ def class_values(script: Script) -> list[Given]:
 def _assignments(script: Script) -> Iterator[Given]:
     for row in script.resolutions("store"):
         paths = row.symbols or row.possible
-        sure = row.sure and not row.guarded and not row.missing and is_of_instance(script, row.node)
+        sure = (
+            row.sure
+            and not row.is_ready_for(*REFUSES)
+            and not row.missing
+            and is_of_instance(script, row.node)
+        )
         if not sure or not paths or not isinstance(row.node, ast.Attribute):
             continue
         value = assigned(row.statement, row.node)
@@ -128,7 +134,7 @@ def _typed_by_settings(script: Script) -> Iterator[Given]:
 
 
 def _arguments(script: Script) -> Iterator[Given]:
-    for call in calls(script):
+    for call in calls_not_ready_for(script, REFUSES):
         symbol, is_rna = call.callee.symbol, call.callee.is_rna
         # Numbers that should be one sequence are too many arguments.
         is_vector = symbol.owner == "mathutils" and len(call.node.args) <= len(call.callee.positional)

@@ -69,6 +69,15 @@ class KnownNames:
         path = name if name.startswith("bpy.ops.") else f"{owner}.{name}"
         return self._lookup.of_path(path) is not None
 
+    def addon_of(self, owner: str, name: str) -> str:
+        """The add-on that registers a member of a class, or of one of its bases, or of a module: one that Blender
+        brings and that is not on from the start; empty for none. An operator may be named by its path.
+        """
+        if name.startswith(OPERATORS):
+            return self.reader.addon_names.get(name, "")
+        owners = [owner, *(cls.path for cls in self.reader.lineage(owner))]
+        return next(filter(None, (self.reader.addon_names.get(f"{cls}.{name}") for cls in owners)), "")
+
     def had(self, owner: str, name: str) -> bool:
         """Whether a class or module, or one of its bases, has a member in another Blender that it lacks in this one.
 

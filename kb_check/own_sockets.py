@@ -19,6 +19,7 @@ from kb_check.calls import calls, calls_by_node
 from kb_check.computing import CALLING, computing
 from kb_check.group_inputs import makes_all_groups
 from kb_check.made_here import attributes, called_operators, is_new, knows_all
+from kb_check.raised import LACKS_KEY
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
 
@@ -66,7 +67,7 @@ def lacking_own(script: Script) -> Iterator[tuple[ast.Subscript, str, str]]:
         if (
             not is_known
             or not is_new(script, asked.value)
-            or is_tried(script, node)
+            or is_tried(script, node, LACKS_KEY)
             or _is_asked(script, key)
         ):
             continue

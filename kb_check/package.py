@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.core import ANY
 from kb_build.flow.source_files import module_name
-from kb_check.foreign_addons import foreign_addon
+from kb_check.foreign_addons import brought_addons, foreign_addon
 from kb_check.package_roots import package_root
 
 if TYPE_CHECKING:
@@ -59,6 +59,11 @@ class Package:
         files were added.
         """
         return foreign_addon(self._analyses, self._files)
+
+    @cached_property
+    def brought_addons(self) -> frozenset[str]:
+        """The add-ons which Blender brings that a file enables or imports. Asked for once all files were added."""
+        return brought_addons(self._analyses)
 
     def _gives(self, owner: str, name: str, holders: Iterable[str], *, computed: bool) -> bool:
         if owner.startswith("bpy.ops"):

@@ -12,13 +12,14 @@ from typing import TYPE_CHECKING
 from kb_check.source import MOST_BYTES
 
 if TYPE_CHECKING:
-    from collections.abc import Container, Iterable, Iterator
+    from collections.abc import Container, Iterable, Iterator, Mapping
 
 _PACKAGE_MARKS = ("__init__.py", "blender_manifest.toml")
 _PROJECT_MARKS = (".git", "pyproject.toml")  # what lies above belongs to others
 _ENVIRONMENT = "pyvenv.cfg"
 _SOURCES = ("", "src")  # where a project has its packages
 _NAME = re.compile(rb"[A-Za-z_]\w*")
+_GIVEN_NAME = re.compile(rb"""(?:\b(?:import|from)[ \t]+|["'])([A-Za-z_]\w*)""")
 
 
 @cache
@@ -38,13 +39,18 @@ def package_root(folder: Path) -> Path | None:
     return root
 
 
-def packages_used(files: Iterable[Path], folder: Path) -> set[Path]:
+def packages_used(files: Iterable[Path], folder: Path, beside: Mapping[str, Path]) -> set[Path]:
     """The packages of the project around a folder that files name, by their folders: they import them, or have Blender
-    enable them. Files are given as they are, links resolved.
+    enable them. Files are given as they are, links resolved. ``beside``: name → folder of packages of which it is not
+    known that they are of that project; those it must import, or give by their name.
     """
     project = _project_top(folder)
     packages = {} if project is None else _packages_of(project)
-    return {packages[name] for file in files for name in _names_in(file, packages)}
+    used: set[Path] = set()
+    for file in files:
+        used.update(packages[name] for name in _names_in(file, packages, _NAME))
+        used.update(beside[name] for name in _names_in(file, beside, _GIVEN_NAME))
+    return used
 
 
 @cache
@@ -72,8 +78,8 @@ def _folders_in(folder: Path) -> list[Path]:
         return []
 
 
-def _names_in(file: Path, names: Container[str]) -> Iterator[str]:
-    """Those of the names that stand in a file; none if it cannot be read, which is told elsewhere."""
+def _names_in(file: Path, names: Container[str], form: re.Pattern[bytes]) -> Iterator[str]:
+    """Those of the names that stand in a file in some form; none if it cannot be read, which is told elsewhere."""
     if not names:
         return
     try:
@@ -81,7 +87,7 @@ def _names_in(file: Path, names: Container[str]) -> Iterator[str]:
             code = stream.read(MOST_BYTES)
     except OSError:
         return
-    yield from (name for word in set(_NAME.findall(code)) if (name := word.decode()) in names)
+    yield from (name for word in set(form.findall(code)) if (name := word.decode()) in names)
 
 
 def _is_package(folder: Path) -> bool:

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, TypeVar, cast
 
 from kb_build.flow.trees import walk
 from kb_check.findings import Edit, Span
+from kb_check.raised import raised_by
 from kb_check.source import split_lines
 
 if TYPE_CHECKING:
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
     from kb_check.known_names import KnownNames
     from kb_check.package import Package
 
+# The kinds of parts of a script that may stand for what an add-on registers.
+REGISTERED = frozenset({"attribute", "store", "text", "button", "name"})
 _T = TypeVar("_T")
 _Key = TypeVar("_Key", bound="Hashable")
 _Node = TypeVar("_Node", bound=ast.AST)
@@ -79,7 +82,13 @@ class Script:
             lacking = row.missing and not row.symbols and not row.possible
             if row.kind == "value" and row.value in self.own_identifiers:
                 continue
-            if lacking and not row.guarded and (row.sure or self._is_former(row)) and not self._is_given(row):
+            if (
+                lacking
+                and not self._is_of_enabled(row)
+                and not row.is_ready_for(*raised_by(row))
+                and (row.sure or self._is_former(row))
+                and not self._is_given(row)
+            ):
                 yield row
 
     def _is_former(self, row: Resolution) -> bool:
@@ -106,6 +115,13 @@ class Script:
                 case _:
                     pass
         return frozenset(found)
+
+    def _is_of_enabled(self, row: Resolution) -> bool:
+        """Whether it is what an add-on registers that Blender brings and that a file of the package enables."""
+        if row.kind not in REGISTERED:
+            return False
+        addons = {self.names.addon_of(owner, row.value) for owner in row.missing}
+        return "" not in addons and addons <= self.package.brought_addons
 
     def _is_given(self, row: Resolution) -> bool:
         """Whether the package has it. A name that is put together is hardly one that Blender has lost."""
@@ -138,12 +154,23 @@ class Script:
     def _doubted(self) -> list[Span]:
         """The doubted parts in order, without those that lie in others."""
         found: list[Span] = []
-        for span in sorted(
-            map(self.span, self.analysis.doubted), key=lambda one: (_begin(one), [-n for n in _end(one)])
-        ):
+        parts = (*self.analysis.doubted, *self._behind_failures())
+        for span in sorted(map(self.span, parts), key=lambda one: (_begin(one), [-n for n in _end(one)])):
             if not found or _end(span) > _end(found[-1]):
                 found.append(span)
         return found
+
+    def _behind_failures(self) -> Iterator[ast.stmt]:
+        """The statements that this Blender does not reach: the handlers of their ``try`` catch an error before them."""
+        failing = {
+            row.statement
+            for row in self._in_order
+            if row.missing and row.sure and row.caught and not (row.symbols or row.possible)
+            if row.is_ready_for(*raised_by(row))
+        }
+        for node in self.all(ast.Try, ast.TryStar) if failing else ():
+            at = next((at for at, statement in enumerate(node.body) if statement in failing), len(node.body))
+            yield from node.body[at + 1 :]
 
     def span(self, node: ast.AST) -> Span:
         """Where a node stands."""

@@ -367,6 +367,12 @@ class BaseReader:
         """The modules of other Blenders that the build lacks which this base was made from."""
         return frozenset(json.loads(self.meta.get("unknown_modules", "[]")))
 
+    @cached_property
+    def addon_names(self) -> dict[str, str]:
+        """What add-ons register that Blender brings and that are not on from the start: path → add-on."""
+        found: dict[str, list[str]] = json.loads(self.meta.get("addon_names", "{}"))
+        return {path: addon for addon, paths in found.items() for path in paths}
+
     def removed(self, path: str) -> tuple[str, str, str] | None:
         """(first, last, gone) of a symbol that this version lacks: the versions that have it, the first without it.
 

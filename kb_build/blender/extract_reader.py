@@ -78,6 +78,7 @@ class Extract:
     ``names``: class → the name that Blender itself gives to a new one. ``places``: class of nodes → class of the
     data-block that has such a node in its tree from the start.
     ``still_works``: (former path, the symbol that it gives now) of former names that this Blender still takes.
+    ``addon_names``: add-on that Blender brings, and that is not on from the start → the paths that it registers.
     """
 
     version: str
@@ -91,6 +92,7 @@ class Extract:
     scripts: str = ""
     names: Mapping[str, str] = field(default_factory=dict[str, str])
     places: Mapping[str, str] = field(default_factory=dict[str, str])
+    addon_names: Mapping[str, list[str]] = field(default_factory=dict[str, "list[str]"])
 
 
 @dataclass(slots=True)
@@ -102,6 +104,7 @@ class _Raw:
     templates: list[tuple[str, str]] = field(default_factory=list)
     faults: list[str] = field(default_factory=list)
     still_works: list[tuple[str, str]] = field(default_factory=list)
+    addon_names: dict[str, list[str]] = field(default_factory=dict[str, "list[str]"])
     # enumeration → what was tried with settings beside its struct (see enum_neighbours)
     neighbours: dict[str, dict[str, Any]] = field(default_factory=dict[str, "dict[str, Any]"])
     # record → class → what it says of it
@@ -129,6 +132,8 @@ def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
             raw.by_class[record][row["path"].removeprefix(_TYPES)] = row["name"]
         case "still_works":
             raw.still_works.append((row["path"], row["taken_as"]))
+        case "addon":
+            raw.addon_names[row["name"]] = row["paths"]
         case "template":
             raw.templates.append((row["name"], row["text"]))
         case _:
@@ -362,6 +367,7 @@ def read_extract(path: Path) -> Extract:
         templates=tuple(_template(name, text, minor) for name, text in raw.templates),
         faults=tuple(raw.faults),
         still_works=tuple(raw.still_works),
+        addon_names=raw.addon_names,
         scripts=raw.header.get("scripts") or "",
         names=raw.by_class["own_name"],
         places=raw.by_class["stands_in"],

@@ -40,11 +40,10 @@ class Annotations(Core):
 
     def annotated(self, node: ast.expr) -> Type:
         """The type of a value with this annotation; a wrong name in it is no error where Python does not read it."""
-        unread = self.file.keeps_annotations
-        self.tolerant += unread
-        kind = self._meant(node)
-        self.tolerant -= unread
-        return kind
+        if not self.file.keeps_annotations:
+            return self._meant(node)
+        with self.ready_for():
+            return self._meant(node)
 
     def _quoted(self, node: ast.Constant) -> Type:
         """What a quoted annotation means, which Python does not read."""
@@ -53,11 +52,10 @@ class Annotations(Core):
         inner = self.file.quoted[node]
         if inner is None or self.depth > DEEPEST:
             return UNKNOWN
-        self.tolerant += 1
-        self.depth += 1
-        kind = self._meant(inner)
-        self.depth -= 1
-        self.tolerant -= 1
+        with self.ready_for():
+            self.depth += 1
+            kind = self._meant(inner)
+            self.depth -= 1
         return kind
 
     def _meant(self, node: ast.expr, depth: int = 0) -> Type:  # noqa: PLR0911 - one return a form

@@ -61,6 +61,9 @@ class Assignments(Guards, Annotations):
         kind = self.evaluate(node.value) if node.value is not None else UNKNOWN
         if isinstance(node.annotation, ast.Call):  # ``size: FloatProperty(...)``
             declared = self.evaluate(node.annotation)
+        elif self.function is not None and not self.scope.is_class:
+            with self.ready_for():  # Python does not evaluate those of a function's own names
+                declared = self.annotated(node.annotation)
         else:
             declared = self.annotated(node.annotation)
         if kind is UNKNOWN or kind is NONE or (isinstance(kind, Sequence) and kind.element is UNKNOWN):

@@ -23,7 +23,7 @@ from kb_build.flow.types import (
 
 if TYPE_CHECKING:
     import ast
-    from collections.abc import Generator, Iterator, Sequence
+    from collections.abc import Generator, Iterable, Iterator, Sequence
 
     from kb_build.flow.api import Api
     from kb_build.flow.scopes import Loop, Scope
@@ -33,6 +33,7 @@ DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other
 _MOST_BASES = 40
 Reader = FunctionDefinition | SourceFile
+EVERY_ERROR = "BaseException"
 ANY = "*"  # any class, any name: what a script computes
 
 
@@ -69,7 +70,7 @@ class Core:
         self.resolutions = self.file.resolutions
         self.types = self.file.types
         self.loops: list[Loop] = []
-        self.tolerant = 0
+        self.caught: frozenset[str] = frozenset()  # the errors that what is read may raise with no harm
         self.guessing = False
         self.tries = False  # reads again, for one call or one turn of a loop alone
         self.rounds = False  # all modules were read, their functions are
@@ -116,7 +117,7 @@ class Core:
     @contextmanager
     def inside(self, file: SourceFile, scope: Scope, function: FunctionDefinition | None) -> Generator[None]:
         """Reads at another place, and comes back."""
-        outer = self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing
+        outer = self.scope, self.function, self.loops, self.caught, self.statement, self.guessing
         outer_file, dictionaries, types, resolutions = (
             self.file,
             self.dictionaries,
@@ -125,16 +126,26 @@ class Core:
         )
         self._enter(file)
         self.scope, self.function, self.loops = scope, function, []
-        self.tolerant, self.statement, self.guessing, self.dictionaries = 0, None, False, 0
+        self.caught, self.statement, self.guessing, self.dictionaries = frozenset(), None, False, 0
         try:
             yield
         finally:
             self.file, self.types, self.resolutions = outer_file, types, resolutions
             self.dictionaries = dictionaries
-            self.scope, self.function, self.loops, self.tolerant, self.statement, self.guessing = outer
+            self.scope, self.function, self.loops, self.caught, self.statement, self.guessing = outer
 
     def _enter(self, file: SourceFile) -> None:
         self.file, self.types, self.resolutions = file, file.types, file.resolutions
+
+    @contextmanager
+    def ready_for(self, errors: Iterable[str] = (EVERY_ERROR,)) -> Generator[None]:
+        """Reads what may raise some errors, by the names of their classes, with no harm."""
+        outer = self.caught
+        self.caught = outer.union(errors)
+        try:
+            yield
+        finally:
+            self.caught = outer
 
     def bind_target(self, target: ast.expr, kind: Type, value: ast.expr | None = None) -> None:
         """Assigns to a name, an attribute, an item, or several of them."""
@@ -159,11 +170,11 @@ class Core:
         guarded: bool = False,
     ) -> None:
         """Records what a part of the script stands for; a later reading of the same part replaces it."""
+        state = self.scope.state
+        doubted = guarded or state.doubts(name_doubt(value)) or (self.tries and CHOSEN in state.doubted)
         self.resolutions[node] = Resolution(
-            node, kind, value, _once(symbols), _once(missing), _once(possible),
-            sure and not self.guessing,
-            guarded or self.tolerant > 0 or self.scope.state.doubts(name_doubt(value))
-            or (self.tries and CHOSEN in self.scope.state.doubted), self.statement,
+            node, kind, value, _once(symbols), _once(missing), _once(possible), sure and not self.guessing,
+            doubted or bool(self.caught), self.statement, frozenset() if doubted else self.caught,
         )  # fmt: skip
         if missing and not self.tries:
             self._denials.append((self.resolutions, node, self.reader))
@@ -198,7 +209,7 @@ class Core:
         """Whether a text that a name holds surely is what is used here: nothing asks for it, or chooses by it."""
         state = self.scope.state
         is_chosen = CHOSEN in state.doubted or state.doubts(name_doubt(text))
-        return not (self.tolerant or self.guessing or is_chosen)
+        return not (self.caught or self.guessing or is_chosen)
 
     def _known(self, number: int, name: str) -> Type | None:
         if not name:

@@ -83,9 +83,8 @@ class Defining(Expressions):
         self._read_type_parameters(node)
         match children(node):
             case [ast.Name(id=name), *_, ast.expr() as value]:
-                self.tolerant += 1
-                self.evaluate(value)
-                self.tolerant -= 1
+                with self.ready_for():
+                    self.evaluate(value)
                 self.scope.bind(name, UNKNOWN)
             case _:
                 pass
@@ -93,12 +92,11 @@ class Defining(Expressions):
 
     def _read_type_parameters(self, node: ast.stmt) -> None:
         """Evaluates what ``[T: bound]`` and ``type X = value`` name, which Python reads when it is asked for."""
-        self.tolerant += 1
-        for parameter in getattr(node, "type_params", ()):
-            for part in children(parameter):
-                if isinstance(part, ast.expr):
-                    self.evaluate(part)
-        self.tolerant -= 1
+        with self.ready_for():
+            for parameter in getattr(node, "type_params", ()):
+                for part in children(parameter):
+                    if isinstance(part, ast.expr):
+                        self.evaluate(part)
 
     def _base(self, node: ast.expr) -> Type:
         kind = self.evaluate(node)

@@ -132,7 +132,7 @@ class Functions(Parameters, Trials):
     def _comes_surely(self, whole: dict[str, Type]) -> bool:
         """Whether a call surely happens where it is read, with texts that are those of this call."""
         state = self.scope.state
-        if self.tolerant or state.doubts() or CHOSEN in state.doubted or any(map(has_passed, whole.values())):
+        if self.caught or state.doubts() or CHOSEN in state.doubted or any(map(has_passed, whole.values())):
             return False
         texts = (str(text.value) for kind in whole.values() for text in texts_in(kind))
         return not state.doubted or state.doubted.isdisjoint(map(name_doubt, texts))

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import ast
 
+from kb_build.flow.core import EVERY_ERROR
 from kb_build.flow.guards import Guards, assigned_names
 from kb_build.flow.scopes import joined
 from kb_build.flow.types import UNKNOWN, Builtin, Sequence, Tuple, Type, members, union
@@ -30,26 +31,23 @@ class Handlers(Guards, Ways):
 
     def read_try(self, node: ast.Try) -> bool:
         """Reads ``try``: a handler begins anywhere within what it handles."""
-        forgives = [self._forgives(handler) for handler in node.handlers]
-        forgiving = any(forgives)
+        caught = [self._caught(handler) for handler in node.handlers]
         before = self.scope.state
-        self.tolerant += forgiving
-        after = self.way(before.copy(), node.body)
-        self.tolerant -= forgiving
+        with self.ready_for(self._let_pass(node.handlers, caught)):
+            after = self.way(before.copy(), node.body)
         within = joined([before, after or self.scope.state])
         if after is not None and node.orelse:
             after = self.way(after, node.orelse)
         ways = [after]
-        for handler, is_ready in zip(node.handlers, forgives, strict=True):
+        for handler, errors in zip(node.handlers, caught, strict=True):
             self.scope.state = within.copy()
             if handler.name:
                 self.scope.bind(handler.name, UNKNOWN)
             # What is done where a name is lacking may be for another Blender.
-            self.tolerant += is_ready
-            ways.append(self.way(self.scope.state, handler.body))
-            self.tolerant -= is_ready
+            with self.ready_for((EVERY_ERROR,) if errors else ()):
+                ways.append(self.way(self.scope.state, handler.body))
         reached = self.meet(ways, within.copy())
-        if forgiving:
+        if any(caught):
             handled = [statement for handler in node.handlers for statement in handler.body]
             self.tell(assigned_names([*node.body, *node.orelse, *handled]), self.lacked(node.body))
         return self.read_body(node.finalbody) and reached
@@ -60,30 +58,43 @@ class Handlers(Guards, Ways):
             kind = self.evaluate(item.context_expr)
             if item.optional_vars is not None:
                 self.bind_target(item.optional_vars, _entered(kind))
-        forgiving = any(self._suppresses(item.context_expr) for item in node.items)
-        self.tolerant += forgiving
-        reached = self.read_body(node.body)
-        self.tolerant -= forgiving
-        return reached or forgiving
+        suppressed = frozenset(name for item in node.items for name in self._suppressed(item.context_expr))
+        with self.ready_for(suppressed):
+            reached = self.read_body(node.body)
+        return reached or bool(suppressed)
 
-    def _forgives(self, handler: ast.ExceptHandler) -> bool:
-        """Whether a handler is ready for a name that does not exist."""
-        return handler.type is None or self._is_forgiving(handler.type)
+    def _caught(self, handler: ast.ExceptHandler) -> frozenset[str]:
+        """The errors of what a Blender lacks, or their classes, that a handler catches."""
+        return frozenset({EVERY_ERROR}) if handler.type is None else self._errors(handler.type)
 
-    def _suppresses(self, manager: ast.expr) -> bool:
-        """Whether a context manager, which was read, is ready for a name that does not exist.
+    def _let_pass(self, handlers: list[ast.ExceptHandler], caught: list[frozenset[str]]) -> frozenset[str]:
+        """The errors that do not get out of a ``try``: what catches them does not end by raising one.
 
-        ``contextlib.suppress(AttributeError)`` is, and so is what else is given such an error: ``assertRaises``.
+        What is raised in their place may be any, for what is around.
         """
-        return isinstance(manager, ast.Call) and any(map(self._is_forgiving, manager.args))
+        found: frozenset[str] = frozenset()
+        for handler, errors in zip(handlers, caught, strict=True):
+            if not isinstance(last := handler.body[-1], ast.Raise):
+                found |= errors
+            elif self.caught and last.exc is not None:
+                found |= {EVERY_ERROR}
+        return found
 
-    def _is_forgiving(self, errors: ast.expr) -> bool:
-        """Whether one of the classes that an expression stands for is that of a missing name's error."""
+    def _suppressed(self, manager: ast.expr) -> frozenset[str]:
+        """The errors of what a Blender lacks that a context manager, which was read, keeps from getting out.
+
+        ``contextlib.suppress(AttributeError)`` does, and so does what else is given such an error: ``assertRaises``.
+        """
+        given = manager.args if isinstance(manager, ast.Call) else ()
+        return frozenset(name for argument in given for name in self._errors(argument))
+
+    def _errors(self, errors: ast.expr) -> frozenset[str]:
+        """The names of the classes that an expression stands for which are those of such errors."""
         kinds = [*members(self.evaluate(errors))]
         for kind in kinds:  # it grows
             if isinstance(kind, Tuple):
                 kinds += kind.items
-        return any(isinstance(kind, Builtin) and kind.name in _FORGIVING for kind in kinds)
+        return frozenset(kind.name for kind in kinds if isinstance(kind, Builtin) and kind.name in _FORGIVING)
 
 
 def _entered(kind: Type) -> Type:

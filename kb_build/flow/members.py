@@ -132,7 +132,7 @@ class Members(Core):
             found.types.append(union(kinds) if len(kinds) <= MOST_MEMBERS else UNKNOWN)
             return
         if (
-            not _is_pythons(name)
+            not _is_unlisted(kind.cls, name)
             # What scripts may add to is not told of, but for what it had in another Blender.
             and (not self.is_open(kind.cls) or self.api.had(kind.cls, name))
             and not self.is_there_at_times(f"{kind.cls}.{name}")
@@ -264,7 +264,7 @@ class Members(Core):
             )
             return
         found.types.append(self._registered(kind.cls, name) or UNKNOWN)
-        if not _is_pythons(name) and not hasattr(type, name) and not self.is_open(kind.cls):
+        if not _is_unlisted(kind.cls, name) and not hasattr(type, name) and not self.is_open(kind.cls):
             found.missing.append(kind.cls)
 
     def _of_operator(self, kind: Operator, name: str, found: Lookup) -> None:
@@ -492,6 +492,13 @@ def _half_known(path: str) -> bool:
 def _is_pythons(name: str) -> bool:
     """Whether everything has an attribute of this name, or may have."""
     return name in {"bl_rna", "rna_type"} or (name.startswith("__") and name.endswith("__"))
+
+
+def _is_unlisted(cls: str, name: str) -> bool:
+    """Whether a class may have an attribute that its symbols do not tell: one for all, or a private one of a module's
+    class. RNA has no private ones.
+    """
+    return _is_pythons(name) or (name.startswith("_") and not cls.startswith(T))
 
 
 def _python_class(kind: Type) -> type:

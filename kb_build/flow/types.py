@@ -6,6 +6,7 @@ Types are immutable and compare by value. ``None`` as a Python value is :data:`N
 
 from __future__ import annotations
 
+import builtins
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
@@ -379,7 +380,8 @@ class Resolution:
     operator, a socket, ``operator(keyword)`` for a keyword, the property or parameter for a value. ``missing`` are
     the owners that have no such member, ``possible`` the symbols of derived classes that do. ``value`` is the
     value or the name as written. ``sure`` is False where a convention was needed, ``guarded`` is True where the
-    script is ready for the opposite (``hasattr``, ``try``). ``statement`` is the innermost one around it.
+    script is ready for the opposite (``hasattr``, ``try``); ``caught`` are the names of the errors that it catches,
+    where it is ready by nothing else. ``statement`` is the innermost one around it.
 
     Kinds: ``attribute`` and ``store`` (ast.Attribute), ``name`` (an imported or bare name), ``call`` (ast.Call),
     ``keyword`` (ast.keyword), ``value`` (a literal given to an enumeration), ``compared`` (a literal that
@@ -400,3 +402,14 @@ class Resolution:
     sure: bool = True
     guarded: bool = False
     statement: ast.stmt | None = None
+    caught: frozenset[str] = frozenset()
+
+    def is_ready_for(self, *errors: str) -> bool:
+        """Whether the script is ready here for one of some errors of Python's; of any where none is named."""
+        return self.guarded and (not (self.caught and errors) or catches(self.caught, errors))
+
+
+def catches(caught: Iterable[str], errors: Iterable[str]) -> bool:
+    """Whether handlers for some of Python's errors, or classes of errors, catch one of others."""
+    classes = tuple(getattr(builtins, name) for name in caught)
+    return any(issubclass(getattr(builtins, error), classes) for error in errors)

@@ -8,6 +8,7 @@ from kb_check.findings import Finding
 from kb_check.foreign_addons import may_register
 from kb_check.former_values import new_value
 from kb_check.rules.renaming import renaming
+from kb_check.script import REGISTERED
 
 if TYPE_CHECKING:
     from kb_build.flow.types import Resolution
@@ -15,17 +16,23 @@ if TYPE_CHECKING:
     from kb_check.known_names import Lacking
     from kb_check.script import Script
 
-# The kinds of parts of a script that may stand for what an add-on registers.
-_REGISTERED = frozenset({"attribute", "store", "text", "button", "name"})
-
 
 def lacking_finding(
     script: Script, rule: str, row: Resolution, lacking: Lacking, severity: Severity = "error"
 ) -> Finding:
     """The finding for a name that does not exist, with the edit that writes the right one where there is one.
 
-    It is a note where an add-on that the script enables may register such a name.
+    It is a note where an add-on that the script enables may register such a name, and a warning where one does that
+    Blender brings and that is not enabled.
     """
+    if addon := _brought(script, row):
+        told = (
+            f"`{row.missing[0]}` has `{row.value}` only while the add-on `{addon}` is on, which Blender brings and "
+            f"nothing here enables: `addon_utils.enable({addon!r}, default_set=True)`."
+        )
+        return Finding(
+            rule, "warning", script.name_span(row.node), told, lacking.symbol, (), None, absent_paths(row)
+        )
     message = f"{lacking.message} {new_value(script, row, lacking.instead)}".rstrip()
     if addon := _registering(script, row, lacking):
         severity = "note"
@@ -36,9 +43,16 @@ def lacking_finding(
     )  # fmt: skip
 
 
+def _brought(script: Script, row: Resolution) -> str:
+    """The add-on that registers a name, of those that Blender brings; empty for none."""
+    if row.kind not in REGISTERED:
+        return ""
+    return next(filter(None, (script.names.addon_of(owner, row.value) for owner in row.missing)), "")
+
+
 def _registering(script: Script, row: Resolution, lacking: Lacking) -> str:
     """The add-on that may register a name: no version has had it, and it is no misspelling; empty for none."""
-    if lacking.removed or lacking.replacement or row.kind not in _REGISTERED:
+    if lacking.removed or lacking.replacement or row.kind not in REGISTERED:
         return ""
     is_open = row.missing and all(may_register(script.api, owner) for owner in row.missing)
     return script.package.foreign_addon if is_open else ""

@@ -7,6 +7,9 @@ attribute that holds the declaration: there is no property to set, to draw or to
 class Settings(bpy.types.PropertyGroup):
     count = bpy.props.IntProperty()  # reported: count: bpy.props.IntProperty()
     size: bpy.props.FloatProperty  # reported: it is not called
+
+
+Settings.kind = bpy.props.StringProperty()  # reported, before the class is registered
 ```
 
 Panels, menus and headers have no properties of their own: what is annotated there is dropped as well, which is a
@@ -20,8 +23,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.trees import walk
 from kb_build.flow.types import Function
 from kb_check.findings import Edit, Finding, Fix, Span
+from kb_check.literals import times_bound
 from kb_check.made_here import callee_path
 from kb_check.own_classes import own_classes
 from kb_check.registered_types import MAKE_PROPERTIES
@@ -53,6 +58,42 @@ def _check(script: Script) -> Iterator[Finding]:
                     yield from _annotated(script, own, name, annotation, value)
                 case _:
                     pass
+    yield from _given_later(script)
+
+
+def _given_later(script: Script) -> Iterator[Finding]:
+    """What is assigned to a class of the script behind its body: one that is registered by then would take it."""
+    own = {one.node.name: one for one in own_classes(script)}
+    for statement in _run_first(script.tree.body):
+        if _may_register(statement):
+            return
+        match statement:
+            case ast.Assign(
+                targets=[ast.Attribute(value=ast.Name(id=name)) as target], value=ast.Call() as call
+            ) if name in own and times_bound(script)[name] == 1 and _declares(script, call):
+                told = f"`{target.attr}` of `{name}` makes no property: its class is not registered yet"
+                if own[name].path in MAKE_PROPERTIES:
+                    told += f". Write `{target.attr}: {ast.unparse(call.func)}(...)` in its body"
+                yield Finding(RULE.id, "error", script.name_span(target), f"{told}.", own[name].path)
+            case _:
+                pass
+
+
+def _run_first(body: list[ast.stmt]) -> Iterator[ast.stmt]:
+    """The statements that run when a script is, and are no definitions: those in the bodies of classes as well."""
+    for statement in body:
+        if isinstance(statement, ast.ClassDef):
+            yield from _run_first(statement.body)
+        elif not isinstance(statement, (ast.FunctionDef, ast.AsyncFunctionDef)):
+            yield statement
+
+
+def _may_register(statement: ast.stmt) -> bool:
+    """Whether a statement calls what may register classes, by its name."""
+    return any(
+        isinstance(node, ast.Call) and "register" in ast.unparse(node.func).lower()
+        for node in walk(statement)
+    )
 
 
 def _declares(script: Script, node: ast.expr | None) -> bool:

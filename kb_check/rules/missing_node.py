@@ -33,6 +33,7 @@ from kb_check.made_here import (
     texts_but_keys,
 )
 from kb_check.mode_keeping import is_harmless
+from kb_check.raised import LACKS_KEY
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.tried import is_tried
@@ -88,7 +89,7 @@ def _missing(script: Script, statement: ast.stmt, cleared: Mapping[str, set[str]
         match node:
             case ast.Subscript(value=nodes, slice=ast.Constant(value=str(key)), ctx=ast.Load()):
                 made = cleared.get(ast.unparse(nodes))
-                if made is not None and not _is_named(key, made) and not is_tried(script, node):
+                if made is not None and not _is_named(key, made) and not is_tried(script, node, LACKS_KEY):
                     told = f"There is no node {key!r} behind `{ast.unparse(nodes)}.clear()`: `nodes.new` makes one."
                     yield Finding(RULE.id, "error", script.span(node), told, _NODES)
             case _:
@@ -149,7 +150,7 @@ def _of_new(script: Script) -> Iterator[Finding]:
         made = _all_made(script) if names else None
         if made is None or _is_named(key, (*names, *made)) or key in texts_but_keys(script):
             continue
-        if not is_tried(script, node):
+        if not is_tried(script, node, LACKS_KEY):
             told = f"A new one has no node {key!r}, but {' and '.join(map(repr, names))}."
             yield Finding(RULE.id, "error", script.span(node), told, _NODES)
 

@@ -9,6 +9,7 @@ ob.data.vertices = []  # reported: mesh.from_pydata(...)
 bpy.context.object = ob  # reported: bpy.context.view_layer.objects.active = ob
 cross = strips.new_effect("Cross", "CROSS", 3, 1, input1=first, input2=second)
 cross.left_handle = 10  # reported: its inputs decide
+mesh.vertices[0].normal.x = 1  # reported: parts of what is read-only are, too
 mesh.texspace_size = (1, 1, 1)  # reported, unless the script names `use_auto_texspace`, which is on at first
 ```
 """
@@ -24,7 +25,8 @@ from kb_build.records import FREE_ON
 from kb_build.symbol_lines import freed_by, is_locked
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import is_of_instance
-from kb_check.made_here import named_words
+from kb_check.made_here import alias, named_words
+from kb_check.raised import LACKS
 from kb_check.rule import Rule
 from kb_serve.recognise.changed_by import changed_by
 
@@ -57,7 +59,7 @@ def _check(script: Script) -> Iterator[Finding]:
         if row.kind == "attribute" and not _is_deleted(row):
             continue
         paths = row.symbols or row.possible
-        if not paths or not row.sure or row.guarded or (row.missing and not row.possible):
+        if not paths or not row.sure or row.is_ready_for(*LACKS) or (row.missing and not row.possible):
             continue
         symbols = [script.api.symbols.symbol(path) for path in paths]
         if row.kind == "store" and len(paths) == 1 and paths[0].startswith(_HANDLERS):
@@ -79,6 +81,32 @@ def _check(script: Script) -> Iterator[Finding]:
             yield Finding(RULE.id, "error", script.name_span(row.node), told, path)
         elif row.kind == "store":
             yield from _locked(script, row, symbols)
+    yield from _of_parts(script)
+
+
+def _of_parts(script: Script) -> Iterator[Finding]:
+    """Assignments to the items and the members of vectors and arrays that are read-only."""
+    for node in script.all(ast.Attribute, ast.Subscript):
+        if not isinstance(node.ctx, ast.Store):
+            continue
+        row = script.analysis.resolutions.get(alias(script, node.value))
+        if row is None or row.kind != "attribute" or not row.sure or row.missing or not row.symbols:
+            continue
+        own = script.analysis.resolutions.get(node)
+        if row.is_ready_for(*LACKS) or (own is not None and own.is_ready_for(*LACKS)):
+            continue
+        symbols = [script.api.symbols.symbol(path) for path in row.symbols]
+        if all(symbol is not None and _is_fixed_array(symbol) for symbol in symbols):
+            path = row.symbols[0]
+            told = f"`{path}` is read-only, and so are its parts. Change a copy of it, or what it is made of."
+            yield Finding(RULE.id, "error", script.span(node), told, path)
+
+
+def _is_fixed_array(symbol: Symbol) -> bool:
+    """Whether Blender writes what is assigned to a part into a property that cannot be assigned. A whole row of a
+    matrix it lets be assigned, and forgets.
+    """
+    return symbol.kind == "property" and "readonly" in symbol.flags and len(symbol.array) == 1
 
 
 def _locked(script: Script, row: Resolution, symbols: list[Symbol | None]) -> Iterator[Finding]:

@@ -33,7 +33,7 @@ from kb_build.flow.types import Instance
 from kb_build.index.analysis import words
 from kb_build.records import NOT_TAKEN, last_name
 from kb_build.symbol_lines import usual_default
-from kb_check.calls import calls
+from kb_check.calls import calls_not_ready_for
 from kb_check.findings import Finding
 from kb_check.made_here import (
     alias,
@@ -47,6 +47,7 @@ from kb_check.made_here import (
 )
 from kb_check.node_trees import is_refused_in, tree_of
 from kb_check.opening import OPENING
+from kb_check.raised import REFUSES_ENUM
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.settings_before import made_just_before, set_before
@@ -105,7 +106,7 @@ def _check(script: Script) -> Iterator[Finding]:
             yield _finding(script, statement.value, item, symbol.path, f"this node is in a {tree}")
         elif kind := _other_kind(script, node.value, item):
             yield _finding(script, statement.value, item, symbol.path, f"this is a {kind}")
-    for call in calls(script):
+    for call in calls_not_ready_for(script, REFUSES_ENUM):
         function = call.node.func
         if isinstance(function, ast.Attribute) and call.callee.symbol.kind == "function":
             for parameter, given in call.arguments():
@@ -115,7 +116,13 @@ def _check(script: Script) -> Iterator[Finding]:
 
 
 def _is_certain(row: Resolution) -> bool:
-    return row.sure and not row.guarded and not row.missing and not row.possible and len(row.symbols) == 1
+    return (
+        row.sure
+        and not row.is_ready_for(*REFUSES_ENUM)
+        and not row.missing
+        and not row.possible
+        and len(row.symbols) == 1
+    )
 
 
 def _item(items: Iterable[EnumItem], value: ast.expr) -> EnumItem | None:

@@ -13,10 +13,11 @@ mesh.vertices.add(1).co = (0, 0, 0)  # reported: the call returns nothing
 ```
 
 A note, no error: what an add-on may register that the script enables and that nobody can look into here. A warning: an
-object's member of a parameter that nothing but its annotation says is the object's data.
+object's member of a parameter, or of an element of one, that nothing but its annotation says is the object's data, and
+what no class has of a parameter that nothing but its annotation says is Blender's.
 
-Not reported: what stands behind ``hasattr``, in a ``try`` that catches AttributeError, or in a branch for another
-version (``if bpy.app.version < (2, 80, 0)``).
+Not reported: what stands behind ``hasattr``, in a ``try`` that catches AttributeError and goes on, or in a branch for
+another version (``if bpy.app.version < (2, 80, 0)``).
 """
 
 from __future__ import annotations
@@ -28,10 +29,11 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Plain, members
-from kb_check.annotated_parameters import is_annotated
+from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.calls import nothing_from
 from kb_check.findings import Finding, Fix
 from kb_check.made_here import bindings, callee_path, member_path, words_of
+from kb_check.raised import LACKS
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
@@ -65,8 +67,8 @@ def _check(script: Script) -> Iterator[Finding]:
             had = _owner_that_had(script, row, owner)
             lacking = script.names.member(had, row.value, reading=row.kind != "store")
             level = "warning" if lost or _is_let_pass(row) else "error"
-            if not lacking.removed and _is_of_object(script, row, owner):
-                level, lacking = "warning", _confused(row, owner, lacking)
+            if not lacking.removed and _is_of_other(script, row, owner, lacking):
+                level, lacking = "warning", _confused(script, row, owner, lacking)
             elif not lacking.removed and (other := elsewhere(row.missing[0], row.value, script.names.reader)):
                 told = f"`{row.missing[0]}` has no `{row.value}`. {other.how}"
                 lacking = replace(lacking, message=told, instead=(other.path,), replacement="")
@@ -79,7 +81,7 @@ def _check(script: Script) -> Iterator[Finding]:
 def _of_sockets(script: Script) -> Iterator[Finding]:
     """Values of sockets that have none, as settings of their node have it: those of geometry, say."""
     for node in script.all(ast.Attribute):
-        if node.attr != _VALUE or script.analysis.resolutions.get(node) or is_tried(script, node):
+        if node.attr != _VALUE or script.analysis.resolutions.get(node) or is_tried(script, node, LACKS):
             continue
         found = socket_classes(script, node.value)
         if found is not None and not any(script.api.member(cls, _VALUE) for cls in found.classes):
@@ -90,15 +92,19 @@ def _of_sockets(script: Script) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _is_of_object(script: Script, row: Resolution, owner: str) -> bool:
-    """Whether what is annotated as an object's data is used as the object: one of the two is wrong."""
+def _is_of_other(script: Script, row: Resolution, owner: str, lacking: Lacking) -> bool:
+    """Whether what is annotated as one thing is used as another: an object's data as the object, or anything as what
+    the API knows nothing of. One of the two is wrong.
+    """
     node = _owner_node(row)
-    return (
-        node is not None
-        and owner.removeprefix(T) in _OF_OBJECTS
-        and script.api.member(_OBJECT, row.value) is not None
-        and is_annotated(script, node, owner)
-    )
+    is_of_none = not lacking.replacement and script.names.is_nowhere(row.value)
+    is_other = _is_of_object(script, row, owner) or is_of_none
+    return node is not None and is_other and is_annotated(script, node, owner)
+
+
+def _is_of_object(script: Script, row: Resolution, owner: str) -> bool:
+    """Whether an object's data lacks what the object has."""
+    return owner.removeprefix(T) in _OF_OBJECTS and script.api.member(_OBJECT, row.value) is not None
 
 
 def _owner_node(row: Resolution) -> ast.expr | None:
@@ -114,12 +120,14 @@ def _owner_node(row: Resolution) -> ast.expr | None:
     return None
 
 
-def _confused(row: Resolution, owner: str, lacking: Lacking) -> Lacking:
+def _confused(script: Script, row: Resolution, owner: str, lacking: Lacking) -> Lacking:
     node = _owner_node(row)
-    name = ast.unparse(node) if node else ""
-    message = (
-        f"`{name}` is annotated as `{owner}`, which has no `{row.value}`; `{_OBJECT}` has it: the annotation or the"
-        f" use is wrong. Annotate what is an object as `{_OBJECT}`, or pass its `data` and use that."
+    message = f"`{ast.unparse(node) if node else ''}` is annotated as `{owner}`, which has no `{row.value}`"
+    if not _is_of_object(script, row, owner):
+        return replace(lacking, message=f"{message}, as nothing of Blender's has: {ONE_IS_WRONG}.")
+    message += (
+        f"; `{_OBJECT}` has it: {ONE_IS_WRONG}. Annotate what is an object as `{_OBJECT}`, or pass its `data` and"
+        " use that."
     )
     return replace(lacking, message=message, instead=(f"{_OBJECT}.{row.value}",))
 
@@ -132,7 +140,11 @@ def _of_libraries(script: Script) -> Iterator[Finding]:
     names = {name for name in given if given.count(name) == len(bindings(script).get(name, ()))}
     for part in script.all(ast.Attribute) if names else ():
         if isinstance(part.value, ast.Name) and part.value.id in names and script.names.had(_DATA, part.attr):
-            if script.type_of(part.value) is None or part.attr in _asked(script) or is_tried(script, part):
+            if (
+                script.type_of(part.value) is None
+                or part.attr in _asked(script)
+                or is_tried(script, part, LACKS)
+            ):
                 continue
             lacking = script.names.member(_DATA, part.attr)
             owner, _, name = lacking.replacement.rpartition(".")
@@ -165,7 +177,7 @@ def _of_python(script: Script) -> Iterator[Finding]:
             path = member_path(script, node.value) if isinstance(node.value, ast.Attribute) else ""
             kind = _scalar(script, path, node)
             told = f"`{path}` is one {kind}: it has no `{node.attr}`." if kind else ""
-        if told and not is_tried(script, node) and node.attr not in _asked(script):
+        if told and not is_tried(script, node, LACKS) and node.attr not in _asked(script):
             yield Finding(RULE.id, "error", script.name_span(node), told, path)
 
 

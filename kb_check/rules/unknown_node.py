@@ -25,10 +25,11 @@ from typing import TYPE_CHECKING
 from kb_build.flow.facts import CLASS_NAMES, T
 from kb_build.records import last_name
 from kb_build.symbol_lines import NODE_FAMILIES, alike_nodes
-from kb_check.calls import CallSite, calls
+from kb_check.calls import CallSite, calls_not_ready_for
 from kb_check.findings import Finding, Fix
 from kb_check.mode_keeping import own_names
 from kb_check.node_trees import tree_added_to
+from kb_check.raised import refusing_class
 from kb_check.rule import Rule
 from kb_check.script import once_for_each, once_per_script
 
@@ -44,9 +45,9 @@ _NODE = f"{T}Node"
 
 
 def _check(script: Script) -> Iterator[Finding]:
-    for call in calls(script):
-        wanted = CLASS_NAMES.get(call.callee.symbol.path)
-        for parameter, node in call.arguments() if wanted else ():
+    for call in _asking(script):
+        wanted = CLASS_NAMES[call.callee.symbol.path]
+        for parameter, node in call.arguments():
             if (
                 parameter.name != wanted
                 or not isinstance(node, ast.Constant)
@@ -75,6 +76,14 @@ def _check(script: Script) -> Iterator[Finding]:
         is_own = name in script.own_identifiers or script.package.has(("bpy.types",), name)
         if not is_own and not script.names.still_works(f"{T}{name}"):
             yield from _unknown(script, row.node, name)
+
+
+def _asking(script: Script) -> Iterator[CallSite]:
+    """The calls that name a class."""
+    for path in CLASS_NAMES:
+        for call in calls_not_ready_for(script, refusing_class(path)):
+            if call.callee.symbol.path == path:
+                yield call
 
 
 def _unknown(script: Script, node: ast.AST, name: str) -> Iterator[Finding]:

@@ -39,6 +39,7 @@ from kb_check.findings import Finding
 from kb_check.group_inputs import makes_all_groups, named_inputs
 from kb_check.made_here import is_new
 from kb_check.own_sockets import lacking_own
+from kb_check.raised import LACKS_KEY
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.socket_modes import is_internal
@@ -68,7 +69,7 @@ def _check(script: Script) -> Iterator[Finding]:
         )
     for row in script.resolutions("item"):
         sockets = [symbol for path in row.symbols if (symbol := script.api.symbols.symbol(path))]
-        certain = sockets and row.sure and not row.guarded and not row.missing
+        certain = sockets and row.sure and not row.is_ready_for(*LACKS_KEY) and not row.missing
         if certain and all(_is_only_identifier(socket, row.value) for socket in sockets):
             first = sockets[0]
             yield Finding(

@@ -26,12 +26,13 @@ from kb_build.flow.facts import T
 from kb_build.flow.types import UNKNOWN, Resolution
 from kb_build.records import NOT_TAKEN, last_name
 from kb_build.symbol_lines import NODE_FAMILIES, never_taken
-from kb_check.calls import calls
+from kb_check.calls import calls_not_ready_for
 from kb_check.findings import Finding
 from kb_check.given import assigned, class_values
 from kb_check.literals import written
 from kb_check.made_here import knows_all
 from kb_check.node_trees import is_refused_in, tree_of
+from kb_check.raised import REFUSES_ENUM
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
@@ -75,7 +76,7 @@ def _computed(script: Script) -> Iterator[Finding]:
     for row in script.resolutions("store"):
         symbol = script.api.symbols.symbol(row.symbols[0]) if len(row.symbols) == 1 else None
         value = assigned(row.statement, row.node) if isinstance(row.node, ast.Attribute) else None
-        is_sure = row.sure and not row.guarded and not row.missing
+        is_sure = row.sure and not row.is_ready_for(*REFUSES_ENUM) and not row.missing
         if not symbol or not symbol.enum_computed or not isinstance(value, ast.Constant) or not is_sure:
             continue
         text, values = value.value, script.api.values_of(symbol.path)
@@ -92,7 +93,7 @@ def _asked(script: Script) -> Iterator[Finding]:
 
     What the script names elsewhere too, it may make itself: an orientation, say.
     """
-    for call in calls(script):
+    for call in calls_not_ready_for(script, REFUSES_ENUM):
         for parameter, given in call.arguments() if call.callee.symbol.kind == "operator" else ():
             text = given.value if isinstance(given, ast.Constant) else None
             asked = parameter.values_asked
@@ -100,7 +101,7 @@ def _asked(script: Script) -> Iterator[Finding]:
                 continue
             if not asked or not text.isupper() or not all(map(str.isupper, asked)):
                 continue  # names are people's own: of repositories, of trees
-            if _times(script)[text] > 1 or not knows_all(script) or is_tried(script, call.node):
+            if _times(script)[text] > 1 or not knows_all(script) or is_tried(script, call.node, REFUSES_ENUM):
                 continue
             path = f"{call.callee.symbol.path}({parameter.name})"
             told = ", ".join(f"`{one}`" for one in asked[:8]) + (" …" if len(asked) > 8 else "")
@@ -146,7 +147,11 @@ def _of_icons(script: Script) -> Iterator[Finding]:
         owner = f"{_LAYOUT}.{call.func.attr}(icon)"
         for node in constants(given[0]):
             value = node.value
-            if not isinstance(value, str) or script.type_of(node) is None or is_tried(script, node):
+            if (
+                not isinstance(value, str)
+                or script.type_of(node) is None
+                or is_tried(script, node, REFUSES_ENUM)
+            ):
                 continue
             if script.names.path(f"{owner}:{value}") is not None:
                 values = script.api.values_of(owner)
@@ -156,7 +161,7 @@ def _of_icons(script: Script) -> Iterator[Finding]:
 
 def _of_trees(script: Script) -> Iterator[Finding]:
     """The classes of node trees, given by their names."""
-    for call in calls(script):
+    for call in calls_not_ready_for(script, REFUSES_ENUM):
         path = call.callee.symbol.path
         node = call.argument("type") if path == f"{T}BlendDataNodeTrees.new" else None
         if not isinstance(node, ast.Constant) or not isinstance(value := node.value, str):

@@ -24,7 +24,8 @@ class Grow(bpy.types.Operator):
     bl_options = "REGISTER"  # reported: {"REGISTER"}
 ```
 
-Not reported: values whose type is not sure, and what may be None only at times.
+A warning: a parameter that nothing but its annotation says is of the wrong type. Not reported: values whose type is not
+sure, and what may be None only at times.
 """
 
 from __future__ import annotations
@@ -35,6 +36,7 @@ from typing import TYPE_CHECKING
 from kb_build.flow.api import GROUPS
 from kb_build.flow.facts import OBJECT_DATA, T
 from kb_build.flow.types import Collection, Instance, Plain
+from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.conversions import misfit
 from kb_check.documented import layer_misfit
 from kb_check.findings import Edit, Finding, Fix, Span
@@ -73,6 +75,14 @@ def _check(script: Script) -> Iterator[Finding]:
             continue
         wrong, taker = found[0], given.takers[0]
         assert wrong is not None
+        kind = script.type_of(given.node)
+        if isinstance(kind, Instance) and is_annotated(script, given.node, kind.cls):
+            yield Finding(
+                RULE.id, "warning", script.span(given.node),
+                f"`{ast.unparse(given.node)}` is annotated as `{kind.cls}`, and `{taker.path}`{given.why} takes"
+                f" {wrong.takes}: {ONE_IS_WRONG}.{_advice(script, taker, given.node)}", taker.path,
+            )  # fmt: skip
+            continue
         yield Finding(
             RULE.id, "error", script.span(given.node),
             f"`{taker.path}`{given.why} takes {wrong.takes}, not {wrong.given}.{_advice(script, taker, given.node)}",

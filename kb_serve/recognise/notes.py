@@ -30,6 +30,8 @@ _NOTHING = "Nothing takes its place."
 _INTERFACE = re.compile(
     r"[A-Z0-9_]+_[A-Z]{2,3}_"
 )  # of whose classes the history has those alone that scripts use
+# The owners that get more while Blender runs → what gives it to them.
+_ASIDE = {"bpy.ops": "add-ons", "bpy.types": "add-ons and custom properties"}
 _UNLISTED = (
     "_",
     "addon_utils",
@@ -168,8 +170,7 @@ class Notes:
     def _lacks(self, missing: MissingName) -> str:
         """A sentence on what a class does not have, and whether it ever had it."""
         never = self.never(missing.owner, missing.name) if missing.sure else ""
-        aside = " (add-ons and custom properties aside)" if never else ""
-        return f"`{missing.owner}` has no `{missing.name}`{never}{aside}."
+        return f"`{missing.owner}` has no `{missing.name}`{never}."
 
     def never(self, owner: str, name: str) -> str:
         """Since when a class is known not to have had a name, as the end of a sentence; "" where that is not known.
@@ -184,4 +185,5 @@ class Notes:
             owners = {found.owner for found in self._reader.by_name(name)} - {owner, STRUCT}
             if any(self._reader.subclasses(other) for other in owners):
                 return ""
-        return f", and never had it from {self._reader.since(owner) or versions[0]} to {versions[-1]}"
+        aside = next((f" ({told} aside)" for start, told in _ASIDE.items() if owner.startswith(start)), "")
+        return f", and never had it from {self._reader.since(owner) or versions[0]} to {versions[-1]}{aside}"

@@ -16,6 +16,7 @@ import traceback
 import bpy
 
 from . import (
+    addon_names,
     context,
     left_out,
     modules,
@@ -99,13 +100,15 @@ def start_beside(_write, found):
             undo_steps.find_all(write)
 
         found["refusals"] = Beside("refusals", tried)
+        found["addons"] = Beside("addons", addon_names.write_all)
         found["needs"] = Beside("needs", lambda write: operator_needs.find_alone(write, skipped))
 
 
-def write_refusals(write, found):
+def write_begun(write, found):
     """What was begun there."""
-    if "refusals" in found:
-        found["refusals"].into(write)
+    for step in ("refusals", "addons"):
+        if step in found:
+            found[step].into(write)
 
 
 STEPS = (
@@ -144,7 +147,7 @@ STEPS = (
     ),
     ("neighbours", lambda write, found: found["neighbours"].write(write)),
     ("instances", lambda write, found: found["observer"].write(write)),
-    ("refusals", write_refusals),
+    ("refusals", write_begun),
 )
 
 

@@ -87,10 +87,34 @@ def test_packages_of_no_project_and_of_environments_are_not_read_along(tree: Pat
     (tree / "env/b").mkdir()
     (tree / "env/b/__init__.py").touch()
     assert groups(tree, "env/a.py") == [["env/a.py"]]
+    _without_project(tree)
+    assert groups(tree, "loose.py") == [["loose.py"]]
+
+
+def _without_project(tree: Path) -> None:
     (tree / "pyproject.toml").unlink()
     (tree / ".git/a.py").unlink()
     (tree / ".git").rmdir()
-    assert groups(tree, "loose.py") == [["loose.py"]]
+
+
+@pytest.mark.parametrize("code", ["from addon import a", 'addon_utils.enable("addon")'])
+def test_what_is_named_together_is_one_project(tree: Path, code: str) -> None:
+    _without_project(tree)
+    (tree / "scripts/e.py").write_text(code)
+    package = ["addon/__init__.py", "addon/a.py", "addon/sub/b.py"]
+    assert [*package, "scripts/e.py"] in groups(tree)
+    assert groups(tree, "addon", "scripts/e.py") == [[*package, "scripts/e.py"], ["addon/c.ipynb"]]
+    assert groups(tree, "scripts/e.py") == [["scripts/e.py"]]
+
+
+def test_a_word_that_is_also_a_packages_name_joins_no_projects(tree: Path) -> None:
+    _without_project(tree)
+    (tree / "scripts/e.py").write_text("addon = 1\n")
+    assert ["scripts/e.py"] in groups(tree)
+    (tree / "scripts/e.py").write_text("import addon\n")
+    (tree / "other/addon").mkdir(parents=True)
+    (tree / "other/addon/__init__.py").touch()
+    assert ["scripts/e.py"] in groups(tree)
 
 
 @pytest.mark.parametrize("between", ["pytest-of-root", "open"])

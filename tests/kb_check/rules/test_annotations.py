@@ -19,13 +19,17 @@ def f(a: "bpy.types.NodeSocketInterface", *b: 'bpy.types.Objekt') -> "list[bpy.t
 x: "bpy.types.NodeSocketInterface" = None
 y: bpy.types.NodeSocketInterface = None
 def g(a: bpy.types.NodeSocketInterface): pass
+def h(): a: bpy.types.NodeSocketInterface = None; h.x: bpy.types.NodeSocketInterface = None
+h()
+class C: a: bpy.types.NodeSocketInterface = None
+def i(): exec("class D:  a: bpy.types.NodeSocketInterface = None")
 """
 
 
 def test_a_quoted_annotation_is_not_read(rule_checker: Checker, tmp_path: Path) -> None:
     lines = _NAMES.splitlines()
     refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
-    assert [one.span.line for one in rule_checker.check(_NAMES)] == refused == [4, 5]
+    assert [one.span.line for one in rule_checker.check(_NAMES)] == refused == [4, 5, 8]
 
 
 @pytest.mark.parametrize(
@@ -156,7 +160,7 @@ def test_the_object_of_what_is_annotated_as_its_data_is_a_doubt(
 @pytest.mark.parametrize(
     ("annotation", "use"),
     [
-        ("bpy.types.Camera", "return camera.zorn"),  # no object has it
+        ("bpy.types.Object", "return camera.locaton"),  # a misspelling
         ("bpy.types.Camera", "camera.draw_size = 1"),  # a camera had it
         ("bpy.types.Camera", "camera = bpy.data.cameras['a']; return camera.location"),
         ("bpy.types.ID", "return camera.location if isinstance(camera, bpy.types.Camera) else None"),
@@ -167,6 +171,41 @@ def test_what_more_than_the_annotation_tells_is_an_error(
     rule_checker: Checker, annotation: str, use: str
 ) -> None:
     (finding,) = rule_checker.check(_CONFUSED.format(annotation=annotation, use=use))
+    assert finding.severity == "error"
+
+
+@pytest.mark.parametrize(
+    ("annotation", "use"),
+    [
+        ("bpy.types.Camera", "return camera.zorn"),
+        ("bpy.types.Camera", "camera.set_zorn(place)"),
+        ("List[bpy.types.Camera]", "for each in camera: each.zorn()"),
+        ("list[bpy.types.Camera]", "return [each.matrix_world for each in camera if each.name]"),
+        ("List[List[bpy.types.Camera]]", "for some in camera:\n        for each in some: each.zorn()"),
+        ("list[bpy.types.Camera]", "return camera[0].zorn"),
+        ("bpy.types.Camera", "place.new(camera.zorn)"),
+        ("bpy.types.Armature", "bpy.context.object.constraints.new('IK').target = camera"),
+        ("bpy.types.Mesh", "bpy.context.collection.objects.link(camera)"),
+        ("list[bpy.types.Mesh]", "for each in camera: bpy.context.collection.objects.link(each)"),
+    ],
+)
+def test_what_an_annotation_alone_tells_is_a_doubt(rule_checker: Checker, annotation: str, use: str) -> None:
+    code = "from typing import List\n" + _CONFUSED.format(annotation=annotation, use=use)
+    (finding,) = rule_checker.check(code)
+    assert finding.severity == "warning"
+    assert "the annotation or the use is wrong" in finding.message
+
+
+@pytest.mark.parametrize(
+    "use",
+    [
+        "for camera in bpy.data.cameras: camera.zorn()",
+        "camera = bpy.data.cameras[0]; return camera.zorn",
+        "camera = bpy.data.cameras[0]; bpy.context.collection.objects.link(camera)",
+    ],
+)
+def test_what_is_given_again_is_no_parameter(rule_checker: Checker, use: str) -> None:
+    (finding,) = rule_checker.check(_CONFUSED.format(annotation="bpy.types.Camera", use=use))
     assert finding.severity == "error"
 
 

@@ -31,3 +31,43 @@ def test_what_is_locked_is_found_as_blender_refuses_it(script: str, check: Check
     found = check("read-only", script)
     assert [finding.severity for finding in found] == [_SCRIPTS[script]] * bool(_SCRIPTS[script])
     assert all(finding.span.line == len(script.splitlines()) for finding in found)
+
+
+_PARTS: str = """\
+import bpy
+mesh = bpy.data.meshes.new("a")
+mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
+mesh.calc_loop_triangles()
+ob = bpy.data.objects.new("a", mesh)
+mesh.loops[0].normal[:] = (0, 0, 1)
+mesh.loops[0].normal[0] = 1
+mesh.loops[0].normal.x = 1
+mesh.loops[0].normal.xy = (1, 2)
+mesh.loops[0].normal.z += 1
+mesh.polygons[0].center[0] = 2
+mesh.loop_triangles[0].normal.x = 1
+mesh.vertex_normals[0].vector.x = 1
+normal = mesh.vertices[0].normal; normal[0] = 1
+normal_copy = mesh.vertices[0].normal.copy(); normal_copy[0] = 1
+mesh.vertices[0].co.x = 1
+mesh.vertices[0].co[:] = (1, 1, 1)
+mesh.polygons[0].vertices[0] = 1
+ob.location.x = 1
+ob.matrix_world[0][3] = 1
+ob.matrix_world.translation.x = 3
+ob.color[0] = 1
+"""
+
+
+@pytest.mark.blender
+def test_parts_of_what_is_read_only_are(check: Check, tmp_path: Path) -> None:
+    lines = _PARTS.splitlines()
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    assert [finding.span.line for finding in check("read-only", _PARTS)] == refused
+    assert len(refused) == 9
+    tried = (
+        _PARTS.partition("mesh.loops")[0]
+        + "try:\n    mesh.loops[0].normal.x = 1\nexcept AttributeError: pass"
+    )
+    assert not run_statements(tmp_path, [tried])[0][0]
+    assert check("read-only", tried) == []

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 from classes_in_blender import found_parts, parts_of, refused_parts
+from statements_in_blender import run_statements
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -103,3 +104,28 @@ def test_what_is_lost_is_reported_and_nothing_else(check: Check, tmp_path: Path)
 )
 def test_what_is_no_lost_property_is_left_alone(check: Check, code: str) -> None:
     assert not check("lost-property", f"import bpy\nfrom bpy.props import IntProperty\n{code}\n")
+
+
+_LATER = {
+    "Settings.count = bpy.props.IntProperty()\nbpy.utils.register_class(Settings)": True,
+    "class Other:\n    Settings.count = bpy.props.IntProperty()\nbpy.utils.register_class(Settings)": True,
+    "bpy.utils.register_class(Settings)\nSettings.count = bpy.props.IntProperty()": False,
+    "def register():\n    bpy.utils.register_class(Settings)\n    Settings.count = bpy.props.IntProperty()\n"
+    "register()": False,
+    "Settings.__annotations__['count'] = bpy.props.IntProperty()\nbpy.utils.register_class(Settings)": False,
+    "Settings.count = 1\nSettings.count: bpy.props.IntProperty()\nbpy.utils.register_class(Settings)": False,
+}  # fmt: skip
+_GROUP = "import bpy\nclass Settings(bpy.types.PropertyGroup):\n    other: bpy.props.IntProperty()\n"
+_USE = "\nbpy.types.Scene.mine = bpy.props.PointerProperty(type=Settings)\nbpy.context.scene.mine.count + 1"
+
+
+@pytest.mark.parametrize("code", _LATER)
+def test_what_is_given_to_a_class_before_it_is_registered_is_lost(
+    check: Check, tmp_path: Path, code: str
+) -> None:
+    (row,) = run_statements(tmp_path, [_GROUP + code + _USE])
+    is_lost = _LATER[code]
+    assert ("_PropertyDeferred" in row[0]) is is_lost
+    assert [finding.span.line for finding in check("lost-property", _GROUP + code)] == (
+        [4 + code.startswith("class")] * is_lost
+    )

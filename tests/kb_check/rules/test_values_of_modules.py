@@ -126,3 +126,25 @@ def test_an_iterable_of_an_annotation_may_be_a_list(rule_checker: Checker) -> No
     )
     assert rule_checker.check(code, rules=_RULES) == []
     assert len(rule_checker.check(code.replace("verts=verts", "verts=set(verts)"), rules=_RULES)) == 1
+
+
+_PRIVATE: str = """\
+import bpy
+from bpy_extras.node_shader_utils import PrincipledBSDFWrapper
+material = bpy.data.materials.new("x")
+wrapper = PrincipledBSDFWrapper(material, is_readonly=False)
+wrapper._grid_to_location(1, 2, ref_node=wrapper.node_principled_bsdf)
+wrapper._textures
+PrincipledBSDFWrapper._col_size
+wrapper.grid_to_location
+material._textures
+bpy.types.Material._textures
+"""
+
+
+def test_private_names_of_modules_classes_are_unknown(rule_checker: Checker, tmp_path: Path) -> None:
+    lines = _PRIVATE.splitlines()
+    refused = [at for at, (error, *_) in enumerate(run_statements(tmp_path, lines), 1) if error]
+    assert refused == [8, 9, 10]
+    found = rule_checker.check(_PRIVATE, rules=["unknown-attribute"])
+    assert [finding.span.line for finding in found] == [8, 9, 10]

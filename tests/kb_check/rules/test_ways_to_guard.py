@@ -274,3 +274,59 @@ def test_another_file_may_ask(rule_checker: Checker, compat: str, code: str) -> 
     files = {"addon/compat.py": f"import bpy\n{compat}", "addon/__init__.py": AROUND + code}
     read = rule_checker.read_files(files)["addon/__init__.py"]
     assert not [finding for finding in rule_checker.check(read) if finding.severity == "error"]
+
+
+@pytest.mark.parametrize(
+    ("first", "is_reached"), [("node.sky_type = 'NISHITA'", False), ("node.sky_type = 'HOSEK_WILKIE'", True)]
+)
+def test_behind_an_error_that_is_caught_nothing_is_reached(
+    rule_checker: Checker, tmp_path: Path, first: str, is_reached: bool
+) -> None:
+    """A sky's ``NISHITA`` and its ``dust_density`` went in 5.0."""
+    made = (
+        "import bpy\nnode = bpy.data.node_groups.new('x', 'ShaderNodeTree').nodes.new('ShaderNodeTexSky')\n"
+    )
+    code = f"{made}try:\n    {first}\n    node.dust_density = 1\nexcept TypeError:\n    pass"
+    assert bool(run_statements(tmp_path, [code])[0][0]) is is_reached
+    assert bool(rule_checker.check(code)) is is_reached
+
+
+# What is in a `try`, with a handler that lets the error pass or not.
+TRIED = {
+    "operator": "bpy.ops.import_mesh.ply(filepath='x')",
+    "attribute": "bpy.data.scenes[0].node_tree",
+    "stored": "ob.draw_type = 'WIRE'",
+    "read-only": "ob.type = 'MESH'",
+    "value": "bpy.data.scenes[0].render.engine = 'BLENDER_EEVEE_NEXT'",
+    "value of an operator": "bpy.ops.object.mode_set(mode='PAINT_GPENCIL')",
+    "type": "ob.name = 1",
+    "keyword": "ob.select_set(True, view=None)",
+    "node": "bpy.data.node_groups.new('x', 'CompositorNodeTree').nodes.new('CompositorNodeComposite')",
+    "socket": """
+        tree = bpy.data.node_groups.new('x', 'ShaderNodeTree')
+        tree.nodes.new('ShaderNodeBsdfPrincipled').inputs['Specular']
+    """,
+    "module": "from bpy_extras import keyconfig_utils",
+    "icons": "ob.constraints.new(type='TRACK')",
+}
+HANDLERS = (
+    "except AttributeError: pass", "except RuntimeError: pass", "except TypeError: pass", "except KeyError: pass",
+    "except (KeyError, IndexError): pass", "except LookupError: pass", "except ImportError: pass",
+    "except Exception: pass", "except OSError: pass", "except: pass", "except Exception: print(ob); raise",
+    "except Exception as error: raise ValueError('x') from error", "finally: pass",
+    "except RuntimeError: pass\nexcept AttributeError: raise",
+)  # fmt: skip
+
+
+def _tried(code: str, handler: str) -> str:
+    return f"try:\n{indent(dedent(code), '    ')}\n{handler}"
+
+
+def test_a_handler_lets_pass_what_it_catches(rule_checker: Checker, tmp_path: Path) -> None:
+    tried = [_tried(code, handler) for code in TRIED.values() for handler in HANDLERS]
+    tried += [_tried(one, "except Exception: pass") for one in tried[: len(HANDLERS)]]
+    tried += [_tried(one, "except KeyError: pass") for one in tried[: len(HANDLERS) - 4]]
+    done = run_statements(tmp_path, [AROUND + one for one in tried])
+    raised = [one for one, row in zip(tried, done, strict=True) if row[0]]
+    assert len(tried) / 3 < len(raised) < len(tried)
+    assert [one for one in tried if _errors(rule_checker, one)] == raised
