@@ -34,6 +34,7 @@ from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.old_code import OldCode
 from kb_serve.recognise.operator_words import OperatorWords
 from kb_serve.recognise.products import WITH_AT, Products
+from kb_serve.recognise.python_methods import is_method_of_python
 from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.refusals import keywords
 from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
@@ -145,6 +146,8 @@ class Recogniser:
             if symbol is None:
                 self._check_guesses(chain, recognition)
                 continue
+            if is_method_of_python(_name(chain), symbol):
+                continue  # what it takes and gives is no value of the symbol
             recognition.notes += filter(
                 None, (self._enum_values.condition(symbol.path, value) for value in chain.values)
             )
@@ -160,6 +163,8 @@ class Recogniser:
     def _check_guesses(self, chain: Chain, recognition: Recognition) -> None:
         """Adds what was lost by what a chain may be read as, and a note on a value that nothing so called takes."""
         guesses = list(filter(None, map(self._reader.symbol, recognition.guesses.get(chain.source, ()))))
+        if any(is_method_of_python(_name(chain), guess) for guess in guesses):
+            return
         lost = [next(self._old.in_values(chain, guess), None) for guess in guesses]
         if len(guesses) == 1 and keywords(chain):  # which may have told it from others of its name
             recognition.notes += wrong_arguments(chain, guesses[0])
