@@ -85,6 +85,8 @@ NO_PATH = re.compile(
     r"\b(?:keyframe_(?:insert|delete)|driver_(?:add|remove))\(\):? property \"(?P<name>\w+)\" not found"
 )
 
+_OF_CLASS = re.compile(r"'(\w+)' object\b")
+
 # The wording of messages that looks like code, or like names of classes and members.
 _WORDING = re.compile(
     r"""bpy_struct:\ item\.attr\s*=\s*val:|bpy_\w+\[(?:key|index|slice)\](?:\ =\ value)?:|BMElemSeq\[index\]:
@@ -116,6 +118,11 @@ def first_matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str
 def is_message(query: str) -> bool:
     """Whether a query holds an error message."""
     return bool(_EXCEPTION.search(query) or _REPORT.search(query) or _WORDING.search(query))
+
+
+def classes_of_things(query: str) -> frozenset[str]:
+    """The classes that messages say things are of: ``'Matrix' object is not callable``."""
+    return frozenset(_OF_CLASS.findall(query))
 
 
 def without_wording(query: str) -> str:

@@ -19,6 +19,7 @@ from kb_serve.recognise.expressions import Expressions
 from kb_serve.recognise.given_values import wrong_values
 from kb_serve.recognise.members_within import members_within, note_on_within
 from kb_serve.recognise.message_patterns import (
+    classes_of_things,
     is_message,
     without_callers_names,
     without_values,
@@ -109,7 +110,7 @@ class Recogniser:
             code = _FILE_PATH.sub(" ", without_callers_names(without_wording(without_values(query))))
             found = chains if code == query else with_bindings(code, find_chains(code))
             self._expressions.recognise(found, recognition)
-            self._enum_values.recognise(text, recognition)
+            self._enum_values.recognise(text, recognition, classes_of_things(query))
             self._removed_values(text, recognition)
             described = "" if is_message(query) else asked_of_inputs(query)
             if described and self._reader.entry(described):

@@ -8,10 +8,11 @@ from typing import TYPE_CHECKING
 from kb_serve.reader import TYPES
 from kb_serve.recognise.elements import elsewhere
 from kb_serve.recognise.members_within import members_within, note_on_within
+from kb_serve.recognise.messages.context_members import note_on_absent
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader
+    from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
@@ -36,9 +37,12 @@ class LackingOwners:
         self._removed = removed
         self._symbols = symbols
 
-    def explain(self, written: str, name: str, recognition: Recognition) -> None:
-        """Adds what became of the attribute, or the owner, and what it leads to that has the attribute."""
-        owner = _INSTANCES.get(written) or self._symbols.class_path(written)
+    def explain(self, written: str, name: str, recognition: Recognition, *, of_module: bool) -> None:
+        """Adds what became of the attribute, or the owner, and what it leads to that has the attribute.
+
+        ``of_module`` tells that the message is of a module, which no other is.
+        """
+        owner = _INSTANCES.get(written) or self._symbols.class_path(written, or_module=of_module)
         module = self._reader.entry(f"{owner}.{name}") if owner else None
         if module and module.kind == "module":
             recognition.add(module.path, 0.98, "error message")
@@ -53,13 +57,22 @@ class LackingOwners:
             removed = None if members_within(owner, name, self._reader) else removed
         if removed:
             recognition.add_removed(self._own_first(removed, owner))
-        elif owner and not self._reader.member_of(owner, name):
+        elif owner and (member := self._reader.member_of(owner, name)):
+            self._there(member, recognition)
+        elif owner:
             recognition.missing.append(MissingName(name, owner, sure=True))
             recognition.add(owner, 0.6, "error message")
             if other := elsewhere(owner, name, self._reader):
                 recognition.notes.append(other.how)
                 recognition.add(other.path, 0.98, "error message")
             self._within(owner, name, recognition)
+
+    def _there(self, member: SymbolEntry, recognition: Recognition) -> None:
+        """A member that its class has, whatever the message says: of the context it is not there everywhere."""
+        recognition.add(member.path, 0.97, "error message")
+        symbol = self._reader.symbol(member.path) if member.kind == "context" else None
+        if symbol and (note := note_on_absent(symbol)):
+            recognition.notes.append(note)
 
     def _own_first(self, removed: RemovedSymbol, owner: str) -> RemovedSymbol:
         """A removed symbol of another class, with what the class that is asked has in its place before the rest."""
