@@ -48,6 +48,7 @@ BY_NAME_ONLY = re.compile(
     r"(?:to be a keyword argument|not specified)"
 )
 NO_MODULE = re.compile(r"No module named ['\"](?P<module>[\w.]+)['\"]")
+NOT_DEFINED = re.compile(r"\bname ['\"](?P<name>\w+)['\"] is not defined")
 NO_IMPORT = re.compile(r"cannot import name ['\"](?P<name>\w+)['\"] from ['\"](?P<module>[\w.]+)['\"]")
 POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 WRONG_TYPE = re.compile(
