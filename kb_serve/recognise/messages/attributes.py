@@ -52,6 +52,8 @@ class Attributes:
             self._owners.of_a_collection(name, recognition)
         elif owner == "module":  # of which the message does not tell the name
             self._imports.tell_if_gone(TYPES + name, recognition)
+        elif forms.NO_FLUIDS.search(query):  # of which another recogniser tells
+            return
         elif owner in PYTHONS:
             self._python_types.explain(owner, name, recognition)
         else:

@@ -21,6 +21,12 @@ _FEW = 3
 _ID = f"{TYPES}ID"
 _OF_NO_BLOCK = frozenset({"BlendData", "Context", "Depsgraph", "Event"})
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
+_PROPERTIES, _OPERATOR = "bpy.props", f"{TYPES}Operator"
+_OWN_CLASS = (
+    "Blender has no class `{cls}`. If it is one of the script's own, `{name}` is a property of it by an annotation, "
+    "with a colon (`{name}: bpy.props.IntProperty()`), before the class is registered. What `invoke()` sets on "
+    "`self` is not there where `execute()` is called alone."
+)
 _NOT_IMPORTED = "`{module}` is a module of its own, to be imported first: `import {module}`."
 
 
@@ -57,6 +63,10 @@ class LackingOwners:
             removed = None if members_within(owner, name, self._reader) else removed
         if removed:
             recognition.add_removed(self._own_first(removed, owner))
+        elif not owner and not of_module and written[:1].isupper() and written.isidentifier():
+            recognition.add(_PROPERTIES, 0.95, "error message")
+            recognition.add(_OPERATOR, 0.9, "error message")
+            recognition.notes.append(_OWN_CLASS.format(cls=written, name=name))
         elif owner and (member := self._reader.member_of(owner, name)):
             self._there(member, recognition)
         elif owner:
