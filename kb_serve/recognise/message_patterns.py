@@ -67,7 +67,9 @@ FREED = re.compile(r"\b(?:StructRNA|(?P<module>BMesh) data) of type (?P<type>\w+
 PRODUCT = re.compile(
     r"(?:Element-wise|Color) multiplication: not supported between '(?P<left>\w+)' and '(?P<right>\w+)'"
 )
-NO_WRITING = re.compile(r"Writing to ID classes in this context is not allowed")
+NO_WRITING = re.compile(
+    r"Writing to ID classes in this context is not allowed(?:.*?error setting (?P<owner>\w+)\.(?P<name>\w+))?"
+)
 POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
 NOT_MADE = re.compile(r"cannot create '(?P<type>[\w.]+)' instances")
@@ -105,6 +107,7 @@ _WORDING = re.compile(
     |(?:StructRNA|BMesh\ data)\ of\ type\ \w+\ has\ been\ removed|BMeshOpsModule:\ operator
     |\bNode\ type\ (?=\w+\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object
     |\.\ Did\ you\ mean:\ '[^']*'\?
+    |\berror\ setting\ \w+\.\w+
     |required\ parameter\ "\w+"\ (?:not\ specified|to\ be\ a\ keyword\ argument!?)|Calling\ operator\ (?=")""",
     re.VERBOSE,
 )
