@@ -131,7 +131,8 @@ class Recogniser:
         for product, factor in self._products.wrong(query, chains):
             recognition.notes += (f"Write `{product}`.", WITH_AT)
             recognition.add(factor, _SURE, "wrong operator")
-        for removed in (*self._old.in_imports(query), *self._old.in_strings(query)):
+        in_strings = (*self._old.in_strings(query), *self._old.in_keyword(query))
+        for removed in (*self._old.in_imports(query), *in_strings):
             recognition.add_removed(removed)
         for taken_as in self._old.still_taken_in_strings(query):
             recognition.add_former_name(taken_as, _SURE)
