@@ -13,11 +13,11 @@ from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.calls import wrong_arguments
 from kb_serve.recognise.chains import Chain, find_chains
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
-from kb_serve.recognise.corrections import Corrector, by_first_word, nearest
+from kb_serve.recognise.corrections import Corrector, by_first_word, nearest, shortened
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
 from kb_serve.recognise.given_values import wrong_values
-from kb_serve.recognise.members_within import members_within, note_on_within
+from kb_serve.recognise.members_within import members_within
 from kb_serve.recognise.message_patterns import (
     classes_of_things,
     is_message,
@@ -48,6 +48,8 @@ _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
 _ID = f"{TYPES}ID"
 _FEW = 3
 _SURE = 0.9
+_WITHIN = 0.98  # how sure the very name is on a part of what lacks it
+_SPELLED_ALIKE = 0.9  # similarity from which on another name may be a slip of the fingers
 _MANY = 12
 _DESCRIBED = 0.85  # … what plain words describe
 _OTHERWISE = 0.96  # what does or is labelled what a class is asked for by another name
@@ -243,10 +245,17 @@ class Recogniser:
             for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
                 recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
             otherwise = said_otherwise(missing, self._operators, self._reader)
-            for place, path in enumerate(otherwise):
-                recognition.add(path, _OTHERWISE - 0.01 * place, SIMILAR)
             names = self._reader.member_names(missing.owner) if missing.owner else []
             similar = nearest(missing.name, names)
+            is_meant = (
+                (bool(similar) and similar[0][1] >= _SPELLED_ALIKE)
+                or f"active_{missing.name}" in names
+                or any(self._is_called(path, missing.name) for path in otherwise)
+            )
+            if not is_meant and self._within(missing, recognition, on_new=bool(otherwise)):
+                continue
+            for place, path in enumerate(otherwise):
+                recognition.add(path, _OTHERWISE - 0.01 * place, SIMILAR)
             if missing.assigned:  # an assignment means ``select_set``, not ``select_get``
                 similar.sort(
                     key=lambda row: (-row[1], not row[0].startswith("set_") and not row[0].endswith("_set"))
@@ -256,28 +265,35 @@ class Recogniser:
                     recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
             if not missing.owner or similar or otherwise:
                 continue
-            begun = by_first_word(missing.name, names) if missing.told else ()
+            begun = (
+                (by_first_word(missing.name, names) or shortened(missing.name, names)) if missing.told else ()
+            )
             for place, name in enumerate(begun):
                 if member := self._reader.member_of(missing.owner, name):
                     recognition.add(member.path, _BEGINS_ALIKE - 0.01 * place, SIMILAR)
-            if not (self._within(missing, recognition) or self._elsewhere(missing, recognition)):
+            if not self._elsewhere(missing, recognition):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
 
-    def _within(self, missing: MissingName, recognition: Recognition) -> bool:
+    def _is_called(self, path: str, name: str) -> bool:
+        """Whether something does what a name says, or is labelled so, rather than ends with it."""
+        entry = self._reader.entry(path)
+        return entry is not None and (entry.kind != "property" or key(entry.label) == key(name))
+
+    def _within(self, missing: MissingName, recognition: Recognition, *, on_new: bool) -> bool:
         """Adds the name on what the class points to, ``overlay`` of a SpaceView3D; whether there is any. What all
-        data-blocks have is not looked for: any that something points to has it.
+        data-blocks have is not looked for: any that something points to has it. ``on_new`` leaves out what is None on
+        new things.
         """
         owner = self._reader.entry(missing.owner)
         is_class = owner is not None and owner.kind == "class"  # a module has nothing but its members
         if not (missing.told and is_class) or self._reader.entry(f"{_ID}.{missing.name}"):
             return False
-        found = members_within(missing.owner, missing.name, self._reader)
-        if not 0 < len(found) <= _FEW:
-            return False
-        for rank, (pointer, member) in enumerate(found):
-            recognition.add(member.path, _SURE - 0.01 * rank, "within")
-            recognition.notes.append(note_on_within(pointer, member))
-        return True
+        found = members_within(missing.owner, missing.name, self._reader, on_new=on_new)
+        sure = _WITHIN if missing.sure and not missing.variable else _SURE
+        for rank, (member, note) in enumerate(found):
+            recognition.add(member.path, sure - 0.01 * rank, "within")
+            recognition.notes.append(note)
+        return bool(found)
 
     def _elsewhere(self, missing: MissingName, recognition: Recognition) -> bool:
         """Adds the name on other classes (``CollectionObjects.link``), similar ones first; whether there is any."""

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_serve.reader import TYPES
 from kb_serve.recognise.elements import elsewhere
-from kb_serve.recognise.members_within import members_within, note_on_within
+from kb_serve.recognise.members_within import members_within
 from kb_serve.recognise.messages.context_members import note_on_absent
 from kb_serve.recognise.recognition import MissingName
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
-_FEW = 3
 _ID = f"{TYPES}ID"
 _OF_NO_BLOCK = frozenset({"BlendData", "Context", "Depsgraph", "Event"})
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
@@ -75,7 +74,7 @@ class LackingOwners:
             if other := elsewhere(owner, name, self._reader):
                 recognition.notes.append(other.how)
                 recognition.add(other.path, 0.98, "error message")
-            self._within(owner, name, recognition)
+            self._of_its_block(owner, name, recognition)
 
     def _there(self, member: SymbolEntry, recognition: Recognition) -> None:
         """A member that its class has, whatever the message says: of the context it is not there everywhere."""
@@ -99,8 +98,8 @@ class LackingOwners:
         member = None if not now or self._reader.member_of(now, name) else self._removed.of_member(now, name)
         return member or cls
 
-    def _within(self, owner: str, name: str, recognition: Recognition) -> None:
-        """A member that a class lacks, and that something has which it points to: before all what it is a part of."""
+    def _of_its_block(self, owner: str, name: str, recognition: Recognition) -> None:
+        """A member that a class lacks, and that the data-block has which it is a part of."""
         of_block = self._reader.entry(f"{_ID}.{name}")
         cls = self._reader.entry(owner)
         is_part = cls is not None and cls.group == "data" and cls.name not in _OF_NO_BLOCK
@@ -109,7 +108,3 @@ class LackingOwners:
             recognition.notes.append(
                 f"The data-block that it is part of has it: `.id_data.{name}` (`{of_block.path}`)."
             )
-            return
-        for rank, (pointer, member) in enumerate(members_within(owner, name, self._reader)[:_FEW]):
-            recognition.add(member.path, 0.96 - 0.01 * rank, "error message")
-            recognition.notes.append(note_on_within(pointer, member))
