@@ -10,6 +10,7 @@ from itertools import dropwhile, groupby, islice, takewhile
 from operator import attrgetter
 from typing import TYPE_CHECKING, cast
 
+from kb_build.python_values import is_new_list
 from kb_build.records import (
     ALSO,
     ANY,
@@ -79,9 +80,10 @@ def literal(value: object, kind: str = "enum") -> str:
 
 
 def type_text(symbol: Symbol) -> str:
-    """``float[3]``, ``enum``, ``pointer → Mesh``, ``collection of Modifier``."""
+    """``float[3]``, ``enum``, ``pointer → Mesh``, ``collection of Modifier``, ``list[Object]``."""
     if symbol.type == "collection" and symbol.target:
-        return f"collection of {symbol.target}"
+        is_list = is_new_list(symbol.kind, symbol.type)
+        return f"list[{symbol.target}]" if is_list else f"collection of {symbol.target}"
     if symbol.type == "pointer" and symbol.target:
         return f"pointer → {symbol.target}"
     if "enum-flag" in symbol.flags:

@@ -43,6 +43,7 @@ from kb_build.flow.types import (
     union,
 )
 from kb_build.math_classes import math_class
+from kb_build.python_values import is_new_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -243,7 +244,7 @@ class Api:
             return Instance(_ROOTS[path])
         if symbol.type == "collection":
             element = Instance(self._target(symbol))
-            if symbol.kind == "context":  # what an editor puts together
+            if is_new_list(symbol.kind, symbol.type):
                 return Sequence("list", element)
             container = f"{T}{symbol.collection}" if symbol.collection else COLLECTION
             if not symbol.collection and self.descends(element.cls, f"{T}PropertyGroup"):

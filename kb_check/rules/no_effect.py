@@ -19,6 +19,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Builtin, Function, Instance, Plain, Sequence
+from kb_build.python_values import on_changing
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 
@@ -33,9 +34,6 @@ _SWIZZLE = re.compile(r"[xyzw]{2,4}")
 _RETURNS_ITSELF = frozenset(
     {"freeze"}
 )  # of what returns something in mathutils, all else leaves its owner as it is
-_CHANGING = frozenset(
-    {"add", "append", "clear", "discard", "extend", "insert", "pop", "remove", "reverse", "sort", "update"}
-)
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -78,12 +76,8 @@ def _thrown_away(script: Script, call: ast.Call) -> Iterator[Finding]:
                 f"`{call.func.attr}` returns a new text and leaves `{held.path}` as it is: assign what it returns.",
                 held.path,
             )  # fmt: skip
-        elif isinstance(kind.receiver, Sequence) and call.func.attr in _CHANGING and _is_copied(held):
-            yield Finding(
-                RULE.id, "warning", script.span(call),
-                f"Each reading of `{held.path}` makes a new {kind.receiver.kind}: `{call.func.attr}` changes that one "
-                f"only.{_instead(held)}", held.path,
-            )  # fmt: skip
+        elif isinstance(kind.receiver, Sequence) and (told := on_changing(held, call.func.attr)):
+            yield Finding(RULE.id, "warning", script.span(call), told, held.path)
 
 
 def _is_pure(symbol: Symbol) -> bool:
@@ -109,17 +103,6 @@ def _pure(script: Script, call: ast.Call, symbol: Symbol) -> Finding:
         (path,),
         fix,
     )
-
-
-def _is_copied(symbol: Symbol) -> bool:
-    """Whether each reading makes a list or a set anew."""
-    return symbol.kind == "context" or (symbol.type == "enum" and "enum-flag" in symbol.flags)
-
-
-def _instead(symbol: Symbol) -> str:
-    if symbol.name.startswith("selected_objects"):
-        return " Select an object with `select_set(True)`."
-    return " Assign the whole set." if symbol.type == "enum" else ""
 
 
 def _compared(script: Script, node: ast.Compare) -> Iterator[Finding]:

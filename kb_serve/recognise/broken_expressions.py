@@ -9,6 +9,7 @@ from kb_serve.reader import TYPES
 from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.elements import ADDING, elsewhere, meant_by_key
+from kb_serve.recognise.members_within import of_elements
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.variables import OTHERWISE, USUAL, is_guess, usual_classes
 
@@ -25,6 +26,7 @@ CLEAR = 0.85  # fit of a variable's name that hardly means another class
 LEAST = 0.1  # fit below which neither the variable's name nor its member tells the class
 LIKELY = 0.5  # readings with less than this share of the best one's fit are ignored
 _BEFORE_UNKNOWN = 0.93  # how sure a function is of whose result nothing is known
+_OF_ELEMENTS = 0.97  # … a member that elements have of a collection without it
 _KNOWN_ELEMENT = 0.96  # how sure the class of an element is that lacks a name, before others that have it
 
 # Classes whose members are defined by scripts and add-ons.
@@ -89,6 +91,8 @@ class BrokenExpressions:
         called = bool(behind) and behind[0].kind == "call"
         if called and not is_element:
             self._tell_elsewhere(resolved, later, recognition)
+        if not is_element:
+            self._tell_of_elements(resolved, later, recognition)
         if not is_element and not self._is_told(resolved, recognition):
             certain = self._leads_there_alone(chain, resolved)
             variable = "" if certain or is_clear(chain, resolved) else chain.root
@@ -187,6 +191,16 @@ class BrokenExpressions:
         if other := elsewhere(resolved.symbols[-1], resolved.missing, self._reader):
             recognition.notes.append(other.how)
             recognition.add(other.path, 0.96 - later, "expression")
+
+    def _tell_of_elements(self, resolved: ResolvedChain, later: float, recognition: Recognition) -> None:
+        """Adds the member of that name which the elements have of a collection that lacks it."""
+        holder = self._reader.entry(resolved.symbols[-1])
+        if holder is None or holder.type != "collection" or not resolved.missing.isidentifier():
+            return
+        of_other = resolved.owner == f"{TYPES}{holder.target}"  # an element was read, which lacks it
+        if not of_other and (found := of_elements(holder, resolved.missing, self._reader)):
+            recognition.add(found.member.path, _OF_ELEMENTS - later, "within")
+            recognition.notes.append(found.note)
 
     def _is_told(self, resolved: ResolvedChain, recognition: Recognition) -> bool:
         """Whether the message beside the code says already that the name is missing, on a kind of the class."""

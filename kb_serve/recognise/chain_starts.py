@@ -6,6 +6,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import words
+from kb_build.python_values import is_new_list
 from kb_serve.reader import PROPERTIES, TYPES
 from kb_serve.recognise.chain_values import ChainValue
 from kb_serve.recognise.variables import Variables
@@ -80,6 +81,8 @@ class ChainStarts:
         if not chain.steps:
             return
         named = self._owners.heaviest(self._reader.by_name(chain.root)[:_MOST_CALLED_SO])
+        lists = [self._values.of(entry) for entry in named if is_new_list(entry.kind, entry.type)]
+        yield from ((value, 1.0) for value in lists[:1])
         for rank, entry in enumerate(named):
             if (
                 entry.kind == "property"

@@ -8,6 +8,7 @@ from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from kb_build.math_classes import math_class
+from kb_build.python_values import is_new_list
 from kb_serve.reader import COLLECTION, TYPES
 from kb_serve.recognise.values import SEQUENCES, VALUES
 
@@ -25,7 +26,7 @@ class ChainValue:
     """What a chain stands for up to a step: an instance of ``cls``, a collection of it, a module or a function.
 
     ``origin`` is the class that the last attribute was read from, which may inherit it; ``keyed`` the class whose
-    custom property this is.
+    custom property this is; ``method`` is that of Python's own which was read of the symbol's value.
     """
 
     symbol: str
@@ -34,6 +35,7 @@ class ChainValue:
     container: str = ""
     origin: str = ""
     keyed: str = ""
+    method: str = ""
 
 
 class ChainValues:
@@ -54,6 +56,8 @@ class ChainValues:
         if (sequence := _of_python(entry)) or entry.path in VALUES:
             cls = TYPES + sequence[1] if sequence else VALUES[entry.path]
             return ChainValue(entry.path, cls, many=bool(sequence))
+        if is_new_list(entry.kind, entry.type):
+            return ChainValue(entry.path, TYPES + entry.target, many=True)
         if entry.type == "collection":
             container = TYPES + entry.collection if entry.collection else COLLECTION
             return ChainValue(entry.path, TYPES + entry.target, many=True, container=container)

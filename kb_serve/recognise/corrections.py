@@ -96,6 +96,14 @@ def by_first_word(written: str, names: Iterable[str]) -> list[str]:
     return found if len(found) <= _FEW_BEGIN_SO else []
 
 
+def shortened(written: str, names: Iterable[str]) -> list[str]:
+    """The names that a word begins with, without their plural: ``verts`` of ``vertices``."""
+    if "_" in written:
+        return []
+    found = [name for name in names if len(name) > _FIRST_WORD and written.startswith(name.removesuffix("s"))]
+    return found if len(found) <= _FEW_BEGIN_SO else []
+
+
 def is_misspelling(written: str, name: str, vocabulary: Container[str] = ()) -> bool:
     """Whether ``written`` can only be ``name`` with a slip of the fingers, not another word: ``location_x`` is no
     misspelt ``location_y``, and ``groups`` no ``node_groups``.

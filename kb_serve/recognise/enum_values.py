@@ -72,18 +72,23 @@ class EnumValues:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
-    def recognise(self, query: str, recognition: Recognition) -> None:
-        """Adds the properties and parameters that take the values in a query, and quoted classes."""
+    def recognise(self, query: str, recognition: Recognition, classes: frozenset[str] = frozenset()) -> None:
+        """Adds the properties and parameters that take the values in a query, and quoted classes.
+
+        ``classes`` are what a message names as the classes of things: no values.
+        """
         text = _ERROR.sub(" ", query)
         quoted = [a or b for a, b in _QUOTED.findall(text)][:_MOST_VALUES]
         names = {name for _, name in _SUBSCRIPT.findall(query) if not name.isupper()}
-        values = [value for value in self.values(query) if value not in names]
-        if not values:
+        values = [value for value in self.values(query) if value not in names and value not in classes]
+        if not values and not classes:
             return
         for value in quoted:
             for entry in self._reader.by_name(value):
                 if entry.kind == "class":
                     recognition.add(entry.path, 0.82, "quoted name")
+        if not values:
+            return
         rest = text
         for value in values:
             rest = rest.replace(value, " ")

@@ -30,6 +30,7 @@ from kb_serve.recognise.chain_starts import LEAST_OF_COLLECTION
 from kb_serve.recognise.loose_names import LooseNames
 from kb_serve.recognise.names_beside import NamesBeside, said_in_words
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
+from kb_serve.recognise.python_methods import note_on_method
 from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed_symbols import for_reading, plain_path
 from kb_serve.recognise.said_otherwise import said_otherwise
@@ -302,6 +303,8 @@ class Expressions:
         last = self._reader.symbol(readings[0].symbols[-1])
         own = chain.attributes[-1] if chain.attributes else ""
         if last and own not in {"", last.name} and (note := self._custom.on_operators(last, own)):
+            recognition.notes.append(note)
+        if last and (method := readings[0].method) and (note := note_on_method(last, method)):
             recognition.notes.append(note)
         for step, path in enumerate(reversed(readings[0].symbols[:-1])):
             recognition.add(path, 0.5 - 0.05 * step - later, "on the way")

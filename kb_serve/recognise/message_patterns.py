@@ -48,6 +48,7 @@ BY_NAME_ONLY = re.compile(
     r"(?:to be a keyword argument|not specified)"
 )
 NO_MODULE = re.compile(r"No module named ['\"](?P<module>[\w.]+)['\"]")
+NOT_DEFINED = re.compile(r"\bname ['\"](?P<name>\w+)['\"] is not defined")
 NO_IMPORT = re.compile(r"cannot import name ['\"](?P<name>\w+)['\"] from ['\"](?P<module>[\w.]+)['\"]")
 POLL = re.compile(r"Operator (?P<path>bpy\.ops\.\w+\.\w+)\.poll\(\)")
 WRONG_TYPE = re.compile(
@@ -67,7 +68,9 @@ FREED = re.compile(r"\b(?:StructRNA|(?P<module>BMesh) data) of type (?P<type>\w+
 PRODUCT = re.compile(
     r"(?:Element-wise|Color) multiplication: not supported between '(?P<left>\w+)' and '(?P<right>\w+)'"
 )
-NO_WRITING = re.compile(r"Writing to ID classes in this context is not allowed")
+NO_WRITING = re.compile(
+    r"Writing to ID classes in this context is not allowed(?:.*?error setting (?P<owner>\w+)\.(?P<name>\w+))?"
+)
 POSITIONAL = re.compile(r"\bargs execution context is supported")
 NOT_AN_OPERATOR = re.compile(r"BMeshOpsModule: operator \"(?P<name>\w+)\" doesn't exist")
 NOT_MADE = re.compile(r"cannot create '(?P<type>[\w.]+)' instances")
@@ -86,6 +89,8 @@ NO_PATH = re.compile(
     r"\b(?:keyframe_(?:insert|delete)|driver_(?:add|remove))\(\):? property \"(?P<name>\w+)\" not found"
 )
 
+_OF_CLASS = re.compile(r"'(\w+)' object\b")
+
 # The wording of messages that looks like code, or like names of classes and members.
 _WORDING = re.compile(
     r"""bpy_struct:\ item\.attr\s*=\s*val:|bpy_\w+\[(?:key|index|slice)\](?:\ =\ value)?:|BMElemSeq\[index\]:
@@ -103,6 +108,7 @@ _WORDING = re.compile(
     |(?:StructRNA|BMesh\ data)\ of\ type\ \w+\ has\ been\ removed|BMeshOpsModule:\ operator
     |\bNode\ type\ (?=\w+\ undefined)|\bnode\ of\ type\ (?=\w+)|'NoneType'\ object
     |\.\ Did\ you\ mean:\ '[^']*'\?
+    |\berror\ setting\ \w+\.\w+
     |required\ parameter\ "\w+"\ (?:not\ specified|to\ be\ a\ keyword\ argument!?)|Calling\ operator\ (?=")""",
     re.VERBOSE,
 )
@@ -117,6 +123,11 @@ def first_matches(pattern: re.Pattern[str], query: str) -> Iterator[re.Match[str
 def is_message(query: str) -> bool:
     """Whether a query holds an error message."""
     return bool(_EXCEPTION.search(query) or _REPORT.search(query) or _WORDING.search(query))
+
+
+def classes_of_things(query: str) -> frozenset[str]:
+    """The classes that messages say things are of: ``'Matrix' object is not callable``."""
+    return frozenset(_OF_CLASS.findall(query))
 
 
 def without_wording(query: str) -> str:

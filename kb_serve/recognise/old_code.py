@@ -46,6 +46,7 @@ _PROPERTY_NAMES = (
 _IMPORT = re.compile(r"\bimport\s+([a-z][\w.]*)")
 _FROM = re.compile(r"\bfrom\s+([a-z][\w.]*)\s+import\s+\(?\s*(\w+(?:\s*,\s*\w+)*)")
 _INTERFACE = re.compile(r"[A-Z0-9_]+_[A-Z]{2}_")
+_KEYWORD = re.compile(r"""\W*(\w+)\s*=\s*(['"])([A-Z][A-Z0-9_]+)\2\W*""")  # alone
 _MOST_QUOTED = 12
 _SAY_NOTHING = frozenset({"node", *"0123456789"})  # words of a variable's name that no node is told by
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
@@ -373,6 +374,23 @@ class OldCode:
         for path in paths[:_MOST_QUOTED]:
             if removed := self._removed.of_path(path):
                 yield removed
+
+    def in_keyword(self, text: str) -> Iterator[RemovedSymbol]:
+        """The value that an argument lost which is all of a text, ``icon='LAMP'``: of the function that counts most.
+
+        Nothing where something of that name takes it today.
+        """
+        if not (match := _KEYWORD.fullmatch(text)):
+            return
+        today = (owner for owner, *_ in self._reader.enum_owners(key(match[3])))
+        if any(owner.endswith((f"({match[1]})", f".{match[1]}")) for owner in today):
+            return
+        end = f"({match[1]}):{match[3]}"
+        paths = [path for path in self._reader.removed_named(match[3]) if path.endswith(end)]
+        found = [one for one in map(self._removed.of_path, paths) if one and one.targets]
+        weights = self._reader.weights([one.path.removesuffix(end) for one in found])
+        found.sort(key=lambda one: -weights.get(one.path.removesuffix(end), 0.0))
+        yield from found[:1]
 
     def still_taken_in_strings(self, text: str) -> Iterator[str]:
         """The classes that one gets by former names which are quoted: ``nodes.new("ShaderNodeBsdfGlossy")``."""

@@ -13,12 +13,13 @@ from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.calls import wrong_arguments
 from kb_serve.recognise.chains import Chain, find_chains
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
-from kb_serve.recognise.corrections import Corrector, by_first_word, nearest
+from kb_serve.recognise.corrections import Corrector, by_first_word, nearest, shortened
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.expressions import Expressions
 from kb_serve.recognise.given_values import wrong_values
-from kb_serve.recognise.members_within import members_within, note_on_within
+from kb_serve.recognise.members_within import members_within
 from kb_serve.recognise.message_patterns import (
+    classes_of_things,
     is_message,
     without_callers_names,
     without_values,
@@ -34,6 +35,7 @@ from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.old_code import OldCode
 from kb_serve.recognise.operator_words import OperatorWords
 from kb_serve.recognise.products import WITH_AT, Products
+from kb_serve.recognise.python_methods import is_method_of_python
 from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.refusals import keywords
 from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
@@ -46,6 +48,8 @@ _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
 _ID = f"{TYPES}ID"
 _FEW = 3
 _SURE = 0.9
+_WITHIN = 0.98  # how sure the very name is on a part of what lacks it
+_SPELLED_ALIKE = 0.9  # similarity from which on another name may be a slip of the fingers
 _MANY = 12
 _DESCRIBED = 0.85  # … what plain words describe
 _OTHERWISE = 0.96  # what does or is labelled what a class is asked for by another name
@@ -108,7 +112,7 @@ class Recogniser:
             code = _FILE_PATH.sub(" ", without_callers_names(without_wording(without_values(query))))
             found = chains if code == query else with_bindings(code, find_chains(code))
             self._expressions.recognise(found, recognition)
-            self._enum_values.recognise(text, recognition)
+            self._enum_values.recognise(text, recognition, classes_of_things(query))
             self._removed_values(text, recognition)
             described = "" if is_message(query) else asked_of_inputs(query)
             if described and self._reader.entry(described):
@@ -129,7 +133,8 @@ class Recogniser:
         for product, factor in self._products.wrong(query, chains):
             recognition.notes += (f"Write `{product}`.", WITH_AT)
             recognition.add(factor, _SURE, "wrong operator")
-        for removed in (*self._old.in_imports(query), *self._old.in_strings(query)):
+        in_strings = (*self._old.in_strings(query), *self._old.in_keyword(query))
+        for removed in (*self._old.in_imports(query), *in_strings):
             recognition.add_removed(removed)
         for taken_as in self._old.still_taken_in_strings(query):
             recognition.add_former_name(taken_as, _SURE)
@@ -145,6 +150,8 @@ class Recogniser:
             if symbol is None:
                 self._check_guesses(chain, recognition)
                 continue
+            if is_method_of_python(_name(chain), symbol):
+                continue  # what it takes and gives is no value of the symbol
             recognition.notes += filter(
                 None, (self._enum_values.condition(symbol.path, value) for value in chain.values)
             )
@@ -160,6 +167,8 @@ class Recogniser:
     def _check_guesses(self, chain: Chain, recognition: Recognition) -> None:
         """Adds what was lost by what a chain may be read as, and a note on a value that nothing so called takes."""
         guesses = list(filter(None, map(self._reader.symbol, recognition.guesses.get(chain.source, ()))))
+        if any(is_method_of_python(_name(chain), guess) for guess in guesses):
+            return
         lost = [next(self._old.in_values(chain, guess), None) for guess in guesses]
         if len(guesses) == 1 and keywords(chain):  # which may have told it from others of its name
             recognition.notes += wrong_arguments(chain, guesses[0])
@@ -236,10 +245,17 @@ class Recogniser:
             for place, path in enumerate(self._operators.having(missing.owner, missing.name)):
                 recognition.add(path, 0.95 - 0.01 * place, SIMILAR)
             otherwise = said_otherwise(missing, self._operators, self._reader)
-            for place, path in enumerate(otherwise):
-                recognition.add(path, _OTHERWISE - 0.01 * place, SIMILAR)
             names = self._reader.member_names(missing.owner) if missing.owner else []
             similar = nearest(missing.name, names)
+            is_meant = (
+                (bool(similar) and similar[0][1] >= _SPELLED_ALIKE)
+                or f"active_{missing.name}" in names
+                or any(self._is_called(path, missing.name) for path in otherwise)
+            )
+            if not is_meant and self._within(missing, recognition, on_new=bool(otherwise)):
+                continue
+            for place, path in enumerate(otherwise):
+                recognition.add(path, _OTHERWISE - 0.01 * place, SIMILAR)
             if missing.assigned:  # an assignment means ``select_set``, not ``select_get``
                 similar.sort(
                     key=lambda row: (-row[1], not row[0].startswith("set_") and not row[0].endswith("_set"))
@@ -249,28 +265,35 @@ class Recogniser:
                     recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
             if not missing.owner or similar or otherwise:
                 continue
-            begun = by_first_word(missing.name, names) if missing.told else ()
+            begun = (
+                (by_first_word(missing.name, names) or shortened(missing.name, names)) if missing.told else ()
+            )
             for place, name in enumerate(begun):
                 if member := self._reader.member_of(missing.owner, name):
                     recognition.add(member.path, _BEGINS_ALIKE - 0.01 * place, SIMILAR)
-            if not (self._within(missing, recognition) or self._elsewhere(missing, recognition)):
+            if not self._elsewhere(missing, recognition):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
 
-    def _within(self, missing: MissingName, recognition: Recognition) -> bool:
+    def _is_called(self, path: str, name: str) -> bool:
+        """Whether something does what a name says, or is labelled so, rather than ends with it."""
+        entry = self._reader.entry(path)
+        return entry is not None and (entry.kind != "property" or key(entry.label) == key(name))
+
+    def _within(self, missing: MissingName, recognition: Recognition, *, on_new: bool) -> bool:
         """Adds the name on what the class points to, ``overlay`` of a SpaceView3D; whether there is any. What all
-        data-blocks have is not looked for: any that something points to has it.
+        data-blocks have is not looked for: any that something points to has it. ``on_new`` leaves out what is None on
+        new things.
         """
         owner = self._reader.entry(missing.owner)
         is_class = owner is not None and owner.kind == "class"  # a module has nothing but its members
         if not (missing.told and is_class) or self._reader.entry(f"{_ID}.{missing.name}"):
             return False
-        found = members_within(missing.owner, missing.name, self._reader)
-        if not 0 < len(found) <= _FEW:
-            return False
-        for rank, (pointer, member) in enumerate(found):
-            recognition.add(member.path, _SURE - 0.01 * rank, "within")
-            recognition.notes.append(note_on_within(pointer, member))
-        return True
+        found = members_within(missing.owner, missing.name, self._reader, on_new=on_new)
+        sure = _WITHIN if missing.sure and not missing.variable else _SURE
+        for rank, (member, note) in enumerate(found):
+            recognition.add(member.path, sure - 0.01 * rank, "within")
+            recognition.notes.append(note)
+        return bool(found)
 
     def _elsewhere(self, missing: MissingName, recognition: Recognition) -> bool:
         """Adds the name on other classes (``CollectionObjects.link``), similar ones first; whether there is any."""

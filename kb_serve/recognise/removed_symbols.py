@@ -98,7 +98,7 @@ class RemovedSymbolLookup:
         span = self._reader.removed(path)
         if span is None or self._reader.still_works(path):
             return None
-        successors = tuple(self._reader.successors(path) or self._of_same_items(path, span))
+        successors = tuple(self._reader.successors(path) or self._of_same_items(path))
         similar = () if successors else self._similar(path)
         return RemovedSymbol(path, *span, successors, similar)
 
@@ -112,8 +112,10 @@ class RemovedSymbolLookup:
         alike = likely_keywords(argument, labels) if argument not in labels else ()
         return tuple((f"{whole}({name})", 1.0) for name in alike)
 
-    def _of_same_items(self, path: str, span: tuple[str, str, str]) -> Iterator[Successor]:
-        """What took the place of an item of an argument, where that is known of a property with the same items."""
+    def _of_same_items(self, path: str) -> Iterator[Successor]:
+        """What took the place of an item of an argument, where that is known of a property with the same items, which
+        may have kept it longer.
+        """
         call, mark, item = path.partition("):")
         whole, _, argument = call.partition("(")
         symbol = self._reader.symbol(whole) if mark else None
@@ -124,7 +126,7 @@ class RemovedSymbolLookup:
         for other in self._reader.removed_named(item):
             holder = other.removesuffix(f":{item}")
             same = self._reader.symbol(holder) if other != path and "(" not in holder else None
-            if same is None or self._reader.removed(other) != span:
+            if same is None:
                 continue
             for successor in self._reader.successors(other):
                 new = successor.target.removeprefix(f"{holder}:")

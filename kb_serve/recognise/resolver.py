@@ -9,6 +9,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
+from kb_build.python_values import METHODS, python_class
 from kb_serve.reader import COLLECTION, STRUCT, TYPES, BaseReader, SymbolEntry
 from kb_serve.recognise.chain_starts import ChainStarts
 from kb_serve.recognise.chain_values import ChainValue, ChainValues
@@ -51,7 +52,8 @@ class ResolvedChain:
     that was assumed for it, 0 to 1; ``keyed`` is the class whose custom property the chain reaches,
     ``cls`` the class of what a complete one gives, where that is known, and ``alike`` are the members of the last
     step's name that other cases of its class have, those that count most first. ``owners`` are all classes without the
-    missing name, where a step led to several.
+    missing name, where a step led to several. ``method`` is the method of Python's own with which the chain goes on
+    from its last symbol.
     """
 
     symbols: tuple[str, ...]
@@ -63,6 +65,7 @@ class ResolvedChain:
     cls: str = ""
     alike: tuple[str, ...] = ()
     owners: tuple[str, ...] = ()
+    method: str = ""
 
     @property
     def complete(self) -> bool:
@@ -167,7 +170,10 @@ class Resolver:
             values = following
             if step.kind == "attr" or values[0].symbol != symbols[-1]:
                 symbols.append(values[0].symbol)
-        return ResolvedChain(tuple(symbols), keyed=values[0].keyed, cls=values[0].cls, alike=alike)
+        first = values[0]
+        return ResolvedChain(
+            tuple(symbols), keyed=first.keyed, cls=first.cls, alike=alike, method=first.method
+        )
 
     @staticmethod
     def _unresolved(value: ChainValue, step: ChainStep) -> tuple[str, str]:
@@ -177,11 +183,13 @@ class Resolver:
         if step.kind == "key":
             return f'["{step.text}"]', value.cls or value.symbol
         if value.many and step.kind == "attr":
-            return step.text, value.container
+            return step.text, value.container or value.symbol
         return step.text, value.cls or value.symbol
 
     def _step(self, value: ChainValue, step: ChainStep) -> Iterator[ChainValue]:
-        if step.kind == "attr":
+        if value.method and not value.many:  # of what it gives nothing is known
+            yield value
+        elif step.kind == "attr":
             yield from self._attribute(value, step.text)
         elif step.kind == "call":
             yield self._call(value, step.text)
@@ -200,7 +208,7 @@ class Resolver:
     def _attribute(self, value: ChainValue, name: str) -> Iterator[ChainValue]:
         if value.many:
             if not value.container and hasattr(list, name):
-                yield value
+                yield replace(value, method=name)
             elif entry := self._of_collection(value, name):
                 yield self._values.of(entry, value.cls)
             return
@@ -223,8 +231,9 @@ class Resolver:
             is_of_socket = "puts[" in value.symbol and not after.many and name != _LINKS
             yield replace(after, symbol=value.symbol if is_of_socket else own.path, origin=value.cls)
             return
-        if not value.cls and hasattr(list, name) and self._is_list(value.symbol):
-            yield value
+        if not value.cls and name in METHODS and self._has_method(value.symbol, name):
+            yield replace(value, method=name)
+            return
         if value.cls.startswith(TYPES):
             below = [
                 entry
@@ -250,9 +259,10 @@ class Resolver:
         of_groups = self._reader.descends(value.cls, _GROUP) and self._reader.member_of(_GROUPS, name)
         return self._reader.member_of(COLLECTION, name) or of_groups or own
 
-    def _is_list(self, path: str) -> bool:
-        entry = self._reader.entry(path)
-        return entry is not None and entry.type.startswith("list")
+    def _has_method(self, path: str, name: str) -> bool:
+        """Whether what a property or constant holds is one of Python's own values, with a method of that name."""
+        symbol = self._reader.symbol(path)
+        return symbol is not None and hasattr(python_class(symbol), name)
 
     def _item(self, value: ChainValue, step: ChainStep) -> Iterator[ChainValue]:
         """An element of a collection; the key may tell its class or socket."""

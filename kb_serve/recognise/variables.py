@@ -226,7 +226,7 @@ class Variables:
     def _candidates(self, name: str) -> Iterator[tuple[str, float]]:
         named = self._reader.by_name(name)
         for entry in named:
-            if entry.target and entry.kind == "context":
+            if entry.target and entry.kind == "context" and entry.type == "pointer":
                 yield TYPES + entry.target, 1.0
         fit = USUAL
         for path in usual_classes(name):

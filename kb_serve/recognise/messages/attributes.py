@@ -38,18 +38,23 @@ class Attributes:
         """Adds the owner without the attribute, or what may have been meant."""
         for pattern in (forms.HAS_NO, forms.TYPE_HAS_NO, forms.MODULE_HAS_NO):
             for match in forms.first_matches(pattern, query):
-                self._explain(match["owner"], match["name"], query, recognition)
+                of_module = pattern is forms.MODULE_HAS_NO
+                self._explain(match["owner"], match["name"], query, recognition, of_module=of_module)
         for match in forms.first_matches(forms.NOT_IN_COLLECTION, query):
             self._owners.of_a_collection(match["name"], recognition)
 
-    def _explain(self, owner: str, name: str, query: str, recognition: Recognition) -> None:
+    def _explain(
+        self, owner: str, name: str, query: str, recognition: Recognition, *, of_module: bool
+    ) -> None:
         if owner == "NoneType":
             self._none_before.explain(name, query, recognition)
         elif owner == "bpy_prop_collection":
             self._owners.of_a_collection(name, recognition)
         elif owner == "module":  # of which the message does not tell the name
             self._imports.tell_if_gone(TYPES + name, recognition)
+        elif forms.NO_FLUIDS.search(query):  # of which another recogniser tells
+            return
         elif owner in PYTHONS:
             self._python_types.explain(owner, name, recognition)
         else:
-            self._lacking_owners.explain(owner, name, recognition)
+            self._lacking_owners.explain(owner, name, recognition, of_module=of_module)

@@ -4,12 +4,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.index.analysis import key
 from kb_serve.recognise import message_patterns as forms
+from kb_serve.recognise.chain_starts import ROOTS
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader
+    from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+
+_IMPORTABLE = frozenset({"class", "function", "data"})
+_HAS_FILE = "SELECT 1 FROM uses WHERE file = ? OR file LIKE ? LIMIT 1"
 
 
 class Imports:
@@ -23,8 +28,52 @@ class Imports:
         """Adds what other versions had of it."""
         for match in forms.first_matches(forms.NO_MODULE, query):
             self.tell_if_gone(match["module"], recognition)
+            self._tell_if_renamed(match["module"], recognition)
         for match in forms.first_matches(forms.NO_IMPORT, query):
             self.tell_if_gone(f"{match['module']}.{match['name']}", recognition)
+        for match in forms.first_matches(forms.NOT_DEFINED, query):
+            self._tell_where(match["name"], recognition)
+
+    def _tell_if_renamed(self, module: str, recognition: Recognition) -> None:
+        """What Blender calls one of its internal modules now: with an underscore. Where scripts use a public module of
+        the same letters, that is what they mean.
+        """
+        files = (f"modules/_{module}.py", f"modules/_{module}/%")
+        if "." in module or not self._reader.rows(_HAS_FILE, *files):
+            return
+        recognition.notes.append(
+            f"`{module}` is one of Blender's internal modules, which have an underscore now: `import _{module}`. They "
+            "change without notice."
+        )
+        for _, path in self._reader.by_key(key(module)):
+            if (entry := self._reader.entry(path)) and entry.kind == "module":
+                recognition.add(path, 0.97, "error message")
+
+    def _tell_where(self, name: str, recognition: Recognition) -> None:
+        """Where a name is imported from that a script uses without having done so."""
+        meant = ROOTS.get(name, name)
+        if meant != name:
+            recognition.add(meant, 0.97, "error message")
+            recognition.notes.append(f"A script has no `{name}` of its own: write `{meant}`.")
+            return
+        entry = self._public(name)
+        if entry is None:
+            return
+        recognition.add(entry.path, 0.98, "error message")
+        how = f"import {name}" if entry.kind == "module" else f"from {entry.owner} import {name}"
+        recognition.notes.append(f"`{name}` must be imported first: `{how}`.")
+
+    def _public(self, name: str) -> SymbolEntry | None:
+        """The module of that name, or what a module has of it that counts most; None for a name that tells nothing."""
+        entry = self._reader.entry(name)
+        if entry and entry.kind == "module":
+            return entry
+        if name.islower() and "_" not in name:
+            return None
+        named = [entry for entry in self._reader.by_name(name) if entry.kind in _IMPORTABLE]
+        owners = {entry: self._reader.entry(entry.owner) for entry in named}
+        public = [entry for entry, owner in owners.items() if owner and owner.kind == "module"]
+        return next(iter(self._reader.heaviest(public)), None)
 
     def tell_if_gone(self, path: str, recognition: Recognition) -> None:
         """Adds a module, or a name in one, that only other versions have."""

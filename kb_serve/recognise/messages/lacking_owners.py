@@ -7,19 +7,25 @@ from typing import TYPE_CHECKING
 
 from kb_serve.reader import TYPES
 from kb_serve.recognise.elements import elsewhere
-from kb_serve.recognise.members_within import members_within, note_on_within
+from kb_serve.recognise.members_within import members_within
+from kb_serve.recognise.messages.context_members import note_on_absent
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
-    from kb_serve.reader import BaseReader
+    from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
-_FEW = 3
 _ID = f"{TYPES}ID"
 _OF_NO_BLOCK = frozenset({"BlendData", "Context", "Depsgraph", "Event"})
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
+_PROPERTIES, _OPERATOR = "bpy.props", f"{TYPES}Operator"
+_OWN_CLASS = (
+    "Blender has no class `{cls}`. If it is one of the script's own, `{name}` is a property of it by an annotation, "
+    "with a colon (`{name}: bpy.props.IntProperty()`), before the class is registered. What `invoke()` sets on "
+    "`self` is not there where `execute()` is called alone."
+)
 _NOT_IMPORTED = "`{module}` is a module of its own, to be imported first: `import {module}`."
 
 
@@ -36,9 +42,12 @@ class LackingOwners:
         self._removed = removed
         self._symbols = symbols
 
-    def explain(self, written: str, name: str, recognition: Recognition) -> None:
-        """Adds what became of the attribute, or the owner, and what it leads to that has the attribute."""
-        owner = _INSTANCES.get(written) or self._symbols.class_path(written)
+    def explain(self, written: str, name: str, recognition: Recognition, *, of_module: bool) -> None:
+        """Adds what became of the attribute, or the owner, and what it leads to that has the attribute.
+
+        ``of_module`` tells that the message is of a module, which no other is.
+        """
+        owner = _INSTANCES.get(written) or self._symbols.class_path(written, or_module=of_module)
         module = self._reader.entry(f"{owner}.{name}") if owner else None
         if module and module.kind == "module":
             recognition.add(module.path, 0.98, "error message")
@@ -53,13 +62,26 @@ class LackingOwners:
             removed = None if members_within(owner, name, self._reader) else removed
         if removed:
             recognition.add_removed(self._own_first(removed, owner))
-        elif owner and not self._reader.member_of(owner, name):
+        elif not owner and not of_module and written[:1].isupper() and written.isidentifier():
+            recognition.add(_PROPERTIES, 0.95, "error message")
+            recognition.add(_OPERATOR, 0.9, "error message")
+            recognition.notes.append(_OWN_CLASS.format(cls=written, name=name))
+        elif owner and (member := self._reader.member_of(owner, name)):
+            self._there(member, recognition)
+        elif owner:
             recognition.missing.append(MissingName(name, owner, sure=True))
             recognition.add(owner, 0.6, "error message")
             if other := elsewhere(owner, name, self._reader):
                 recognition.notes.append(other.how)
                 recognition.add(other.path, 0.98, "error message")
-            self._within(owner, name, recognition)
+            self._of_its_block(owner, name, recognition)
+
+    def _there(self, member: SymbolEntry, recognition: Recognition) -> None:
+        """A member that its class has, whatever the message says: of the context it is not there everywhere."""
+        recognition.add(member.path, 0.97, "error message")
+        symbol = self._reader.symbol(member.path) if member.kind == "context" else None
+        if symbol and (note := note_on_absent(symbol)):
+            recognition.notes.append(note)
 
     def _own_first(self, removed: RemovedSymbol, owner: str) -> RemovedSymbol:
         """A removed symbol of another class, with what the class that is asked has in its place before the rest."""
@@ -76,8 +98,8 @@ class LackingOwners:
         member = None if not now or self._reader.member_of(now, name) else self._removed.of_member(now, name)
         return member or cls
 
-    def _within(self, owner: str, name: str, recognition: Recognition) -> None:
-        """A member that a class lacks, and that something has which it points to: before all what it is a part of."""
+    def _of_its_block(self, owner: str, name: str, recognition: Recognition) -> None:
+        """A member that a class lacks, and that the data-block has which it is a part of."""
         of_block = self._reader.entry(f"{_ID}.{name}")
         cls = self._reader.entry(owner)
         is_part = cls is not None and cls.group == "data" and cls.name not in _OF_NO_BLOCK
@@ -86,7 +108,3 @@ class LackingOwners:
             recognition.notes.append(
                 f"The data-block that it is part of has it: `.id_data.{name}` (`{of_block.path}`)."
             )
-            return
-        for rank, (pointer, member) in enumerate(members_within(owner, name, self._reader)[:_FEW]):
-            recognition.add(member.path, 0.96 - 0.01 * rank, "error message")
-            recognition.notes.append(note_on_within(pointer, member))

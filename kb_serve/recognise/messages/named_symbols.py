@@ -17,16 +17,20 @@ class NamedSymbols:
     def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
 
-    def class_path(self, name: str) -> str:
-        """The path of a class or module that a message names; empty where there is none."""
+    def class_path(self, name: str, *, or_module: bool = True) -> str:
+        """The path of a class that a message names, or else a module if ``or_module``; empty where there is none.
+
+        What is spelled exactly so comes before what has the same letters.
+        """
+        kinds = ("class", "module") if or_module else ("class",)
         for candidate in (TYPES + name, name):
-            if self._reader.entry(candidate):
+            if (entry := self._reader.entry(candidate)) and (or_module or entry.kind in kinds):
                 return candidate
-        for _, identifier in self._reader.by_key(key(name)):
-            entry = self._reader.entry(identifier)
-            if entry and entry.kind in {"class", "module"}:
-                return identifier
-        return ""
+        spelled = [identifier for _, identifier in self._reader.by_key(key(name))]
+        found = [entry for entry in map(self._reader.entry, spelled) if entry and entry.kind in kinds]
+        last = name.rpartition(".")[2]
+        first = min(found, key=lambda entry: (entry.name != last, kinds.index(entry.kind)), default=None)
+        return first.path if first else ""
 
     def member(self, owner: str, name: str) -> SymbolEntry | None:
         """What a class or module that a message names has of that name."""

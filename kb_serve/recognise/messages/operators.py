@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbol_lines import operator_given, operator_needs, refused_nothing
+from kb_serve.reader import TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
@@ -56,8 +57,10 @@ class Operators:
                 module, _, name = match["operator"].partition("_OT_")
                 if entry := self._reader.entry(f"bpy.ops.{module.lower()}.{name}"):
                     recognition.add(entry.path, 0.98, "error message")
-        if forms.NO_WRITING.search(query):
+        if match := forms.NO_WRITING.search(query):
             recognition.notes.append(_READS_ONLY)
+            if set_ := self._set(match["owner"] or "", match["name"] or ""):
+                recognition.add(set_, 0.97, "error message")
         if forms.POSITIONAL.search(query):
             recognition.notes.append(NO_OVERRIDE)
             recognition.add(OVERRIDE, 0.98, "error message")
@@ -68,6 +71,12 @@ class Operators:
                 if entry := self._reader.entry(f"bmesh.ops.{name}"):
                     recognition.add(entry.path, max(0.82, 0.95 * alike), "similar name")
             recognition.notes.append(f"`bmesh.ops` has no `{match['name']}`.")
+
+    def _set(self, owner: str, name: str) -> str:
+        """The path of what was set, or else of its class, which has it by registration; empty where none is named."""
+        member = self._reader.member_of(f"{TYPES}{owner}", name)
+        cls = self._reader.entry(f"{TYPES}{owner}")
+        return member.path if member else cls.path if cls else ""
 
     def _said_to_want(self, operator: Symbol, message: str) -> str:
         """What all operators of a module want in the context that are known to want one thing, if nothing is known of

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import importlib
 import re
 from typing import TYPE_CHECKING
 
@@ -59,6 +60,19 @@ FIRST = {
     "ValueError: 1-2 args execution context is supported": "bpy.types.Context.temp_override",
     "ReferenceError: BMesh data of type BMesh has been removed": "bmesh.types.BMesh.free",
     "ReferenceError: StructRNA of type Object has been removed": "bpy.types.BlendDataObjects.remove",
+    # Classes that are spelled like a module, or like a value.
+    "'BMesh' object has no attribute 'calc_tessface'": "bmesh.types.BMesh.calc_loop_triangles",
+    "'BMesh' object has no attribute 'select_flush_mode'": "bmesh.types.BMesh.select_flush_mode",
+    "'Matrix' object has no attribute 'rotation_part'": "mathutils.Matrix",
+    "'Matrix' object is not callable": "mathutils.Matrix",
+    "'Color' object has no attribute 'a'": "mathutils.Color",
+    "AttributeError: 'Context' object has no attribute 'object'": "bpy.types.Context.object",
+    "AttributeError: 'MyOperator' object has no attribute 'my_prop'": "bpy.props",
+    "ModuleNotFoundError: No module named 'bpy_types'": "bpy.types",
+    "NameError: name 'Vector' is not defined": "mathutils.Vector",
+    "NameError: name 'bmesh' is not defined": "bmesh",
+    "AttributeError: Writing to ID classes in this context is not allowed: Scene, Scene data-block, error setting "
+    "Scene.frame_current": "bpy.types.Scene.frame_current",
 }
 
 
@@ -253,6 +267,20 @@ def test_a_pasted_traceback_is_read_as_its_last_line(kb: KnowledgeBase) -> None:
             "`, then `bpy.ops.rigidbody.constraint_add()`",
         ),
         ("AttributeError: 'tuple' object has no attribute 'x'", "`mathutils.Vector(value).x`"),
+        (
+            "AttributeError: 'Context' object has no attribute 'selected_objects'",
+            "`bpy.context.view_layer.objects.selected` needs none. Or give it one: `with bpy.context.temp_override(",
+        ),
+        (
+            "AttributeError: 'MyOperator' object has no attribute 'my_prop'",
+            "with a colon (`my_prop: bpy.props.IntProperty()`)",
+        ),
+        ("ModuleNotFoundError: No module named 'bpy_types'", "`import _bpy_types`"),
+        ("NameError: name 'Vector' is not defined", "`from mathutils import Vector`"),
+        ("NameError: name 'BVHTree' is not defined", "`from mathutils.bvhtree import BVHTree`"),
+        ("NameError: name 'IntProperty' is not defined", "`from bpy.props import IntProperty`"),
+        ("NameError: name 'bmesh' is not defined", "`import bmesh`"),
+        ("NameError: name 'C' is not defined", "write `bpy.context`"),
         ("AttributeError: 'str' object has no attribute 'location'", '`bpy.data.objects["…"]`'),
         ("AttributeError: type object 'Object' has no attribute 'mine'", "`bpy.types.Object` has no `mine`"),
         (
@@ -335,6 +363,36 @@ def test_an_operators_unknown_keyword_is_that_of_operators_alone(kb: KnowledgeBa
         'TypeError: Converting py args to operator properties:: keyword "size" unrecognized'
     ).notes
     assert all("gpu." not in note and "39 operators" not in note for note in notes)
+
+
+def test_what_was_set_by_registration_is_not_said_to_be_missing(kb: KnowledgeBase) -> None:
+    said = "Writing to ID classes in this context is not allowed: Scene, Scene data-block, error setting Scene.my_prop"
+    answer = kb.query(f"AttributeError: {said}")
+    assert answer.hits[0].id == "bpy.types.Scene"
+    assert "has no `my_prop`" not in "\n".join(answer.notes)
+
+
+@pytest.mark.blender
+def test_the_context_without_a_window_lacks_what_is_told_and_has_what_is_given() -> None:
+    bpy = pytest.importorskip("bpy")
+    with bpy.context.temp_override(window=None):
+        with pytest.raises(AttributeError, match="'Context' object has no attribute 'object'"):
+            assert bpy.context.object
+        assert not hasattr(bpy.context, "selected_objects")
+        assert hasattr(bpy.context.view_layer.objects, "active")
+        assert hasattr(bpy.context.view_layer.objects, "selected")
+        with bpy.context.temp_override(window=bpy.context.window_manager.windows[0]):
+            assert hasattr(bpy.context, "selected_objects")
+
+
+@pytest.mark.blender
+def test_what_is_told_to_be_imported_can_be() -> None:
+    pytest.importorskip("bpy")
+    for name, module in (
+        ("Vector", "mathutils"), ("BVHTree", "mathutils.bvhtree"), ("IntProperty", "bpy.props"),
+        ("__name__", "_bpy_types"),
+    ):  # fmt: skip
+        assert hasattr(importlib.import_module(module), name)
 
 
 @pytest.mark.blender

@@ -90,3 +90,21 @@ def test_paths_are_taken_apart(path: str, plain: str, node: str) -> None:
 def test_plain_words_are_no_removed_class(kb: KnowledgeBase) -> None:
     assert not any("VertexColors" in note for note in kb.query("vertex colors").notes)
     assert any("VertexColors" in note for note in kb.query("VertexColors").notes)
+
+
+@pytest.mark.parametrize(
+    ("query", "use"),
+    [
+        # A property with the same items tells it, which had the old one for longer.
+        ("bpy.ops.object.convert(target='GPENCIL')", "`bpy.ops.object.convert(target='GREASEPENCIL')`"),
+        # An argument by itself: of the function that is used most.
+        ("icon='OUTLINER_OB_LAMP'", "`bpy.types.UILayout.prop(icon='OUTLINER_OB_LIGHT')`"),
+    ],
+)
+def test_a_lost_value_of_an_argument_is_replaced(kb: KnowledgeBase, query: str, use: str) -> None:
+    (note,) = kb.query(query).notes
+    assert f"Use {use}." in note
+
+
+def test_a_value_that_is_taken_is_not_lost(kb: KnowledgeBase) -> None:
+    assert kb.query("icon='MESH_CUBE'").notes == ()

@@ -53,6 +53,21 @@ ANIMATION = (
         'One number of several is keyed by its index: `obj.keyframe_insert("location", index=0)`.',
     ),
     NamelessMessage(
+        ("keyframe_delete() path includes index",),
+        (f"{_T}bpy_struct.keyframe_delete",),
+        'The key of one number of several goes by its index: `obj.keyframe_delete("location", index=0)`.',
+    ),
+    NamelessMessage(
+        ("driver_add(): path includes index",),
+        (f"{_T}bpy_struct.driver_add",),
+        'One number of several is driven by its index, given by place: `obj.driver_add("location", 0)`.',
+    ),
+    NamelessMessage(
+        ("driver_remove(): path includes index",),
+        (f"{_T}bpy_struct.driver_remove",),
+        'The driver of one number of several goes by its index: `obj.driver_remove("location", 0)`.',
+    ),
+    NamelessMessage(
         ("keyframe_insert()() takes at most 1 positional argument",),
         (f"{_T}bpy_struct.keyframe_insert",),
         'All but the path is given by name: `obj.keyframe_insert("location", frame=10)`.',
