@@ -21,7 +21,7 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.api import STRUCT
-from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.flow.facts import T
 from kb_build.flow.types import (
     NONE,
     Collection,
@@ -34,6 +34,7 @@ from kb_build.flow.types import (
     Type,
     members,
 )
+from kb_build.object_data import OBJECT_DATA
 from kb_check.documented import (
     LENGTHS,
     documented_misfit,

@@ -68,6 +68,7 @@ RULES = (
         (
             "kb_build.flow",
             "kb_build.math_classes",
+            "kb_build.object_data",
             "kb_build.records",
             "kb_build.schema",
             "kb_build.unlisted",
@@ -80,6 +81,7 @@ RULES = (
         ("kb_build",),
         (
             "kb_build.flow",
+            "kb_build.object_data",
             "kb_build.records",
             "kb_build.schema",
             "kb_build.symbol_lines",
@@ -90,6 +92,7 @@ RULES = (
     Rule("kb_build.records", ("kb_build", "kb_check")),
     Rule("kb_build.schema", ("kb_build", "kb_check")),
     Rule("kb_build.unlisted", ("kb_build", "kb_check")),
+    Rule("kb_build.object_data", ("kb_build", "kb_check")),
     Rule("kb_build.math_classes", ("kb_build", "kb_check"), ("kb_build.records",)),
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
     Rule("kb_build.index.analysis", ("kb_build",)),
@@ -105,6 +108,7 @@ RULES = (
             "kb_build.index.analysis",
             "kb_build.index.everyday_table",
             "kb_build.math_classes",
+            "kb_build.object_data",
             "kb_build.symbol_lines",
             "kb_build.unlisted",
             "kb_build.pipeline",

@@ -15,8 +15,6 @@ from kb_build.flow.facts import (
     LAYER_ITEM,
     LAYERS,
     NARROWER,
-    OBJECT_DATA,
-    RENAMED,
     SAME_CLASS,
     SAME_TYPE,
     T,
@@ -43,6 +41,7 @@ from kb_build.flow.types import (
     union,
 )
 from kb_build.math_classes import math_class
+from kb_build.object_data import data_class
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -282,11 +281,7 @@ class Api:
 
     def object_data(self, value: str) -> Type:
         """The data of an object of a type: ``MESH`` → Mesh."""
-        name = OBJECT_DATA.get(value, "")
-        other, unless = RENAMED.get(name, ("", ""))
-        if other and not self.is_class(T + name) and not self.is_class(T + unless):
-            name = other
-        return self.instance(T + name)
+        return self.instance(T + data_class(value, lambda name: self.is_class(T + name)))
 
     # Calls.
 

@@ -31,8 +31,9 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.flow.facts import T
 from kb_build.flow.types import ClassObject, Instance
+from kb_build.object_data import OBJECT_DATA
 from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS, last_name
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls, calls_by_node

@@ -25,9 +25,10 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.flow.facts import T
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Plain, members
+from kb_build.object_data import OBJECT_DATA
 from kb_check.annotated_parameters import is_annotated
 from kb_check.calls import nothing_from
 from kb_check.findings import Finding, Fix

@@ -33,8 +33,9 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.api import GROUPS
-from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.flow.facts import T
 from kb_build.flow.types import Collection, Instance, Plain
+from kb_build.object_data import OBJECT_DATA
 from kb_check.conversions import misfit
 from kb_check.documented import layer_misfit
 from kb_check.findings import Edit, Finding, Fix, Span

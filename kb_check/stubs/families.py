@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OBJECT_DATA, OPEN_CLASSES, T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES, T
+from kb_build.object_data import OBJECT_DATA
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

@@ -271,7 +271,7 @@ class Steps:
         """Whether a class is the modifier of data that is made: it is told with that, as it is on another object."""
         data = path.removesuffix("Modifier")
         is_made = data != path and data in self._classes and data in self._creations
-        return is_made and self._scene.kinds.is_data(data)
+        return is_made and self._reader.is_object_data(data)
 
     def _make_one(self, creations: Mapping[str, Creation], *, is_first: bool) -> Iterator[str]:
         """How the classes of one maker are made, and what the first of them needs to be of use."""

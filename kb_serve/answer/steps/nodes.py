@@ -52,7 +52,7 @@ class NodeSteps:
 
     def in_own_tree(self, cls: str) -> Iterator[str]:
         """The nodes of what holds a tree, as a material does."""
-        if self._scene.kinds.is_data(cls):
+        if self._reader.is_object_data(cls):
             return
         for entry in self._reader.members(cls).values():
             if entry.type == "pointer" and entry.target.endswith("NodeTree"):

@@ -32,7 +32,7 @@ class PlaceSteps:
     def of(self, cls: str) -> Iterator[str]:
         """The steps that put a new instance of a class where it counts."""
         variable = self._scene.variables.of(cls)
-        if self._scene.kinds.is_data(cls):
+        if self._reader.is_object_data(cls):
             yield from self._scene.obj.made_of(cls)
             yield from self._deforming(cls)
             variable = OBJ

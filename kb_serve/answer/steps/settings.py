@@ -104,7 +104,7 @@ class SettingSteps:
 
     def _mode_of(self, collection: SymbolEntry) -> str:
         """The mode of the object in which alone something is added to a collection of its data; empty for any."""
-        if not self._scene.kinds.is_data(collection.owner):
+        if not self._reader.is_object_data(collection.owner):
             return ""
         made = self._adding(collection)
         maker = self._reader.symbol(made.maker) if made else None
