@@ -10,6 +10,7 @@ from itertools import dropwhile, groupby, islice, takewhile
 from operator import attrgetter
 from typing import TYPE_CHECKING, cast
 
+from kb_build.api_names import TYPES
 from kb_build.records import (
     ALSO,
     ANY,
@@ -115,7 +116,7 @@ def _own_default(symbol: Symbol) -> Default:
 
 
 def _is_of_struct(symbol: Symbol) -> bool:
-    return symbol.kind == "property" and symbol.path.startswith("bpy.types.")
+    return symbol.kind == "property" and symbol.path.startswith(TYPES)
 
 
 def _is_listed(symbol: Symbol) -> bool:

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
+from kb_build.api_names import TYPES
 from kb_build.object_data import data_class
 from kb_build.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import NoBase, open_read_only, unpack
@@ -24,11 +25,8 @@ if TYPE_CHECKING:
 _Record = TypeVar("_Record")
 _Value = TypeVar("_Value")
 
-TYPES = "bpy.types."
 EXTEND = "__extend__"  # the identifier of the socket at which a node gets more
 PROPERTIES = "bpy.props."  # whose functions scripts import by name
-STRUCT = "bpy.types.bpy_struct"
-COLLECTION = "bpy.types.bpy_prop_collection"
 _ARGUMENT = re.compile(r"[( ](\w+)=")
 _UNLIMITED = float("inf")
 _REBUILD = "Rebuild it: simworlds kb build --force"

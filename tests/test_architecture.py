@@ -66,6 +66,7 @@ RULES = (
         "kb_build.flow",
         ("kb_build",),
         (
+            "kb_build.api_names",
             "kb_build.flow",
             "kb_build.math_classes",
             "kb_build.object_data",
@@ -80,6 +81,7 @@ RULES = (
         "kb_check",
         ("kb_build",),
         (
+            "kb_build.api_names",
             "kb_build.flow",
             "kb_build.object_data",
             "kb_build.records",
@@ -89,13 +91,14 @@ RULES = (
             "kb_build.unlisted",
         ),
     ),
+    Rule("kb_build.api_names", ("kb_build", "kb_check")),
     Rule("kb_build.records", ("kb_build", "kb_check")),
     Rule("kb_build.schema", ("kb_build", "kb_check")),
     Rule("kb_build.unlisted", ("kb_build", "kb_check")),
     Rule("kb_build.object_data", ("kb_build", "kb_check")),
     Rule("kb_build.math_classes", ("kb_build", "kb_check"), ("kb_build.records",)),
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
-    Rule("kb_build.index.analysis", ("kb_build",)),
+    Rule("kb_build.index.analysis", ("kb_build",), ("kb_build.api_names",)),
     Rule("kb_build.index.everyday_table", ("kb_build",)),
     Rule("kb_serve", others("simworlds", "kb_build", "kb_serve"), through=True),
     Rule(
@@ -103,6 +106,7 @@ RULES = (
         ("kb_build",),
         # What a base holds, which words it lends each other, and one way to make it.
         (
+            "kb_build.api_names",
             "kb_build.records",
             "kb_build.schema",
             "kb_build.index.analysis",

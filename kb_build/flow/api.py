@@ -6,6 +6,8 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
+from kb_build.api_names import COLLECTION, GROUPS, STRUCT
+from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import (
     CALLED,
     CLASS_OF_VALUE,
@@ -17,7 +19,6 @@ from kb_build.flow.facts import (
     NARROWER,
     SAME_CLASS,
     SAME_TYPE,
-    T,
 )
 from kb_build.flow.type_text import read_type
 from kb_build.flow.types import (
@@ -49,10 +50,7 @@ if TYPE_CHECKING:
     from kb_build.flow.symbols import Symbols
     from kb_build.records import Parameter, Symbol
 
-COLLECTION = "bpy.types.bpy_prop_collection"
-GROUPS = "bpy.types.bpy_prop_collection_idprop"
 ARRAY = "bpy.types.bpy_prop_array"
-STRUCT = "bpy.types.bpy_struct"
 _ROOTS = {"bpy.data": f"{T}BlendData", "bpy.context": f"{T}Context"}
 _SCALARS: dict[str, Type] = {"boolean": BOOL, "int": INT, "float": FLOAT, "string": STR}
 MENU_SOCKET = f"{T}NodeSocketMenu"

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-T = "bpy.types."
+from kb_build.api_names import TYPES as T
+
 VERSION = "bpy.app.version"
 
 # Operators that make an object and leave it as the active one: how their paths begin or are → the object's type.

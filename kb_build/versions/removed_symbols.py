@@ -7,6 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.flow.facts import LOST_MODULES
 from kb_build.index.analysis import key, short_path
 from kb_build.versions.arrivals import told_arrivals
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from kb_build.versions.history import ApiHistory
 
 
-_TYPES = "bpy.types"
+_MODULE = "bpy.types"
 _INTERFACE = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT|OT|UL|AST|GGT|GT|FH|KSI|RE)_")
 _MADE_IN_USE = re.compile(
     r"bpy\.types\.(?:CompositorNode(?:RLayers|Image|OutputFile)|GeometryNode(?:Bake|RepeatOutput|Viewer|CaptureAttribute))"
@@ -61,9 +62,9 @@ def is_asked_for(path: str, history: ApiHistory, version: str) -> bool:
     above, mark, name = split_path(path)
     if mark == "(" or above.endswith(")"):
         return bool(history.exists(above, version))
-    if above == _TYPES:
+    if above == _MODULE:
         return bool(_EXTENDED.match(name)) or not _INTERFACE.match(name)
-    return not _INTERFACE.match(above.removeprefix(_TYPES + "."))
+    return not _INTERFACE.match(above.removeprefix(TYPES))
 
 
 def _keys(path: str, items: Counter[str]) -> Iterator[str]:

@@ -19,6 +19,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.flow.types import Instance
 from kb_build.records import FREE_ON
 from kb_build.symbol_lines import freed_by, is_locked
@@ -118,7 +119,7 @@ def _is_deleted(row: Resolution) -> bool:
 
 def _is_refused(row: Resolution, symbol: Symbol) -> bool:
     """Whether an instance refuses another value for a member."""
-    if symbol.owner.startswith("bpy.types."):
+    if symbol.owner.startswith(TYPES):
         return symbol.kind == "function" or is_locked(symbol) or row.kind == "attribute"
     refused = next(
         (names for module, names in _REFUSED.items() if symbol.owner.startswith(module)), frozenset()

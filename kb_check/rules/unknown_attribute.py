@@ -25,7 +25,8 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import OBJECT
+from kb_build.api_names import TYPES as T
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Plain, members
 from kb_build.object_data import OBJECT_DATA
@@ -48,7 +49,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _DATA, _LOAD = "bpy.types.BlendData", "bpy.types.BlendDataLibraries.load"
-_CONTEXT, _OBJECT = "bpy.types.Context", "bpy.types.Object"
+_CONTEXT = "bpy.types.Context"
 _OF_OBJECTS = frozenset(OBJECT_DATA.values())
 _LET_PASS = frozenset({"driver_remove"})
 # Before, what is assigned to an unknown name of a property group is lost, and no error.
@@ -97,7 +98,7 @@ def _is_of_object(script: Script, row: Resolution, owner: str) -> bool:
     return (
         node is not None
         and owner.removeprefix(T) in _OF_OBJECTS
-        and script.api.member(_OBJECT, row.value) is not None
+        and script.api.member(OBJECT, row.value) is not None
         and is_annotated(script, node, owner)
     )
 
@@ -119,10 +120,10 @@ def _confused(row: Resolution, owner: str, lacking: Lacking) -> Lacking:
     node = _owner_node(row)
     name = ast.unparse(node) if node else ""
     message = (
-        f"`{name}` is annotated as `{owner}`, which has no `{row.value}`; `{_OBJECT}` has it: the annotation or the"
-        f" use is wrong. Annotate what is an object as `{_OBJECT}`, or pass its `data` and use that."
+        f"`{name}` is annotated as `{owner}`, which has no `{row.value}`; `{OBJECT}` has it: the annotation or the"
+        f" use is wrong. Annotate what is an object as `{OBJECT}`, or pass its `data` and use that."
     )
-    return replace(lacking, message=message, instead=(f"{_OBJECT}.{row.value}",))
+    return replace(lacking, message=message, instead=(f"{OBJECT}.{row.value}",))
 
 
 def _of_libraries(script: Script) -> Iterator[Finding]:

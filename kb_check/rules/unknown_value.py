@@ -21,8 +21,8 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES as T
 from kb_build.flow.expressions import constants
-from kb_build.flow.facts import T
 from kb_build.flow.types import UNKNOWN, Resolution
 from kb_build.records import NOT_TAKEN, last_name
 from kb_build.symbol_lines import NODE_FAMILIES, never_taken

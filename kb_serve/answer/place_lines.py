@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import NODE, TYPES
 from kb_build.records import EVALUATED, NAMES_ITEMS, WITHOUT_ACTIVE, WITHOUT_AREA
 from kb_build.symbol_lines import (
     alike_nodes,
@@ -16,7 +17,6 @@ from kb_build.symbol_lines import (
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.makers_of_instances import told_makers
 from kb_serve.answer.pages import manual_page
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_serve.reader import BaseReader
 
-_NODE = f"{TYPES}Node"
 _NONE_IN_CONTEXT = {
     WITHOUT_ACTIVE: "`None` where no object is active",
     WITHOUT_AREA: "`None` outside the areas of windows, as in a Blender without a window",
@@ -97,7 +96,7 @@ def _key_of(cls: str, reader: BaseReader) -> str:
 
 def _is_node(path: str, reader: BaseReader) -> bool:
     """Whether a class is one of nodes, below the class of all of them."""
-    return path != _NODE and reader.descends(path, _NODE)
+    return path != NODE and reader.descends(path, NODE)
 
 
 def _empty_before(cls: Symbol, reader: BaseReader) -> str:

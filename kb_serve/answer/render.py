@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import SIDES, STRUCT, TYPES
 from kb_build.records import BARE_DATA, CALLS, PAIRS
 from kb_build.symbol_lines import (
     area_text,
@@ -28,13 +29,13 @@ from kb_serve.answer.property_facts import facts
 from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
 from kb_serve.answer.swizzles import without_swizzles
-from kb_serve.reader import STRUCT, TYPES, BaseReader, SymbolEntry
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from kb_build.records import Symbol
     from kb_serve.answer.asked_values import AskedOf
+    from kb_serve.reader import BaseReader, SymbolEntry
 
 _PUT_TOGETHER = (
     "put together while Blender runs, and not known here: the error for any other value lists them"
@@ -150,7 +151,7 @@ class MarkdownRenderer:
         """The inputs or outputs of a node's class, where ``asked`` names the class and ``path`` is the list itself."""
         side = path.removeprefix(f"{TYPES}Node.")
         cls = TYPES + asked.removesuffix(side).rstrip(" .").removeprefix(TYPES)
-        members = self.reader.members(cls).values() if side in {"inputs", "outputs"} else ()
+        members = self.reader.members(cls).values() if side in SIDES else ()
         sockets = [entry for entry in members if entry.path.startswith(f"{cls}.{side}[")]
         yield from _listed(f"{side.title()} of `{cls}`{_once_paired(members)}", sockets)
 

@@ -6,11 +6,11 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.symbol_lines import held, written
 from kb_serve.answer.budget import clip
 from kb_serve.answer.steps.new_scene import NewScene
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_serve.answer.budget import tokens
 
 if TYPE_CHECKING:
@@ -12,7 +13,6 @@ if TYPE_CHECKING:
 
     from kb_build.records import Symbol
 
-TYPES = "bpy.types."
 _INTERFACE = (
     "tool_settings", "space_data", "preferences", "window", "studio_light", "workspace", "region", "area", "brush",
     "asset",

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from kb_build.api_names import OPERATORS
 from kb_build.index.analysis import idf
 from kb_build.schema import DOCUMENT_KINDS, POSTING_BYTES, TOPICS, UNITS
 from kb_serve.kept_rows import KeptRows
@@ -127,7 +128,7 @@ class InvertedIndex:
     @cached_property
     def operators(self) -> Scores:
         """1 for each unit that is an operator."""
-        return np.array([ref.startswith("bpy.ops.") for ref in self.levels[0].refs], np.float32)
+        return np.array([ref.startswith(OPERATORS) for ref in self.levels[0].refs], np.float32)
 
     def idf(self, stem: str) -> float:
         """How much a stem tells, by the units that have it; 0 for an unknown one."""

@@ -7,6 +7,7 @@ from collections import defaultdict
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key, terms
 from kb_build.records import NOT_TAKEN
 from kb_build.symbol_lines import said_taken
@@ -218,5 +219,5 @@ class EnumValues:
         if entry is None:
             return -1.0
         about = set(terms(f"{entry.name} {entry.label} {parameter}"))
-        beyond = set(terms(entry.owner.replace("bpy.types.", "").replace("bpy.ops", "")))
+        beyond = set(terms(entry.owner.replace(TYPES, "").replace("bpy.ops", "")))
         return len(about & around) + 0.6 * len(beyond & around) - (0.3 if parameter else 0.0)

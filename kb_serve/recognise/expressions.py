@@ -16,6 +16,7 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_serve.recognise.animated_paths import path_given
 from kb_serve.recognise.broken_expressions import (
@@ -60,7 +61,7 @@ _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, 
 _BEHIND_A_CALL = 0.05  # how much less sure than the function is what a path that it is given may mean
 _BARE = 0.78  # how sure a class is with a call or an index behind it
 _OF_NAMED = 0.86  # … what a name with ``_`` holds, behind what is called so
-_MADE_BY_CALL = ("mathutils.", "bmesh.types.", "bpy.types.")
+_MADE_BY_CALL = ("mathutils.", "bmesh.types.", TYPES)
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})

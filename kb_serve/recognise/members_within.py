@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import STRUCT, TYPES
+from kb_build.api_names import STRUCT, TYPES
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry

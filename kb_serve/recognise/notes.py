@@ -6,7 +6,7 @@ import re
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import STRUCT, TYPES
+from kb_build.api_names import STRUCT, TYPES
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.enum_values import EnumValues
 

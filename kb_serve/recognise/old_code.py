@@ -7,8 +7,8 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, SIDES, TYPES
 from kb_build.index.analysis import key, words
-from kb_serve.reader import TYPES
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import find_chains
@@ -108,7 +108,7 @@ class OldCode:
         """The socket that a former name gives on the nodes that a variable is named after, if all of those take it."""
         side, name = chain.steps[:2] if len(chain.steps) > 1 else (None, None)
         named = set(words(chain.root)) - _SAY_NOTHING
-        if side is None or name is None or name.kind != "key" or side.text not in {"inputs", "outputs"}:
+        if side is None or name is None or name.kind != "key" or side.text not in SIDES:
             return ""
         paths = self._reader.removed_by_key(key(f'{side.text}["{name.text}"]')) if named else ()
         fitting = (path for path in paths if named <= set(words(socket_node(path).removeprefix(TYPES))))
@@ -199,7 +199,7 @@ class OldCode:
     def _socket(self, chain: Chain) -> OldName | None:
         """A removed socket, ``bsdf.inputs["Transmission"]``, of a node that only the variable's name tells."""
         for number, (before, step) in enumerate(zip(chain.steps, chain.steps[1:], strict=False)):
-            if step.kind == "key" and before.text in {"inputs", "outputs"}:
+            if step.kind == "key" and before.text in SIDES:
                 nodes = usual_classes(chain.root)
                 if any(key(chain.root) in key(entry.owner) for entry in self._reader.by_name(step.text)):
                     return None
@@ -400,6 +400,6 @@ def _old(chain: Chain, lost: LostName | None) -> OldName | None:
 
 def _quoted_paths(text: str) -> Iterator[str]:
     """The paths of classes and operators whose names are quoted."""
-    for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, "bpy.ops.")):
+    for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, OPERATORS)):
         for match in islice(pattern.finditer(text), _MOST_QUOTED):
             yield prefix + match[2]

@@ -5,9 +5,10 @@ enum value or URL. Descriptions are left to the search.
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, TYPES
 from kb_build.index.analysis import key, terms, tokens
-from kb_serve.reader import TYPES, BaseReader
 from kb_serve.recognise.addresses import ids_in_urls
 from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.calls import wrong_arguments
@@ -42,8 +43,10 @@ from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.spellings import Spellings
 from kb_serve.recognise.subscripts import asked_of_inputs
 
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
-_ID = f"{TYPES}ID"
 _FEW = 3
 _SURE = 0.9
 _MANY = 12
@@ -262,7 +265,7 @@ class Recogniser:
         """
         owner = self._reader.entry(missing.owner)
         is_class = owner is not None and owner.kind == "class"  # a module has nothing but its members
-        if not (missing.told and is_class) or self._reader.entry(f"{_ID}.{missing.name}"):
+        if not (missing.told and is_class) or self._reader.entry(f"{ID}.{missing.name}"):
             return False
         found = members_within(missing.owner, missing.name, self._reader)
         if not 0 < len(found) <= _FEW:

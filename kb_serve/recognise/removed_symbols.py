@@ -6,8 +6,8 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, TYPES
 from kb_build.index.analysis import key, words
-from kb_serve.reader import TYPES
 from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.variables import usual_classes
 
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, Successor
 
 _INSTANCES = {f"{TYPES}Context": "bpy.context"}
-_ANY = f"{TYPES}ID"  # data of any kind
 _MOST_OWNERS = 40  # a name that more removed symbols have says nothing about its class
 
 
@@ -157,7 +156,7 @@ class RemovedSymbolLookup:
         }
         found = present or found  # of the class before what it was called before
         alike = len({(removed.gone, *_new_names(removed)) for removed in found.values()}) == 1
-        if len(found) > 1 and (owner == _ANY or not alike):
+        if len(found) > 1 and (owner == ID or not alike):
             usual = [f"{cls}.{name}" for cls in usual_classes(variable)]
             return next((found[path] for path in usual if path in found), None)
         return found.get(self._likeliest(found, variable))

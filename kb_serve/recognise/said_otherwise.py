@@ -6,8 +6,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_build.index.analysis import key, words
-from kb_serve.recognise.operator_words import OPERATORS
 from kb_serve.recognise.variables import variable_fit
 
 if TYPE_CHECKING:

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import SIDES, TYPES
 from kb_build.records import NOT_TAKEN, PAIRS
 from kb_build.symbol_lines import written
-from kb_serve.reader import EXTEND, TYPES
+from kb_serve.reader import EXTEND
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -114,7 +115,7 @@ class NodeLinks:
         given, taken = self._socket(node, "inputs", group.given), self._socket(node, "outputs", group.taken)
         if not (given or taken) and (switch := self._type_switch(node, group)):
             yield f"`{variable}.{switch} = '{group.kind.upper()}'`"
-            given, taken = (self._typed(node, side, switch) for side in ("inputs", "outputs"))
+            given, taken = (self._typed(node, side, switch) for side in SIDES)
         by_items = self._items.may_extend(node, "inputs") or self._items.may_extend(node, "outputs")
         own_end = self._socket(node, "outputs", ()) if by_items and given and not taken else ""
         source = ""
@@ -199,7 +200,7 @@ class NodeLinks:
             items = symbol.enum_items if symbol else ()
             types = {item.identifier for item in items if item.where != NOT_TAKEN}
             is_taken = group.kind.upper() in types
-            if is_taken and all(self._typed(node, side, name) for side in ("inputs", "outputs")):
+            if is_taken and all(self._typed(node, side, name) for side in SIDES):
                 return name
         return ""
 

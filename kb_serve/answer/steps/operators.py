@@ -6,6 +6,7 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.symbol_lines import (
     held,
@@ -17,7 +18,6 @@ from kb_build.symbol_lines import (
 )
 from kb_serve.answer.arguments import of_file_browser
 from kb_serve.answer.panel_lines import panel_lines, switches_off
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

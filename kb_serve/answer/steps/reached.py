@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.symbol_lines import held
 from kb_serve.answer.steps.members import UNSEEN, settings_of
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator

@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import TYPES
+from kb_build.api_names import OBJECT, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
     from kb_serve.reader import BaseReader
 
-OBJECT, MESH, TREE = f"{TYPES}Object", f"{TYPES}Mesh", f"{TYPES}NodeTree"
+MESH, TREE = f"{TYPES}Mesh", f"{TYPES}NodeTree"
 OBJ = "obj"
 DATA = "object_data"
 # What every script has, or writes without a step that makes it.

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OBJECT, TYPES
 from kb_build.index.analysis import key
 from kb_build.symbol_lines import operator_active
-from kb_serve.answer.steps.variable_names import OBJ, OBJECT
-from kb_serve.reader import TYPES
+from kb_serve.answer.steps.variable_names import OBJ
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence

@@ -6,8 +6,8 @@ from collections import Counter
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import SIDES, TYPES
 from kb_build.index.analysis import key, terms
-from kb_serve.reader import TYPES
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.removed_symbols import socket_node
 
@@ -35,7 +35,7 @@ class FormerSockets:
         around = set(terms(forms.prose_of(query))) - set(terms(f"{name} node"))
         paths = [
             path
-            for side in ("inputs", "outputs")
+            for side in SIDES
             for path in self._reader.removed_by_key(key(f'{side}["{name}"]'))
             if path.endswith(f'["{name}"]')  # keys tell small letters from capitals
         ]

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import unknown_keywords
 from kb_serve.recognise.corrections import nearest
@@ -78,7 +79,7 @@ class Keywords:
         once = [
             path
             for path in self._reader.removed_named(name)
-            if path.startswith("bpy.ops.") and path.endswith(f"({name})")
+            if path.startswith(OPERATORS) and path.endswith(f"({name})")
         ]
         uses = self._reader.use_counts([plain_path(path) for path in once])
         once.sort(key=lambda path: -uses.get(plain_path(path), 0))

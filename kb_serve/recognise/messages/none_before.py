@@ -7,10 +7,10 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, TYPES
 from kb_build.index.analysis import terms
 from kb_build.records import FILLED_BY
 from kb_build.symbol_lines import empty_when_new, fillers
-from kb_serve.reader import TYPES
 from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
@@ -171,7 +171,7 @@ class NoneBefore:
         if symbol is None or "readonly" in symbol.flags or not empty_when_new(symbol):
             return ""
         made = self._reader.creations([TYPES + entry.target]).get(TYPES + entry.target)
-        is_value = made is not None and not made.maker.startswith("bpy.ops.")  # operators return no thing
+        is_value = made is not None and not made.maker.startswith(OPERATORS)  # operators return no thing
         value = made.call if made and is_value else entry.target.lower()
         return f"{entry.owner.removeprefix(TYPES).lower()}.{entry.name} = {value}"
 
