@@ -7,7 +7,7 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
+from kb_build.api_names import interface_part
 from kb_build.flow.facts import LOST_MODULES
 from kb_build.index.analysis import key, short_path
 from kb_build.versions.arrivals import told_arrivals
@@ -24,12 +24,11 @@ if TYPE_CHECKING:
 
 
 _MODULE = "bpy.types"
-_INTERFACE = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT|OT|UL|AST|GGT|GT|FH|KSI|RE)_")
 _MADE_IN_USE = re.compile(
     r"bpy\.types\.(?:CompositorNode(?:RLayers|Image|OutputFile)|GeometryNode(?:Bake|RepeatOutput|Viewer|CaptureAttribute))"
     r"\.(?:in|out)puts\["
 )
-_EXTENDED = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT)_")
+_EXTENDED = frozenset({"", "PT", "MT", "HT"})
 
 _MEMBER = re.compile(r"(bpy\.types\.\w+)(\.\w+)(?!\w|\[)")  # not sockets
 
@@ -63,8 +62,8 @@ def is_asked_for(path: str, history: ApiHistory, version: str) -> bool:
     if mark == "(" or above.endswith(")"):
         return bool(history.exists(above, version))
     if above == _MODULE:
-        return bool(_EXTENDED.match(name)) or not _INTERFACE.match(name)
-    return not _INTERFACE.match(above.removeprefix(TYPES))
+        return interface_part(name) in _EXTENDED
+    return not interface_part(above)
 
 
 def _keys(path: str, items: Counter[str]) -> Iterator[str]:

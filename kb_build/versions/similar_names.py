@@ -15,7 +15,7 @@ from collections import Counter, defaultdict
 from functools import cache
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, STRUCT, TYPES
+from kb_build.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.index.analysis import key, stem, words
 from kb_build.versions.feature_index import Bag, FeatureIndex, Mentions
 from kb_build.versions.paths import split_path
@@ -71,7 +71,6 @@ _LEAST_SHARE = 0.5
 _NOT_DATA = frozenset({"ui", "operator"})
 
 _LONE_CAPITAL = re.compile(r"(?<![A-Z])[A-Z]{2}(?=[a-z])(?!s\b)")
-_INTERFACE = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT|OT|UL|AST|GGT|GT|FH|KSI|RE)_")
 
 
 @cache
@@ -375,10 +374,10 @@ def _candidate_kind(symbol: Symbol) -> str:
 
 def has_similar(path: str) -> bool:
     """Whether similar names are looked for: not for interface classes, parameters, items of shared enumerations."""
-    above, mark, name = split_path(path)
+    above, mark, _ = split_path(path)
     if mark == "(" or "(" in above or path.startswith("rna_enum_"):
         return False
-    return _INTERFACE.match(name if above == "bpy.types" else above.removeprefix(TYPES)) is None
+    return not interface_part(path)
 
 
 def find_similar_names(

@@ -7,7 +7,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, TYPES
+from kb_build.api_names import OPERATORS, TYPES, interface_part
 from kb_build.versions.history import SHARED
 from kb_build.versions.paths import split_path
 
@@ -16,7 +16,6 @@ if TYPE_CHECKING:
 
 LEAST = 0.99  # of what stubs have of a kind, this share must be true
 _MODULE = "bpy.types"
-_INTERFACE = re.compile(r"bpy\.types\.[A-Z0-9_]+_[A-Z]{2,3}_")
 _MENUS_MADE_AT_RUN_TIME = "bpy.types.NODE_MT_"
 
 
@@ -87,7 +86,7 @@ def _lists(paths: Set[str]) -> set[str]:
 def _is_compared(path: str, roots: Set[str]) -> bool:
     if re.split(r"[.(:]", path, maxsplit=1)[0] not in roots or path.startswith(_MENUS_MADE_AT_RUN_TIME):
         return False
-    return not _INTERFACE.match(path) or split_path(path)[0] == _MODULE
+    return not interface_part(path) or split_path(path)[0] == _MODULE
 
 
 def _kind(path: str) -> str:
@@ -100,5 +99,5 @@ def _kind(path: str) -> str:
         module = ".".join(path.split(".")[: 2 if path.startswith("bpy.") else 1]).partition("(")[0]
         return f"parameter in {module}" if mark == "(" else f"name in {module}"
     if above == _MODULE:
-        return "class of the interface" if _INTERFACE.match(path) else "class"
+        return "class of the interface" if interface_part(path) else "class"
     return "parameter" if mark == "(" else "member"

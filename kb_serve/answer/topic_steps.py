@@ -22,9 +22,10 @@ from kb_serve.answer.steps.nodes import NodeSteps
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO, runs
 from kb_serve.answer.steps.own_properties import made_by_subscript
 from kb_serve.answer.steps.places import PlaceSteps
-from kb_serve.answer.steps.reached import ReachedSettings, is_of_interface
+from kb_serve.answer.steps.reached import ReachedSettings
 from kb_serve.answer.steps.settings import OTHERS_ELEMENT, SettingSteps
 from kb_serve.answer.steps.trees import EMBEDDED_TREES, TreeSteps
+from kb_serve.interface import is_of_interface
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -15,7 +15,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.budget import tokens
-from kb_serve.packs.section import is_of_interface, short
+from kb_serve.packs.section import is_for_users, short
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _OWN = 1.6  # of the weight of the class that a successor belongs to, beside its own
 _OF_SOCKET = 1.0  # sockets have no weight of their own: the share of their node's that they have
-_OF_INTERFACE = 0.25
+_FOR_USERS = 0.25
 _OF_NO_SCENE = 0.5  # what no expression leads to
 _NO_SUCCESSOR = 0.8
 _RENAMED_OWNER = 0.7  # a class that is gone as a whole: scripts rarely name classes
@@ -125,8 +125,8 @@ class Changes:
         symbol = self._reader.symbol(holder)
         if symbol is None or symbol.kind != "class":
             return 1.0
-        if is_of_interface(symbol):
-            return _OF_INTERFACE
+        if is_for_users(symbol):
+            return _FOR_USERS
         return 1.0 if symbol.reached else _OF_NO_SCENE
 
     def fill(self, budget: int) -> list[str]:

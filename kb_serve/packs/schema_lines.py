@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import NODE, SIDES, TYPES
 from kb_build.symbol_lines import literal, usual_default
-from kb_serve.packs.section import fitting, is_of_interface, short
+from kb_serve.packs.section import fitting, is_for_users, short
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -54,7 +54,7 @@ class SchemaLines:
         return [
             symbol
             for symbol in symbols
-            if symbol is not None and (self._concerns or not is_of_interface(symbol))
+            if symbol is not None and (self._concerns or not is_for_users(symbol))
         ]
 
     def _counts(self, path: str, weights: dict[str, float]) -> bool:

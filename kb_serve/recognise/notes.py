@@ -6,7 +6,7 @@ import re
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import STRUCT, TYPES
+from kb_build.api_names import STRUCT, TYPES, interface_part
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.enum_values import EnumValues
 
@@ -27,9 +27,6 @@ _VALUE_OF_PARAMETER = re.compile(rf"{_PARAMETER.pattern}:(?P<value>.+)")
 _WITH = "only with "  # … what tells the setting that an item wants begins with
 _TELLS_WHAT = "Write "  # how what names something that is no Blender's begins
 _NOTHING = "Nothing takes its place."
-_INTERFACE = re.compile(
-    r"[A-Z0-9_]+_[A-Z]{2,3}_"
-)  # of whose classes the history has those alone that scripts use
 _UNLISTED = (
     "_",
     "addon_utils",
@@ -177,7 +174,8 @@ class Notes:
         What a class inherited in other versions is not: one without a base may have lost it.
         """
         versions = self._reader.history_versions
-        if not versions or owner.startswith(_UNLISTED) or _INTERFACE.match(name):
+        # Of the interface's classes the history has those alone that scripts use.
+        if not versions or owner.startswith(_UNLISTED) or interface_part(name):
             return ""
         entry = self._reader.entry(owner)
         if entry is not None and entry.base in {"", STRUCT}:

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, SIDES, TYPES
+from kb_build.api_names import OPERATORS, SIDES, TYPES, interface_part
 from kb_build.index.analysis import key, words
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.chain_starts import ROOTS
@@ -45,7 +45,6 @@ _PROPERTY_NAMES = (
 )
 _IMPORT = re.compile(r"\bimport\s+([a-z][\w.]*)")
 _FROM = re.compile(r"\bfrom\s+([a-z][\w.]*)\s+import\s+\(?\s*(\w+(?:\s*,\s*\w+)*)")
-_INTERFACE = re.compile(r"[A-Z0-9_]+_[A-Z]{2}_")
 _MOST_QUOTED = 12
 _SAY_NOTHING = frozenset({"node", *"0123456789"})  # words of a variable's name that no node is told by
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
@@ -165,7 +164,7 @@ class OldCode:
         for length in range(min(len(names), _MOST_NAMES), 0, -1):
             path = ".".join((root, *names[1:length]))
             # A script's own panel may bear a name that Blender's had.
-            cls = () if _INTERFACE.match(path) else (TYPES + path,)
+            cls = () if interface_part(path) else (TYPES + path,)
             for candidate in (path, *cls, f"bpy.{path}"):
                 if removed := self._removed.of_path(candidate):
                     return OldName(removed, chain.steps[length - 1 :])
