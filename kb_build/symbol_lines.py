@@ -456,15 +456,15 @@ def version_meant(text: str) -> str:
 def new_subscript(socket: Symbol) -> str:
     """The subscript that gives a socket of a new node: its name where that works; empty for none."""
     if "name-when-shown" in socket.flags and "hidden-by-default" not in socket.flags:
-        side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
-        return f'{side}["{socket.label}"]'
+        return f'{socket.side}["{socket.label}"]'
     return socket.subscripts[0] if socket.subscripts else ""
 
 
 def written(symbol: Symbol) -> str:
     """A symbol's path as a script can write it: of a socket that its identifier never gives, by its place."""
-    side = symbol.path[len(symbol.owner) + 1 :].partition("[")[0]
-    is_never_so = NEVER_BY_IDENTIFIER in symbol.flags and f'{side}["{symbol.identifier}"]' in symbol.path
+    is_never_so = (
+        NEVER_BY_IDENTIFIER in symbol.flags and f'{symbol.side}["{symbol.identifier}"]' in symbol.path
+    )
     return f"{symbol.owner}.{symbol.subscripts[0]}" if is_never_so and symbol.subscripts else symbol.path
 
 
@@ -473,10 +473,9 @@ def subscripts_text(socket: Symbol, most: int | None = None) -> str:
 
     Not more than ``most`` of those that always work.
     """
-    side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
     shown = [f"`{text}`" for text in socket.subscripts[:most]]
     if "name-when-shown" in socket.flags:
-        shown.append(f'`{side}["{socket.label}"]` while it is shown')  # behind what always works
+        shown.append(f'`{socket.side}["{socket.label}"]` while it is shown')  # behind what always works
     identifier = socket.identifier
     if identifier not in ("", socket.label):
         shown.append(f"identifier `{identifier}`")

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.index.analysis import distinct_words
-from kb_build.records import last_name
+from kb_build.paths import last_name, plain_path
 from kb_check.likely_names import by_label
 from kb_serve.recognise.corrections import by_first_word, is_misspelling, nearest
 from kb_serve.recognise.enum_values import EnumValues
@@ -144,8 +144,8 @@ class KnownNames:
 
     def value(self, owner: str, value: str, values: Iterable[str]) -> Lacking:
         """A value that is none of an enumeration's; ``owner`` is the property, or ``function(parameter)``."""
-        whole, mark, argument = owner.partition("(")
-        part = f"{mark}{argument}:{value}"
+        whole = plain_path(owner)
+        part = f"{owner.removeprefix(whole)}:{value}"
         if removed := self._lookup.of_part(whole, part) or self._of_former(whole, part):
             return self._removed(removed)
         values = list(values)

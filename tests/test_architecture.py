@@ -70,6 +70,7 @@ RULES = (
             "kb_build.flow",
             "kb_build.math_classes",
             "kb_build.object_data",
+            "kb_build.paths",
             "kb_build.records",
             "kb_build.schema",
             "kb_build.unlisted",
@@ -84,6 +85,7 @@ RULES = (
             "kb_build.api_names",
             "kb_build.flow",
             "kb_build.object_data",
+            "kb_build.paths",
             "kb_build.records",
             "kb_build.schema",
             "kb_build.symbol_lines",
@@ -92,7 +94,8 @@ RULES = (
         ),
     ),
     Rule("kb_build.api_names", ("kb_build", "kb_check")),
-    Rule("kb_build.records", ("kb_build", "kb_check")),
+    Rule("kb_build.paths", ("kb_build", "kb_check")),
+    Rule("kb_build.records", ("kb_build", "kb_check"), ("kb_build.paths",)),
     Rule("kb_build.schema", ("kb_build", "kb_check")),
     Rule("kb_build.unlisted", ("kb_build", "kb_check")),
     Rule("kb_build.object_data", ("kb_build", "kb_check")),
@@ -107,6 +110,7 @@ RULES = (
         # What a base holds, which words it lends each other, and one way to make it.
         (
             "kb_build.api_names",
+            "kb_build.paths",
             "kb_build.records",
             "kb_build.schema",
             "kb_build.index.analysis",

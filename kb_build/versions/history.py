@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.errors import StoreError
-from kb_build.versions.paths import split_path
+from kb_build.paths import split_path
 from simworlds.errors import UserError
 from simworlds.releases import minor_of, version_key
 

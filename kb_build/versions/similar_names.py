@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.index.analysis import key, stem, words
+from kb_build.paths import split_path
 from kb_build.versions.feature_index import Bag, FeatureIndex, Mentions
-from kb_build.versions.paths import split_path
 from simworlds.releases import minor_of
 
 if TYPE_CHECKING:

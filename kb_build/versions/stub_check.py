@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from kb_build.api_names import OPERATORS, TYPES, interface_part
+from kb_build.paths import split_path
 from kb_build.versions.history import SHARED
-from kb_build.versions.paths import split_path
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Set

@@ -20,7 +20,8 @@ from kb_build.api_names import OBJECT
 from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
-from kb_build.records import EMPTY, last_name
+from kb_build.paths import last_name
+from kb_build.records import EMPTY
 from kb_check.edit_bones import edited_outside
 from kb_check.findings import Finding
 from kb_check.made_here import (

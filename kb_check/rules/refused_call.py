@@ -35,7 +35,8 @@ from kb_build.api_names import NODE, OBJECT
 from kb_build.api_names import TYPES as T
 from kb_build.flow.types import ClassObject, Instance
 from kb_build.object_data import OBJECT_DATA
-from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS, last_name
+from kb_build.paths import last_name
+from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span

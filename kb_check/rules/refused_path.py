@@ -25,7 +25,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.api_names import ID, OBJECT
 from kb_build.api_names import TYPES as T
-from kb_build.records import last_name
+from kb_build.paths import last_name
 from kb_check.calls import calls
 from kb_check.data_paths import follow, item, size
 from kb_check.findings import Edit, Finding, Fix

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 from kb_build.api_names import OPERATORS
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Module, Plain, members
+from kb_build.paths import item_of, split_path
 from kb_check.conversions import misfit
 from kb_check.findings import Edit, Fix, Span
 from kb_check.given import assigned, property_taker
@@ -241,17 +242,10 @@ def _has_lost_values(script: Script, former: str, taken: frozenset[str]) -> bool
     rows = script.names.reader.rows(
         "SELECT path FROM removed WHERE path > ? AND path < ?", f"{former}:", f"{former};"
     )
-    return any(path.rpartition(":")[2] not in taken for (path,) in rows)
+    return any(item_of(path) not in taken for (path,) in rows)
 
 
 def _split(path: str) -> tuple[str, str]:
     """``a`` and ``b`` of ``a.b``, ``a(b)``, ``a:b``, ``a.inputs["b"]``; ``a(c)`` and ``b`` of ``a(c):b``."""
-    if "):" in path:
-        owner, _, name = path.rpartition(":")
-        return owner, name
-    for opening, closing in (('.inputs["', '"]'), ('.outputs["', '"]'), ("(", ")"), (":", "")):
-        owner, found, name = path.partition(opening)
-        if found:
-            return owner, name.removesuffix(closing)
-    owner, _, name = path.rpartition(".")
+    owner, _, name = split_path(path)
     return owner, name

@@ -6,7 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.api_names import TYPES
-from kb_build.records import last_name
+from kb_build.paths import last_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

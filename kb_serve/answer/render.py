@@ -132,9 +132,10 @@ class MarkdownRenderer:
 
     def _namesakes(self, socket: Symbol) -> Iterator[SymbolEntry]:
         """The other sockets of a node that have the name of one, of which each mode shows another."""
-        side = socket.path[len(socket.owner) :].partition("[")[0]
         for entry in self.reader.members(socket.owner).values():
-            is_named_so = entry.label == socket.label and entry.path.startswith(f"{socket.owner}{side}[")
+            is_named_so = entry.label == socket.label and entry.path.startswith(
+                f"{socket.owner}.{socket.side}["
+            )
             if entry.kind == "socket" and is_named_so and entry.path != socket.path:
                 yield entry
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.api_names import TYPES
 from kb_build.index.analysis import distinct_words, key, words
+from kb_build.paths import socket_name
 from kb_serve.recognise.chains import Chain, ChainStep
 
 if TYPE_CHECKING:
@@ -224,7 +225,5 @@ def _closest(
 
 def _with_step(chain: Chain, number: int, name: str) -> Chain:
     steps = list(chain.steps)
-    steps[number] = ChainStep(
-        "key" if steps[number].kind == "key" else "attr", name.partition('["')[2].rstrip('"]') or name
-    )
+    steps[number] = ChainStep("key" if steps[number].kind == "key" else "attr", socket_name(name) or name)
     return replace(chain, steps=tuple(steps))

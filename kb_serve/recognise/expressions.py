@@ -18,6 +18,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
+from kb_build.paths import is_socket, plain_path
 from kb_serve.recognise.animated_paths import path_given
 from kb_serve.recognise.broken_expressions import (
     CLEAR,
@@ -32,7 +33,7 @@ from kb_serve.recognise.loose_names import LooseNames
 from kb_serve.recognise.names_beside import NamesBeside, said_in_words
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.recognition import MissingName
-from kb_serve.recognise.removed_symbols import for_reading, plain_path
+from kb_serve.recognise.removed_symbols import for_reading
 from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import USUAL, usual_classes
@@ -240,7 +241,7 @@ class Expressions:
                 return False
         if resolved.keyed and resolved.fit >= CLEAR:
             return True
-        if 'puts["' in resolved.symbols[-1] and (broken is None or broken.fit < CLEAR):
+        if is_socket(resolved.symbols[-1]) and (broken is None or broken.fit < CLEAR):
             return True  # what is in brackets tells it, whatever the variable is called
         return resolved.fit >= 1.0 or (bool(chain.attributes) and resolved.fit >= LEAST)
 

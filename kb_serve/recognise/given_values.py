@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.paths import is_socket
 from kb_build.records import NOT_TAKEN
 from kb_build.symbol_lines import never_taken
 from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
@@ -69,7 +70,7 @@ def _wrong(
     if len(names) < FEWEST_VALUES or value in names or value in MORE_VALUES.get(owner, ()) or owner in _OPEN:
         return
     # Those of add-ons are taken as well; entries of menus of sockets are only written so.
-    if all(_CLASS.match(name) for name in names) and "puts[" not in owner:
+    if all(_CLASS.match(name) for name in names) and not is_socket(owner):
         return
     taken = [item for item in items if item.identifier not in refused and item.where != NOT_TAKEN]
     if closest := likely_items(value, taken, reader):

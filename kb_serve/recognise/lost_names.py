@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.api_names import OBJECT, SIDES, TYPES
 from kb_build.index.analysis import words
+from kb_build.paths import socket_node
 from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.refusals import refuses
-from kb_serve.recognise.removed_symbols import socket_node
 from kb_serve.recognise.variables import classes_of_parts, usual_classes
 
 if TYPE_CHECKING:

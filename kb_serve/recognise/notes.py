@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.api_names import STRUCT, TYPES, interface_part
+from kb_build.paths import as_code, split_path
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.enum_values import EnumValues
 
@@ -21,9 +21,6 @@ SIMILAR = "similar name"  # why a match is one of the names closest to a missing
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
 _MOST_ALIKE = 4
-_PARAMETER = re.compile(r"(?P<function>[\w.]+)\((?P<name>\w+)\)")
-_VALUE = re.compile(r"(?P<owner>[\w.]+):(?P<value>.+)")
-_VALUE_OF_PARAMETER = re.compile(rf"{_PARAMETER.pattern}:(?P<value>.+)")
 _WITH = "only with "  # … what tells the setting that an item wants begins with
 _TELLS_WHAT = "Write "  # how what names something that is no Blender's begins
 _NOTHING = "Nothing takes its place."
@@ -41,19 +38,6 @@ _UNLISTED = (
 
 def _list(paths: Iterable[str]) -> str:
     return ", ".join(f"`{as_code(path)}`" for path in list(paths)[:_MOST_NAMED])
-
-
-def as_code(path: str) -> str:
-    """A path as scripts write it: ``….engine = 'CYCLES'`` of ``….engine:CYCLES``, ``new(type='SMOKE')`` of
-    ``new(type):SMOKE``, ``add(radius=…)`` of ``add(radius)``.
-    """
-    if parameter := _VALUE_OF_PARAMETER.fullmatch(path):
-        return f"{parameter['function']}({parameter['name']}={parameter['value']!r})"
-    if parameter := _PARAMETER.fullmatch(path):
-        return f"{parameter['function']}({parameter['name']}=…)"
-    if item := _VALUE.fullmatch(path):
-        return f"{item['owner']} = {item['value']!r}"
-    return path
 
 
 def _if(variable: str) -> str:
@@ -139,8 +123,8 @@ class Notes:
 
     def setting_of(self, path: str) -> str:
         """A sentence on the setting without which an item of an enumeration is not taken; "" for other paths."""
-        owner, _, item = path.partition(":")
-        where = self._enum_values.where(owner, item) if item else ""
+        owner, mark, item = split_path(path)
+        where = self._enum_values.where(owner, item) if mark == ":" else ""
         return self._enum_values.condition(owner, item) if where.startswith(_WITH) else ""
 
     def _missing(self, recognition: Recognition) -> Iterator[str]:

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import OPERATORS, SIDES, TYPES, interface_part
 from kb_build.index.analysis import key, words
+from kb_build.paths import is_socket, socket_node
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.lost_names import LostName, LostNames, is_telling
-from kb_serve.recognise.removed_symbols import socket_node
 from kb_serve.recognise.variables import USUAL, usual_classes, variable_fit
 
 if TYPE_CHECKING:
@@ -179,7 +179,7 @@ class OldCode:
             if any(one.fit > resolved.fit and one.steps_left < resolved.steps_left for one in readings):
                 continue
             rest = chain.steps[len(chain.steps) - resolved.steps_left :]
-            if "puts[" in resolved.missing:
+            if is_socket(resolved.missing):
                 found = self._removed.of_member(resolved.owner, resolved.missing) or self._removed.of_socket(
                     resolved.owner, resolved.missing, chain.root
                 )
@@ -204,7 +204,7 @@ class OldCode:
                     return None
                 paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
                 for path in paths:
-                    node = path.partition('puts["')[0].rpartition(".")[0]
+                    node = socket_node(path)
                     named = number == 0 and (node in nodes or key(chain.root) in key(node))
                     if named and (removed := self._removed.of_path(path)):
                         return OldName(removed, chain.steps[number + 2 :])

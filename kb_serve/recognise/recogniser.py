@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import ID, TYPES
 from kb_build.index.analysis import key, terms, tokens
+from kb_build.paths import plain_path, socket_node
 from kb_serve.recognise.addresses import ids_in_urls
 from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.calls import wrong_arguments
@@ -37,7 +38,7 @@ from kb_serve.recognise.operator_words import OperatorWords
 from kb_serve.recognise.products import WITH_AT, Products
 from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.refusals import keywords
-from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
+from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 from kb_serve.recognise.resolver import Resolver
 from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.spellings import Spellings

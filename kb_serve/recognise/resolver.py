@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import COLLECTION, GROUPS, NODE, OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.index.analysis import key
+from kb_build.paths import is_socket
 from kb_serve.recognise.chain_starts import ChainStarts
 from kb_serve.recognise.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.chains import ChainStep
@@ -220,7 +221,7 @@ class Resolver:
         )
         if own:
             after = self._values.of(own, value.cls)
-            is_of_socket = "puts[" in value.symbol and not after.many and name != _LINKS
+            is_of_socket = is_socket(value.symbol) and not after.many and name != _LINKS
             yield replace(after, symbol=value.symbol if is_of_socket else own.path, origin=value.cls)
             return
         if not value.cls and hasattr(list, name) and self._is_list(value.symbol):

@@ -6,10 +6,10 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.api_names import OPERATORS
+from kb_build.paths import argument_of, plain_path
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import unknown_keywords
 from kb_serve.recognise.corrections import nearest
-from kb_serve.recognise.removed_symbols import plain_path
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
@@ -87,7 +87,7 @@ class Keywords:
             recognition.add_removed(removed)
         recognition.is_open = len(recognition.removed) > 1
         words = {
-            target.rpartition("(")[2].rstrip(")")
+            argument_of(target)
             for old in recognition.removed
             for target in old.targets
             if target.endswith(")")
