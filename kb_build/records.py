@@ -302,6 +302,16 @@ class Symbol:
         """Whether classes of scripts define the function, and Blender calls it."""
         return not {DEFINED, DEFINED_ALWAYS}.isdisjoint(self.flags)
 
+    @property
+    def same_as(self) -> str:
+        """The path of what it repeats, or is another name of; empty for none."""
+        return next(iter(self.flagged("same-as:")), "")
+
+    @property
+    def editors(self) -> tuple[str, ...]:
+        """The kinds of editors that provide a member of the context; ``screen`` stands for all."""
+        return self.flagged("from:")
+
     def flagged(self, prefix: str) -> tuple[str, ...]:
         """What the flags that begin with ``prefix`` say."""
         return tuple(flag.removeprefix(prefix) for flag in self.flags if flag.startswith(prefix))

@@ -307,8 +307,7 @@ class _Script:
         if not member.startswith(_CONTEXTS):
             return False
         symbol = self._api.symbols.symbol(member)
-        origins = {flag for flag in symbol.flags if flag.startswith("from:")} if symbol else set[str]()
-        return bool(origins) and "from:screen" not in origins
+        return symbol is not None and bool(symbol.editors) and "screen" not in symbol.editors
 
     def _quoted(self, statement: ast.stmt) -> str | None:
         """A statement's own lines, or its first ones up to its body; one line where it is written in many."""

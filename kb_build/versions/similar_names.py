@@ -365,7 +365,7 @@ def _is_candidate(symbol: Symbol, by_path: Mapping[str, Symbol]) -> bool:
     owner = by_path.get(symbol.owner)
     if owner is not None and owner.group in _NOT_DATA:
         return False
-    return not any(flag.startswith("same-as:") for flag in symbol.flags)
+    return not symbol.same_as
 
 
 def _candidate_kind(symbol: Symbol) -> str:

@@ -82,8 +82,7 @@ class Classes:
         bases = self._api.lineage(cls)[1:]
         if symbol.name.startswith("bl_rna_get_subclass") and (cls != STRUCT):
             return cls not in {COLLECTION} or not bases
-        same = next((flag[8:] for flag in symbol.flags if flag.startswith("same-as:")), "")
-        return same.rpartition(".")[0] in bases
+        return symbol.same_as.rpartition(".")[0] in bases
 
     def bases(self, cls: str) -> str:
         """The bases of a class as they stand between the brackets."""

@@ -38,7 +38,7 @@ def place_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
         cls = _owning_class(symbol, reader)
         yield f"reached as `{reached}`" + (_empty_before(cls, reader) if cls else "")
     elif symbol.kind == "context":
-        if origin := symbol.flagged("from:"):
+        if origin := symbol.editors:
             yield f"provided by: {', '.join(origin)}"
         yield from (text for flag, text in _NONE_IN_CONTEXT.items() if flag in symbol.flags)
     if symbol.kind == "class" and (creation := reader.creations([symbol.path]).get(symbol.path)):

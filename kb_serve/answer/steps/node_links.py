@@ -32,7 +32,6 @@ OF_WORLDS = frozenset(
 _END = "tree.get_output_node('ALL')"
 _END_NODE = f"{TYPES}ShaderNodeOutputMaterial"  # what that gives
 _GROUP_END = "group_output"
-_IDENTIFIER, _TYPED_BY = "identifier:", "type-by:"  # flags of sockets
 _DISPLACES = "displacement_method = 'DISPLACEMENT'"
 _PRINCIPLED = 'tree.nodes["Principled BSDF"]'
 _BACKGROUND = 'tree.nodes["Background"].inputs["Color"]'
@@ -190,7 +189,7 @@ class NodeLinks:
         for name, entry in self._reader.members(node).items():
             symbol = self._reader.symbol(entry.path) if name.startswith(f"{side}[") else None
             if symbol is not None:
-                found[written(symbol)[len(node) + 1 :]] = next(iter(symbol.flagged(_IDENTIFIER)), "")
+                found[written(symbol)[len(node) + 1 :]] = symbol.identifier
         return found
 
     def _type_switch(self, node: str, group: _Group) -> str:
@@ -208,7 +207,7 @@ class NodeLinks:
         """The first socket of a side whose type a property says; empty for none."""
         for name, entry in self._reader.members(node).items():
             symbol = self._reader.symbol(entry.path) if name.startswith(f"{side}[") else None
-            if symbol is not None and f"{_TYPED_BY}{switch}" in symbol.flags:
+            if symbol is not None and switch in symbol.type_settings:
                 return written(symbol)[len(node) + 1 :]
         return ""
 

@@ -73,7 +73,7 @@ class NoneBefore:
         if few and len(holders) <= _MANY and (not usual or self._are_used(holders)):
             likely = likely or holders
         elif not few and len(owners) <= _MANY and not likely:
-            likely = [entry for entry in holders if self._flag(entry, FILLED_BY) is not None]
+            likely = [entry for entry in holders if self._is_flagged(entry, FILLED_BY)]
             told = set(self._reader.heaviest(likely)[:1])
         if not likely:
             likely = self._empty_before(name)
@@ -161,7 +161,7 @@ class NoneBefore:
                 for entry in empty
                 if len(empty) <= _MANY
                 and entry.owner != TYPES + target
-                and (self._flag(entry, FILLED_BY) or self._setting(entry))
+                and (self._is_flagged(entry, FILLED_BY) or self._setting(entry))
             ]
         return self._empty[target]
 
@@ -200,7 +200,7 @@ class NoneBefore:
             entry
             for kind in kinds
             for entry in self._reader.pointing_at(kind)
-            if entry.group != "ui" and self._flag(entry, "never-none") is None
+            if entry.group != "ui" and not self._is_flagged(entry, "never-none")
         ]
         return [entry for entry in holders if entry.owner != TYPES + cls] or holders
 
@@ -216,8 +216,7 @@ class NoneBefore:
         symbol = self._reader.symbol(entry.path)
         return fillers(symbol) if symbol else []
 
-    def _flag(self, entry: SymbolEntry, prefix: str) -> str | None:
-        """What follows the prefix in a symbol's flags; None where no flag begins with it."""
+    def _is_flagged(self, entry: SymbolEntry, flag: str) -> bool:
+        """Whether one of a symbol's flags begins so."""
         symbol = self._reader.symbol(entry.path)
-        flags = symbol.flags if symbol else ()
-        return next((flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix)), None)
+        return symbol is not None and symbol.flagged(flag) != ()
