@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
 from kb_build.api_names import STRUCT, TYPES, interface_part
 from kb_build.paths import as_code, split_path
@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import MissingName, Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol
 
-SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
+SIMILAR: Final = "similar name"  # one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
 _MOST_ALIKE = 4
