@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance
-from kb_build.symbol_lines import usual_default
+from kb_build.symbol_facts import usual_default
 from kb_check.node_settings import setting_of
 from kb_check.socket_modes import showing
 

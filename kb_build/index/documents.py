@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import TYPES
 from kb_build.index.passages import Passage, find_passages
-from kb_build.symbol_lines import passage_text
+from kb_build.pages.definitions import passage_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from kb_build.api_names import TYPES
 from kb_build.lineages import lineage
 from kb_build.records import EMPTY
-from kb_build.symbol_lines import empty_when_new
+from kb_build.symbol_facts import empty_when_new
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -16,7 +16,8 @@ from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.index.passages import KIND_WORDS, Passage, keys_of_term
-from kb_build.symbol_lines import new_subscript, term_of
+from kb_build.pages.definitions import term_of
+from kb_build.symbol_facts import new_subscript
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

@@ -17,8 +17,8 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
+from kb_build.pages.definitions import passage_text, term_lines
 from kb_build.records import INVERTED
-from kb_build.symbol_lines import passage_text, term_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

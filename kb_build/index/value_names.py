@@ -17,8 +17,8 @@ from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.index.analysis import words as words_of
 from kb_build.index.label_names import LabelName
+from kb_build.pages.definitions import term_of
 from kb_build.records import NOT_TAKEN
-from kb_build.symbol_lines import term_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence

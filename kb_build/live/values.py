@@ -13,7 +13,8 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from kb_build.api_names import TYPES
 from kb_build.records import EMPTY, FILLED_ON, symbol_from_json
 from kb_build.schema import open_read_only, unpack
-from kb_build.symbol_lines import empty_when_new, fillers, literal
+from kb_build.symbol_facts import empty_when_new, fillers
+from kb_build.symbol_lines import literal
 from simworlds.installed import installed_bpy
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.runtime import Runtime, run_program

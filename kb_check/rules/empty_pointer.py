@@ -28,7 +28,7 @@ from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import READ_ACTIVE
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
-from kb_build.symbol_lines import empty_when_new, fillers
+from kb_build.symbol_facts import empty_when_new, fillers
 from kb_check.findings import Finding
 from kb_check.made_here import (
     asked_names,

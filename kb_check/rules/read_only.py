@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING
 from kb_build.api_names import TYPES
 from kb_build.flow.types import Instance
 from kb_build.records import FREE_ON
-from kb_build.symbol_lines import freed_by, is_locked
+from kb_build.symbol_facts import freed_by, is_locked
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import is_of_instance
 from kb_check.made_here import named_words

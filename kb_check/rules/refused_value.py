@@ -34,7 +34,7 @@ from kb_build.flow.types import Instance
 from kb_build.index.analysis import words
 from kb_build.paths import last_name
 from kb_build.records import NOT_TAKEN
-from kb_build.symbol_lines import usual_default
+from kb_build.symbol_facts import usual_default
 from kb_check.calls import calls
 from kb_check.findings import Finding
 from kb_check.made_here import (

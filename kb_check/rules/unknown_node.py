@@ -26,7 +26,7 @@ from kb_build.api_names import NODE
 from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import CLASS_NAMES
 from kb_build.paths import last_name
-from kb_build.symbol_lines import NODE_FAMILIES, alike_nodes
+from kb_build.symbol_facts import NODE_FAMILIES, alike_nodes
 from kb_check.calls import CallSite, calls
 from kb_check.findings import Finding, Fix
 from kb_check.mode_keeping import own_names

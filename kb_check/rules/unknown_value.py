@@ -26,7 +26,7 @@ from kb_build.flow.expressions import constants
 from kb_build.flow.types import UNKNOWN, Resolution
 from kb_build.paths import argument_of, last_name, plain_path, split_path
 from kb_build.records import NOT_TAKEN
-from kb_build.symbol_lines import NODE_FAMILIES, never_taken
+from kb_build.symbol_facts import NODE_FAMILIES, never_taken
 from kb_check.calls import calls
 from kb_check.findings import Finding
 from kb_check.given import assigned, class_values

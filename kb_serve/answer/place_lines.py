@@ -6,14 +6,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import NODE, TYPES
 from kb_build.records import EVALUATED, NAMES_ITEMS, WITHOUT_ACTIVE, WITHOUT_AREA
-from kb_build.symbol_lines import (
-    alike_nodes,
-    default_text,
-    empty_when_new,
-    fillers,
-    new_subscript,
-    of_evaluated,
-)
+from kb_build.symbol_facts import alike_nodes, empty_when_new, fillers, new_subscript
+from kb_build.symbol_lines import default_text, of_evaluated
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.makers_of_instances import told_makers
 from kb_serve.answer.pages import manual_page

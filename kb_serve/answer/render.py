@@ -7,16 +7,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import SIDES, STRUCT, TYPES
 from kb_build.records import BARE_DATA, CALLS, PAIRS
-from kb_build.symbol_lines import (
-    area_text,
-    is_stand_in,
-    mode_needed,
-    operator_areas,
-    operator_given,
-    operator_needs,
-    version_meant,
-    written,
-)
+from kb_build.symbol_facts import is_stand_in, operator_areas, operator_given
+from kb_build.symbol_lines import area_text, mode_needed, operator_needs, version_meant, written
 from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock

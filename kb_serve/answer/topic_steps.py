@@ -12,7 +12,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import NODE, OBJECT, OPERATORS, STRUCT, TYPES
 from kb_build.index.analysis import terms
-from kb_build.symbol_lines import operator_areas, operator_needs, refused_nothing
+from kb_build.symbol_facts import operator_areas, refused_nothing
+from kb_build.symbol_lines import operator_needs
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
 from kb_serve.answer.steps.instances import Instances

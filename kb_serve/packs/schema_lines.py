@@ -7,7 +7,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 from kb_build.api_names import NODE, SIDES, TYPES
-from kb_build.symbol_lines import literal, usual_default
+from kb_build.symbol_facts import usual_default
+from kb_build.symbol_lines import literal
 from kb_serve.packs.section import fitting, is_for_users, short
 
 if TYPE_CHECKING:

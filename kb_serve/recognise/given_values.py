@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.paths import is_socket
 from kb_build.records import NOT_TAKEN
-from kb_build.symbol_lines import never_taken
+from kb_build.symbol_facts import never_taken
 from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.calls import places_of

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import NODE, TYPES
 from kb_build.index.analysis import key, words
-from kb_build.symbol_lines import NODE_FAMILIES
+from kb_build.symbol_facts import NODE_FAMILIES
 from kb_serve.recognise.corrections import is_misspelling, nearest
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName

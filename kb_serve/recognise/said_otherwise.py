@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import OPERATORS
 from kb_build.index.analysis import key, words
-from kb_build.symbol_lines import operator_given
+from kb_build.symbol_facts import operator_given
 from kb_serve.recognise.variables import variable_fit
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.api_names import OBJECT, OPERATORS, TYPES
 from kb_build.records import FILLED_ON
-from kb_build.symbol_lines import empty_when_new, fillers
+from kb_build.symbol_facts import empty_when_new, fillers
 from kb_serve.answer.steps.variable_names import OBJ, class_called
 
 if TYPE_CHECKING:

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import ID, OPERATORS, TYPES
 from kb_build.records import EMPTY
-from kb_build.symbol_lines import empty_when_new, mode_needed
+from kb_build.symbol_facts import empty_when_new
+from kb_build.symbol_lines import mode_needed
 from kb_serve.answer.steps.members import UNSEEN, call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts

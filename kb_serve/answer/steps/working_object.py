@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import OBJECT, TYPES
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import operator_active
+from kb_build.symbol_facts import operator_active
 from kb_serve.answer.steps.variable_names import OBJ
 
 if TYPE_CHECKING:

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.api_names import ID, STRUCT, TYPES
 from kb_build.records import WITHOUT_ACTIVE
-from kb_build.symbol_lines import empty_when_new, fillers
+from kb_build.symbol_facts import empty_when_new, fillers
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 from kb_build.api_names import OPERATORS, TYPES
 from kb_build.index.analysis import terms
 from kb_build.records import FILLED_BY
-from kb_build.symbol_lines import empty_when_new, fillers
+from kb_build.symbol_facts import empty_when_new, fillers
 from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new

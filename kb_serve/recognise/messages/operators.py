@@ -6,7 +6,8 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.api_names import OPERATORS
-from kb_build.symbol_lines import operator_given, operator_needs, refused_nothing
+from kb_build.symbol_facts import operator_given, refused_nothing
+from kb_build.symbol_lines import operator_needs
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
