@@ -12,10 +12,11 @@ from importlib import metadata
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from kb_build.imported import source_files
 from simworlds.installed import installed_version
 
 if TYPE_CHECKING:
-    from collections.abc import Iterable, Sequence
+    from collections.abc import Iterable, Mapping, Sequence
 
     from kb_build.digests import Digests
     from kb_build.pages.sources import DocumentationSource, MissingSource
@@ -26,20 +27,8 @@ _DATA = _PACKAGE.parent / "corpora"
 # Packages whose versions show in the text of pages or in the index.
 _READERS = ("sphinx", "docutils", "beautifulsoup4", "lxml")
 _WRITERS = ("sqlite-utils", "snowballstemmer", "pystemmer")
-# These only read or report bases; changing them does not change a base.
-_ONLOOKERS = frozenset(
-    {
-        "base_file.py",
-        "base_report.py",
-        "cli.py",
-        "new_instances.py",
-        "diff.py",
-        "history_builder.py",
-        "reference_list.py",
-        "values.py",
-        "verify.py",
-    }
-)
+# What decides the symbols that scripts are read with.
+_SYMBOLS = ("kb_build.blender.extract_reader", "kb_build.versions.disused", "kb_build.versions.successors")
 
 
 def _digest(parts: Iterable[str | bytes]) -> str:
@@ -51,12 +40,17 @@ def _digest(parts: Iterable[str | bytes]) -> str:
     return total.hexdigest()
 
 
-def _code(files: Iterable[Path]) -> str:
+def _code(files: Mapping[Path, bytes]) -> str:
     return _digest(
         part
-        for file in sorted(files)
-        for part in (file.relative_to(_PACKAGE.parent).as_posix(), file.read_bytes())
+        for file, content in files.items()
+        for part in (file.relative_to(_PACKAGE.parent).as_posix(), content)
     )
+
+
+def _modules(*names: str) -> str:
+    """Digest of these modules and of all that they import of this package."""
+    return _code(source_files(names, _PACKAGE))
 
 
 def _versions(packages: Iterable[str]) -> str:
@@ -68,41 +62,34 @@ def _versions(packages: Iterable[str]) -> str:
 
 @cache
 def extractor_digest() -> str:
-    """Digest of the code that runs inside Blender, and of the history whose names it tries."""
-    code = _code((_PACKAGE / "blender" / "inside").rglob("*.py"))
+    """Digest of the code that runs inside Blender, and of the history whose names it tries.
+
+    Blender is given the whole folder, so all of it counts.
+    """
+    files = sorted((_PACKAGE / "blender" / "inside").rglob("*.py"))
+    code = _code({file: file.read_bytes() for file in files})
     return _digest([code, *(path.read_bytes() for path in sorted((_DATA / "history").glob("*")))])
 
 
 @cache
 def reader_digest() -> str:
     """Digest of the code and packages that turn sources into pages."""
-    files = [
-        *(_PACKAGE / "pages" / "readers").rglob("*.py"),
-        _PACKAGE / "docutils_states.py",
-        _PACKAGE / "records.py",
-    ]
-    return _digest([_code(files), _versions(_READERS)])
+    return _digest([_modules("kb_build.pages.page_cache"), _versions(_READERS)])
 
 
 @cache
 def usage_digest() -> str:
     """Digest of the code that finds the uses of symbols in scripts, and of what reads the symbols."""
-    files = [
-        path for part in ("flow", "panels", "usage", "blender") for path in (_PACKAGE / part).glob("*.py")
-    ]
-    return _code([*files, _PACKAGE / "records.py"])
+    return _modules("kb_build.usage.usage_index", *_SYMBOLS)
 
 
 @cache
 def code_digest() -> str:
     """Digest of the code, packages and data that shape a base."""
-    files = [path for path in _PACKAGE.rglob("*.py") if path.name not in _ONLOOKERS]
-    data = [
-        path.read_bytes()
-        for name in ("history", "words", "summaries")
-        for path in sorted((_DATA / name).glob("*"))
-    ]
-    return _digest([_code(files), _versions((*_READERS, *_WRITERS)), *data])
+    data = [path.read_bytes() for name in ("words", "summaries") for path in sorted((_DATA / name).glob("*"))]
+    return _digest(
+        [extractor_digest(), _modules("kb_build.pipeline"), _versions((*_READERS, *_WRITERS)), *data]
+    )
 
 
 def runtime_digest(runtime: Runtime, digests: Digests) -> str:

@@ -11,6 +11,8 @@ from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast, get_args
 
+from kb_build.paths import last_name, socket_name, socket_side
+
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
 
@@ -87,11 +89,6 @@ THEN = " then "  # between calls that fill it one after the other
 # How the names begin of what is there when Blender starts, among those of new things.
 STARTUP = "start-up "
 FACTORY = "factory "
-
-
-def last_name(path: str) -> str:
-    """What follows the last dot of a path."""
-    return path.rpartition(".")[2]
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,9 +261,12 @@ class Symbol:
     @property
     def name(self) -> str:
         """The last part of the path: what a programmer writes after the dot (or between the brackets)."""
-        if self.kind == "socket":
-            return self.path[self.path.index('["') + 2 : -2]
-        return last_name(self.path)
+        return socket_name(self.path) if self.kind == "socket" else last_name(self.path)
+
+    @property
+    def side(self) -> str:
+        """``inputs`` or ``outputs``, of a socket; "" for others."""
+        return socket_side(self.path)
 
     @property
     def has_empty_signature(self) -> bool:
@@ -301,6 +301,16 @@ class Symbol:
     def is_called_back(self) -> bool:
         """Whether classes of scripts define the function, and Blender calls it."""
         return not {DEFINED, DEFINED_ALWAYS}.isdisjoint(self.flags)
+
+    @property
+    def same_as(self) -> str:
+        """The path of what it repeats, or is another name of; empty for none."""
+        return next(iter(self.flagged("same-as:")), "")
+
+    @property
+    def editors(self) -> tuple[str, ...]:
+        """The kinds of editors that provide a member of the context; ``screen`` stands for all."""
+        return self.flagged("from:")
 
     def flagged(self, prefix: str) -> tuple[str, ...]:
         """What the flags that begin with ``prefix`` say."""

@@ -8,6 +8,7 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import interface_part
 from kb_build.errors import KBBuildError
 from kb_build.index.analysis import key
 
@@ -21,7 +22,6 @@ WANTED = 0.995
 _INVENTORY = b"# Sphinx inventory version 2"
 _ENTRY = re.compile(r"(?P<name>.+?)\s+(?P<domain>\w+):(?P<role>\S+)\s+-?\d+\s+\S*\s+.*")
 _IDENTIFIER = re.compile(r"[A-Za-z_]\w*(\.\w+)*")
-_INTERFACE = re.compile(r"\.[A-Z0-9_]+_(PT|MT|HT|UL|OT|GT|GGT|AST|FH|KSI)_")
 
 
 @dataclass(frozen=True, slots=True)
@@ -101,7 +101,7 @@ def _explain(identifier: str, bases: Mapping[str, str], spelled: Mapping[str, li
         return "alias: the reference repeats the owner's name", owner
     if same := spelled.get(key(identifier)):
         return "alias: spelled in another way", same[0]
-    if _INTERFACE.search(f".{identifier}"):
+    if any(map(interface_part, identifier.split("."))):
         return "interface: its class is not registered in this Blender", ""
     if owner in bases:
         return "removed or added: the owner is there, the name is not", owner

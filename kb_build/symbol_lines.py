@@ -1,28 +1,20 @@
-"""Lines of text: a symbol described on one line, and the definition lists in a page's lines."""
+"""A symbol described on one line, and the words for what is known of it."""
 
 from __future__ import annotations
 
-import re
-import textwrap
-from dataclasses import dataclass, replace
-from functools import cache
-from itertools import dropwhile, groupby, islice, takewhile
+from dataclasses import replace
+from itertools import groupby, islice, takewhile
 from operator import attrgetter
 from typing import TYPE_CHECKING, cast
 
 from kb_build.python_values import is_new_list
 from kb_build.records import (
-    ALSO,
-    ANY,
-    AREAS,
     EMPTY,
     ENDS_BEFORE,
     ENDS_WITHOUT,
     FACTORY,
-    FILLED_BY,
     FILLED_ON,
     FREE_ON,
-    FREED_BY,
     GIVEN,
     LOCKED_ON,
     LOCKED_WITH,
@@ -31,18 +23,27 @@ from kb_build.records import (
     NOT_TAKEN,
     SHOWN_WHEN,
     STARTUP,
-    THEN,
     last_name,
 )
 from kb_build.schema import TEST_ON
-from kb_build.unlisted import STAND_INS
+from kb_build.symbol_facts import (
+    empty_when_new,
+    fillers,
+    freed_by,
+    is_listed,
+    is_locked,
+    is_stand_in,
+    is_uncompared,
+    operator_also,
+    operator_areas,
+    usual_default,
+)
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.records import Default, NewValue, PanelCondition, Refusal, Symbol
+    from kb_build.records import NewValue, PanelCondition, Refusal, Symbol
 
-NODE_FAMILIES = ("ShaderNode", "GeometryNode", "CompositorNode", "FunctionNode", "TextureNode")
 _ACTIVE = "bpy.context.object"
 _REGISTERED = "nodes of a class that a script registers: built-in ones refuse it"
 _OF_OWN_NODES = frozenset({"bpy.types.NodeInputs", "bpy.types.NodeOutputs"})
@@ -52,12 +53,6 @@ _SHOWN_VALUES = 8
 _SHOWN_ELEMENTS = 16
 _SHOWN_OTHERS = 4
 _SHOWN_LABELS = 3
-# What operators want of the active object, as ``kb_build/blender/inside/operator_needs.py`` words it.
-_NEEDED = re.compile(
-    r"(?:an active(?: and selected)? object|any active object or none)(?P<types>(?:, not)? of type [^ ,]+)?"
-    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and only some types in mode [^ ,]+)?(?: with .+)?"
-)
-_QUOTED = re.compile(r"'(\w+)'")
 # Names by which scripts hold what is reached from the context.
 _HELD = (
     ("bpy.context.object", "obj"),
@@ -103,62 +98,12 @@ def first_sentence(text: str) -> str:
     return sentence if sentence.endswith("...") else sentence.rstrip(".")
 
 
-def usual_default(symbol: Symbol) -> Default:
-    """The value that a new instance usually has: what new ones had, else RNA's default; None where nobody knows."""
-    return next((new.value for new in symbol.new_values if not new.when), _own_default(symbol))
-
-
-def _own_default(symbol: Symbol) -> Default:
-    """RNA's default; None where it is none: of what Blender computes, and of what is not among a property's items."""
-    is_computed = "readonly" in symbol.flags or symbol.subtype == "MATRIX"
-    if (is_computed and _is_of_struct(symbol) and "compared" not in symbol.flags) or not _is_listed(symbol):
-        return None
-    return None if is_stand_in(symbol) else symbol.default
-
-
-def _is_of_struct(symbol: Symbol) -> bool:
-    return symbol.kind == "property" and symbol.path.startswith("bpy.types.")
-
-
-def _is_listed(symbol: Symbol) -> bool:
-    """Whether the property's items, if it has any, have RNA's default among them."""
-    items = {item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN}
-    given = symbol.default if isinstance(symbol.default, list) else [symbol.default]
-    return not items or symbol.default is None or items.issuperset(given)
-
-
-def is_stand_in(symbol: Symbol) -> bool:
-    """Whether RNA lists no value, or a stand-in for those made while Blender runs, and no new one told any."""
-    items = [item.identifier for item in symbol.enum_items]
-    return symbol.type == "enum" and len(items) <= 1 and STAND_INS.issuperset(items) and is_uncompared(symbol)
-
-
-def is_uncompared(symbol: Symbol) -> bool:
-    """Whether the default is RNA's alone, of a property whose new value may be another one."""
-    return _is_of_struct(symbol) and not {"compared", "readonly"} & set(symbol.flags)
-
-
 def held(reached: str) -> str:
     """An expression with the short names that scripts give to the object and the scene."""
     for prefix, name in _HELD:
         if reached == prefix or reached.startswith((f"{prefix}.", f"{prefix}[")):
             return name + reached[len(prefix) :]
     return reached
-
-
-def fillers(symbol: Symbol) -> list[str]:
-    """The calls that were seen to fill a pointer which is None on new things, in their order."""
-    return [call for text in symbol.flagged(FILLED_BY) for call in text.split(THEN)]
-
-
-def is_locked(symbol: Symbol) -> bool:
-    """Whether a property cannot be assigned: RNA says so, or Blender refused it on all that was tried."""
-    return "readonly" in symbol.flags or (LOCKED_ON + ANY in symbol.flags and not freed_by(symbol))
-
-
-def freed_by(symbol: Symbol) -> str:
-    """``use_auto_texspace = False``: the setting of its owner that lets a property be assigned; empty for others."""
-    return "".join(symbol.flagged(FREED_BY))
 
 
 def locked_text(symbol: Symbol) -> str:
@@ -181,55 +126,6 @@ def operator_needs(symbol: Symbol) -> str:
     also = "".join(f", with `{call}`" for call in operator_also(symbol))
     areas = [area_text(operator_areas(symbol)) + also] if operator_areas(symbol) else []
     return "".join(symbol.flagged(NEEDS)) or ", or ".join(given + areas)
-
-
-def refused_nothing(symbol: Symbol) -> bool:
-    """Whether an operator's poll said yes wherever it was asked: with and without objects, in all modes, in no area."""
-    return NEEDS in symbol.flags
-
-
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """Which types, or modes, of active objects an operator runs with: these ``names``, or all others."""
-
-    names: tuple[str, ...]
-    is_others: bool = False
-
-    def takes(self, name: str) -> bool:
-        """Whether an operator runs with a type, or in a mode."""
-        return (name in self.names) != self.is_others
-
-
-def operator_active(symbol: Symbol) -> tuple[Wanted | None, Wanted | None]:
-    """With which types of active objects, and in which modes, an operator runs; None where any will do."""
-    return _active("".join(symbol.flagged(NEEDS)))
-
-
-@cache
-def _active(needs: str) -> tuple[Wanted | None, Wanted | None]:
-    found = _NEEDED.fullmatch(needs)
-    return (_wanted(found["types"]), _wanted(found["modes"])) if found else (None, None)
-
-
-def _wanted(text: str | None) -> Wanted | None:
-    if not text or "…" in text:
-        return None
-    return Wanted(tuple(_QUOTED.findall(text)), text.startswith(", not"))
-
-
-def operator_areas(symbol: Symbol) -> tuple[str, ...]:
-    """The types of areas in which alone an operator runs; ``any`` where it is most of them."""
-    return symbol.flagged(AREAS)
-
-
-def operator_given(symbol: Symbol) -> str:
-    """The member of the context that an operator takes instead of an area, or of what an area puts there."""
-    return "".join(symbol.flagged(GIVEN))
-
-
-def operator_also(symbol: Symbol) -> tuple[str, ...]:
-    """What must be set besides for an operator that runs only in areas, as a statement."""
-    return symbol.flagged(ALSO)
 
 
 def area_text(types: Sequence[str]) -> str:
@@ -256,16 +152,6 @@ def refusal_lines(symbol: Symbol) -> list[str]:
         for refusal in symbol.refusals
         if refusal.is_explained and not (refusal.values and refusal.by)
     ]
-
-
-def never_taken(symbol: Symbol, argument: str) -> frozenset[str]:
-    """The values of an argument that RNA lists, and that were refused whatever else was given."""
-    return frozenset(
-        value
-        for refusal in symbol.refusals
-        if refusal.argument == argument and not (refusal.by or refusal.given or refusal.mode or refusal.again)
-        for value in refusal.values
-    )
 
 
 def taken_where(symbol: Symbol, argument: str) -> dict[str, str]:
@@ -375,11 +261,6 @@ def _empty_text(symbol: Symbol, empty: NewValue) -> str:
     return "; ".join(filter(None, (text, _made_by(symbol))))
 
 
-def empty_when_new(symbol: Symbol) -> NewValue | None:
-    """The new value of a pointer that is None on new things, or on those that it names; None for other symbols."""
-    return next((new for new in symbol.new_values if symbol.type == "pointer" and new.value is None), None)
-
-
 def default_text(symbol: Symbol) -> str:
     """What new ones have, in which kinds and modes they differ, and RNA's default where it is another."""
     if empty := empty_when_new(symbol):
@@ -405,7 +286,7 @@ def default_text(symbol: Symbol) -> str:
         for new in usual[1:]
         if new.is_startup
     )
-    if usual and symbol.default not in (None, value) and _is_listed(symbol):
+    if usual and symbol.default not in (None, value) and is_listed(symbol):
         text += f"; RNA says `{literal(symbol.default, symbol.type)}`"
     return text
 
@@ -454,18 +335,11 @@ def version_meant(text: str) -> str:
     return f"{major}.{minor[0]}" if minor[1:] == "0" else text
 
 
-def new_subscript(socket: Symbol) -> str:
-    """The subscript that gives a socket of a new node: its name where that works; empty for none."""
-    if "name-when-shown" in socket.flags and "hidden-by-default" not in socket.flags:
-        side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
-        return f'{side}["{socket.label}"]'
-    return socket.subscripts[0] if socket.subscripts else ""
-
-
 def written(symbol: Symbol) -> str:
     """A symbol's path as a script can write it: of a socket that its identifier never gives, by its place."""
-    side = symbol.path[len(symbol.owner) + 1 :].partition("[")[0]
-    is_never_so = NEVER_BY_IDENTIFIER in symbol.flags and f'{side}["{symbol.identifier}"]' in symbol.path
+    is_never_so = (
+        NEVER_BY_IDENTIFIER in symbol.flags and f'{symbol.side}["{symbol.identifier}"]' in symbol.path
+    )
     return f"{symbol.owner}.{symbol.subscripts[0]}" if is_never_so and symbol.subscripts else symbol.path
 
 
@@ -474,10 +348,9 @@ def subscripts_text(socket: Symbol, most: int | None = None) -> str:
 
     Not more than ``most`` of those that always work.
     """
-    side = socket.path[len(socket.owner) + 1 :].partition("[")[0]
     shown = [f"`{text}`" for text in socket.subscripts[:most]]
     if "name-when-shown" in socket.flags:
-        shown.append(f'`{side}["{socket.label}"]` while it is shown')  # behind what always works
+        shown.append(f'`{socket.side}["{socket.label}"]` while it is shown')  # behind what always works
     identifier = socket.identifier
     if identifier not in ("", socket.label):
         shown.append(f"identifier `{identifier}`")
@@ -540,58 +413,3 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
 def shown_when(symbol: Symbol) -> str:
     """In which modes of its node a socket is shown; empty for always."""
     return " and ".join(symbol.modes) or "".join(symbol.flagged(SHOWN_WHEN))
-
-
-def term_lines(text: str) -> Iterator[tuple[int, str]]:
-    """(line, term) of every definition in a section's Markdown."""
-    for number, line in enumerate(text.split("\n")):
-        if "**" in line and (term := term_of(line)):
-            yield number, term
-
-
-def term_of(line: str) -> str:
-    """The term that a line of a section's Markdown defines; empty for none."""
-    term = line.strip()
-    is_one = term.startswith("**") and term.rstrip(":").endswith("**")
-    return term.strip("*: ") if is_one else ""
-
-
-def passage_text(text: str, line: int) -> str:
-    """What stands at a line of a section's Markdown: a term's definition, or a paragraph; at -1 its first paragraph."""
-    lines = text.split("\n")
-    if line < 0:
-        blocks = list(dropwhile(lambda block: not _is_prose(block), text.split("\n\n")))
-        announces = blocks and blocks[0].endswith(":")
-        return "\n\n".join(blocks[: 2 if announces else 1])
-    if line >= len(lines):
-        return ""
-    if lines[line].startswith(">"):
-        quoted = takewhile(lambda each: each.startswith(">"), lines[line:])
-        return passage_text("\n".join(each.removeprefix(">").removeprefix(" ") for each in quoted), 0)
-    depth = _depth(lines[line])
-    if not lines[line].strip().startswith("**"):
-        return "\n".join(takewhile(str.strip, lines[line:]))
-    while (
-        line + 1 < len(lines) and lines[line + 1].startswith("**", depth) and _depth(lines[line + 1]) == depth
-    ):
-        line += 1  # several terms share the definition
-    below = takewhile(lambda each: not each.strip() or _depth(each) > depth, lines[line + 1 :])
-    return textwrap.dedent("\n".join(below)).strip()
-
-
-def _is_prose(paragraph: str) -> bool:
-    return paragraph[:1] not in {"", ">", "|", "-", "*", "`", "$", "#"} and not paragraph.startswith(
-        "Figure: "
-    )
-
-
-def _depth(line: str) -> int:
-    return len(line) - len(line.lstrip())
-
-
-def alike_nodes(name: str) -> list[str]:
-    """The paths of a node's class under the other families' names: ``ShaderNodeGamma`` for CompositorNodeGamma."""
-    family = next((family for family in NODE_FAMILIES if name.startswith(family) and name != family), None)
-    if family is None:
-        return []
-    return [f"bpy.types.{other}{name[len(family) :]}" for other in NODE_FAMILIES if other != family]

@@ -89,10 +89,9 @@ def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
         return
     yield key(symbol.name), FORM_NAME, symbol.path
     if symbol.kind == "socket":
-        side = symbol.path[len(symbol.owner) + 1 :].partition("[")[0]
         # Not its own name, which hundreds of sockets share.
         others = (name for name in symbol.socket_keys if name != symbol.name)
-        yield from ((key(f"{side}{name}"), FORM_SHORT, symbol.path) for name in others)
+        yield from ((key(f"{symbol.side}{name}"), FORM_SHORT, symbol.path) for name in others)
     if symbol.kind == "class" and symbol.owner == "bpy.types":
         yield key(f"types.{symbol.name}"), FORM_SHORT, symbol.path
     if symbol.label and symbol.kind != "socket":

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
+from kb_build.api_names import TYPES
 from kb_build.base_file import open_base, read_meta
 from kb_build.index.analysis import key
 from kb_build.live.values import compare_values, runtime_at_hand
@@ -24,7 +25,6 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
-_TYPES = "bpy.types."
 _SHOWN = 5
 
 
@@ -204,8 +204,8 @@ def _symbols(base: _Base) -> BaseCheck:
             for role, name in (
                 ("owner", owner),
                 ("base", parent),
-                ("target", target and kind != "operator" and _TYPES + target),
-                ("collection", collection and _TYPES + collection),
+                ("target", target and kind != "operator" and TYPES + target),
+                ("collection", collection and TYPES + collection),
             )
             if name and name not in known
         ]

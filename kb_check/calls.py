@@ -7,6 +7,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
 from kb_check.literals import times_bound
 from kb_check.made_here import bindings
@@ -201,7 +202,7 @@ def callee_of(symbol: Symbol) -> Callee:
 
 def _is_rna(symbol: Symbol) -> bool:
     """Whether a function is RNA's own: only those spell the types of their parameters so."""
-    owner = symbol.owner.removeprefix("bpy.types.")
+    owner = symbol.owner.removeprefix(TYPES)
     if (
         symbol.owner == owner
         or owner.startswith("bpy_")

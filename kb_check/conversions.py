@@ -20,8 +20,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import STRUCT
-from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.api_names import ID, STRUCT
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import (
     NONE,
     Collection,
@@ -34,6 +34,7 @@ from kb_build.flow.types import (
     Type,
     members,
 )
+from kb_build.object_data import OBJECT_DATA
 from kb_check.documented import (
     LENGTHS,
     documented_misfit,
@@ -51,7 +52,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _OBJECTS_DATA = f"{T}Object.data"
-_ID = f"{T}ID"
 _MADE_OF = f"{T}BlendDataObjects.new(object_data)"
 _DATA_OF_NEW = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
 _DATA = (*_DATA_OF_NEW, f"{T}Image")  # an empty shows images
@@ -120,11 +120,11 @@ def _scalar_misfit(  # noqa: PLR0911 - one return a type
 def _is_other_data(script: Script, taker: Taker, node: ast.expr, kind: Type) -> bool:
     """Whether a value is an object's data, declared as any data-block, where none of those that objects have fits."""
     row = script.analysis.resolutions.get(alias(script, node))
-    if row is None or row.symbols != (_OBJECTS_DATA,) or not row.sure or row.missing or kind != Instance(_ID):
+    if row is None or row.symbols != (_OBJECTS_DATA,) or not row.sure or row.missing or kind != Instance(ID):
         return False
     api, target = script.api, taker.target
     related = any(is_related(script, cls, target) for cls in _DATA)
-    return not related and api.is_class(target) and api.descends(target, _ID)
+    return not related and api.is_class(target) and api.descends(target, ID)
 
 
 def _pointer_misfit(script: Script, taker: Taker, kind: Type, given: str) -> Misfit | None:
@@ -196,7 +196,7 @@ def _whole_misfit(script: Script, node: ast.expr, kind: Type, length: int, takes
         has = LENGTHS.get(kind.cls, 0)
         if has and length and length != has:
             return Misfit(takes, f"{given}, which has {has}", has)
-        if kind.sure and kind.cls.startswith("bpy.types.") and not kind.cls.startswith("bpy.types.bpy_"):
+        if kind.sure and kind.cls.startswith(T) and not kind.cls.startswith("bpy.types.bpy_"):
             return Misfit(takes, given)
     return None
 

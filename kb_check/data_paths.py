@@ -10,7 +10,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES, T
+from kb_build.api_names import ID
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, Type, members
 from kb_build.unlisted import SOMETIMES
 from kb_check.calls import calls
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 _PART = re.compile(r'(?P<dot>\.?)(?P<name>[A-Za-z_]\w*)|\["(?P<key>(?:[^"\\]|\\.)*)"\]|\[\d+\]')
 _MISQUOTED = re.compile(r"\['[^'\"]*'\]")
 _ITEM = re.compile(r"\.([a-z])|\[(\d+)\]")
-_ID = f"{T}ID"
 _SCALARS = frozenset({"boolean", "int", "float", "string", "enum"})
 _UNBOUND = 32  # the length that RNA gives to arrays which have any
 # The letters of the items of arrays, by what these are. Blender takes those of a vector for all others.
@@ -105,7 +105,7 @@ def _made_by_name(script: Script) -> dict[tuple[str, str], set[Type | None]]:
 
 
 def _is_data_block(script: Script, kind: Type) -> bool:
-    return isinstance(kind, Instance) and script.api.descends(kind.cls, _ID)
+    return isinstance(kind, Instance) and script.api.descends(kind.cls, ID)
 
 
 def _members(script: Script, kinds: list[Type], name: str) -> list[tuple[Symbol, Type]] | None:

@@ -9,7 +9,7 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import TYPES as T
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance
 from kb_check.calls import calls_by_node

@@ -9,7 +9,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import ADDONS, T
+from kb_build.api_names import TYPES as T
+from kb_build.flow.facts import ADDONS
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, literal_texts
 

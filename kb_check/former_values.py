@@ -9,6 +9,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.paths import argument_of, plain_path
 from kb_check.literals import written
 from kb_serve.recognise.likely_values import likely_values
 
@@ -53,9 +54,8 @@ def _given(row: Resolution) -> ast.expr | None:
 
 def _taken(script: Script, path: str) -> tuple[str, list[str]]:
     """(type, values) of a property, a socket, or an operator's argument."""
-    whole, _, argument = path.partition("(")
-    symbol = script.api.symbols.symbol(whole)
+    symbol, argument = script.api.symbols.symbol(plain_path(path)), argument_of(path)
     parameters = symbol.parameters if symbol is not None and argument else ()
-    named = next((one for one in parameters if f"{one.name})" == argument), None)
+    named = next((one for one in parameters if one.name == argument), None)
     found = named if argument else symbol
     return (found.type, [item.identifier for item in found.enum_items]) if found is not None else ("", [])

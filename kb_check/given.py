@@ -7,8 +7,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import STRUCT
-from kb_build.flow.facts import T
+from kb_build.api_names import STRUCT
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
 from kb_check.calls import calls_not_ready_for
 from kb_check.own_classes import own_classes

@@ -5,7 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import ID
+from kb_build.api_names import TYPES as T
 from kb_check.made_here import (
     attributes,
     called_operators,
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _GROUPS, _GROUPS_NEW, _TREE = "node_groups", f"{T}BlendDataNodeTrees.new", f"{T}NodeTree"
-_ID = f"{T}ID"
 # Maker of a socket → the place of the name among its arguments.
 _SOCKET_MAKERS = {f"{T}NodeTreeInterface.new_socket": 0, f"{T}NodeTreeInputs.new": 1}
 # What brings groups out of other files.
@@ -74,7 +74,7 @@ def _groups_of_others(script: Script) -> Iterator[ast.Attribute]:
 def _holds_groups(script: Script, symbol: Symbol) -> bool:
     """Whether a pointer may lead to a group; the tree of a material, or of a scene, is its own."""
     is_tree = symbol.type == "pointer" and script.api.descends(f"{T}{symbol.target}", _TREE)
-    return is_tree and not script.api.descends(symbol.owner, _ID)
+    return is_tree and not script.api.descends(symbol.owner, ID)
 
 
 @once_per_script

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 from kb_check.made_here import callee_path, is_new, named_words
 from kb_check.node_settings import setting_of
 from kb_check.script import once_per_script
-from kb_check.socket_modes import deciding, is_shown, showing, side_of
+from kb_check.socket_modes import deciding, is_shown, showing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -46,7 +46,7 @@ def _shown_instead(script: Script, socket: Symbol, settings: Mapping[str, str]) 
     """A sentence about the one socket of the same label that settings show; empty where there are none, or several."""
     alike = [
         subscript
-        for other in script.api.sockets(socket.owner, side_of(socket))
+        for other in script.api.sockets(socket.owner, socket.side)
         if other.label == socket.label
         and other.path != socket.path
         and other.modes

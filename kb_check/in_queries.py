@@ -9,6 +9,7 @@ import sqlite3
 import textwrap
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.flow.parse import parsed
 from kb_check.beside import checker_beside
 from kb_check.source import split_lines
@@ -29,7 +30,7 @@ _LONGEST = 100  # characters of a line that is shown
 _SPAN = re.compile(r"`([^`\n]+)`")
 _FENCED = re.compile(r"^```\w*\n(.*?)^```", re.DOTALL | re.MULTILINE)
 _IMPORTED = ("mathutils", "mathutils.bvhtree", "mathutils.kdtree")  # whose classes scripts import by name
-_OF_DATA = ("bpy.types.", "mathutils.")
+_OF_DATA = (TYPES, "mathutils.")
 _INSTANCES = frozenset({"self", "cls"})  # of the script's own classes
 # What is wrong in a piece of a script too, whatever stands around it. Names, keywords, sockets, products and the values
 # of properties are left out: of these an answer tells by itself, as it does of what other Blenders have.

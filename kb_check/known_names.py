@@ -6,17 +6,17 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.index.analysis import distinct_words
-from kb_build.records import last_name
+from kb_build.paths import last_name, plain_path
 from kb_check.likely_names import by_label
-from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.corrections import by_first_word, is_misspelling, nearest
 from kb_serve.recognise.enum_values import EnumValues
 from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.likely_values import likely_values
 from kb_serve.recognise.node_names import is_like_a_node, nodes_meant
 from kb_serve.recognise.notes import Notes
-from kb_serve.recognise.operator_words import OPERATORS, OperatorWords
+from kb_serve.recognise.operator_words import OperatorWords
 from kb_serve.recognise.removed_symbols import RemovedSymbolLookup, for_reading
 
 if TYPE_CHECKING:
@@ -66,7 +66,7 @@ class KnownNames:
 
     def was(self, owner: str, name: str) -> bool:
         """Whether another Blender has a member that this one lacks; an operator may be named by its path."""
-        path = name if name.startswith("bpy.ops.") else f"{owner}.{name}"
+        path = name if name.startswith(OPERATORS) else f"{owner}.{name}"
         return self._lookup.of_path(path) is not None
 
     def addon_of(self, owner: str, name: str) -> str:
@@ -153,8 +153,8 @@ class KnownNames:
 
     def value(self, owner: str, value: str, values: Iterable[str]) -> Lacking:
         """A value that is none of an enumeration's; ``owner`` is the property, or ``function(parameter)``."""
-        whole, mark, argument = owner.partition("(")
-        part = f"{mark}{argument}:{value}"
+        whole = plain_path(owner)
+        part = f"{owner.removeprefix(whole)}:{value}"
         if removed := self._lookup.of_part(whole, part) or self._of_former(whole, part):
             return self._removed(removed)
         values = list(values)
@@ -165,7 +165,7 @@ class KnownNames:
 
     def socket(self, node: str, name: str, names: Iterable[str]) -> Lacking:
         """A socket that a node lacks; ``names`` are those that it has."""
-        for side in ("inputs", "outputs"):
+        for side in SIDES:
             part = f'.{side}["{name}"]'
             if removed := self._lookup.of_path(node + part) or self._of_former(node, part):
                 return self._removed(removed)

@@ -8,8 +8,9 @@ import sys
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, OBJECT, OPERATORS
 from kb_build.flow.trees import walk
-from kb_build.symbol_lines import fillers
+from kb_build.symbol_facts import fillers
 from kb_check.computing import RUNNING, STORING, computing
 from kb_check.script import once_for_each, once_per_script
 
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _DEEPEST = 8
-_ID = "bpy.types.ID"
 _WORD = re.compile(r"\w+")
 _BODIES: tuple[type[ast.AST], ...] = (
     ast.Module, ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.If, ast.For, ast.AsyncFor, ast.While, ast.With,
@@ -179,9 +179,9 @@ def _is_new_member(script: Script, node: ast.Attribute, depth: int) -> bool:
         return False
     if calls := fillers(symbol):
         return any(call.partition("(")[0] in called_operators(script) for call in calls)
-    if symbol.name == "data" and symbol.owner == "bpy.types.Object":
+    if symbol.name == "data" and symbol.owner == OBJECT:
         return is_new(script, node.value, depth - 1) and has_new_data(script, node.value, depth - 1)
-    points_elsewhere = script.names.reader.descends(f"bpy.types.{symbol.target}", _ID)
+    points_elsewhere = script.names.reader.descends(f"bpy.types.{symbol.target}", ID)
     return not points_elsewhere and is_new(script, node.value, depth - 1)
 
 
@@ -226,7 +226,7 @@ def callee_path(script: Script, call: ast.Call) -> str:
 def called_operators(script: Script) -> frozenset[str]:
     """The operators that the script calls."""
     rows = script.resolutions("call", "attribute")
-    return frozenset(path for row in rows for path in row.symbols if path.startswith("bpy.ops."))
+    return frozenset(path for row in rows for path in row.symbols if path.startswith(OPERATORS))
 
 
 def has_plain_operators_only(script: Script) -> bool:

@@ -7,7 +7,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import Wanted, operator_active, with_article
+from kb_build.symbol_facts import Wanted, operator_active
+from kb_build.symbol_lines import with_article
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

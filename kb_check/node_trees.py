@@ -6,9 +6,9 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Collection, Instance
-from kb_build.records import last_name
+from kb_build.paths import last_name
 from kb_check.calls import calls_by_node
 from kb_check.made_here import bindings
 from kb_check.script import once_for_each

@@ -13,7 +13,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import SIDES
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import UNKNOWN, Instance, literal_texts
 from kb_check.calls import calls, calls_by_node
 from kb_check.computing import CALLING, computing
@@ -31,7 +32,6 @@ if TYPE_CHECKING:
 
 _NEW_SOCKET = f"{T}NodeTreeInterface.new_socket"
 _OF_EDITORS = "bpy.ops.node."
-_SIDES = frozenset({"inputs", "outputs"})
 # The two nodes of a group, with the side on which they have its sockets, and how the interface calls that.
 _OF_GROUP = {f"{T}NodeGroupInput": ("outputs", "INPUT"), f"{T}NodeGroupOutput": ("inputs", "OUTPUT")}
 # Nodes whose other sockets are called as items of theirs are.
@@ -57,7 +57,7 @@ def lacking_own(script: Script) -> Iterator[tuple[ast.Subscript, str, str]]:
     for node in script.all(ast.Subscript):
         key = node.slice.value if isinstance(node.slice, ast.Constant) else None
         asked = node.value
-        if not isinstance(key, str) or not isinstance(asked, ast.Attribute) or asked.attr not in _SIDES:
+        if not isinstance(key, str) or not isinstance(asked, ast.Attribute) or asked.attr not in SIDES:
             continue
         owner = script.type_of(asked.value)
         if not isinstance(owner, Instance) or not owner.sure or script.analysis.resolutions.get(node):
@@ -136,7 +136,7 @@ def _other_texts(script: Script) -> frozenset[object]:
     keys = {
         node.slice
         for node in script.all(ast.Subscript)
-        if isinstance(node.value, ast.Attribute) and node.value.attr in _SIDES
+        if isinstance(node.value, ast.Attribute) and node.value.attr in SIDES
     }
     apart = keys | set(_sides_of_sockets(script))
     return frozenset(node.value for node in script.all(ast.Constant) if node not in apart)

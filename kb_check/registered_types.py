@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import TYPES as T
 from kb_build.records import MUST_HAVE
 
 if TYPE_CHECKING:

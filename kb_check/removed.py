@@ -9,7 +9,8 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.facts import T
+from kb_build.api_names import ID
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Collection, Instance
 from kb_check.calls import calls_by_node
 from kb_check.edit_bones import bound_in, names_in, names_of_others
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_check.script import Script
 
-_ID = f"{T}ID"
 _ELEMENTS = frozenset({f"bmesh.types.BM{kind}Seq.remove" for kind in ("Vert", "Edge", "Face")})
 # What frees the thing that it is called on.
 _FREEING = frozenset({"bmesh.types.BMesh.free"})
@@ -126,7 +126,7 @@ class Removed:
         element = kind.element if isinstance(kind, Collection) else None
         if not isinstance(element, Instance) or not element.cls.startswith(T):
             return False
-        return not self.script.api.descends(element.cls, _ID)
+        return not self.script.api.descends(element.cls, ID)
 
 
 def may_remove(script: Script) -> bool:

@@ -15,6 +15,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_build.flow.facts import READ_ACTIVE, made_by
 from kb_build.flow.trees import walk
 from kb_check.calls import calls_by_node
@@ -26,8 +27,6 @@ if TYPE_CHECKING:
 
     from kb_build.records import Symbol
     from kb_check.script import Script
-
-_OPERATORS = "bpy.ops."
 
 
 @dataclass(frozen=True, slots=True)
@@ -57,7 +56,7 @@ def set_before(script: Script, statement: ast.stmt, owner: ast.expr, setting: Sy
     match statements[last] if last >= 0 else None:
         case ast.Assign(targets=[ast.Attribute(attr=name) as target], value=value) if name == setting.name:
             return value if ast.unparse(target.value) == ast.unparse(owner) else None
-        case ast.Expr(value=ast.Call() as call) if callee_path(script, call).startswith(_OPERATORS):
+        case ast.Expr(value=ast.Call() as call) if callee_path(script, call).startswith(OPERATORS):
             return _given_to_maker(script, call, owner, setting)
         case _:
             return None
@@ -127,7 +126,7 @@ def _body(script: Script, first: ast.stmt) -> _Body:
             continue
         for node in walk(statement):
             match node:
-                case ast.Call() if (callee_path(script, node) or _OPERATORS).startswith(_OPERATORS):
+                case ast.Call() if (callee_path(script, node) or OPERATORS).startswith(OPERATORS):
                     body.changing.append(place)
                 case ast.Attribute(attr=name, ctx=ast.Store()):
                     body.by_name[name].append(place)

@@ -13,9 +13,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.facts import T
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance
-from kb_build.symbol_lines import usual_default
+from kb_build.symbol_facts import usual_default
 from kb_check.node_settings import setting_of
 from kb_check.socket_modes import showing
 

@@ -36,8 +36,3 @@ def is_internal(socket: Symbol, key: str = "") -> bool:
     """Whether no setting of its node shows a socket, so that nothing but its index gives it: no ``key`` either."""
     is_hidden = "hidden-by-default" in socket.flags and not shown_when(socket)
     return is_hidden and not any(f'"{key or socket.label}"' in subscript for subscript in socket.subscripts)
-
-
-def side_of(socket: Symbol) -> str:
-    """``inputs`` or ``outputs``."""
-    return socket.path[len(socket.owner) + 1 :].partition("[")[0]

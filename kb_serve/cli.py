@@ -103,11 +103,12 @@ def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
 
 
 def _print_raw(base: KnowledgeBase, answer: DocsAnswer) -> bool:
-    from kb_build.records import to_json  # noqa: PLC0415 - only for --json
+    from kb_build.paths import plain_path  # noqa: PLC0415 - only for --json
+    from kb_build.records import to_json  # noqa: PLC0415 - likewise
 
     for hit in answer.hits[:1]:
         # Enum items and parameters are in the record of their owner.
-        whole = hit.id.partition(":")[0].partition("(")[0]
+        whole = plain_path(hit.id)
         record = base.symbol(hit.id) or base.page(hit.id) or base.symbol(whole)
         if record is not None:
             click.echo(json.dumps(to_json(record), ensure_ascii=False, indent=2))

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from kb_build.index.analysis import key
+from kb_build.api_names import TYPES
+from kb_build.object_data import data_class
 from kb_build.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import NoBase, open_read_only, unpack
 from kb_serve.errors import BadQuery, BaseMissing, BaseUnreadable
@@ -24,11 +25,8 @@ if TYPE_CHECKING:
 _Record = TypeVar("_Record")
 _Value = TypeVar("_Value")
 
-TYPES = "bpy.types."
 EXTEND = "__extend__"  # the identifier of the socket at which a node gets more
 PROPERTIES = "bpy.props."  # whose functions scripts import by name
-STRUCT = "bpy.types.bpy_struct"
-COLLECTION = "bpy.types.bpy_prop_collection"
 _ARGUMENT = re.compile(r"[( ](\w+)=")
 _UNLIMITED = float("inf")
 _REBUILD = "Rebuild it: simworlds kb build --force"
@@ -306,12 +304,26 @@ class BaseReader:
         """Whether a class is ``ancestor`` or derives from it."""
         return any(entry.path == ancestor for entry in self.lineage(cls))
 
+    @cached_property
+    def object_data(self) -> dict[str, str]:
+        """The class of an object's data by the object's type, for the types that have data."""
+        types = self.symbol(f"{TYPES}Object.type")
+        kinds = [item.identifier for item in types.enum_items] if types else []
+        found = {kind: data_class(kind, lambda name: self.entry(TYPES + name) is not None) for kind in kinds}
+        return {kind: TYPES + name for kind, name in found.items() if name}
+
+    @cached_property
+    def _types_of_data(self) -> dict[str, str]:
+        return {cls: kind for kind, cls in self.object_data.items()}
+
+    def object_type(self, cls: str) -> str:
+        """The type of an object whose data is of a class; empty for none."""
+        kinds = (self._types_of_data.get(entry.path, "") for entry in self.lineage(cls))
+        return next(filter(None, kinds), "")
+
     def is_object_data(self, cls: str) -> bool:
-        """Whether objects have such a class as data: a type of objects is called as it, or as one of its bases."""
-        names = (entry.name for entry in self.lineage(cls))
-        return any(
-            owner == f"{TYPES}Object.type" for name in names for owner, *_ in self.enum_owners(key(name))
-        )
+        """Whether objects have instances of a class as data."""
+        return self.object_type(cls) != ""
 
     def _symbol(self, path: str) -> Symbol | None:
         rows = self.rows("SELECT record FROM symbols WHERE path = ?", path)

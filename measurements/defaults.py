@@ -12,7 +12,7 @@ from kb_build.base_file import read_meta
 from kb_build.live.values import compare_values, runtime_at_hand
 from kb_build.records import NOT_TAKEN, symbol_from_json
 from kb_build.schema import open_read_only, unpack
-from kb_build.symbol_lines import empty_when_new, fillers
+from kb_build.symbol_facts import empty_when_new, fillers
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import say
 

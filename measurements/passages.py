@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from kb_build.symbol_lines import passage_text
+from kb_build.pages.definitions import passage_text
 from kb_serve.locate import find_base
 from kb_serve.reader import BaseReader
 from measurements.report import ReportPart, TargetFigure

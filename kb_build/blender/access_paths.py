@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.flow.facts import NARROWER
 from kb_build.lineages import lineage
 from kb_build.records import EVALUATED
@@ -20,7 +21,6 @@ if TYPE_CHECKING:
 
     from kb_build.records import Symbol
 
-TYPES = "bpy.types."
 
 # Where scripts start. Other context members depend on the editor under the mouse.
 _ROOTS = (("bpy.context", "Context", 0), ("bpy.context.object", "ID", 1), ("bpy.data", "BlendData", 2))

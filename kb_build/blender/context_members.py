@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
+from kb_build.api_names import TYPES
+
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-_TYPES = "bpy.types."
 # Name → class, of several that which this Blender has; with brackets, a list of them.
 _MEMBERS = {
     "active_editable_fcurve": "FCurve", "active_file": "FileSelectEntry", "annotation_data": "Annotation GreasePencil",
@@ -32,6 +33,6 @@ def name_classes(symbols: Mapping[str, dict[str, Any]]) -> None:
             continue
         told = _MEMBERS.get(row["path"].rpartition(".")[2], "")
         for name in told.strip("[]").split():
-            if f"{_TYPES}{name}" in symbols:
+            if f"{TYPES}{name}" in symbols:
                 row["type"], row["target"] = "collection" if told.startswith("[") else "pointer", name
                 break

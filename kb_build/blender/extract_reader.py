@@ -8,6 +8,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
+from kb_build.api_names import TYPES
 from kb_build.blender.call_texts import (
     all_optional,
     by_name_too,
@@ -40,7 +41,6 @@ if TYPE_CHECKING:
 
     from kb_build.blender.docstrings import Docstring
 
-_TYPES = "bpy.types."
 _SUBSTITUTION = re.compile(r"^\.\. \|(\w+)\| replace:: (.+)$", re.MULTILINE)
 _SUBSTITUTED = re.compile(r"(?<!\.\. )\|([A-Z_]{3,})\|")
 _OF_MODULE, _SELF = (
@@ -129,7 +129,7 @@ def _keep(raw: _Raw, record: str, row: dict[str, Any]) -> None:
         case _ if record in ADDED:
             ADDED[record](raw.symbols.get(row["path"]), row)
         case "own_name" | "stands_in":
-            raw.by_class[record][row["path"].removeprefix(_TYPES)] = row["name"]
+            raw.by_class[record][row["path"].removeprefix(TYPES)] = row["name"]
         case "still_works":
             raw.still_works.append((row["path"], row["taken_as"]))
         case "addon":

@@ -8,6 +8,7 @@ from collections import defaultdict
 from functools import cache
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, TYPES
 from kb_build.known_prefixes import KnownPrefixes
 from kb_build.lineages import lineage
 from kb_build.records import Link
@@ -18,8 +19,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
 
 _INDEXABLE = re.compile(r"[\[*?]")
-_TYPES = "bpy.types."
-_ID = f"{_TYPES}ID"
 _FAR = 4  # pointers that lead from a data-block to what belongs to it
 
 
@@ -66,18 +65,18 @@ def manual_links(symbols: Sequence[Symbol], table: Sequence[tuple[str, str]]) ->
 def _namesakes(symbols: Sequence[Symbol], prefixes: Iterable[str]) -> dict[str, set[str]]:
     """Class → the prefixes, names of data-blocks, that its name begins with though it does not belong to these."""
     bases = {symbol.path: symbol.base for symbol in symbols if symbol.kind == "class"}
-    blocks = {path.lower(): path for path in bases if _ID in lineage(path, bases)}
+    blocks = {path.lower(): path for path in bases if ID in lineage(path, bases)}
     leading = _leading(symbols, bases)
     pointed_at = {target for targets in leading.values() for target in targets}
     found: dict[str, set[str]] = defaultdict(set)
     for prefix in prefixes:
-        if (block := blocks.get(prefix)) and block != _ID:
+        if (block := blocks.get(prefix)) and block != ID:
             belonging = _reached(block, leading, blocks.values())
             for path in bases:
                 rest = path[len(block) :]
                 if not path.startswith(block) or not rest or block in lineage(path, bases):
                     continue
-                is_cut = rest[0].islower() and (rest != "s" or _ID in lineage(path, bases))
+                is_cut = rest[0].islower() and (rest != "s" or ID in lineage(path, bases))
                 is_of_others = not rest.startswith("_") and path in pointed_at and path not in belonging
                 if is_cut or is_of_others:
                     found[path].add(prefix)
@@ -95,7 +94,7 @@ def _leading(symbols: Iterable[Symbol], bases: Mapping[str, str]) -> dict[str, s
         if symbol.kind == "property":
             for target in (symbol.target, symbol.collection):
                 if target:
-                    found[symbol.owner] |= below.get(_TYPES + target, {_TYPES + target})
+                    found[symbol.owner] |= below.get(TYPES + target, {TYPES + target})
     return found
 
 

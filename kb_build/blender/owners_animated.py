@@ -9,11 +9,11 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
+from kb_build.api_names import ID, TYPES
+
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-_TYPES = "bpy.types."
-_ID = f"{_TYPES}ID"
 _ANIMATABLE = "animatable"
 _KEPT_IN = "animation_data"
 # Of every struct: its own class, which belongs to no data-block.
@@ -55,11 +55,11 @@ class _Classes:
         return (cls for cls in self._bases if cls.startswith(beginning))
 
     def is_data_block(self, cls: str) -> bool:
-        return _ID in self.ancestry(cls)
+        return ID in self.ancestry(cls)
 
 
 def _is_class_of_rna(path: str, kind: str) -> bool:
-    return kind == "class" and path.startswith(_TYPES)
+    return kind == "class" and path.startswith(TYPES)
 
 
 def _held(classes: _Classes, cls: str) -> Iterator[str]:
@@ -71,9 +71,9 @@ def _held(classes: _Classes, cls: str) -> Iterator[str]:
                 continue
             if target == _UNTOLD:  # where RNA names no class, those that are called after the owner
                 yield from classes.of_name(above)
-            elif not classes.is_data_block(_TYPES + target):
-                yield _TYPES + target
-                yield f"{_TYPES}{row.get('collection', '')}"
+            elif not classes.is_data_block(TYPES + target):
+                yield TYPES + target
+                yield f"{TYPES}{row.get('collection', '')}"
 
 
 def _with_animation(classes: _Classes) -> set[str]:

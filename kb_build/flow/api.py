@@ -6,6 +6,8 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
+from kb_build.api_names import COLLECTION, GROUPS, STRUCT
+from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import (
     CALLED,
     CLASS_OF_VALUE,
@@ -15,11 +17,8 @@ from kb_build.flow.facts import (
     LAYER_ITEM,
     LAYERS,
     NARROWER,
-    OBJECT_DATA,
-    RENAMED,
     SAME_CLASS,
     SAME_TYPE,
-    T,
 )
 from kb_build.flow.type_text import read_type
 from kb_build.flow.types import (
@@ -43,6 +42,7 @@ from kb_build.flow.types import (
     union,
 )
 from kb_build.math_classes import math_class
+from kb_build.object_data import data_class
 from kb_build.python_values import is_new_list
 
 if TYPE_CHECKING:
@@ -51,10 +51,7 @@ if TYPE_CHECKING:
     from kb_build.flow.symbols import Symbols
     from kb_build.records import Parameter, Symbol
 
-COLLECTION = "bpy.types.bpy_prop_collection"
-GROUPS = "bpy.types.bpy_prop_collection_idprop"
 ARRAY = "bpy.types.bpy_prop_array"
-STRUCT = "bpy.types.bpy_struct"
 _ROOTS = {"bpy.data": f"{T}BlendData", "bpy.context": f"{T}Context"}
 _SCALARS: dict[str, Type] = {"boolean": BOOL, "int": INT, "float": FLOAT, "string": STR}
 MENU_SOCKET = f"{T}NodeSocketMenu"
@@ -283,11 +280,7 @@ class Api:
 
     def object_data(self, value: str) -> Type:
         """The data of an object of a type: ``MESH`` → Mesh."""
-        name = OBJECT_DATA.get(value, "")
-        other, unless = RENAMED.get(name, ("", ""))
-        if other and not self.is_class(T + name) and not self.is_class(T + unless):
-            name = other
-        return self.instance(T + name)
+        return self.instance(T + data_class(value, lambda name: self.is_class(T + name)))
 
     # Calls.
 

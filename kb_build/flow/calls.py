@@ -7,6 +7,7 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
+from kb_build.api_names import TYPES as T
 from kb_build.flow.core import ANY, DEEPEST_RUN
 from kb_build.flow.expressions import constants
 from kb_build.flow.facts import (
@@ -16,7 +17,6 @@ from kb_build.flow.facts import (
     NAME_OF_PROPERTY,
     OPEN_CALLS,
     VERSION,
-    T,
     leaves_active,
     made_by,
 )

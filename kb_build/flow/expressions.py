@@ -7,8 +7,9 @@ import builtins
 import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
+from kb_build.api_names import TYPES as T
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS, VERSION, T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS, VERSION
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import chain_text, name_doubt
 from kb_build.flow.trees import children

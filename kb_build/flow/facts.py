@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
-T = "bpy.types."
-VERSION = "bpy.app.version"
+from kb_build.api_names import TYPES as T
 
-# ``Object.type`` → the class of ``Object.data``.
-OBJECT_DATA = {
-    "MESH": "Mesh", "CURVE": "Curve", "SURFACE": "SurfaceCurve", "FONT": "TextCurve", "META": "MetaBall",
-    "ARMATURE": "Armature", "LATTICE": "Lattice", "LIGHT": "Light", "LIGHT_PROBE": "LightProbe", "CAMERA": "Camera",
-    "SPEAKER": "Speaker", "GPENCIL": "GreasePencil", "GREASEPENCIL": "GreasePencilv3", "CURVES": "Curves",
-    "POINTCLOUD": "PointCloud", "VOLUME": "Volume",
-}  # fmt: skip
+VERSION = "bpy.app.version"
 
 # Operators that make an object and leave it as the active one: how their paths begin or are → the object's type.
 _MAKERS = {
@@ -49,10 +42,6 @@ LOST_MODULES = {
     "spwd": ((5, 1), "3.13", ""), "sunau": ((5, 1), "3.13", "aud"), "telnetlib": ((5, 1), "3.13", ""),
     "uu": ((5, 1), "3.13", "base64"), "xdrlib": ((5, 1), "3.13", "struct"),
 }  # fmt: skip
-
-# A class that some versions call otherwise: name → (other name, a class that tells that it means another thing yet).
-# Grease Pencil's data is GreasePencilv3 from 4.3 to 4.5; before, GreasePencil is the older kind, with GPencilLayers.
-RENAMED = {"GreasePencilv3": ("GreasePencil", "GPencilLayer")}
 
 # Members that went → what is read from them all the same: the property with which it has its type in common, where what
 # took their place is no mere new name.

@@ -6,7 +6,9 @@ from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.flow.api import ARRAY, COLLECTION, GROUPS, STRUCT
+from kb_build.api_names import COLLECTION, GROUPS, STRUCT
+from kb_build.api_names import TYPES as T
+from kb_build.flow.api import ARRAY
 from kb_build.flow.core import ANY, Core
 from kb_build.flow.facts import (
     DERIVED_BY_SCRIPTS,
@@ -16,7 +18,6 @@ from kb_build.flow.facts import (
     NODES_WITH_SOCKETS_OF_THEIR_OWN,
     OPEN_CLASSES,
     VERSION,
-    T,
 )
 from kb_build.flow.types import (
     FLOAT,

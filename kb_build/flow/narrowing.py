@@ -5,7 +5,8 @@ from __future__ import annotations
 import ast
 from dataclasses import replace
 
-from kb_build.flow.facts import DISCRIMINANTS, T
+from kb_build.api_names import OBJECT
+from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.guards import Guards
 from kb_build.flow.scopes import chain_text
 from kb_build.flow.trees import default_values
@@ -26,8 +27,6 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
-
-_OBJECT = f"{T}Object"
 
 
 class Narrowing(Guards):
@@ -158,7 +157,7 @@ class Narrowing(Guards):
             if not isinstance(member, Instance):
                 return
             for value in values:
-                if member.cls == _OBJECT:
+                if member.cls == OBJECT:
                     data = self.api.object_data(value)
                     found.append(replace(member, traits=(("data", data),)) if data is not UNKNOWN else member)
                 elif cls := self.api.class_of_value(member.cls, value):

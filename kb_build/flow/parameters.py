@@ -5,9 +5,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES as T
 from kb_build.flow.annotations import Annotations
 from kb_build.flow.contradictions import Contradictions
-from kb_build.flow.facts import PARAMETERS, T
+from kb_build.flow.facts import PARAMETERS
 from kb_build.flow.trees import default_values, walk
 from kb_build.flow.types import (
     NONE,

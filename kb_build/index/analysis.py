@@ -9,12 +9,14 @@ from typing import TYPE_CHECKING, Any
 
 import snowballstemmer
 
+from kb_build.api_names import OPERATORS, TYPES
+
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
 _WORD = re.compile(r"[A-Za-z]+|\d+(?:[dD]\b|\.\d+)?|[^\W\d_]+")
 _CAMEL = re.compile(r"[A-Z]{2,}s\b|[A-Z]{2,}(?=[A-Z][a-z])|[A-Z]{2}[a-z]+|[A-Z]?[a-z]+|[A-Z]+")
-_PREFIXES = ("bpy.types.", "bpy.ops.", "bpy.")
+_PREFIXES = (TYPES, OPERATORS, "bpy.")
 _NOT_KEY = re.compile(r"[\W_]+")
 _KEY_OF = {code: chr(code).lower() if chr(code).isalnum() else None for code in range(128)}
 

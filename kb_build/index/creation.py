@@ -12,6 +12,7 @@ from collections import Counter, defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import NODE, OPERATORS, TYPES
 from kb_build.index.analysis import key, terms
 from kb_build.symbol_lines import held
 
@@ -20,10 +21,8 @@ if TYPE_CHECKING:
 
     from kb_build.records import EnumItem, NewValue, Parameter, Symbol
 
-TYPES = "bpy.types."
 _MAKERS = ("new", "create", "add")
 _NEW_KIND = "new_"
-_NODE = f"{TYPES}Node"
 _BLOCKS = ("obj", "scene", "mesh", "mat", "tree", "curve")
 _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTree": "tree", "Curve": "curve"}
 
@@ -125,14 +124,14 @@ class _Calls:
                 known = calls.get(cls)
                 if (
                     known is None
-                    or known.maker.startswith("bpy.ops.")
+                    or known.maker.startswith(OPERATORS)
                     or self._holds_alone(holder, cls, known)
                 ):
                     calls[cls] = creation
         calls.update(self._of_interfaces())
         for name, (maker, call) in _METHODS.items():
             cls = f"{TYPES}{name}"
-            is_better = cls not in calls or calls[cls].maker.startswith("bpy.ops.")
+            is_better = cls not in calls or calls[cls].maker.startswith(OPERATORS)
             if is_better and {maker, cls} <= self._symbols.keys():
                 calls[cls] = Creation(call, maker)
         yield from calls.items()
@@ -181,7 +180,7 @@ class _Calls:
         by_name = types is not None and (types.type == "string" or items.keys() == {"DEFAULT"} or are_classes)
         block = next((name for name in _BLOCKS if head.startswith(f"{name}.")), "")
         for cls, alone in self._kinds_below(base):
-            if base.path == _NODE and not cls.trees:
+            if base.path == NODE and not cls.trees:
                 continue  # RNA has the class, and every tree refuses it
             if choice := cls.name if by_name else _choice(cls, base, items, alone=alone):
                 given = self._arguments(maker, cls, choice, block=block)

@@ -12,8 +12,9 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.passages import Passage, find_passages
-from kb_build.symbol_lines import passage_text
+from kb_build.pages.definitions import passage_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
@@ -22,7 +23,6 @@ if TYPE_CHECKING:
     from kb_build.schema import DocumentKind
     from kb_build.summaries.types import PageSummary
 
-TYPES = "bpy.types."
 FIELDS = ("name", "heading", "context", "body", "related", "expansions")
 # How to write the manual, single add-ons, features kept for old files, the colours of Blender's own windows.
 _RARELY_ASKED = re.compile(r"contribute/|addons/|freestyle\.|legacy|bpy\.types\.(?:Theme|\w*ViewerPath)")

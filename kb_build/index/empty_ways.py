@@ -6,16 +6,16 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.lineages import lineage
 from kb_build.records import EMPTY
-from kb_build.symbol_lines import empty_when_new
+from kb_build.symbol_facts import empty_when_new
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from kb_build.records import Symbol
 
-_TYPES = "bpy.types."
 _WAY = re.compile(r"(?P<before>.+)\.(?P<name>\w+)(?P<key>\[[^\]]+\])?")
 _FIRST = (None, "[0]")  # of a collection whose elements have no names; who asks for a name has made it
 _FAR = 3  # dots of what leads through another pointer than those to what is always there: ``bpy.context.scene.world``
@@ -25,14 +25,14 @@ class EmptyWays:
     """The ways to classes; ``reached`` is the path of a class → the expression that leads to an instance."""
 
     def __init__(self, symbols: Iterable[Symbol], reached: Mapping[str, str]) -> None:
-        self._reached = {path.removeprefix(_TYPES): expression for path, expression in reached.items()}
+        self._reached = {path.removeprefix(TYPES): expression for path, expression in reached.items()}
         self._bases: dict[str, str] = {}
         self._below: dict[str, list[str]] = defaultdict(list)
         # (name, class that it leads to) → properties
         self._leading: dict[tuple[str, str], list[Symbol]] = defaultdict(list)
         for symbol in symbols:
             if symbol.kind == "class" and symbol.base:
-                name, base = (path.removeprefix(_TYPES) for path in (symbol.path, symbol.base))
+                name, base = (path.removeprefix(TYPES) for path in (symbol.path, symbol.base))
                 self._bases[name] = base
                 self._below[base].append(name)
             elif symbol.kind == "property" and symbol.target:
@@ -51,12 +51,12 @@ class EmptyWays:
             return ""
         steps = [step for base in lineage(cls, self._bases) for step in self._leading.get((name, base), ())]
         for step in steps:
-            owner = step.owner.removeprefix(_TYPES)
+            owner = step.owner.removeprefix(TYPES)
             if self._reached.get(owner) == before:
                 is_empty = key in _FIRST and (empty_when_new(step) or EMPTY in step.flags)
                 return step.path if is_empty else self.last_empty(owner)
         if is_far and len(steps) == 1:
-            below = self._descendants(steps[0].owner.removeprefix(_TYPES))
+            below = self._descendants(steps[0].owner.removeprefix(TYPES))
             owner = next((each for each in below if self._reached.get(each) == before), "")
             return self.last_empty(owner) if owner else ""
         return ""

@@ -12,10 +12,12 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.index.passages import KIND_WORDS, Passage, keys_of_term
-from kb_build.symbol_lines import new_subscript, term_of
+from kb_build.pages.definitions import term_of
+from kb_build.symbol_facts import new_subscript
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
     from kb_build.index.operator_labels import LabelledOperator
     from kb_build.records import Page, Symbol
 
-_TYPES = "bpy.types."
 _MOST = 2
 _LISTED = re.compile(r"\s*(?:/|,|&| and | or )\s*")
 
@@ -152,8 +153,8 @@ def _name(symbol: Symbol, subject: str) -> str:
     if symbol.kind == "operator":
         return f"{symbol.path}()"
     if symbol.kind != "socket":
-        return symbol.path.removeprefix(_TYPES)
+        return symbol.path.removeprefix(TYPES)
     subscript = new_subscript(symbol)
     if not subscript or symbol.owner == subject:
         return subscript
-    return f"{symbol.owner.removeprefix(_TYPES)}.{subscript}"
+    return f"{symbol.owner.removeprefix(TYPES)}.{subscript}"

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.index.passages import Passage, address_of, says_something, scope_of
-from kb_build.symbol_lines import term_lines
+from kb_build.pages.definitions import term_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -14,17 +14,17 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
+from kb_build.pages.definitions import passage_text, term_lines
 from kb_build.records import INVERTED
-from kb_build.symbol_lines import passage_text, term_lines
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.records import Link, Page, Symbol
 
-_TYPES = "bpy.types."
 _KINDS = frozenset({"property", "socket", "operator", "class"})
 _BEGINNING = 400  # letters of a definition that say what it is about
 # Headings that say nothing about what stands below, and what the names of classes have in common.
@@ -188,7 +188,7 @@ class _Finder:
     def _is_anothers(self, title: str, symbol: Symbol, place: _Place) -> bool:
         """Whether a heading names another class that the page explains."""
         words = set(_stems(title))
-        about = set(_stems(symbol.owner.removeprefix(_TYPES), symbol.name, symbol.description))
+        about = set(_stems(symbol.owner.removeprefix(TYPES), symbol.name, symbol.description))
         return any(
             (name := set(_stems(cls.label)) - KIND_WORDS) and name <= words and not name <= about
             for cls in self._explained[place.page.slug]

@@ -12,12 +12,13 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.index.analysis import words as words_of
 from kb_build.index.label_names import LabelName
+from kb_build.pages.definitions import term_of
 from kb_build.records import NOT_TAKEN
-from kb_build.symbol_lines import term_of
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
     from kb_build.index.passages import Passage
     from kb_build.records import Page, Symbol
 
-_TYPES = "bpy.types."
 _SHOWN_VALUES = 8
 _LEAST = 2  # choices below a heading that make it a list of them
 _LIKE = 3  # letters that words have in common: Vertices, Vertex
@@ -108,7 +108,7 @@ class _Choices:
         items = [f"`{item.identifier!r}`" for item in symbol.enum_items]
         more = ", …" if len(items) > _SHOWN_VALUES else ""
         return (
-            f"(“{lacking}” is not a value of `{symbol.path.removeprefix(_TYPES)}` in this Blender, which has "
+            f"(“{lacking}” is not a value of `{symbol.path.removeprefix(TYPES)}` in this Blender, which has "
             f"{', '.join(items[:_SHOWN_VALUES])}{more})"
         )
 

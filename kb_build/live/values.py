@@ -10,9 +10,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from kb_build.api_names import TYPES
 from kb_build.records import EMPTY, FILLED_ON, symbol_from_json
 from kb_build.schema import open_read_only, unpack
-from kb_build.symbol_lines import empty_when_new, fillers, literal
+from kb_build.symbol_facts import empty_when_new, fillers
+from kb_build.symbol_lines import literal
 from simworlds.installed import installed_bpy
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.runtime import Runtime, run_program
@@ -28,7 +30,6 @@ _PROGRAM = Program(
     "kb_build.live.inside.new_instances", {"kb_build.live.inside": Path(__file__).parent / "inside"}
 )
 _SECONDS = 120.0
-_TYPES = "bpy.types."
 _COMPARED = "compared"
 _PRECISION = 1e-5
 _NONE = {True: "None", False: "not None"}
@@ -132,7 +133,7 @@ def _fillers(symbols: _Symbols, filled: Mapping[str, Sequence[str]]) -> set[_Pai
         calls = [] if isinstance(symbol, str) else fillers(symbol)
         if isinstance(symbol, str) or len(calls) != 1 or calls[0] not in filled:
             continue
-        name = symbol.path.removeprefix(_TYPES)
+        name = symbol.path.removeprefix(TYPES)
         wrong = (
             ""
             if name in filled[calls[0]]
@@ -189,7 +190,7 @@ def _properties(base: Path) -> dict[str, Symbol | str]:
         for path, kind, above, record in rows:
             if kind == "class":
                 known[path] = above
-            elif path.startswith(_TYPES):
+            elif path.startswith(TYPES):
                 known[path] = symbol_from_json(unpack(record))
     finally:
         connection.close()
@@ -198,7 +199,7 @@ def _properties(base: Path) -> dict[str, Symbol | str]:
 
 def _member(symbols: _Symbols, cls: str, name: str) -> Symbol | None:
     """The property of a class, or of the nearest class above it."""
-    owner: Any = _TYPES + cls
+    owner: Any = TYPES + cls
     while isinstance(owner, str) and owner in symbols:
         found = symbols.get(f"{owner}.{name}")
         if found is not None and not isinstance(found, str):

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from kb_build.panels.formulas import TRUE_VALUE, Clause, Need, follows
 from kb_build.records import PanelCondition
 from kb_build.schema import TEST_OFF, TEST_ON
-from kb_build.symbol_lines import fillers
+from kb_build.symbol_facts import fillers
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

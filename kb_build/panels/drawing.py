@@ -11,6 +11,7 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import UNKNOWN, Instance, literal_texts
 from kb_build.panels.expressions import Conditions, Held, Script, is_unknown
@@ -35,7 +36,6 @@ _SHOWS = frozenset(
 )  # fmt: skip
 # Methods that show a button for the operator that their first argument names.
 _OFFERS = frozenset({"operator", "operator_menu_enum", "operator_enum", "operator_menu_hold"})
-_OPERATORS = "bpy.ops."
 _MAKES_LAYOUT = frozenset(
     {
         "row", "column", "column_flow", "grid_flow", "box", "split", "menu_pie",
@@ -346,7 +346,7 @@ class Drawing(Conditions):
         named = call.args[0] if call.args else given.get("operator")
         layout = self._layout(receiver)
         for name in self._strings(named) if named is not None else ():
-            self._shown.append(_Shown(name, (_OPERATORS + name,), "", layout, self._state.path))
+            self._shown.append(_Shown(name, (OPERATORS + name,), "", layout, self._state.path))
 
     def _strings(self, node: ast.expr) -> list[str]:
         """The strings that an expression can be."""

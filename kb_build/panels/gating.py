@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
+from kb_build.api_names import TYPES
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.panels.formulas import Clause, Clauses, Need, Question, common, consequences
 
@@ -15,7 +16,6 @@ if TYPE_CHECKING:
     from kb_build.panels.drawing import Place
     from kb_build.records import Symbol
 
-_TYPES = "bpy.types."
 # What only hides a part of a panel, or keeps the interface from changing what has an effect all the same, and what
 # Blender sets itself.
 _NO_SETTINGS = frozenset({"show_expanded", "expanded", "lock", "mute", "muted", "hide", "show_developer_ui"})
@@ -55,7 +55,7 @@ def gatings_in(places: Iterable[Place], symbols: Symbols) -> dict[str, Gating]:
         if not place.symbols and place.owner == "self":
             continue  # the script's own property
         for path in place.symbols or (f".{place.name}",):
-            if len(place.symbols) > 1 and path.startswith(f"{_TYPES}Space"):
+            if len(place.symbols) > 1 and path.startswith(f"{TYPES}Space"):
                 found[path] = _UNASKED  # a panel is of one editor, and which one is not known
                 continue
             gates = _Gates(place, path, symbols)
@@ -168,7 +168,7 @@ class _Gates:
 
     @staticmethod
     def _is_setting(symbol: Symbol, *, is_own: bool) -> bool:
-        cls = symbol.owner.removeprefix(_TYPES)
+        cls = symbol.owner.removeprefix(TYPES)
         return (
             symbol.kind == "property"
             and "readonly" not in symbol.flags

@@ -9,6 +9,7 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.flow.analysis import analyse
 from kb_build.flow.trees import children
 from kb_build.flow.types import UNKNOWN, ClassObject, Function, Instance, Operator, Resolution
@@ -156,7 +157,7 @@ def _used(analysis: Analysis, api: Api) -> Iterator[tuple[str, str, int, Resolut
             yield path, "value" if is_value else kind, len(resolution.symbols), resolution
         if isinstance(node, (ast.Call, ast.Attribute)) and kind in {"call", "attribute"}:
             made = analysis.types.get(node)
-            if isinstance(made, Instance) and made.sure and made.cls.startswith("bpy.types."):
+            if isinstance(made, Instance) and made.sure and made.cls.startswith(TYPES):
                 yield made.cls, "made" if kind == "call" else "given", 1, resolution
             elif isinstance(made, Operator):
                 continue
@@ -306,8 +307,7 @@ class _Script:
         if not member.startswith(_CONTEXTS):
             return False
         symbol = self._api.symbols.symbol(member)
-        origins = {flag for flag in symbol.flags if flag.startswith("from:")} if symbol else set[str]()
-        return bool(origins) and "from:screen" not in origins
+        return symbol is not None and bool(symbol.editors) and "screen" not in symbol.editors
 
     def _quoted(self, statement: ast.stmt) -> str | None:
         """A statement's own lines, or its first ones up to its body; one line where it is written in many."""

@@ -5,12 +5,12 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
+
 if TYPE_CHECKING:
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.symbols import Symbols
     from kb_build.records import Symbol
-
-_TYPES = "bpy.types."
 
 
 def unfit_statements(analysis: Analysis, symbols: Symbols) -> set[ast.stmt]:
@@ -27,7 +27,7 @@ def unfit_statements(analysis: Analysis, symbols: Symbols) -> set[ast.stmt]:
 
 def _lacks_an_argument(call: ast.Call, symbol: Symbol) -> bool:
     """Whether a call leaves out what a function of RNA requires; False where ``*`` or ``**`` may hold it."""
-    is_of_rna = symbol.kind == "function" and symbol.path.startswith(_TYPES)
+    is_of_rna = symbol.kind == "function" and symbol.path.startswith(TYPES)
     is_open = any(isinstance(each, ast.Starred) for each in call.args) or any(
         keyword.arg is None for keyword in call.keywords
     )

@@ -37,7 +37,6 @@ if TYPE_CHECKING:
 _KEPT = 12
 _CODE = re.compile(r"^```python\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 _GUIDE_COST = 0.0
-_SAME = "same-as:"
 
 Usage = dict[str, Uses]
 
@@ -135,11 +134,9 @@ def merged(parts: Iterable[Usage]) -> Usage:
 def with_aliases(usage: Usage, symbols: Iterable[Symbol]) -> Usage:
     """The same with the second names of context members: ``bpy.context.object`` is ``bpy.types.Context.object``."""
     aliases = {
-        symbol.path: flag.removeprefix(_SAME)
+        symbol.path: symbol.same_as
         for symbol in symbols
         if symbol.kind == "context" and symbol.path not in usage
-        for flag in symbol.flags
-        if flag.startswith(_SAME)
     }
     return {**usage, **{path: usage[other] for path, other in aliases.items() if other in usage}}
 

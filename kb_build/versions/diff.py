@@ -94,7 +94,7 @@ def _compared(symbols: Sequence[Symbol], interface: bool) -> dict[str, Symbol]:
 
 
 def _is_repeated(symbol: Symbol) -> bool:
-    return _REPEATED in symbol.path or any(flag.startswith("same-as:") for flag in symbol.flags)
+    return _REPEATED in symbol.path or bool(symbol.same_as)
 
 
 def _entries(symbols: Iterable[Symbol]) -> tuple[DiffEntry, ...]:

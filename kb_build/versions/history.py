@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.errors import StoreError
-from kb_build.versions.paths import split_path
+from kb_build.paths import split_path
 from simworlds.errors import UserError
 from simworlds.releases import minor_of, version_key
 
@@ -40,7 +40,7 @@ def history_paths(extract: Extract) -> Iterator[str]:
     What every class repeats from its base (the reference lists it on each) is as old as the class: left out.
     """
     for symbol in extract.symbols:
-        if any(flag.startswith("same-as:") for flag in symbol.flags) or ".bl_rna_get_subclass" in symbol.path:
+        if symbol.same_as or ".bl_rna_get_subclass" in symbol.path:
             continue
         yield from paths_of(symbol)
 

@@ -7,11 +7,12 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import interface_part
 from kb_build.flow.facts import LOST_MODULES
 from kb_build.index.analysis import key, short_path
+from kb_build.paths import item_of, socket_name, socket_side, split_path
 from kb_build.versions.arrivals import told_arrivals
 from kb_build.versions.history import SHARED, paths_of
-from kb_build.versions.paths import split_path
 from kb_build.versions.similar_names import find_similar_names
 from kb_build.versions.successors import Successors, load_successors, lost_modules
 
@@ -22,13 +23,12 @@ if TYPE_CHECKING:
     from kb_build.versions.history import ApiHistory
 
 
-_TYPES = "bpy.types"
-_INTERFACE = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT|OT|UL|AST|GGT|GT|FH|KSI|RE)_")
+_MODULE = "bpy.types"
 _MADE_IN_USE = re.compile(
     r"bpy\.types\.(?:CompositorNode(?:RLayers|Image|OutputFile)|GeometryNode(?:Bake|RepeatOutput|Viewer|CaptureAttribute))"
     r"\.(?:in|out)puts\["
 )
-_EXTENDED = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT)_")
+_EXTENDED = frozenset({"", "PT", "MT", "HT"})
 
 _MEMBER = re.compile(r"(bpy\.types\.\w+)(\.\w+)(?!\w|\[)")  # not sockets
 
@@ -61,17 +61,17 @@ def is_asked_for(path: str, history: ApiHistory, version: str) -> bool:
     above, mark, name = split_path(path)
     if mark == "(" or above.endswith(")"):
         return bool(history.exists(above, version))
-    if above == _TYPES:
-        return bool(_EXTENDED.match(name)) or not _INTERFACE.match(name)
-    return not _INTERFACE.match(above.removeprefix(_TYPES + "."))
+    if above == _MODULE:
+        return interface_part(name) in _EXTENDED
+    return not interface_part(above)
 
 
 def _keys(path: str, items: Counter[str]) -> Iterator[str]:
     yield key(path)
-    if (item := path.partition(":")[2]) and items[item] == 1:  # one that only one enumeration had
+    if (item := item_of(path)) and items[item] == 1:  # one that only one enumeration had
         yield key(item)
     if path.endswith('"]'):  # a socket is also asked for on a node whose class is not known
-        yield key(path.partition('["')[0].rpartition(".")[2] + path.partition('["')[2])
+        yield key(socket_side(path) + socket_name(path))
     if (short := short_path(path)) != path:
         yield key(short)
 
@@ -107,9 +107,9 @@ def find_removed_symbols(symbols: Sequence[Symbol], history: ApiHistory, version
         for row in successors.stated()
         if row.old not in dated and row.old not in known
     ]
-    items = Counter(path.partition(":")[2] for path, *_ in removed)
+    items = Counter(item_of(path) for path, *_ in removed)
     # An item that an enumeration had means that one, and not also what calls that are gone took.
-    others = Counter(item for path, *_ in stated if (item := path.partition(":")[2]) not in items)
+    others = Counter(item for path, *_ in stated if (item := item_of(path)) not in items)
     names = [(spelled, path) for path, *_ in removed for spelled in _keys(path, items)]
     # Modules of Python are plain words too (``pipes``, ``chunk``): only code means them.
     names += [

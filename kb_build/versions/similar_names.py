@@ -15,9 +15,10 @@ from collections import Counter, defaultdict
 from functools import cache
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.index.analysis import key, stem, words
+from kb_build.paths import split_path
 from kb_build.versions.feature_index import Bag, FeatureIndex, Mentions
-from kb_build.versions.paths import split_path
 from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
@@ -61,7 +62,6 @@ _MOST_ITEMS = 300  # more than in any enumeration but that of the icons
 _ROOTS = frozenset({"", "bpy.types", "bpy.ops", "bpy.context"})
 _FEW_HOLDERS = 2
 _OF_MODULES = 0.2
-_TYPES = "bpy.types."
 _THEME = "bpy.types.Theme"  # colours of the interface stand for nothing but each other
 # Words that took the place of others: seen in so many pairs of alike symbols, and in this share of them.
 _ALIKE = 0.5
@@ -71,7 +71,6 @@ _LEAST_SHARE = 0.5
 _NOT_DATA = frozenset({"ui", "operator"})
 
 _LONE_CAPITAL = re.compile(r"(?<![A-Z])[A-Z]{2}(?=[a-z])(?!s\b)")
-_INTERFACE = re.compile(r"[A-Z0-9_]+_(?:PT|MT|HT|OT|UL|AST|GGT|GT|FH|KSI|RE)_")
 
 
 @cache
@@ -95,7 +94,7 @@ def _kind(path: str, below: Sequence[str]) -> str:
         return "socket"
     if above == "bpy.types":
         return "class"
-    if path.startswith("bpy.ops."):
+    if path.startswith(OPERATORS):
         return "module" if above == "bpy.ops" else "operator"
     if above == "bpy.context":
         return "context"
@@ -118,7 +117,7 @@ def _holders(symbols: Iterable[Symbol]) -> dict[str, list[str]]:
     holders: defaultdict[str, set[str]] = defaultdict(set)
     for symbol in symbols:
         if symbol.type == "collection" and symbol.target:
-            holders[_TYPES + symbol.target].add(symbol.owner)
+            holders[TYPES + symbol.target].add(symbol.owner)
     return {
         target: sorted(owners - {target}) for target, owners in holders.items() if len(owners) <= _FEW_HOLDERS
     }
@@ -126,7 +125,7 @@ def _holders(symbols: Iterable[Symbol]) -> dict[str, list[str]]:
 
 def _is_of_module(path: str) -> bool:
     """Whether a path is of a Python module, ``gpu.state.blend_set``, rather than of Blender's data or operators."""
-    return not path.startswith((_TYPES, "bpy.ops.", "bpy.context.", "bpy.data."))
+    return not path.startswith((TYPES, OPERATORS, "bpy.context.", "bpy.data."))
 
 
 def _text(symbol: Symbol) -> str:
@@ -180,7 +179,7 @@ class SimilarNames:
 
         Operators are not judged so: whole modules of them got other names.
         """
-        if ":" in path or path.startswith("bpy.ops."):
+        if ":" in path or path.startswith(OPERATORS):
             yield from self.closest(path)
             return
         above, _, name = split_path(path)
@@ -316,20 +315,20 @@ class SimilarNames:
 
         Such classes are called after the owner and its property; what took the property's place leads there.
         """
-        name = path.removeprefix(_TYPES)
+        name = path.removeprefix(TYPES)
         for cut in range(1, len(name)):
-            owner, end = _TYPES + name[:cut], key(name[cut:])
+            owner, end = TYPES + name[:cut], key(name[cut:])
             if not name[cut].isupper() or owner not in self._below:
                 continue
             for entry in self._below[owner]:
                 if entry[0] == "." and key(entry) == end:
                     there = owner + entry
                     successors = self.closest(there)[:1] if there in self._missing else [(there, 1.0)]
-                    return _TYPES + self._led_to.get(successors[0][0], "") if successors else ""
+                    return TYPES + self._led_to.get(successors[0][0], "") if successors else ""
         return ""
 
     def _ancestors(self, path: str) -> Iterator[str]:
-        seen = {path, "bpy.types.bpy_struct"}
+        seen = {path, STRUCT}
         while (path := self._bases.get(path, "")) and path not in seen:
             seen.add(path)
             yield path
@@ -366,7 +365,7 @@ def _is_candidate(symbol: Symbol, by_path: Mapping[str, Symbol]) -> bool:
     owner = by_path.get(symbol.owner)
     if owner is not None and owner.group in _NOT_DATA:
         return False
-    return not any(flag.startswith("same-as:") for flag in symbol.flags)
+    return not symbol.same_as
 
 
 def _candidate_kind(symbol: Symbol) -> str:
@@ -375,10 +374,10 @@ def _candidate_kind(symbol: Symbol) -> str:
 
 def has_similar(path: str) -> bool:
     """Whether similar names are looked for: not for interface classes, parameters, items of shared enumerations."""
-    above, mark, name = split_path(path)
+    above, mark, _ = split_path(path)
     if mark == "(" or "(" in above or path.startswith("rna_enum_"):
         return False
-    return _INTERFACE.match(name if above == "bpy.types" else above.removeprefix("bpy.types.")) is None
+    return not interface_part(path)
 
 
 def find_similar_names(

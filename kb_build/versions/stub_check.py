@@ -7,15 +7,15 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, TYPES, interface_part
+from kb_build.paths import split_path
 from kb_build.versions.history import SHARED
-from kb_build.versions.paths import split_path
 
 if TYPE_CHECKING:
     from collections.abc import Mapping, Set
 
 LEAST = 0.99  # of what stubs have of a kind, this share must be true
-_TYPES = "bpy.types"
-_INTERFACE = re.compile(r"bpy\.types\.[A-Z0-9_]+_[A-Z]{2,3}_")
+_MODULE = "bpy.types"
 _MENUS_MADE_AT_RUN_TIME = "bpy.types.NODE_MT_"
 
 
@@ -86,18 +86,18 @@ def _lists(paths: Set[str]) -> set[str]:
 def _is_compared(path: str, roots: Set[str]) -> bool:
     if re.split(r"[.(:]", path, maxsplit=1)[0] not in roots or path.startswith(_MENUS_MADE_AT_RUN_TIME):
         return False
-    return not _INTERFACE.match(path) or split_path(path)[0] == _TYPES
+    return not interface_part(path) or split_path(path)[0] == _MODULE
 
 
 def _kind(path: str) -> str:
     above, mark, _ = split_path(path)
     if mark == ":":
         return "enum item"
-    if path.startswith("bpy.ops."):
+    if path.startswith(OPERATORS):
         return "keyword of an operator" if mark == "(" else "operator"
-    if not path.startswith("bpy.types."):
+    if not path.startswith(TYPES):
         module = ".".join(path.split(".")[: 2 if path.startswith("bpy.") else 1]).partition("(")[0]
         return f"parameter in {module}" if mark == "(" else f"name in {module}"
-    if above == _TYPES:
-        return "class of the interface" if _INTERFACE.match(path) else "class"
+    if above == _MODULE:
+        return "class of the interface" if interface_part(path) else "class"
     return "parameter" if mark == "(" else "member"

@@ -11,6 +11,7 @@ import re
 from typing import TYPE_CHECKING
 from warnings import catch_warnings, simplefilter
 
+from kb_build.api_names import OPERATORS
 from kb_build.errors import KBBuildError
 
 if TYPE_CHECKING:
@@ -19,7 +20,6 @@ if TYPE_CHECKING:
 
 _SUFFIX = "-stubs"
 _ALIASES = "bpy.stub_internal.rna_enums"
-_OPERATORS = "bpy.ops."
 _CONTEXT = "bpy.types.Context."
 _MEMBER = re.compile(r"(bpy\.types\.\w+)\.(\w+)")
 _ALIAS = re.compile(rb"^type (\w+) =", re.MULTILINE)  # an assignment, to Pythons older than 3.12
@@ -133,7 +133,7 @@ class _Stubs:
 
     def _class(self, node: ast.ClassDef, path: str) -> None:
         self._paths.add(path)
-        if path.startswith(_OPERATORS):
+        if path.startswith(OPERATORS):
             for entry in node.body:
                 if isinstance(entry, ast.FunctionDef) and entry.name == "__new__":
                     self._parameters(entry.args.kwonlyargs, path)

@@ -17,7 +17,7 @@ from typing import TYPE_CHECKING
 from kb_build.errors import StoreError
 from kb_build.flow.facts import LOST_MODULES
 from kb_build.known_prefixes import KnownPrefixes
-from kb_build.versions.paths import joined_path, split_path
+from kb_build.paths import joined_path, split_path
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.paths import argument_of, plain_path, split_path
 from kb_check.migrate.place import version_of
 
 if TYPE_CHECKING:
@@ -41,11 +42,10 @@ def _known(checker: Checker, path: str) -> bool:
     reader, symbols = checker.names.reader, checker.api.symbols
     if '["' in path:
         return symbols.symbol(path) is not None or bool(reader.still_works(path))
-    owner, colon, value = path.partition(":")
-    if colon:
+    owner, mark, value = split_path(path)
+    if mark == ":":
         return value in checker.api.values_of(owner)
-    function, _, parameter = path.removesuffix(")").partition("(")
-    symbol = symbols.symbol(function)
+    symbol, parameter = symbols.symbol(plain_path(path)), argument_of(path)
     if symbol is None:
         return False
     return not parameter or any(known.name == parameter for known in symbol.parameters)

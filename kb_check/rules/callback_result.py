@@ -23,6 +23,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import TYPES
 from kb_build.flow.trees import called_name, children
 from kb_check.calls import callee_of
 from kb_check.findings import Finding, Fix
@@ -178,7 +179,7 @@ def _no_set(script: Script, node: ast.expr | None) -> str:
         return repr(node.value)
     if isinstance(node, ast.Call):
         path = callee_path(script, node)
-        symbol = script.api.symbols.symbol(path) if path.startswith("bpy.types.") else None
+        symbol = script.api.symbols.symbol(path) if path.startswith(TYPES) else None
         if symbol is None or symbol.kind != "function" or not callee_of(symbol).is_rna:
             return ""
         kind = symbol.returns[0].type if symbol.returns else "None"

@@ -16,10 +16,12 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import OBJECT
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
-from kb_build.records import EMPTY, last_name
+from kb_build.paths import last_name
+from kb_build.records import EMPTY
 from kb_check.edit_bones import edited_outside
 from kb_check.findings import Finding
 from kb_check.made_here import (
@@ -48,7 +50,6 @@ _TAKING = frozenset({"link", "new"})
 _ADDING = ("append", "new", "add", "link")
 # Collections that Blender fills as another one of the same thing is filled, with the stem of its name.
 _FILLED_BESIDE = {"particle_systems": {stem("modifiers")}}
-_OBJECT = f"{T}Object"
 _WORD = re.compile(r"\w+")
 _SCENES = frozenset({f"{T}Context.collection", f"{T}Scene.collection"})
 
@@ -60,7 +61,7 @@ def _check(script: Script) -> Iterator[Finding]:
             symbol
             and knows_all(script)
             and is_new(script, collection.value)
-            and (symbol.owner != _OBJECT or has_new_data(script, collection.value))
+            and (symbol.owner != OBJECT or has_new_data(script, collection.value))
             and not is_tried(script, node)
             and node not in edited_outside(script)
             and not _may_be_filled(script, symbol.path)

@@ -23,10 +23,12 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import READ_ACTIVE, T
+from kb_build.api_names import ID, OBJECT, OPERATORS
+from kb_build.api_names import TYPES as T
+from kb_build.flow.facts import READ_ACTIVE
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
-from kb_build.symbol_lines import empty_when_new, fillers
+from kb_build.symbol_facts import empty_when_new, fillers
 from kb_check.findings import Finding
 from kb_check.made_here import (
     asked_names,
@@ -66,7 +68,6 @@ _PRIMITIVE = re.compile(r"bpy\.ops\.mesh\.primitive_\w+_add")
 _OF_DATA = re.compile(r"bpy\.data\.\w+\.(\w+)\(")
 _WORD = re.compile(r"\w+")
 _GENERAL = frozenset({"object", "mesh", "scene", "anim"})  # modules whose operators fill many things
-_OBJECT = f"{T}Object"
 # Pointers of objects that are there with data of one class only.
 _ONLY_WITH = {f"{T}Object.pose": f"{T}Armature"}
 _ACTIVE_ONE = "active"
@@ -120,7 +121,7 @@ def _only_with(script: Script, symbol: Symbol, node: ast.expr) -> str:
         return ""
     kind = script.type_of(node)
     data = kind.trait("data") if isinstance(kind, Instance) and kind.sure else None
-    if isinstance(data, Instance) and data.sure and data.cls != f"{T}ID":
+    if isinstance(data, Instance) and data.sure and data.cls != ID:
         return "" if script.api.descends(data.cls, cls) else cls
     return cls if _is_primitive(script, node) else ""
 
@@ -132,7 +133,7 @@ def _filler(script: Script, symbol: Symbol, pointer: ast.Attribute, place: ast.e
         return fillers(symbol)[-1] if is_empty else ""
     if not _is_never_assigned(script, symbol.path) or not _is_made(script, pointer.value):
         return ""
-    if symbol.owner == _OBJECT:
+    if symbol.owner == OBJECT:
         is_new_mesh = _is_primitive(script, pointer.value) or has_new_data(script, pointer.value)
         if not is_new_mesh or "data" in stored_names(script):
             return ""
@@ -149,7 +150,7 @@ def _is_never_assigned(script: Script, path: str) -> bool:
     symbol = script.api.symbols.symbol(path)
     if symbol is None:
         return False
-    is_assigned = "readonly" not in symbol.flags and script.api.descends(f"{T}{symbol.target}", f"{T}ID")
+    is_assigned = "readonly" not in symbol.flags and script.api.descends(f"{T}{symbol.target}", ID)
     if not is_assigned or not knows_all(script) or not has_plain_operators_only(script):
         return False
     if symbol.name in asked_names(script) or symbol.name in stored_names(script):
@@ -206,7 +207,7 @@ def _stages(symbol: Symbol, named: dict[str, int]) -> Iterator[int]:
 def _may_fill(word: str, call: str, name: str) -> bool:
     """Whether a word of a script may stand for a call that fills what is called by a name, or for one like it."""
     parts = _WORD.findall(call)
-    if call.startswith("bpy.ops."):
+    if call.startswith(OPERATORS):
         module = parts[2]
         is_like_it = module not in _GENERAL and word.startswith(module) and word != name
         return word == parts[3] or is_like_it
@@ -218,7 +219,7 @@ def _may_fill(word: str, call: str, name: str) -> bool:
 def _is_filled_beside(script: Script, symbol: Symbol) -> bool:
     """Whether what every data-block has may be filled by what is called like it: ``asset_generate_preview``."""
     first = words(symbol.name)[0]
-    return symbol.owner == f"{T}ID" and (
+    return symbol.owner == ID and (
         not has_plain_operators_only(script)
         or any(first in words(word) for word in named_words(script) if word != symbol.name)
     )

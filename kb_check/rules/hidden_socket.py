@@ -34,7 +34,7 @@ from kb_check.hidden_links import hidden_link
 from kb_check.made_here import is_new, knows_all, named_words
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
-from kb_check.socket_modes import deciding, is_internal, side_of
+from kb_check.socket_modes import deciding, is_internal
 from kb_check.zone_pairing import unpaired
 
 if TYPE_CHECKING:
@@ -102,7 +102,7 @@ def _hidden(script: Script, sockets: list[Symbol], row: Resolution) -> str:
     if not deciding(script, sockets).isdisjoint(named_words(script)):
         return ""
     for socket in sockets:
-        side = side_of(socket)
+        side = socket.side
         is_name = row.value in socket.socket_names
         needed = {"hidden-by-default", "name-when-shown" if is_name else "identifier-when-shown"}
         if (

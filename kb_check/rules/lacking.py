@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_check.findings import Finding
 from kb_check.foreign_addons import may_register
 from kb_check.former_values import new_value
@@ -60,7 +61,7 @@ def _registering(script: Script, row: Resolution, lacking: Lacking) -> str:
 
 def absent_paths(row: Resolution) -> tuple[str, ...]:
     """The paths that would have to exist for a name to be right; none where that cannot be said by a path."""
-    if row.kind == "button" and row.value.startswith("bpy.ops."):
+    if row.kind == "button" and row.value.startswith(OPERATORS):
         return (row.value,)
     form = {"keyword": "{}({})", "value": "{}:{}", "item": ""}.get(row.kind, "{}.{}")
     return tuple(form.format(owner, row.value).lstrip(".") for owner in row.missing) if form else ()

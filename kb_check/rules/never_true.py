@@ -24,6 +24,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.paths import item_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
@@ -42,7 +43,7 @@ def _check(script: Script) -> Iterator[Finding]:
             beside = _beside(script).get(row.node, frozenset())
             owner = row.missing[0]
             lacking = script.names.value(owner, row.value, script.api.values_of(owner))
-            if any(path.rpartition(":")[2] in beside for path in lacking.instead):
+            if any(item_of(path) in beside for path in lacking.instead):
                 continue
             lacking = replace(
                 lacking, message=f"{lacking.message} The comparison never matches it.", sure=False

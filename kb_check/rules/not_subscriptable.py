@@ -22,7 +22,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import ARRAY, GROUPS
+from kb_build.api_names import GROUPS, SIDES, STRUCT
+from kb_build.api_names import TYPES as T
+from kb_build.flow.api import ARRAY
 from kb_build.flow.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN
 from kb_build.flow.trees import walk
 from kb_build.flow.types import (
@@ -61,7 +63,6 @@ _NO_STEPS = frozenset({"bmesh.types.BMVertSeq", "bmesh.types.BMEdgeSeq", "bmesh.
 _NO_CUSTOM_PROPERTIES = frozenset(
     {"bpy.types.Context", "bpy.types.BlendData", "bpy.types.RenderSettings", "bpy.types.MeshVertex"}
 )
-_T = "bpy.types."
 _DECLARATIONS_SINCE = 2, 93
 _BMESH = "bmesh.ops."
 _FILLING = frozenset({"update", "setdefault"})
@@ -213,7 +214,7 @@ def _of_collection(script: Script, kind: Collection, key: Type | None, step: ast
     ):
         return f"The items of `{path}` have no names: they are found by index."
     side = path.rpartition(".")[2]
-    if side in {"inputs", "outputs"} and isinstance(kind.owner, Instance) and kind.owner.sure:
+    if side in SIDES and isinstance(kind.owner, Instance) and kind.owner.sure:
         return _beyond_sockets(script, kind.owner, side, key)
     return ""
 
@@ -229,7 +230,7 @@ def _beyond_sockets(script: Script, owner: Instance, side: str, key: Type | None
 
 def _is_nameless(script: Script, element: Instance) -> bool:
     api = script.api
-    if not api.is_class(element.cls) or not element.cls.startswith(_T) or api.member(element.cls, "name"):
+    if not api.is_class(element.cls) or not element.cls.startswith(T) or api.member(element.cls, "name"):
         return False
     if api.below(element.cls, "name"):
         return False
@@ -238,7 +239,7 @@ def _is_nameless(script: Script, element: Instance) -> bool:
         for cls in (*api.lineage(element.cls), *api.descendants(element.cls))
         for symbol in api.symbols.members(cls)
     )
-    return not any(named) and not api.descends(element.cls, f"{_T}PropertyGroup")
+    return not any(named) and not api.descends(element.cls, f"{T}PropertyGroup")
 
 
 def _of_instance(  # noqa: PLR0911 - one return a class
@@ -259,7 +260,7 @@ def _of_instance(  # noqa: PLR0911 - one return a class
         if isinstance(index, int) and length and not -length <= index < length:
             return f"{_subject(script, node)} has {length} items: there is no item {index}."
         return ""
-    if not cls.startswith(_T) or cls.startswith(f"{_T}bpy_") or not script.api.is_class(cls):
+    if not cls.startswith(T) or cls.startswith(f"{T}bpy_") or not script.api.is_class(cls):
         return ""
     if _is_open(script, cls):
         return ""
@@ -274,7 +275,7 @@ def _of_instance(  # noqa: PLR0911 - one return a class
 
 def _is_open(script: Script, cls: str) -> bool:
     """Whether a value that is declared so may be a collection."""
-    return cls in {f"{_T}bpy_struct", f"{_T}AnyType"} or not _OF_COLLECTIONS.isdisjoint(script.api.own(cls))
+    return cls in {STRUCT, f"{T}AnyType"} or not _OF_COLLECTIONS.isdisjoint(script.api.own(cls))
 
 
 def _length(script: Script, node: ast.Subscript, cls: str) -> int:

@@ -20,9 +20,10 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.flow.types import Instance
 from kb_build.records import FREE_ON
-from kb_build.symbol_lines import freed_by, is_locked
+from kb_build.symbol_facts import freed_by, is_locked
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import is_of_instance
 from kb_check.made_here import alias, named_words
@@ -146,7 +147,7 @@ def _is_deleted(row: Resolution) -> bool:
 
 def _is_refused(row: Resolution, symbol: Symbol) -> bool:
     """Whether an instance refuses another value for a member."""
-    if symbol.owner.startswith("bpy.types."):
+    if symbol.owner.startswith(TYPES):
         return symbol.kind == "function" or is_locked(symbol) or row.kind == "attribute"
     refused = next(
         (names for module, names in _REFUSED.items() if symbol.owner.startswith(module)), frozenset()

@@ -31,9 +31,12 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.api_names import NODE, OBJECT
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import ClassObject, Instance
-from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS, last_name
+from kb_build.object_data import OBJECT_DATA
+from kb_build.paths import last_name
+from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS
 from kb_build.symbol_lines import with_article
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
@@ -59,15 +62,14 @@ if TYPE_CHECKING:
     from kb_build.records import Refusal
     from kb_check.script import Script
 
-_WITH_PROPERTIES = ("bpy.types.", "mathutils.", "bmesh.types.")
-_OBJECT = "bpy.types.Object"
+_WITH_PROPERTIES = (T, "mathutils.", "bmesh.types.")
 _LIGHT = "bpy.types.Light"
 # Until Blender 4.2, which has modifiers of their own for them, of objects of type GPENCIL.
 _GREASE_PENCIL, _FORMER_MODIFIERS = "GreasePencil", f"{T}GpencilModifier"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
 _NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
-_NODE, _FIRST_OF_ZONE, _SECOND_OF_ZONE = f"{T}Node", "Input", "Output"
+_FIRST_OF_ZONE, _SECOND_OF_ZONE = "Input", "Output"
 _ENTERING = frozenset({"bpy.ops.object.mode_set", "bpy.ops.sculpt.sculptmode_toggle"})
 _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 
@@ -228,7 +230,7 @@ def _mispaired(script: Script, call: CallSite) -> Iterator[Finding]:
         isinstance(kind, Instance)
         and kind.sure
         and kind.cls != output
-        and _NODE in script.api.lineage(kind.cls)
+        and NODE in script.api.lineage(kind.cls)
         and not script.api.descends(output, kind.cls)
         and not is_tried(script, call.node)
     ):
@@ -315,8 +317,8 @@ def _labels(script: Script, thing: ast.expr) -> Iterator[str]:
         yield f"{symbol.label.lower()} in a {tree.label.lower()}"
     if kind.sure:
         yield symbol.label.lower()
-    data = dict(kind.traits).get("data") if kind.cls == _OBJECT else None
-    if kind.cls == _OBJECT and _has_no_data(script, thing):
+    data = dict(kind.traits).get("data") if kind.cls == OBJECT else None
+    if kind.cls == OBJECT and _has_no_data(script, thing):
         yield "EMPTY object"
     elif isinstance(data, Instance) and data.sure:
         # A light is of a class for its type; curves of several classes are of several types.

@@ -23,8 +23,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.facts import T
-from kb_build.records import last_name
+from kb_build.api_names import ID, OBJECT
+from kb_build.api_names import TYPES as T
+from kb_build.paths import last_name
 from kb_check.calls import calls
 from kb_check.data_paths import follow, item, size
 from kb_check.findings import Edit, Finding, Fix
@@ -44,7 +45,7 @@ if TYPE_CHECKING:
 _DRIVING = f"{T}bpy_struct.driver_add"  # it takes no keywords
 _CALLS = frozenset({f"{T}bpy_struct.keyframe_insert", f"{T}bpy_struct.keyframe_delete", _DRIVING})
 _UNBRACKETED = (ast.Name, ast.Attribute, ast.Subscript, ast.Call)  # a dot may stand behind these as they are
-_ID, _KEPT_IN = f"{T}ID", "animation_data"
+_KEPT_IN = "animation_data"
 _ALL = -1  # the index that stands for every item
 
 
@@ -159,9 +160,9 @@ def _of_end(script: Script, followed: Followed) -> _Fault | None:
 def _instead(script: Script, symbol: Symbol) -> str:
     """Why nothing of such a data-block can be; what moves an object where a matrix or the size of its box is meant."""
     owner = symbol.owner
-    if owner != _ID and script.api.descends(owner, _ID) and script.api.member(owner, _KEPT_IN) is None:
+    if owner != ID and script.api.descends(owner, ID) and script.api.member(owner, _KEPT_IN) is None:
         return f" A `{owner}` has no animation data."
-    if symbol.owner != f"{T}Object":
+    if symbol.owner != OBJECT:
         return ""
     if symbol.name.startswith("matrix_"):
         return " Animate `location`, `rotation_euler` and `scale`."

@@ -22,7 +22,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import ID
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import ClassObject
 from kb_check.calls import calls
 from kb_check.findings import Finding, Fix
@@ -161,7 +162,7 @@ class _Declaration:
         if node is None:
             return
         is_pointer = self._name == "PointerProperty"
-        bases = (f"{T}ID", f"{T}PropertyGroup") if is_pointer else (f"{T}PropertyGroup",)
+        bases = (ID, f"{T}PropertyGroup") if is_pointer else (f"{T}PropertyGroup",)
         kind, api = self._script.type_of(node), self._script.api
         what = ""
         if isinstance(node, ast.Constant):

@@ -28,11 +28,13 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.flow.facts import T
+from kb_build.api_names import ID, NODE, OPERATORS
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import words
-from kb_build.records import NOT_TAKEN, last_name
-from kb_build.symbol_lines import usual_default
+from kb_build.paths import last_name
+from kb_build.records import NOT_TAKEN
+from kb_build.symbol_facts import usual_default
 from kb_check.calls import calls_not_ready_for
 from kb_check.findings import Finding
 from kb_check.made_here import (
@@ -67,8 +69,7 @@ _ONLY_IF = re.compile(rf"with {_VALUES} only if (\w+)\.(\w+)=(.*)")
 _TEXT = re.compile(r"'([^']*)'")
 _OF = re.compile(r"(.+) of an? (\w+)")
 _BY = re.compile(r"(only|not) by ([^…]+)")
-_SCENE, _NODE = f"{T}Scene", f"{T}Node"
-_OPERATORS = "bpy.ops."
+_SCENE = f"{T}Scene"
 _RESETTING = "bpy.ops.wm.read_factory_settings"
 
 
@@ -100,7 +101,7 @@ def _check(script: Script) -> Iterator[Finding]:
             yield from _refused_by_setting(script, statement, node, setting, item)
         elif " only if " in item.where:
             yield from _refused_beside(script, statement, node, symbol.owner, item)
-        elif item.where == NOT_TAKEN and script.api.descends(symbol.owner, _NODE):
+        elif item.where == NOT_TAKEN and script.api.descends(symbol.owner, NODE):
             yield _never_taken(script, statement.value, item, symbol)
         elif is_refused_in(tree := tree_of(script, node.value), item):
             yield _finding(script, statement.value, item, symbol.path, f"this node is in a {tree}")
@@ -247,8 +248,8 @@ def _own_value(script: Script, statement: ast.stmt, node: ast.expr, setting: Sym
         return None
     label = symbol.label.lower()
     maker = made_just_before(script, statement, node, setting)
-    if maker.startswith(_OPERATORS):
-        made = f"{label} by {maker.removeprefix(_OPERATORS)}("
+    if maker.startswith(OPERATORS):
+        made = f"{label} by {maker.removeprefix(OPERATORS)}("
         ways = [new for new in setting.new_values if not new.when and any(map(_begins(made), new.made))]
         usual = [new for new in setting.new_values if not new.when and not new.made]
         return next((new.value for new in (*ways, *usual)), usual_default(setting))
@@ -317,7 +318,7 @@ def _works_on_a_scene(script: Script, node: ast.expr) -> bool:
         if (
             symbol is None
             or symbol.type != "pointer"
-            or script.api.descends(f"bpy.types.{symbol.target}", "bpy.types.ID")
+            or script.api.descends(f"bpy.types.{symbol.target}", ID)
         ):
             break
         node = alias(script, node.value)

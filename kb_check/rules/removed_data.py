@@ -23,7 +23,7 @@ import ast
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance, Sequence, Tuple, Type
 from kb_check.calls import calls_by_node
 from kb_check.edit_bones import surely_run

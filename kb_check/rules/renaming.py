@@ -10,8 +10,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Module, Plain, members
+from kb_build.paths import item_of, split_path
 from kb_check.conversions import misfit
 from kb_check.findings import Edit, Fix, Span
 from kb_check.given import assigned, property_taker
@@ -27,7 +29,6 @@ if TYPE_CHECKING:
     from kb_check.known_names import Lacking
     from kb_check.script import Script
 
-_OPS = "bpy.ops."
 _TAKES = {
     "boolean": {bool, int},
     "int": {bool, int},
@@ -41,7 +42,7 @@ def renaming(script: Script, row: Resolution, lacking: Lacking) -> Fix | None:
     """Writes the right name in the place of a wrong one, where only the name differs."""
     if not lacking.replacement or (row.kind == "value" and not isinstance(row.node, ast.Constant)):
         return None
-    if lacking.replacement.startswith(_OPS) and row.kind == "attribute":
+    if lacking.replacement.startswith(OPERATORS) and row.kind == "attribute":
         return _renamed_operator(script, row, lacking)
     owner, name = _split(lacking.replacement)
     same_owner = "." not in lacking.replacement or any(
@@ -91,7 +92,7 @@ def _renamed_operator(script: Script, row: Resolution, lacking: Lacking) -> Fix 
         return None
     if script.type_of(node.value.value) != Module("bpy.ops"):
         return None
-    former, new = f"{node.value.attr}.{node.attr}", lacking.replacement.removeprefix(_OPS)
+    former, new = f"{node.value.attr}.{node.attr}", lacking.replacement.removeprefix(OPERATORS)
     end, begin = script.name_span(node), script.name_span(node.value)
     span = Span(begin.line, begin.column, end.end_line, end.end_column)
     if begin.line != end.end_line or script.text(span) != former:
@@ -241,17 +242,10 @@ def _has_lost_values(script: Script, former: str, taken: frozenset[str]) -> bool
     rows = script.names.reader.rows(
         "SELECT path FROM removed WHERE path > ? AND path < ?", f"{former}:", f"{former};"
     )
-    return any(path.rpartition(":")[2] not in taken for (path,) in rows)
+    return any(item_of(path) not in taken for (path,) in rows)
 
 
 def _split(path: str) -> tuple[str, str]:
     """``a`` and ``b`` of ``a.b``, ``a(b)``, ``a:b``, ``a.inputs["b"]``; ``a(c)`` and ``b`` of ``a(c):b``."""
-    if "):" in path:
-        owner, _, name = path.rpartition(":")
-        return owner, name
-    for opening, closing in (('.inputs["', '"]'), ('.outputs["', '"]'), ("(", ")"), (":", "")):
-        owner, found, name = path.partition(opening)
-        if found:
-            return owner, name.removesuffix(closing)
-    owner, _, name = path.rpartition(".")
+    owner, _, name = split_path(path)
     return owner, name

@@ -26,9 +26,11 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.api_names import OBJECT
+from kb_build.api_names import TYPES as T
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Plain, members
+from kb_build.object_data import OBJECT_DATA
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.calls import nothing_from
 from kb_check.findings import Finding, Fix
@@ -49,7 +51,7 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _DATA, _LOAD = "bpy.types.BlendData", "bpy.types.BlendDataLibraries.load"
-_CONTEXT, _OBJECT = "bpy.types.Context", "bpy.types.Object"
+_CONTEXT = "bpy.types.Context"
 _OF_OBJECTS = frozenset(OBJECT_DATA.values())
 _LET_PASS = frozenset({"driver_remove"})
 # Before, what is assigned to an unknown name of a property group is lost, and no error.
@@ -104,7 +106,7 @@ def _is_of_other(script: Script, row: Resolution, owner: str, lacking: Lacking) 
 
 def _is_of_object(script: Script, row: Resolution, owner: str) -> bool:
     """Whether an object's data lacks what the object has."""
-    return owner.removeprefix(T) in _OF_OBJECTS and script.api.member(_OBJECT, row.value) is not None
+    return owner.removeprefix(T) in _OF_OBJECTS and script.api.member(OBJECT, row.value) is not None
 
 
 def _owner_node(row: Resolution) -> ast.expr | None:
@@ -126,10 +128,10 @@ def _confused(script: Script, row: Resolution, owner: str, lacking: Lacking) -> 
     if not _is_of_object(script, row, owner):
         return replace(lacking, message=f"{message}, as nothing of Blender's has: {ONE_IS_WRONG}.")
     message += (
-        f"; `{_OBJECT}` has it: {ONE_IS_WRONG}. Annotate what is an object as `{_OBJECT}`, or pass its `data` and"
+        f"; `{OBJECT}` has it: {ONE_IS_WRONG}. Annotate what is an object as `{OBJECT}`, or pass its `data` and"
         " use that."
     )
-    return replace(lacking, message=message, instead=(f"{_OBJECT}.{row.value}",))
+    return replace(lacking, message=message, instead=(f"{OBJECT}.{row.value}",))
 
 
 def _of_libraries(script: Script) -> Iterator[Finding]:

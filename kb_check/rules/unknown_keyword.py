@@ -14,6 +14,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.paths import argument_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.rules.renaming import may_take
@@ -31,7 +32,7 @@ def _check(script: Script) -> Iterator[Finding]:
         symbol = script.api.symbols.symbol(function)
         parameters = {parameter.name: parameter for parameter in symbol.parameters} if symbol else {}
         lacking = script.names.parameter(function, row.value, parameters)
-        named = parameters.get(lacking.replacement.rpartition("(")[2].removesuffix(")"))
+        named = parameters.get(argument_of(lacking.replacement))
         value = row.node.value if isinstance(row.node, ast.keyword) else row.node
         if named is not None and isinstance(value, ast.expr) and not may_take(script, named, value):
             lacking = replace(lacking, replacement="", sure=False)

@@ -22,9 +22,11 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import CLASS_NAMES, T
-from kb_build.records import last_name
-from kb_build.symbol_lines import NODE_FAMILIES, alike_nodes
+from kb_build.api_names import NODE
+from kb_build.api_names import TYPES as T
+from kb_build.flow.facts import CLASS_NAMES
+from kb_build.paths import last_name
+from kb_build.symbol_facts import NODE_FAMILIES, alike_nodes
 from kb_check.calls import CallSite, calls_not_ready_for
 from kb_check.findings import Finding, Fix
 from kb_check.mode_keeping import own_names
@@ -41,7 +43,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _BLENDERS_OWN = re.compile(rf"({'|'.join(NODE_FAMILIES)}|NodeSocket)[A-Z]\w+")
-_NODE = f"{T}Node"
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -57,7 +58,7 @@ def _check(script: Script) -> Iterator[Finding]:
             name = node.value
             if name in script.own_identifiers:
                 continue
-            is_label = wanted == "type" and not script.api.descends(f"{T}{name}", _NODE)
+            is_label = wanted == "type" and not script.api.descends(f"{T}{name}", NODE)
             if script.api.is_class(f"{T}{name}") and not (is_label and _labelled(script, call, name)):
                 yield from _refused(script, call, node, name)
                 continue
@@ -111,7 +112,7 @@ def _labelled(script: Script, call: CallSite, name: str) -> list[Symbol]:
 @once_per_script
 def _by_label(script: Script) -> dict[str, list[Symbol]]:
     found: dict[str, list[Symbol]] = {}
-    for cls in script.api.descendants(_NODE):
+    for cls in script.api.descendants(NODE):
         symbol = script.api.symbols.symbol(cls)
         if symbol is not None and symbol.trees and symbol.label:
             found.setdefault(symbol.label.casefold(), []).append(symbol)
@@ -137,7 +138,7 @@ def _label_finding(script: Script, node: ast.Constant, called: list[Symbol]) -> 
 def _refused(script: Script, call: CallSite, node: ast.expr, name: str) -> Iterator[Finding]:
     """A class of nodes that no tree takes, or not the one that it is given to."""
     symbol = script.api.symbols.symbol(f"{T}{name}")
-    if symbol is None or not script.api.descends(symbol.path, _NODE):
+    if symbol is None or not script.api.descends(symbol.path, NODE):
         return
     tree = tree_added_to(script, call)
     if not symbol.trees:

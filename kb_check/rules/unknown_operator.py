@@ -16,6 +16,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_check.made_here import members_taken
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
@@ -33,7 +34,7 @@ def _check(script: Script) -> Iterator[Finding]:
     for row in script.missing("attribute", "button"):
         owner = row.missing[0]
         if owner.startswith("bpy.ops"):
-            name = row.value.removeprefix("bpy.ops.") if row.kind == "button" else row.value
+            name = row.value.removeprefix(OPERATORS) if row.kind == "button" else row.value
             lacking = _of_lost_module(script, row) or script.names.member(owner, name)
             yield lacking_finding(script, RULE.id, row, lacking)
 

@@ -32,6 +32,7 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import SIDES
 from kb_build.flow.types import Instance, Resolution
 from kb_build.records import NEVER_BY_IDENTIFIER, WHEN_PAIRED
 from kb_build.symbol_lines import subscripts_text
@@ -50,7 +51,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_check.script import Script
 
-_SIDES = ("inputs", "outputs")
 _MODIFIER = "bpy.types.NodesModifier"
 # How the inputs and outputs of groups were called that were made before 4.0; these keep it.
 _FORMER = re.compile(r"(?:Input|Output)_(\d+)(?:_use_attribute|_attribute_name)?")
@@ -124,7 +124,7 @@ def _former_inputs(script: Script) -> Iterator[Finding]:
 def _sides(row: Resolution) -> tuple[str, ...]:
     """The side of a node that is asked; both where that is not to be seen."""
     asked = row.node.value if isinstance(row.node, ast.Subscript) else None
-    return (asked.attr,) if isinstance(asked, ast.Attribute) and asked.attr in _SIDES else _SIDES
+    return (asked.attr,) if isinstance(asked, ast.Attribute) and asked.attr in SIDES else SIDES
 
 
 def _asked_by(socket: Symbol) -> str:
@@ -137,7 +137,7 @@ def _is_only_identifier(socket: Symbol, key: str) -> bool:
 
 
 def _still_works(script: Script, node: str, name: str) -> bool:
-    return any(script.names.still_works(f'{node}.{side}["{name}"]') for side in _SIDES)
+    return any(script.names.still_works(f'{node}.{side}["{name}"]') for side in SIDES)
 
 
 RULE = Rule("unknown-socket", "error", "A socket that the node does not have", _check)

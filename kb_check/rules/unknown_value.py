@@ -21,11 +21,12 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES as T
 from kb_build.flow.expressions import constants
-from kb_build.flow.facts import T
 from kb_build.flow.types import UNKNOWN, Resolution
-from kb_build.records import NOT_TAKEN, last_name
-from kb_build.symbol_lines import NODE_FAMILIES, never_taken
+from kb_build.paths import argument_of, last_name, plain_path, split_path
+from kb_build.records import NOT_TAKEN
+from kb_build.symbol_facts import NODE_FAMILIES, never_taken
 from kb_check.calls import calls_not_ready_for
 from kb_check.findings import Finding
 from kb_check.given import assigned, class_values
@@ -127,7 +128,7 @@ def _tree(script: Script, row: Resolution) -> str:
 
 def _taken(script: Script, owner: str, tree: str) -> list[str]:
     """The values of an enumeration, but for those that nothing takes, as is known, or no node of a tree."""
-    symbol, argument = script.api.symbols.symbol(owner.partition("(")[0]), owner.partition("(")[2][:-1]
+    symbol, argument = script.api.symbols.symbol(plain_path(owner)), argument_of(owner)
     refused = never_taken(symbol, argument) if symbol and argument else frozenset[str]()
     if symbol and not argument:
         refused = frozenset(
@@ -195,7 +196,7 @@ def _of_classes(script: Script) -> Iterator[Finding]:
 
 def _class_of(owner: str) -> str:
     """The class of the property, or of the function with the argument, that a value was given to."""
-    return owner.partition("(")[0].rpartition(".")[0]
+    return split_path(plain_path(owner))[0]
 
 
 def _likeness(script: Script, owner: str, value: str) -> float:

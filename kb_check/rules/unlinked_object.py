@@ -16,7 +16,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import SET_ACTIVE, T
+from kb_build.api_names import OBJECT
+from kb_build.api_names import TYPES as T
+from kb_build.flow.facts import SET_ACTIVE
 from kb_build.flow.types import Instance
 from kb_check.calls import calls_by_node
 from kb_check.edit_bones import bound_in, names_of_others, run_in, surely_run
@@ -31,10 +33,9 @@ if TYPE_CHECKING:
 
     from kb_check.script import Script
 
-_OBJECT = f"{T}Object"
 _COPY = f"{T}ID.copy"
 # What needs the object in the view layer when it is given True.
-_REFUSED = frozenset({f"{_OBJECT}.select_set", f"{_OBJECT}.hide_set"})
+_REFUSED = frozenset({f"{OBJECT}.select_set", f"{OBJECT}.hide_set"})
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -56,7 +57,7 @@ def _makes(script: Script, statement: ast.stmt) -> str:
     match statement:
         case ast.Assign(targets=[ast.Name(id=name)], value=ast.Call() as call):
             path, kind = callee_path(script, call), script.type_of(call)
-            is_copy = path == _COPY and isinstance(kind, Instance) and kind.sure and kind.cls == _OBJECT
+            is_copy = path == _COPY and isinstance(kind, Instance) and kind.sure and kind.cls == OBJECT
             return name if (path == OBJECTS_NEW or is_copy) and name not in names_of_others(script) else ""
         case _:
             return ""

@@ -33,9 +33,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import GROUPS
-from kb_build.flow.facts import OBJECT_DATA, T
+from kb_build.api_names import GROUPS, ID, NODE, OBJECT, STRUCT
+from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Collection, Instance, Plain
+from kb_build.object_data import OBJECT_DATA
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.conversions import misfit
 from kb_check.documented import layer_misfit
@@ -55,7 +56,6 @@ if TYPE_CHECKING:
     from kb_check.script import Script
 
 _COLORS = frozenset({"COLOR", "COLOR_GAMMA"})
-_OBJECT = f"{T}Object"
 _DATA = tuple(f"{T}{name}" for name in OBJECT_DATA.values())
 _LAYER = "bmesh.types.BMLayerItem"
 # How what layers hold as something with members is filled.
@@ -135,7 +135,7 @@ def _of_layer(script: Script, wrong: Misfit) -> str:
 
 
 def _element(owner: Collection) -> str:
-    return owner.element.cls if isinstance(owner.element, Instance) else f"{T}bpy_struct"
+    return owner.element.cls if isinstance(owner.element, Instance) else STRUCT
 
 
 def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
@@ -143,11 +143,11 @@ def _advice(script: Script, taker: Taker, node: ast.expr) -> str:
     kind = script.type_of(node)
     if not isinstance(kind, Instance):
         return ""
-    if taker.target == _OBJECT and any(script.api.descends(kind.cls, cls) for cls in (*_DATA, f"{T}ID")):
+    if taker.target == OBJECT and any(script.api.descends(kind.cls, cls) for cls in (*_DATA, ID)):
         return " Give the object that has it: `bpy.data.objects.new(name, data)` makes one."
-    if kind.cls == _OBJECT and (taker.target or taker.documented) in _DATA:
+    if kind.cls == OBJECT and (taker.target or taker.documented) in _DATA:
         return " Give its data: `.data`."
-    if taker.target == f"{T}NodeSocket" and script.api.descends(kind.cls, f"{T}Node"):
+    if taker.target == f"{T}NodeSocket" and script.api.descends(kind.cls, NODE):
         return " Give one of its sockets: `node.outputs[...]`, `node.inputs[...]`."
     return ""
 

@@ -9,8 +9,10 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import ARRAY, COLLECTION, GROUPS
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, ELEMENT, OPEN_CLASSES, T
+from kb_build.api_names import COLLECTION, GROUPS
+from kb_build.api_names import TYPES as T
+from kb_build.flow.api import ARRAY
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, ELEMENT, OPEN_CLASSES
 from kb_build.flow.types import (
     Collection,
     Instance,

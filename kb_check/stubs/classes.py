@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import COLLECTION
-from kb_build.flow.facts import T
+from kb_build.api_names import COLLECTION, STRUCT
+from kb_build.api_names import TYPES as T
 from kb_check.stubs.annotations import ANY
 from kb_check.stubs.names import docstring, is_writable
 from kb_check.stubs.properties import open_class_body
@@ -24,7 +24,6 @@ if TYPE_CHECKING:
     from kb_check.stubs.sockets import Sockets
 
 _DEFINED = re.compile(r"^(?:def )?(\w+)(?=[(:])")
-_STRUCT = f"{T}bpy_struct"
 
 
 class Classes:
@@ -81,10 +80,9 @@ class Classes:
     def _is_inherited(self, symbol: Symbol, cls: str) -> bool:
         """Whether a base has the very same."""
         bases = self._api.lineage(cls)[1:]
-        if symbol.name.startswith("bl_rna_get_subclass") and (cls != _STRUCT):
+        if symbol.name.startswith("bl_rna_get_subclass") and (cls != STRUCT):
             return cls not in {COLLECTION} or not bases
-        same = next((flag[8:] for flag in symbol.flags if flag.startswith("same-as:")), "")
-        return same.rpartition(".")[0] in bases
+        return symbol.same_as.rpartition(".")[0] in bases
 
     def bases(self, cls: str) -> str:
         """The bases of a class as they stand between the brackets."""

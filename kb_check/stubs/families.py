@@ -9,7 +9,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OBJECT_DATA, OPEN_CLASSES, T
+from kb_build.api_names import ID, NODE, STRUCT
+from kb_build.api_names import TYPES as T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
+from kb_build.object_data import OBJECT_DATA
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -18,9 +21,9 @@ if TYPE_CHECKING:
 
 MODULE = "bpy._families"
 OBJECT_DATA_FAMILY = f"{MODULE}.AnyObjectData"
-_WITHOUT = frozenset({f"{T}bpy_struct", f"{T}Operator", f"{T}Panel", f"{T}Menu", f"{T}Header", f"{T}UIList"})
+_WITHOUT = frozenset({STRUCT, f"{T}Operator", f"{T}Panel", f"{T}Menu", f"{T}Header", f"{T}UIList"})
 # Scripts derive nodes, trees and sockets too, but read far more of Blender's own.
-_OWN = frozenset({f"{T}Node", f"{T}NodeTree", f"{T}NodeSocket", f"{T}NodeTreeInterfaceSocket"})
+_OWN = frozenset({NODE, f"{T}NodeTree", f"{T}NodeSocket", f"{T}NodeTreeInterfaceSocket"})
 
 Members = dict[str, str]  # name → declaration
 
@@ -62,7 +65,7 @@ class Families:
                 rows += self._family(name, cls, self.members(cls), declared)
         data = {T + cls for cls in OBJECT_DATA.values()} & set(declared)
         data |= {member for cls in data for member in self.members(cls)}
-        rows += self._family(OBJECT_DATA_FAMILY, f"{T}ID", tuple(sorted(data)), declared)
+        rows += self._family(OBJECT_DATA_FAMILY, ID, tuple(sorted(data)), declared)
         return rows
 
     def _family(

@@ -6,7 +6,8 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, SAME_CLASS, T
+from kb_build.api_names import TYPES as T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, SAME_CLASS
 from kb_check.stubs.annotations import ANY, MAYBE_NONE, RNA_TYPES
 from kb_check.stubs.names import docstring, is_writable
 from kb_serve.signatures import signature_arguments

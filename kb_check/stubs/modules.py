@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES as T
 from kb_build.flow.api import Api
-from kb_build.flow.facts import T
 from kb_build.flow.symbols import SymbolList
 from kb_build.flow.types import Instance
 from kb_check.stubs import enums, families, sockets

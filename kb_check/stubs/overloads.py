@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
+from kb_build.api_names import NODE
+from kb_build.api_names import TYPES as T
 from kb_check.stubs.enums import values_of
 from kb_check.stubs.names import is_writable
 
@@ -14,9 +15,9 @@ if TYPE_CHECKING:
     from kb_check.stubs.functions import Functions
 
 _DECIDING = ("type", "socket_type", "effect_type")
-_BY_CLASS = (f"{T}Node", f"{T}NodeTree")
+_BY_CLASS = (NODE, f"{T}NodeTree")
 # Families whose members are called after their class unless somebody renames them.
-_LABELLED = (f"{T}Node", f"{T}Modifier", f"{T}Constraint")
+_LABELLED = (NODE, f"{T}Modifier", f"{T}Constraint")
 
 
 class Overloads:

@@ -8,8 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES as T
 from kb_build.flow.api import ARRAY
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES, T
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
 from kb_build.flow.types import Instance, Sequence
 from kb_check.stubs.annotations import ANY, ITEMS, MAYBE_NONE
 from kb_check.stubs.families import OBJECT_DATA_FAMILY

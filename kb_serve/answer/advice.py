@@ -4,15 +4,15 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import stem, words
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
 from kb_serve.recognise.products import CLASSES, WITH_AT
 
-_TYPES = "bpy.types."
 _STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
-_STYLE = f"{_TYPES}MaterialGPencilStyle"
-_RIGID_BODY = f"{_TYPES}RigidBodyObject"
-_RANGES = f"{_TYPES}bpy_struct.id_properties_ui"
+_STYLE = f"{TYPES}MaterialGPencilStyle"
+_RIGID_BODY = f"{TYPES}RigidBodyObject"
+_RANGES = f"{TYPES}bpy_struct.id_properties_ui"
 _BAKES_FLUIDS = "bpy.ops.fluid.bake_all"
 _HANDLERS = "bpy.app.handlers."
 _PERSISTENT = f"{_HANDLERS}persistent"
@@ -43,7 +43,7 @@ class Advice(NamedTuple):
 
 
 def _of(*names: str) -> frozenset[str]:
-    return frozenset(f"{_TYPES}{name}" for name in names)
+    return frozenset(f"{TYPES}{name}" for name in names)
 
 
 _STAYING = (
@@ -173,7 +173,7 @@ ADVICE: tuple[Advice, ...] = (
             "NlaStrip.action",
         ),
         about=_stems("action"),
-        needs=f"{_TYPES}AnimData.action_slot",
+        needs=f"{TYPES}AnimData.action_slot",
     ),
     Advice(WITH_AT, frozenset(CLASSES)),
     Advice(

@@ -7,7 +7,8 @@ import textwrap
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import SET, literal, never_taken, refusal_lines, said_taken, taken_where
+from kb_build.symbol_facts import never_taken
+from kb_build.symbol_lines import SET, literal, refusal_lines, said_taken, taken_where
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.enum_items import item_lines
 from kb_serve.answer.property_facts import UNITS, range_text

@@ -8,6 +8,7 @@ from functools import lru_cache
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import stems_of
 from kb_serve.answer.asked_values import ASKED_NOTHING, asked_of, asked_words
 from kb_serve.answer.budget import AnswerBlock, tokens
@@ -22,7 +23,6 @@ from kb_serve.answer.topic_overview import Topics
 from kb_serve.errors import BadQuery
 from kb_serve.rank.merging import SURE, QueryRanker, Ranking
 from kb_serve.rank.ranked_id import RankedId
-from kb_serve.reader import TYPES
 from kb_serve.recognise.several import parts_of
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_serve.answer.budget import AnswerBlock, clip
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

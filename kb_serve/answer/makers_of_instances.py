@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.records import last_name
-from kb_serve.reader import TYPES
+from kb_build.api_names import TYPES
+from kb_build.paths import last_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

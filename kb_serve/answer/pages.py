@@ -5,7 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import first_sentence, passage_text
+from kb_build.pages.definitions import passage_text
+from kb_build.symbol_lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock
 
 if TYPE_CHECKING:

@@ -4,19 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import NODE, TYPES
 from kb_build.records import EVALUATED, NAMES_ITEMS, WITHOUT_ACTIVE, WITHOUT_AREA
-from kb_build.symbol_lines import (
-    alike_nodes,
-    default_text,
-    empty_when_new,
-    fillers,
-    new_subscript,
-    of_evaluated,
-)
+from kb_build.symbol_facts import alike_nodes, empty_when_new, fillers, new_subscript
+from kb_build.symbol_lines import default_text, of_evaluated
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.makers_of_instances import told_makers
 from kb_serve.answer.pages import manual_page
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -24,7 +18,6 @@ if TYPE_CHECKING:
     from kb_build.records import Symbol
     from kb_serve.reader import BaseReader
 
-_NODE = f"{TYPES}Node"
 _NONE_IN_CONTEXT = {
     WITHOUT_ACTIVE: "`None` where no object is active",
     WITHOUT_AREA: "`None` outside the areas of windows, as in a Blender without a window",
@@ -39,7 +32,7 @@ def place_lines(symbol: Symbol, reader: BaseReader) -> Iterator[str]:
         cls = _owning_class(symbol, reader)
         yield f"reached as `{reached}`" + (_empty_before(cls, reader) if cls else "")
     elif symbol.kind == "context":
-        if origin := symbol.flagged("from:"):
+        if origin := symbol.editors:
             yield f"provided by: {', '.join(origin)}"
         yield from (text for flag, text in _NONE_IN_CONTEXT.items() if flag in symbol.flags)
     if symbol.kind == "class" and (creation := reader.creations([symbol.path]).get(symbol.path)):
@@ -97,7 +90,7 @@ def _key_of(cls: str, reader: BaseReader) -> str:
 
 def _is_node(path: str, reader: BaseReader) -> bool:
     """Whether a class is one of nodes, below the class of all of them."""
-    return path != _NODE and reader.descends(path, _NODE)
+    return path != NODE and reader.descends(path, NODE)
 
 
 def _empty_before(cls: Symbol, reader: BaseReader) -> str:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.records import STOPS, UNBOUNDED
-from kb_build.symbol_lines import default_text, is_locked, locked_text, shown_when, subscripts_text, type_text
+from kb_build.symbol_facts import is_locked
+from kb_build.symbol_lines import default_text, locked_text, shown_when, subscripts_text, type_text
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,17 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import SIDES, STRUCT, TYPES
 from kb_build.records import BARE_DATA, CALLS, PAIRS
-from kb_build.symbol_lines import (
-    area_text,
-    is_stand_in,
-    mode_needed,
-    operator_areas,
-    operator_given,
-    operator_needs,
-    version_meant,
-    written,
-)
+from kb_build.symbol_facts import is_stand_in, operator_areas, operator_given
+from kb_build.symbol_lines import area_text, mode_needed, operator_needs, version_meant, written
 from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
@@ -28,13 +21,13 @@ from kb_serve.answer.property_facts import facts
 from kb_serve.answer.shown_uses import use_text
 from kb_serve.answer.switches import switch_lines
 from kb_serve.answer.swizzles import without_swizzles
-from kb_serve.reader import STRUCT, TYPES, BaseReader, SymbolEntry
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
     from kb_build.records import Symbol
     from kb_serve.answer.asked_values import AskedOf
+    from kb_serve.reader import BaseReader, SymbolEntry
 
 _PUT_TOGETHER = (
     "put together while Blender runs, and not known here: the error for any other value lists them"
@@ -131,9 +124,10 @@ class MarkdownRenderer:
 
     def _namesakes(self, socket: Symbol) -> Iterator[SymbolEntry]:
         """The other sockets of a node that have the name of one, of which each mode shows another."""
-        side = socket.path[len(socket.owner) :].partition("[")[0]
         for entry in self.reader.members(socket.owner).values():
-            is_named_so = entry.label == socket.label and entry.path.startswith(f"{socket.owner}{side}[")
+            is_named_so = entry.label == socket.label and entry.path.startswith(
+                f"{socket.owner}.{socket.side}["
+            )
             if entry.kind == "socket" and is_named_so and entry.path != socket.path:
                 yield entry
 
@@ -150,7 +144,7 @@ class MarkdownRenderer:
         """The inputs or outputs of a node's class, where ``asked`` names the class and ``path`` is the list itself."""
         side = path.removeprefix(f"{TYPES}Node.")
         cls = TYPES + asked.removesuffix(side).rstrip(" .").removeprefix(TYPES)
-        members = self.reader.members(cls).values() if side in {"inputs", "outputs"} else ()
+        members = self.reader.members(cls).values() if side in SIDES else ()
         sockets = [entry for entry in members if entry.path.startswith(f"{cls}.{side}[")]
         yield from _listed(f"{side.title()} of `{cls}`{_once_paired(members)}", sockets)
 

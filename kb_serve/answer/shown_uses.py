@@ -5,14 +5,12 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import TYPES
+from kb_build.api_names import TYPES
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
 _OF_CONTEXT = re.compile(r"\bcontext\.(\w+)")
-_PLACE = "from:"
-_EVERYWHERE = "from:screen"
 _EDITORS = {
     "buttons": "Properties editor", "file": "File Browser", "node": "node editors", "view3d": "3D Viewport",
     "image": "Image Editor", "clip": "Movie Clip Editor", "sequencer": "Sequencer", "text": "Text Editor",
@@ -37,12 +35,9 @@ def _editors_note(code: str, reader: BaseReader) -> str:
     found: dict[str, str] = {}
     for name in _OF_CONTEXT.findall(code):
         symbol = reader.symbol(f"{TYPES}Context.{name}")
-        places = [flag for flag in symbol.flags if flag.startswith(_PLACE)] if symbol else []
-        if places and _EVERYWHERE not in places:
-            editors = [
-                _EDITORS.get(place.removeprefix(_PLACE), place.removeprefix(_PLACE)) for place in places
-            ]
-            found[name] = " and the ".join(editors)
+        editors = symbol.editors if symbol else ()
+        if editors and "screen" not in editors:
+            found[name] = " and the ".join(_EDITORS.get(editor, editor) for editor in editors)
     if not found:
         return ""
     names = " and ".join(f"`context.{name}`" for name in found)

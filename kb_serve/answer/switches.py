@@ -9,7 +9,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import usual_default
+from kb_build.symbol_facts import usual_default
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

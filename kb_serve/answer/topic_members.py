@@ -7,13 +7,13 @@ from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, TYPES
 from kb_build.index.analysis import key, terms, topic_key
-from kb_build.symbol_lines import operator_areas
+from kb_build.symbol_facts import operator_areas
 from kb_serve.answer.steps.operators import calls_needed
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.steps.variable_names import class_called
 from kb_serve.answer.topic_pages import CHAPTERS, PAGES_OF_NODES, SHORT_FOR, subtree
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence
@@ -22,7 +22,6 @@ if TYPE_CHECKING:
 
 _PARTS_OF_A_WINDOW = ("panel", "panels")
 _EDITORS = "editors/"  # what is edited there is explained elsewhere
-_OPERATORS = "bpy.ops."
 _MEMBERS = 6
 _NAMED, _NEAR, _FAR = 3.0, 2.0, 1.0  # a class or operator by its name, its page, a page far below
 _ASIDE = 0.2
@@ -145,7 +144,7 @@ class TopicMembers:
         words = [word for title in titles for word in title.lower().split()]
         does = {path.rpartition(".")[2] for path in self._reader.symbols_of_page(slug)}
         if does.isdisjoint((*words, *terms(" ".join(words)))):
-            own = filter(None, (self._reader.entry(f"{_OPERATORS}{word}.{word}") for word in words))
+            own = filter(None, (self._reader.entry(f"{OPERATORS}{word}.{word}") for word in words))
             called += [entry for entry in own if self._is_of_chapter(entry.path, slug)]
         for entry in called:
             parts = {link.partition("/")[0] for link in self._reader.manual_links(entry.path)}
@@ -162,7 +161,7 @@ class TopicMembers:
         makes which they need, as the strips of a sequence editor.
         """
         operators = [
-            symbol for path in paths if path.startswith(_OPERATORS) and (symbol := self._reader.symbol(path))
+            symbol for path in paths if path.startswith(OPERATORS) and (symbol := self._reader.symbol(path))
         ]
         needed = Counter(call for operator in operators for call in calls_needed(operator))
         call, count = next(iter(needed.most_common(1)), ("", 0))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.symbol_lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock, clip, tokens
 from kb_serve.answer.pages import own_summary, said_of
@@ -12,7 +13,6 @@ from kb_serve.answer.topic_members import TopicMembers
 from kb_serve.answer.topic_pages import TopicPages, plain_title, subtree
 from kb_serve.answer.topic_settings import TopicSettings
 from kb_serve.answer.topic_steps import Steps
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence

@@ -6,9 +6,9 @@ import re
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import NODE
 from kb_build.index.analysis import key, terms, topic_key
 from kb_build.index.everyday_table import first_term
-from kb_serve.reader import TYPES
 from kb_serve.recognise.enum_values import is_quoted_value
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, PageEntry
 
 _ASIDE_PAGES = ("contribute/", "addons/", "interface/controls/")
-PAGES_OF_NODES, _NODE = "interface/controls/nodes/types/", f"{TYPES}Node"
+PAGES_OF_NODES = "interface/controls/nodes/types/"
 _SELDOM = (
     "grease_pencil/",
     "render/freestyle/",
@@ -260,7 +260,7 @@ class TopicPages:
 
     def _is_of_node(self, slug: str) -> bool:
         """Whether a page explains a node."""
-        return any(self._reader.descends(path, _NODE) for path in self._reader.symbols_of_page(slug))
+        return any(self._reader.descends(path, NODE) for path in self._reader.symbols_of_page(slug))
 
     def _size(self, slug: str) -> int:
         """The number of pages and symbols below a page: people rarely mean the smaller chapter."""

@@ -6,11 +6,12 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
+from kb_build.paths import argument_of, last_name, plain_path
 from kb_build.symbol_lines import held, written
 from kb_serve.answer.budget import clip
 from kb_serve.answer.steps.new_scene import NewScene
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -61,8 +62,8 @@ class TopicSettings:
         the manual explains that the page is in: ``light.type = 'SUN'``.
         """
         owners = {owner: value for owner, value, _ in self._reader.enum_owners(key(text))}
-        weights = self._reader.weights([owner.partition("(")[0] for owner in owners])
-        heavy = {owner: weights.get(owner.partition("(")[0], 0.0) for owner in owners}
+        weights = self._reader.weights([plain_path(owner) for owner in owners])
+        heavy = {owner: weights.get(plain_path(owner), 0.0) for owner in owners}
         near = {_name(owner) for owner in owners if self._is_near(owner, slug)}
         owners = {owner: value for owner, value in owners.items() if _name(owner) in near}
         least = max(_LEAST_WEIGHT, _LEAST_SHARE * max(map(heavy.__getitem__, owners), default=0.0))
@@ -75,15 +76,15 @@ class TopicSettings:
 
     def _is_near(self, owner: str, slug: str) -> bool:
         """Whether the part of the manual that a page is in explains what has a value."""
-        path = owner.partition("(")[0]
+        path = plain_path(owner)
         links = self._reader.manual_links(path) or self._reader.manual_links(path.rpartition(".")[0])
         return slug.partition("/")[0] in {link.partition("/")[0] for link in links}
 
     def _written(self, owner: str, value: str) -> str:
         """A value where it is given; empty where it cannot be set."""
-        path, _, parameter = owner.partition("(")
+        path, parameter = plain_path(owner), argument_of(owner)
         if parameter:
-            return f"`{path.removeprefix(TYPES)}({parameter.removesuffix(')')}={value!r})`"
+            return f"`{path.removeprefix(TYPES)}({parameter}={value!r})`"
         entry = self._reader.entry(path)
         if entry is None or entry.is_read_only:
             return ""
@@ -101,5 +102,4 @@ class TopicSettings:
 
 def _name(owner: str) -> str:
     """The property's or the argument's name of what has a value."""
-    path, _, parameter = owner.partition("(")
-    return parameter.removesuffix(")") or path.rpartition(".")[2]
+    return argument_of(owner) or last_name(owner)

@@ -10,22 +10,23 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import NODE, OBJECT, OPERATORS, STRUCT, TYPES
 from kb_build.index.analysis import terms
-from kb_build.symbol_lines import operator_areas, operator_needs, refused_nothing
+from kb_build.symbol_facts import operator_areas, refused_nothing
+from kb_build.symbol_lines import operator_needs
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
 from kb_serve.answer.steps.instances import Instances
 from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.new_scene import NewScene
-from kb_serve.answer.steps.nodes import NODE, NodeSteps
+from kb_serve.answer.steps.nodes import NodeSteps
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO, runs
 from kb_serve.answer.steps.own_properties import made_by_subscript
 from kb_serve.answer.steps.places import PlaceSteps
-from kb_serve.answer.steps.reached import ReachedSettings, is_of_interface
+from kb_serve.answer.steps.reached import ReachedSettings
 from kb_serve.answer.steps.settings import OTHERS_ELEMENT, SettingSteps
 from kb_serve.answer.steps.trees import EMBEDDED_TREES, TreeSteps
-from kb_serve.answer.steps.variable_names import OBJECT
-from kb_serve.reader import STRUCT, TYPES
+from kb_serve.interface import is_of_interface
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -151,7 +152,7 @@ class Steps:
         takes that from the context, and else does nothing.
         """
         cls, maker = self._reader.symbol(path), self._reader.symbol(creation.maker)
-        is_anywhere = creation.call.startswith("bpy.ops.") and maker is not None and _needs_nothing(maker)
+        is_anywhere = creation.call.startswith(OPERATORS) and maker is not None and _needs_nothing(maker)
         return is_anywhere and cls is not None and OTHERS_ELEMENT.search(cls.reached) is not None
 
     def _with_kinds(self, named: list[str]) -> list[str]:
@@ -182,7 +183,7 @@ class Steps:
     def _is_anothers(self, path: str, called: tuple[str, ...]) -> bool:
         """Whether an operator makes what only ends as the topic is called: the world of rigid bodies."""
         creation = self._creations.get(path)
-        is_by_operator = creation is not None and creation.call.startswith("bpy.ops.")
+        is_by_operator = creation is not None and creation.call.startswith(OPERATORS)
         return is_by_operator and path.endswith(called) and path.removeprefix(TYPES) not in called
 
     def _tree_of(self, node: str) -> list[str]:
@@ -245,7 +246,7 @@ class Steps:
     def _is_in_area(self, creations: Mapping[str, Creation]) -> bool:
         """Whether an operator makes something in an area of a window alone, which a script need not have."""
         creation = next(iter(creations.values()))
-        maker = self._reader.symbol(creation.maker) if creation.call.startswith("bpy.ops.") else None
+        maker = self._reader.symbol(creation.maker) if creation.call.startswith(OPERATORS) else None
         return maker is not None and bool(operator_areas(maker))
 
     def _is_main(self, creations: Mapping[str, Creation]) -> bool:
@@ -271,7 +272,7 @@ class Steps:
         """Whether a class is the modifier of data that is made: it is told with that, as it is on another object."""
         data = path.removesuffix("Modifier")
         is_made = data != path and data in self._classes and data in self._creations
-        return is_made and self._scene.kinds.is_data(data)
+        return is_made and self._reader.is_object_data(data)
 
     def _make_one(self, creations: Mapping[str, Creation], *, is_first: bool) -> Iterator[str]:
         """How the classes of one maker are made, and what the first of them needs to be of use."""

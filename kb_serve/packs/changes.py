@@ -8,14 +8,14 @@ it belongs to Blender's interface.
 from __future__ import annotations
 
 import math
-import re
 from collections import Counter, defaultdict
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.paths import plain_path, split_path
 from kb_serve.answer.budget import tokens
-from kb_serve.packs.section import is_of_interface, short
+from kb_serve.packs.section import is_for_users, short
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 _OWN = 1.6  # of the weight of the class that a successor belongs to, beside its own
 _OF_SOCKET = 1.0  # sockets have no weight of their own: the share of their node's that they have
-_OF_INTERFACE = 0.25
+_FOR_USERS = 0.25
 _OF_NO_SCENE = 0.5  # what no expression leads to
 _NO_SUCCESSOR = 0.8
 _RENAMED_OWNER = 0.7  # a class that is gone as a whole: scripts rarely name classes
@@ -35,9 +35,6 @@ _AGES = (
     (30, 0.3),
 )  # for how many versions a name is gone, and how likely it is written
 _LEFT_OWNER = 1.5  # what is left of a class that stays: scripts go on to lead to it
-_PARTS = re.compile(
-    r'^(?P<owner>.+?)(?:\.(?P<member>(?:in|out)puts\[".*"\])|(?P<choice>[:(].*)|\.(?P<name>[^.:(]+))$'
-)
 _NOTHING = "Nothing takes its place."
 _REPEATED = 0.7
 _MOST_NAMES = 6  # that share one successor, on one line
@@ -64,8 +61,8 @@ class _Group:
 
 def owner_of(path: str) -> str:
     """The class, function or enumeration that a path is a part of; of a class its module."""
-    parts = _PARTS.match(path)
-    return parts["owner"] if parts else ""
+    whole = plain_path(path)
+    return whole if whole != path else split_path(path)[0]
 
 
 class Changes:
@@ -125,8 +122,8 @@ class Changes:
         symbol = self._reader.symbol(holder)
         if symbol is None or symbol.kind != "class":
             return 1.0
-        if is_of_interface(symbol):
-            return _OF_INTERFACE
+        if is_for_users(symbol):
+            return _FOR_USERS
         return 1.0 if symbol.reached else _OF_NO_SCENE
 
     def fill(self, budget: int) -> list[str]:

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, TYPES
 from kb_serve.answer.budget import tokens
 from kb_serve.errors import BadQuery
 from kb_serve.packs.changes import Changes, owner_of
 from kb_serve.packs.schema_lines import SchemaLines
-from kb_serve.packs.section import TYPES, Section
+from kb_serve.packs.section import Section
 from kb_serve.packs.topics import TopicLines
 
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def _of_topic(reader: BaseReader, topic: str) -> list[Section]:
 
 def _concerning(reader: BaseReader, names: frozenset[str]) -> Callable[[str], bool]:
     """Whether a path of this Blender is one of ``names``, a part of one, or an operator beside one."""
-    modules = {name.rpartition(".")[0] for name in names if name.startswith("bpy.ops.")}
+    modules = {name.rpartition(".")[0] for name in names if name.startswith(OPERATORS)}
     classes = {name for name in names if name.startswith(TYPES) and not _is_base(reader, name, names)}
 
     def concerns(path: str) -> bool:

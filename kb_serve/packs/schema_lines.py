@@ -6,8 +6,10 @@ from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import literal, usual_default
-from kb_serve.packs.section import TYPES, fitting, is_of_interface, short
+from kb_build.api_names import NODE, SIDES, TYPES
+from kb_build.symbol_facts import usual_default
+from kb_build.symbol_lines import literal
+from kb_serve.packs.section import fitting, is_for_users, short
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
 
 _MEMBERS = 14  # of a class, the heaviest
 _LEAST = 1.0  # the weight of a member that is told of
-_NODE = f"{TYPES}Node"
 # Interface and registration, which scripts of add-ons use most, and models know.
 _WELL_KNOWN = frozenset(
     {
@@ -54,7 +55,7 @@ class SchemaLines:
         return [
             symbol
             for symbol in symbols
-            if symbol is not None and (self._concerns or not is_of_interface(symbol))
+            if symbol is not None and (self._concerns or not is_for_users(symbol))
         ]
 
     def _counts(self, path: str, weights: dict[str, float]) -> bool:
@@ -90,14 +91,14 @@ class SchemaLines:
 
     def sockets(self, budget: int) -> list[str]:
         """Lines of nodes with their sockets and what these begin with."""
-        nodes = (symbol for symbol in self._classes if self._reader.descends(symbol.path, _NODE))
+        nodes = (symbol for symbol in self._classes if self._reader.descends(symbol.path, NODE))
         return fitting((line for node in nodes if (line := self._node_line(node.path))), budget)
 
     def _node_line(self, path: str) -> str:
         members = self._reader.members(path)
         sides = {
             side: [_socket(name, entry) for name, entry in members.items() if name.startswith(f"{side}[")]
-            for side in ("inputs", "outputs")
+            for side in SIDES
         }
         told = "; ".join(f"{side} {', '.join(sockets)}" for side, sockets in sides.items() if sockets)
         return f"- `{short(path)}`: {told}" if told else ""
@@ -109,7 +110,7 @@ class SchemaLines:
         plain = (
             symbol
             for symbol in self._classes
-            if symbol.name not in _WELL_KNOWN and not self._reader.descends(symbol.path, _NODE)
+            if symbol.name not in _WELL_KNOWN and not self._reader.descends(symbol.path, NODE)
         )
         return fitting((line for symbol in plain if (line := self._class_line(symbol))), budget)
 

@@ -5,18 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_serve.answer.budget import tokens
+from kb_serve.interface import is_of_interface
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
     from kb_build.records import Symbol
 
-TYPES = "bpy.types."
-_INTERFACE = (
-    "tool_settings", "space_data", "preferences", "window", "studio_light", "workspace", "region", "area", "brush",
-    "asset",
-)  # fmt: skip
+_TOOLS = ("bpy.data.workspaces", "bpy.data.brushes", ".asset")  # which scripts hardly deal with
 
 
 @dataclass(frozen=True, slots=True)
@@ -38,9 +36,10 @@ class Section:
         return head + "\n".join(lines) if lines else ""
 
 
-def is_of_interface(symbol: Symbol) -> bool:
-    """Whether a class belongs to Blender's windows and brushes rather than to scenes."""
-    return symbol.group == "ui" or any(part in symbol.reached for part in _INTERFACE)
+def is_for_users(symbol: Symbol) -> bool:
+    """Whether a class belongs to what users work with, as windows and brushes, rather than to scenes."""
+    is_tool = any(part in symbol.reached for part in _TOOLS)
+    return symbol.group == "ui" or is_tool or is_of_interface(symbol.reached)
 
 
 def fitting(lines: Iterable[str], budget: int) -> list[str]:

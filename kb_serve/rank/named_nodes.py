@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import NODE, TYPES
 from kb_build.index.analysis import key
 from kb_serve.rank.signals import NODE_WORDS
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
     from kb_serve.reader import BaseReader, SymbolEntry
 
-_NODE = f"{TYPES}Node"
 _NO_LABEL = frozenset({"node", "nodes"})
 _JOINS = _NO_LABEL | {"and"}
 _MARKS = ".,:;?!()'\"`"
@@ -59,7 +58,7 @@ def _called(label: str, reader: BaseReader) -> str:
     reader.entry.load(paths)
     found = map(reader.entry, paths)
     nodes = [
-        entry for entry in found if entry and _is_called(entry, label) and reader.descends(entry.path, _NODE)
+        entry for entry in found if entry and _is_called(entry, label) and reader.descends(entry.path, NODE)
     ]
     if not nodes:
         return ""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_build.index.analysis import stem, stems_of, terms
 
 if TYPE_CHECKING:
@@ -11,7 +12,6 @@ if TYPE_CHECKING:
 
     from kb_serve.rank.ranked_id import RankedId
 
-_OPERATORS = "bpy.ops."
 _PAIRS = (("import", "export"), ("pack", "unpack"))
 _OPPOSITES = {stem(one): stem(other) for a, b in _PAIRS for one, other in ((a, b), (b, a))}
 
@@ -27,4 +27,4 @@ def opposites_last(ranked: Sequence[RankedId], question: str) -> list[RankedId]:
 
 def _does_any(identifier: str, verbs: set[str]) -> bool:
     """Whether an operator's name has one of some verbs."""
-    return identifier.startswith(_OPERATORS) and not verbs.isdisjoint(stems_of(identifier))
+    return identifier.startswith(OPERATORS) and not verbs.isdisjoint(stems_of(identifier))

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.unlisted import SOMETIMES
-from kb_serve.reader import TYPES
 from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.elements import ADDING, elsewhere, meant_by_key
@@ -118,11 +118,7 @@ class BrokenExpressions:
             # ``bl_idname = "object.my_operator"``
             or (chain.quoted and chain.root != "bpy")
             # ``bpy.types.Scene.my_property = …``
-            or (
-                is_definition
-                and chain.dotted.startswith(("bpy.types.", "types."))
-                and len(resolved.symbols) == 1
-            )
+            or (is_definition and chain.dotted.startswith((TYPES, "types.")) and len(resolved.symbols) == 1)
             # A variable called ``context`` may hold a dictionary.
             or (resolved.missing.startswith("[") and len(resolved.symbols) == 1 and chain.root != "bpy")
             or (owner is not None and _may_have(owner, chain, resolved.missing))

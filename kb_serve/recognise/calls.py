@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.paths import split_path
 from kb_serve.recognise.call_texts import arguments
 from kb_serve.recognise.contexts import NO_OVERRIDE, with_context
 from kb_serve.recognise.likely_keywords import likely_keywords
@@ -44,7 +45,7 @@ def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ())
     if chain.call is None or not is_method:
         return
     text = chain.call
-    once = {path.rpartition("(")[2].rstrip(")") for path in removed if path.startswith(f"{symbol.path}(")}
+    once = {name for above, mark, name in map(split_path, removed) if mark == "(" and above == symbol.path}
     if symbol.kind == "operator" and _gives_context(text, once.union(one.name for one in symbol.parameters)):
         line = with_context(chain)
         yield f"{NO_OVERRIDE} Write `{line}`." if line else NO_OVERRIDE

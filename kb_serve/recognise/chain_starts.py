@@ -5,9 +5,10 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, TYPES
 from kb_build.index.analysis import words
 from kb_build.python_values import is_new_list
-from kb_serve.reader import PROPERTIES, TYPES
+from kb_serve.reader import PROPERTIES
 from kb_serve.recognise.chain_values import ChainValue
 from kb_serve.recognise.variables import Variables
 
@@ -90,7 +91,7 @@ class ChainStarts:
                 and self._is_used_as(value, chain)
             ):
                 # An Object's modifiers are likelier than an FCurve's.
-                is_usual = self._reader.descends(entry.owner, f"{TYPES}ID")
+                is_usual = self._reader.descends(entry.owner, ID)
                 yield value, _COLLECTION_FIT + (_USUAL if is_usual else 0.0) - _LIGHTER * rank
         for cls, fit in (*self._owners.with_socket(chain), *self._owners.of(chain)):
             if cls not in seen:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import COLLECTION, TYPES
 from kb_build.math_classes import math_class
 from kb_build.python_values import is_new_list
-from kb_serve.reader import COLLECTION, TYPES
 from kb_serve.recognise.values import SEQUENCES, VALUES
 
 if TYPE_CHECKING:

@@ -6,13 +6,8 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import (
-    operator_also,
-    operator_areas,
-    operator_given,
-    operator_needs,
-    refused_nothing,
-)
+from kb_build.symbol_facts import operator_also, operator_areas, operator_given, refused_nothing
+from kb_build.symbol_lines import operator_needs
 
 if TYPE_CHECKING:
     from kb_build.records import Symbol

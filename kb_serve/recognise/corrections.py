@@ -6,13 +6,15 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import distinct_words, key, words
-from kb_serve.reader import TYPES, BaseReader
+from kb_build.paths import socket_name
 from kb_serve.recognise.chains import Chain, ChainStep
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping, Sequence
 
+    from kb_serve.reader import BaseReader
     from kb_serve.recognise.resolver import ResolvedChain, Resolver
 
 LIKELY = 0.72  # similarity from which on a name is offered as a correction
@@ -231,7 +233,5 @@ def _closest(
 
 def _with_step(chain: Chain, number: int, name: str) -> Chain:
     steps = list(chain.steps)
-    steps[number] = ChainStep(
-        "key" if steps[number].kind == "key" else "attr", name.partition('["')[2].rstrip('"]') or name
-    )
+    steps[number] = ChainStep("key" if steps[number].kind == "key" else "attr", socket_name(name) or name)
     return replace(chain, steps=tuple(steps))

@@ -7,7 +7,9 @@ from collections import defaultdict
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key, terms
+from kb_build.paths import argument_of, plain_path
 from kb_build.records import NOT_TAKEN
 from kb_build.symbol_lines import said_taken
 from kb_serve.recognise.likely_values import explaining
@@ -101,7 +103,7 @@ class EnumValues:
             fits = alone or quoted or self._owner_fit(owner, around) >= least
             fits = fits and (bool(quoted) or not _is_a_label(recognition))
             sure = (0.97 if alone else 0.9 if fits else 0.45) * (0.6 + 0.4 * share) - 0.03 * rank
-            recognition.add(owner.partition("(")[0], sure, "enum item")
+            recognition.add(plain_path(owner), sure, "enum item")
 
     def _by_use(self, owners: list[tuple[str, float]], around: set[str]) -> list[tuple[str, float]]:
         """Owners with their shares of the values, of those that fit the words around as well those that count most
@@ -111,10 +113,8 @@ class EnumValues:
             {owner: self._owner_fit(owner, around) for owner, _ in owners[:_MOST_COMPARED]} if around else {}
         )
         compared = [row for row in owners if not around or row[0] in fit]
-        weights = self._reader.weights([owner.partition("(")[0] for owner, _ in compared])
-        compared.sort(
-            key=lambda row: (-row[1], -fit.get(row[0], 0.0), -weights.get(row[0].partition("(")[0], 0.0))
-        )
+        weights = self._reader.weights([plain_path(owner) for owner, _ in compared])
+        compared.sort(key=lambda row: (-row[1], -fit.get(row[0], 0.0), -weights.get(plain_path(row[0]), 0.0)))
         return [*compared, *owners[len(compared) :]]
 
     @staticmethod
@@ -132,7 +132,7 @@ class EnumValues:
             for owner, identifier, name in self._reader.enum_owners(key(value)):
                 if value == identifier or (value == name and not self._is_class(value)):
                     held[owner].add(value)
-        self._reader.entry.load(owner.partition("(")[0] for owner in held)
+        self._reader.entry.load(plain_path(owner) for owner in held)
         for owner in sorted(
             held, key=lambda o: (-len(held[o]), -self._owner_fit(o, around or set()), len(o), o)
         ):
@@ -147,9 +147,9 @@ class EnumValues:
         beyond = {owner: self._difference(owner, set(items)) for owner, _ in most}
         of_called = [row for row in shares if called and row[0].startswith(called)]
         likeliest = of_called or [row for row in shares if row[1] == shares[0][1]]
-        weights = self._reader.weights([owner.partition("(")[0] for owner, _ in likeliest])
+        weights = self._reader.weights([plain_path(owner) for owner, _ in likeliest])
         likeliest.sort(
-            key=lambda row: (-row[1], beyond.get(row[0], 0), -weights.get(row[0].partition("(")[0], 0.0))
+            key=lambda row: (-row[1], beyond.get(row[0], 0), -weights.get(plain_path(row[0]), 0.0))
         )
         return [owner for owner, _ in likeliest]
 
@@ -200,11 +200,10 @@ class EnumValues:
 
     def _items(self, owner: str) -> tuple[EnumItem, ...]:
         """The items that a property, or a function's parameter, takes somewhere."""
-        path, _, parameter = owner.partition("(")
-        symbol = self._reader.symbol(path)
+        symbol, parameter = self._reader.symbol(plain_path(owner)), argument_of(owner)
         if symbol is None:
             return ()
-        named = (given.enum_items for given in symbol.parameters if given.name == parameter.rstrip(")"))
+        named = (given.enum_items for given in symbol.parameters if given.name == parameter)
         items = next(named, ()) if parameter else symbol.enum_items
         return tuple(item for item in items if item.where != NOT_TAKEN)
 
@@ -218,10 +217,9 @@ class EnumValues:
         return any(entry.kind == "class" for entry in self._reader.by_name(value))
 
     def _owner_fit(self, owner: str, around: set[str]) -> float:
-        path, _, parameter = owner.partition("(")
-        entry = self._reader.entry(path)
+        entry, parameter = self._reader.entry(plain_path(owner)), argument_of(owner)
         if entry is None:
             return -1.0
         about = set(terms(f"{entry.name} {entry.label} {parameter}"))
-        beyond = set(terms(entry.owner.replace("bpy.types.", "").replace("bpy.ops", "")))
+        beyond = set(terms(entry.owner.replace(TYPES, "").replace("bpy.ops", "")))
         return len(about & around) + 0.6 * len(beyond & around) - (0.3 if parameter else 0.0)

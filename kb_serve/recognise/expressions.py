@@ -16,7 +16,9 @@ import time
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
+from kb_build.paths import is_socket, plain_path
 from kb_serve.recognise.animated_paths import path_given
 from kb_serve.recognise.broken_expressions import (
     CLEAR,
@@ -32,7 +34,7 @@ from kb_serve.recognise.names_beside import NamesBeside, said_in_words
 from kb_serve.recognise.owners import TOLD_BY_MEMBER
 from kb_serve.recognise.python_methods import note_on_method
 from kb_serve.recognise.recognition import MissingName
-from kb_serve.recognise.removed_symbols import for_reading, plain_path
+from kb_serve.recognise.removed_symbols import for_reading
 from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.subscripts import CustomProperties
 from kb_serve.recognise.variables import USUAL, usual_classes
@@ -61,7 +63,7 @@ _NEARLY = 0.9  # from this similarity to a class on, a name is its misspelling, 
 _BEHIND_A_CALL = 0.05  # how much less sure than the function is what a path that it is given may mean
 _BARE = 0.78  # how sure a class is with a call or an index behind it
 _OF_NAMED = 0.86  # … what a name with ``_`` holds, behind what is called so
-_MADE_BY_CALL = ("mathutils.", "bmesh.types.", "bpy.types.")
+_MADE_BY_CALL = ("mathutils.", "bmesh.types.", TYPES)
 
 # Python's own names, which are not Blender's API.
 _NOT_API = frozenset({*dir(builtins), "NoneType"})
@@ -240,7 +242,7 @@ class Expressions:
                 return False
         if resolved.keyed and resolved.fit >= CLEAR:
             return True
-        if 'puts["' in resolved.symbols[-1] and (broken is None or broken.fit < CLEAR):
+        if is_socket(resolved.symbols[-1]) and (broken is None or broken.fit < CLEAR):
             return True  # what is in brackets tells it, whatever the variable is called
         return resolved.fit >= 1.0 or (bool(chain.attributes) and resolved.fit >= LEAST)
 

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.records import NOT_TAKEN
-from kb_build.symbol_lines import never_taken
+from kb_build.symbol_facts import never_taken
 from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES
-from kb_serve.reader import TYPES
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.calls import places_of
 from kb_serve.recognise.likely_values import likely_items

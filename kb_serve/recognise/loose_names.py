@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key, terms
 from kb_build.schema import FORM_NAME, FORM_SHORT
-from kb_serve.reader import TYPES
 from kb_serve.recognise.enum_values import is_value
 from kb_serve.recognise.node_names import add_nodes_meant, is_like_a_node
 from kb_serve.recognise.notes import SIMILAR

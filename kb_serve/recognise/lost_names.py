@@ -7,12 +7,12 @@ from __future__ import annotations
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import OBJECT, SIDES, TYPES
 from kb_build.index.analysis import words
-from kb_serve.reader import TYPES
+from kb_build.paths import socket_node
 from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import ChainStep
 from kb_serve.recognise.refusals import refuses
-from kb_serve.recognise.removed_symbols import socket_node
 from kb_serve.recognise.variables import classes_of_parts, usual_classes
 
 if TYPE_CHECKING:
@@ -29,7 +29,6 @@ _USED = 10.0  # weight of a class that scripts use much
 _HELD_BY = (TYPES, "bmesh.types.")
 _THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
 _DATA = f"{TYPES}Object.data"
-_OBJECT = f"{TYPES}Object"
 _INSTANCES = frozenset({"self", "cls"})  # of the script's own classes
 
 
@@ -54,7 +53,7 @@ class LostNames:
                 classes = usual_classes(chain.root)
             case _:
                 return None
-        for cls in classes if _OBJECT in classes else ():
+        for cls in classes if OBJECT in classes else ():
             if not self._reader.is_object_data(cls):
                 continue
             if any(self._reader.member_of(kind, name) for kind in self._kinds(cls)):
@@ -72,7 +71,7 @@ class LostNames:
         and that nothing in the chain tells.
         """
         for number, (side, name) in enumerate(pairwise(chain.steps), 2):
-            if side.text not in {"inputs", "outputs"} or name.kind != "key":
+            if side.text not in SIDES or name.kind != "key":
                 continue
             path = self._likeliest(self._removed.of_sockets(side.text, name.text), socket_node)
             removed = self._removed.of_path(path) if path else None

@@ -5,8 +5,8 @@ from __future__ import annotations
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import NODE, TYPES
 from kb_build.index.analysis import STOP_WORDS, stem, words
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -27,7 +27,7 @@ def members_by_words(cls: str, beside: Collection[str], reader: BaseReader) -> l
     None where too many do.
     """
     asked = [word for text in beside for word in words(text) if word not in STOP_WORDS]
-    if _SOCKETS.issuperset(asked) and reader.descends(cls, f"{TYPES}Node"):
+    if _SOCKETS.issuperset(asked) and reader.descends(cls, NODE):
         return []  # all of them, which the class lists
     if not 0 < len(asked) <= _MOST_WORDS:
         return []

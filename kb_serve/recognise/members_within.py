@@ -6,16 +6,15 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import ID, OBJECT, STRUCT, TYPES
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import empty_when_new
-from kb_serve.reader import STRUCT, TYPES
+from kb_build.symbol_facts import empty_when_new
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_serve.reader import BaseReader, SymbolEntry
 
-_ID, _OBJECT = f"{TYPES}ID", f"{TYPES}Object"
 _FEW = 3
 _COUNTS = 1.0  # the weight from which on the data of an object are likely meant by a member of theirs
 
@@ -82,7 +81,7 @@ def _is_part(pointer: SymbolEntry, owner: str, held: set[str], reader: BaseReade
     """
     target = f"{TYPES}{pointer.target}"
     return bool(pointer.target) and not (
-        reader.descends(target, _OBJECT) or reader.descends(owner, target) or pointer.target in held
+        reader.descends(target, OBJECT) or reader.descends(owner, target) or pointer.target in held
     )
 
 
@@ -94,7 +93,7 @@ def _is_none(pointer: SymbolEntry, reader: BaseReader) -> bool:
 
 def _of_data(owner: str, name: str, reader: BaseReader) -> Iterator[Within]:
     """The member of the data of an object that scripts use most, of those of that name."""
-    if not reader.descends(owner, _OBJECT):
+    if not reader.descends(owner, OBJECT):
         return
     named = [
         one for one in reader.by_name(name) if one.kind == "property" and reader.is_object_data(one.owner)
@@ -119,7 +118,7 @@ def _of_collections(
         if own and own.owner == f"{TYPES}{one.collection}":
             access = f"{before}.{one.name}"
             yield Within(own, f"Its `{access}` has it: `{access}.{name}` (`{own.path}`).")
-        elif not reader.descends(f"{TYPES}{one.target}", _ID) and (
+        elif not reader.descends(f"{TYPES}{one.target}", ID) and (
             element := of_elements(one, name, reader, before)
         ):
             yield element
@@ -127,7 +126,7 @@ def _of_collections(
 
 def _beside(owner: str, name: str, reader: BaseReader) -> Within | None:
     """The member of an object with such data, or of what has such a thing under its name (``PoseBone.bone``)."""
-    if reader.is_object_data(owner) and (member := _own_of(_OBJECT, name, reader)):
+    if reader.is_object_data(owner) and (member := _own_of(OBJECT, name, reader)):
         return Within(member, f"The object that has such data has it: `obj.{name}` (`{member.path}`).")
     cls = owner.removeprefix(TYPES)
     for one in reader.pointing_at(cls):

@@ -7,8 +7,8 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import STRUCT, TYPES
 from kb_build.index.analysis import STOP_WORDS, stem, words
-from kb_serve.reader import STRUCT, TYPES
 from kb_serve.recognise.members_by_words import members_by_words
 
 if TYPE_CHECKING:

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.paths import socket_name, socket_node, socket_side
+
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
@@ -47,5 +49,5 @@ def tell_of_the_newer_mix(path: str, reader: BaseReader, recognition: Recognitio
 
 def name_on_an_old_node(path: str) -> str:
     """The name of an old node's socket that is called otherwise on the newer node; "" for other paths."""
-    node, mark, name = path.removesuffix('"]').partition('.inputs["')
-    return name if mark and node in _OLD and name in INSTEAD else ""
+    name = socket_name(path) if socket_side(path) == "inputs" else ""
+    return name if name in INSTEAD and socket_node(path) in _OLD else ""

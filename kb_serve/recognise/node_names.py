@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import NODE, TYPES
 from kb_build.index.analysis import key, words
-from kb_build.symbol_lines import NODE_FAMILIES
-from kb_serve.reader import TYPES
+from kb_build.symbol_facts import NODE_FAMILIES
 from kb_serve.recognise.corrections import is_misspelling, nearest
 from kb_serve.recognise.notes import SIMILAR
 from kb_serve.recognise.recognition import MissingName
@@ -18,7 +18,6 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
-_NODE = f"{TYPES}Node"
 _OWN = re.compile(rf"({'|'.join(NODE_FAMILIES)})([A-Z]\w+)")
 _TREES = {"FunctionNode": "GeometryNodeTree"}  # of the families that are not called as their tree
 _FEW = 3
@@ -37,7 +36,7 @@ def nodes_meant(name: str, reader: BaseReader) -> list[str]:
     own = _OWN.fullmatch(name)
     family, said = (own[1], own[2]) if own else ("", name)
     tree = _TREES.get(family, f"{family}Tree") if family else ""
-    leaves = [entry for entry in reader.descendants(_NODE) if not any(reader.subclasses(entry.path))]
+    leaves = [entry for entry in reader.descendants(NODE) if not any(reader.subclasses(entry.path))]
     names = {entry.path: _behind(entry.name) for entry in leaves}
     of_family = {one: path for path, one in names.items() if path.startswith(TYPES + family)}
     alike = [one for one, _ in nearest(said, of_family)]

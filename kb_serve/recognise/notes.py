@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-import re
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Final
 
-from kb_serve.reader import STRUCT, TYPES
+from kb_build.api_names import STRUCT, TYPES, interface_part
+from kb_build.paths import as_code, split_path
 from kb_serve.recognise.corrections import nearest
 from kb_serve.recognise.enum_values import EnumValues
 
@@ -17,19 +17,13 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import MissingName, Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol
 
-SIMILAR = "similar name"  # why a match is one of the names closest to a missing one
+SIMILAR: Final = "similar name"  # one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
 _MOST_ALIKE = 4
-_PARAMETER = re.compile(r"(?P<function>[\w.]+)\((?P<name>\w+)\)")
-_VALUE = re.compile(r"(?P<owner>[\w.]+):(?P<value>.+)")
-_VALUE_OF_PARAMETER = re.compile(rf"{_PARAMETER.pattern}:(?P<value>.+)")
 _WITH = "only with "  # … what tells the setting that an item wants begins with
 _TELLS_WHAT = "Write "  # how what names something that is no Blender's begins
 _NOTHING = "Nothing takes its place."
-_INTERFACE = re.compile(
-    r"[A-Z0-9_]+_[A-Z]{2,3}_"
-)  # of whose classes the history has those alone that scripts use
 # The owners that get more while Blender runs → what gives it to them.
 _ASIDE = {"bpy.ops": "add-ons", "bpy.types": "add-ons and custom properties"}
 _UNLISTED = (
@@ -46,19 +40,6 @@ _UNLISTED = (
 
 def _list(paths: Iterable[str]) -> str:
     return ", ".join(f"`{as_code(path)}`" for path in list(paths)[:_MOST_NAMED])
-
-
-def as_code(path: str) -> str:
-    """A path as scripts write it: ``….engine = 'CYCLES'`` of ``….engine:CYCLES``, ``new(type='SMOKE')`` of
-    ``new(type):SMOKE``, ``add(radius=…)`` of ``add(radius)``.
-    """
-    if parameter := _VALUE_OF_PARAMETER.fullmatch(path):
-        return f"{parameter['function']}({parameter['name']}={parameter['value']!r})"
-    if parameter := _PARAMETER.fullmatch(path):
-        return f"{parameter['function']}({parameter['name']}=…)"
-    if item := _VALUE.fullmatch(path):
-        return f"{item['owner']} = {item['value']!r}"
-    return path
 
 
 def _if(variable: str) -> str:
@@ -144,8 +125,8 @@ class Notes:
 
     def setting_of(self, path: str) -> str:
         """A sentence on the setting without which an item of an enumeration is not taken; "" for other paths."""
-        owner, _, item = path.partition(":")
-        where = self._enum_values.where(owner, item) if item else ""
+        owner, mark, item = split_path(path)
+        where = self._enum_values.where(owner, item) if mark == ":" else ""
         return self._enum_values.condition(owner, item) if where.startswith(_WITH) else ""
 
     def _missing(self, recognition: Recognition) -> Iterator[str]:
@@ -178,7 +159,8 @@ class Notes:
         What a class inherited in other versions is not: one without a base may have lost it.
         """
         versions = self._reader.history_versions
-        if not versions or owner.startswith(_UNLISTED) or _INTERFACE.match(name):
+        # Of the interface's classes the history has those alone that scripts use.
+        if not versions or owner.startswith(_UNLISTED) or interface_part(name):
             return ""
         entry = self._reader.entry(owner)
         if entry is not None and entry.base in {"", STRUCT}:

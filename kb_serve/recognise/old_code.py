@@ -7,13 +7,13 @@ from dataclasses import dataclass
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, SIDES, TYPES, interface_part
 from kb_build.index.analysis import key, words
-from kb_serve.reader import TYPES
+from kb_build.paths import is_socket, socket_node
 from kb_serve.recognise.call_texts import arguments, texts_in
 from kb_serve.recognise.chain_starts import ROOTS
 from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.lost_names import LostName, LostNames, is_telling
-from kb_serve.recognise.removed_symbols import socket_node
 from kb_serve.recognise.variables import USUAL, usual_classes, variable_fit
 
 if TYPE_CHECKING:
@@ -45,7 +45,6 @@ _PROPERTY_NAMES = (
 )
 _IMPORT = re.compile(r"\bimport\s+([a-z][\w.]*)")
 _FROM = re.compile(r"\bfrom\s+([a-z][\w.]*)\s+import\s+\(?\s*(\w+(?:\s*,\s*\w+)*)")
-_INTERFACE = re.compile(r"[A-Z0-9_]+_[A-Z]{2}_")
 _KEYWORD = re.compile(r"""\W*(\w+)\s*=\s*(['"])([A-Z][A-Z0-9_]+)\2\W*""")  # alone
 _MOST_QUOTED = 12
 _SAY_NOTHING = frozenset({"node", *"0123456789"})  # words of a variable's name that no node is told by
@@ -109,7 +108,7 @@ class OldCode:
         """The socket that a former name gives on the nodes that a variable is named after, if all of those take it."""
         side, name = chain.steps[:2] if len(chain.steps) > 1 else (None, None)
         named = set(words(chain.root)) - _SAY_NOTHING
-        if side is None or name is None or name.kind != "key" or side.text not in {"inputs", "outputs"}:
+        if side is None or name is None or name.kind != "key" or side.text not in SIDES:
             return ""
         paths = self._reader.removed_by_key(key(f'{side.text}["{name.text}"]')) if named else ()
         fitting = (path for path in paths if named <= set(words(socket_node(path).removeprefix(TYPES))))
@@ -166,7 +165,7 @@ class OldCode:
         for length in range(min(len(names), _MOST_NAMES), 0, -1):
             path = ".".join((root, *names[1:length]))
             # A script's own panel may bear a name that Blender's had.
-            cls = () if _INTERFACE.match(path) else (TYPES + path,)
+            cls = () if interface_part(path) else (TYPES + path,)
             for candidate in (path, *cls, f"bpy.{path}"):
                 if removed := self._removed.of_path(candidate):
                     return OldName(removed, chain.steps[length - 1 :])
@@ -181,7 +180,7 @@ class OldCode:
             if any(one.fit > resolved.fit and one.steps_left < resolved.steps_left for one in readings):
                 continue
             rest = chain.steps[len(chain.steps) - resolved.steps_left :]
-            if "puts[" in resolved.missing:
+            if is_socket(resolved.missing):
                 found = self._removed.of_member(resolved.owner, resolved.missing) or self._removed.of_socket(
                     resolved.owner, resolved.missing, chain.root
                 )
@@ -200,13 +199,13 @@ class OldCode:
     def _socket(self, chain: Chain) -> OldName | None:
         """A removed socket, ``bsdf.inputs["Transmission"]``, of a node that only the variable's name tells."""
         for number, (before, step) in enumerate(zip(chain.steps, chain.steps[1:], strict=False)):
-            if step.kind == "key" and before.text in {"inputs", "outputs"}:
+            if step.kind == "key" and before.text in SIDES:
                 nodes = usual_classes(chain.root)
                 if any(key(chain.root) in key(entry.owner) for entry in self._reader.by_name(step.text)):
                     return None
                 paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
                 for path in paths:
-                    node = path.partition('puts["')[0].rpartition(".")[0]
+                    node = socket_node(path)
                     named = number == 0 and (node in nodes or key(chain.root) in key(node))
                     if named and (removed := self._removed.of_path(path)):
                         return OldName(removed, chain.steps[number + 2 :])
@@ -418,6 +417,6 @@ def _old(chain: Chain, lost: LostName | None) -> OldName | None:
 
 def _quoted_paths(text: str) -> Iterator[str]:
     """The paths of classes and operators whose names are quoted."""
-    for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, "bpy.ops.")):
+    for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, OPERATORS)):
         for match in islice(pattern.finditer(text), _MOST_QUOTED):
             yield prefix + match[2]

@@ -5,12 +5,12 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_build.index.analysis import words
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
 
-OPERATORS = "bpy.ops."
 _FEW = 3
 
 

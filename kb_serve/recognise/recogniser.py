@@ -5,9 +5,11 @@ enum value or URL. Descriptions are left to the search.
 from __future__ import annotations
 
 import re
+from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, TYPES
 from kb_build.index.analysis import key, terms, tokens
-from kb_serve.reader import TYPES, BaseReader
+from kb_build.paths import plain_path, socket_node
 from kb_serve.recognise.addresses import ids_in_urls
 from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.calls import wrong_arguments
@@ -38,14 +40,16 @@ from kb_serve.recognise.products import WITH_AT, Products
 from kb_serve.recognise.python_methods import is_method_of_python
 from kb_serve.recognise.recognition import MissingName, Recognition
 from kb_serve.recognise.refusals import keywords
-from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup, plain_path, socket_node
+from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 from kb_serve.recognise.resolver import Resolver
 from kb_serve.recognise.said_otherwise import said_otherwise
 from kb_serve.recognise.spellings import Spellings
 from kb_serve.recognise.subscripts import asked_of_inputs
 
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader
+
 _FILE_PATH = re.compile(r"""(?<!\[)(['"])[^'"\n/]*/[^'"\n]*\1""")
-_ID = f"{TYPES}ID"
 _FEW = 3
 _SURE = 0.9
 _WITHIN = 0.98  # how sure the very name is on a part of what lacks it
@@ -286,7 +290,7 @@ class Recogniser:
         """
         owner = self._reader.entry(missing.owner)
         is_class = owner is not None and owner.kind == "class"  # a module has nothing but its members
-        if not (missing.told and is_class) or self._reader.entry(f"{_ID}.{missing.name}"):
+        if not (missing.told and is_class) or self._reader.entry(f"{ID}.{missing.name}"):
             return False
         found = members_within(missing.owner, missing.name, self._reader, on_new=on_new)
         sure = _WITHIN if missing.sure and not missing.variable else _SURE

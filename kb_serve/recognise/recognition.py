@@ -3,12 +3,45 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     from kb_serve.recognise.corrections import Correction
     from kb_serve.recognise.removed_symbols import RemovedSymbol
 
+# What makes a match of something.
+Why = Literal[
+    "address",
+    "asked of it",
+    "attribute of None",
+    "behind the successor",
+    "class and member",
+    "class and words",
+    "correction",
+    "described",
+    "enum item",
+    "error message",
+    "exact",
+    "expression",
+    "former name",
+    "import",
+    "label",
+    "made with the successor",
+    "may be None",
+    "module and member",
+    "name",
+    "newer node",
+    "on the way",
+    "owner",
+    "quoted name",
+    "replacement",
+    "same name",
+    "similar name",
+    "successor",
+    "title",
+    "within",
+    "wrong operator",
+]
 WHOLE_LABEL = 0.82  # how sure something is that is called as the whole query
 
 
@@ -18,7 +51,7 @@ class RecognisedName:
 
     id: str
     sure: float
-    why: str
+    why: Why
 
 
 @dataclass(frozen=True, slots=True)
@@ -66,7 +99,7 @@ class Recognition:
     alike_lost: tuple[str, RemovedSymbol] | None = None
     is_open: bool = False
 
-    def add(self, identifier: str, sure: float, why: str) -> None:
+    def add(self, identifier: str, sure: float, why: Why) -> None:
         """Adds a match, or raises the certainty of the one with the same id."""
         for number, match in enumerate(self.matches):
             if match.id == identifier:

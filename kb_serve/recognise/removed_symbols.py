@@ -6,8 +6,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, TYPES
 from kb_build.index.analysis import key, words
-from kb_serve.reader import TYPES
+from kb_build.paths import argument_of, item_of, plain_path, socket_node, split_path
 from kb_serve.recognise.likely_keywords import likely_keywords
 from kb_serve.recognise.variables import usual_classes
 
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, Successor
 
 _INSTANCES = {f"{TYPES}Context": "bpy.context"}
-_ANY = f"{TYPES}ID"  # data of any kind
 _MOST_OWNERS = 40  # a name that more removed symbols have says nothing about its class
 
 
@@ -75,18 +75,6 @@ def _new_names(removed: RemovedSymbol) -> Iterator[str]:
         yield from (successor.target.rpartition(".")[2], successor.how)
 
 
-def socket_node(path: str) -> str:
-    """The node of a socket's path: ``bpy.types.N`` of ``bpy.types.N.inputs["A"]``; "" for other paths."""
-    node, mark, _ = path.partition('puts["')
-    return node.rpartition(".")[0] if mark else ""
-
-
-def plain_path(path: str) -> str:
-    """The symbol that a parameter (``f(x)``) or an enum item (``p:ITEM``) belongs to; other paths as they are."""
-    socket, closing, _ = path.partition('"]')
-    return socket + closing if '["' in socket else path.partition(":")[0].partition("(")[0]
-
-
 class RemovedSymbolLookup:
     """Looks up symbols that only other versions have."""
 
@@ -104,8 +92,8 @@ class RemovedSymbolLookup:
 
     def _similar(self, path: str) -> tuple[tuple[str, float], ...]:
         """What resembles a symbol without known successor; of an argument, ``f(x)``, the others of its call."""
-        whole, mark, argument = path.removesuffix(")").partition("(")
-        symbol = self._reader.symbol(whole) if mark and argument.isidentifier() else None
+        whole, mark, argument = split_path(path)
+        symbol = self._reader.symbol(whole) if mark == "(" and argument.isidentifier() else None
         if symbol is None:
             return tuple(self._reader.similar_names(path))
         labels = {parameter.name: parameter.label for parameter in symbol.parameters}
@@ -116,9 +104,8 @@ class RemovedSymbolLookup:
         """What took the place of an item of an argument, where that is known of a property with the same items, which
         may have kept it longer.
         """
-        call, mark, item = path.partition("):")
-        whole, _, argument = call.partition("(")
-        symbol = self._reader.symbol(whole) if mark else None
+        argument, item = argument_of(path), item_of(path)
+        symbol = self._reader.symbol(plain_path(path)) if argument and item else None
         parameters = symbol.parameters if symbol else ()
         items = {i.identifier for p in parameters if p.name == argument for i in p.enum_items}
         if not items:
@@ -131,7 +118,7 @@ class RemovedSymbolLookup:
             for successor in self._reader.successors(other):
                 new = successor.target.removeprefix(f"{holder}:")
                 if new in items and items <= {i.identifier for i in same.enum_items}:
-                    yield replace(successor, target=f"{call}):{new}")
+                    yield replace(successor, target=f"{path.removesuffix(item)}{new}")
 
     def of_member(self, owner: str, name: str) -> RemovedSymbol | None:
         """A removed member of a class, of its bases, of what they were called before, or of a module."""
@@ -159,7 +146,7 @@ class RemovedSymbolLookup:
         }
         found = present or found  # of the class before what it was called before
         alike = len({(removed.gone, *_new_names(removed)) for removed in found.values()}) == 1
-        if len(found) > 1 and (owner == _ANY or not alike):
+        if len(found) > 1 and (owner == ID or not alike):
             usual = [f"{cls}.{name}" for cls in usual_classes(variable)]
             return next((found[path] for path in usual if path in found), None)
         return found.get(self._likeliest(found, variable))

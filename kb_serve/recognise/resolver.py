@@ -8,9 +8,10 @@ from functools import lru_cache
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import COLLECTION, GROUPS, NODE, OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.index.analysis import key
+from kb_build.paths import is_socket
 from kb_build.python_values import METHODS, python_class
-from kb_serve.reader import COLLECTION, STRUCT, TYPES, BaseReader, SymbolEntry
 from kb_serve.recognise.chain_starts import ChainStarts
 from kb_serve.recognise.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.chains import ChainStep
@@ -21,6 +22,7 @@ from kb_serve.recognise.subscripts import PROPERTIES_OF_OPERATORS, CustomPropert
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
+    from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.chains import Chain
 
 _OBJECT_DATA = f"{TYPES}Object.data"
@@ -29,8 +31,7 @@ _RNA, _STRUCT_OF_ALL = ("bl_rna", "rna_type"), f"{TYPES}Struct"
 _MATRIX, _ROW = "mathutils.Matrix", "mathutils.Vector"
 _LINKS = "links"  # of a socket, which lead elsewhere
 _ROWS = {f"{_MATRIX}.col", f"{_MATRIX}.row"}
-_GROUP, _GROUPS = f"{TYPES}PropertyGroup", f"{TYPES}bpy_prop_collection_idprop"
-_NODE = f"{TYPES}Node"
+_GROUP = f"{TYPES}PropertyGroup"
 _ELEMENT, _LAYERS = "bmesh.types.BM", "bmesh.types.BMLayerAccess"
 _NUMBERED = re.compile(r"\.\d{3}$")
 _QUOTED = re.compile(r"""(["'])([\w.]+)\1""")
@@ -215,10 +216,10 @@ class Resolver:
         if name in _RNA and value.cls.startswith(TYPES):
             yield ChainValue(_STRUCT_OF_ALL, _STRUCT_OF_ALL)
             return
-        if name in _OPERATOR_METHODS and value.symbol.startswith("bpy.ops."):
+        if name in _OPERATOR_METHODS and value.symbol.startswith(OPERATORS):
             yield value
             return
-        if value.cls.startswith("bpy.ops.") and self._has_parameter(value.cls, name):
+        if value.cls.startswith(OPERATORS) and self._has_parameter(value.cls, name):
             yield ChainValue(value.cls)
             return
         own = (
@@ -228,7 +229,7 @@ class Resolver:
         )
         if own:
             after = self._values.of(own, value.cls)
-            is_of_socket = "puts[" in value.symbol and not after.many and name != _LINKS
+            is_of_socket = is_socket(value.symbol) and not after.many and name != _LINKS
             yield replace(after, symbol=value.symbol if is_of_socket else own.path, origin=value.cls)
             return
         if not value.cls and name in METHODS and self._has_method(value.symbol, name):
@@ -256,7 +257,7 @@ class Resolver:
         own = self._reader.member_of(value.container, name)
         if own and own.owner != STRUCT:  # ``get`` of a collection is no struct's
             return own
-        of_groups = self._reader.descends(value.cls, _GROUP) and self._reader.member_of(_GROUPS, name)
+        of_groups = self._reader.descends(value.cls, _GROUP) and self._reader.member_of(GROUPS, name)
         return self._reader.member_of(COLLECTION, name) or of_groups or own
 
     def _has_method(self, path: str, name: str) -> bool:
@@ -268,10 +269,10 @@ class Resolver:
         """An element of a collection; the key may tell its class or socket."""
         declared, _, side = value.symbol.rpartition(".")
         owner = value.origin or declared
-        if step.kind == "key" and side in {"inputs", "outputs"}:
+        if step.kind == "key" and side in SIDES:
             yield from self._socket(owner, side, step.text)
             return
-        is_numbered = step.kind == "index" and side in {"inputs", "outputs"}
+        is_numbered = step.kind == "index" and side in SIDES
         if is_numbered and (socket := self._socket_at(owner, f"{side}[{step.text}]")):
             yield self._values.of(socket)
             return
@@ -319,7 +320,7 @@ class Resolver:
         found = named or self._on_side(self._with_key(side, name), owner, side)
         yield from map(self._values.of, self._owners.likeliest_sockets(found))
         if not found and self._may_have_any_socket(owner, side):
-            yield ChainValue(f"{_NODE}.{side}", f"{TYPES}NodeSocket")
+            yield ChainValue(f"{NODE}.{side}", f"{TYPES}NodeSocket")
 
     def _on_side(self, entries: Iterable[SymbolEntry], owner: str, side: str) -> list[SymbolEntry]:
         """Of symbols, the sockets on a side of a class of nodes, or of one derived from it."""

@@ -6,8 +6,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_build.index.analysis import key, words
-from kb_serve.recognise.operator_words import OPERATORS
+from kb_build.symbol_facts import operator_given
 from kb_serve.recognise.variables import variable_fit
 
 if TYPE_CHECKING:
@@ -27,7 +28,6 @@ _NAMES_ANOTHER = frozenset({"between", "for", "from", "in", "of", "on", "per", "
 _NAMED_AFTER = (
     0.6  # how well the name of a module of operators must fit a class: ``ptcache`` PointCache, not ``object``
 )
-_GIVEN = "given:"  # the flag of an operator that runs only where a context override gives it something
 
 
 def said_otherwise(missing: MissingName, operators: OperatorWords, reader: BaseReader) -> list[str]:
@@ -102,7 +102,7 @@ def operators_on(owner: str, name: str, operators: OperatorWords, reader: BaseRe
 
     def far(path: str) -> tuple[bool, bool, float]:
         symbol = reader.symbol(path)
-        is_given = symbol is not None and any(flag.startswith(_GIVEN) for flag in symbol.flags)
+        is_given = symbol is not None and operator_given(symbol) != ""  # by a context override alone
         return is_given, not path.endswith(f".{name}"), -weights.get(path, 0.0)
 
     return sorted(fitting, key=far)[:_FEW]

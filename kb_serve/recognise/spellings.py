@@ -5,9 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, TYPES
 from kb_build.index.analysis import key
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
-from kb_serve.reader import PROPERTIES, TYPES
+from kb_serve.reader import PROPERTIES
 from kb_serve.recognise.addresses import find_page
 from kb_serve.recognise.enum_values import is_quoted_value, is_value
 from kb_serve.recognise.recognition import WHOLE_LABEL
@@ -37,7 +38,7 @@ _OTHERWISE = 0.85  # how sure a name is that shares only its key with the query
 def _strangeness(text: str, identifier: str) -> int:
     """How unlike the query an identifier with the same key (see analysis.key) is, from 0."""
     if "_OT_" in text.upper():  # the operator says all that its class does
-        return 0 if identifier.startswith("bpy.ops.") else 1
+        return 0 if identifier.startswith(OPERATORS) else 1
     if identifier == f"bpy.ops.{text}":  # a module of operators is rarely what a bare word means
         return 2
     if f".{identifier}".endswith(f".{text}"):

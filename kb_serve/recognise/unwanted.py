@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
+from kb_build.api_names import OPERATORS
 from kb_serve.recognise.message_patterns import is_message
 
 _ANY = r"(?:(?:an?|the|any|using|calling)\s)*"
@@ -19,7 +20,6 @@ _STATED = r"(?<!\bis)(?<!\bare)(?<!\bhas)(?<!\bhave)"  # "there is no operator" 
 _UNWANTED = re.compile(rf"{_STATED},?\s\(?{_LACKING}\s{_THING}(?:\s(?:or|and|nor)\s{_THING})*\)?", re.I)
 _WHY = re.compile(r"why\b", re.I)  # asks what the case is, not how to do something
 _OF_OPERATORS = re.compile(_OPERATORS, re.I)
-_NAMED = "bpy.ops."
 _CODE = "python"  # who says so writes code
 
 
@@ -56,7 +56,7 @@ def without_unwanted(query: str) -> Wanted:
     if found is not None:
         asked = " ".join((asked[: found.start()] + asked[found.end() :]).split())
     code = f" {_CODE}" if asked != query else ""
-    are_unwanted = found is not None and _OF_OPERATORS.search(found[0]) is not None and _NAMED not in asked
+    are_unwanted = found is not None and _OF_OPERATORS.search(found[0]) is not None and OPERATORS not in asked
     return Wanted(asked + code, operators=not are_unwanted)
 
 

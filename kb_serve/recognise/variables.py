@@ -7,8 +7,8 @@ from functools import lru_cache
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OBJECT, TYPES
 from kb_build.index.analysis import key, words
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator
@@ -19,7 +19,6 @@ USUAL = 0.95  # fit of a name that scripts use for a class
 OTHERWISE = 0.92  # … and of the further classes that they use it for
 _POINTER = 0.8  # … of what a pointer of that name leads to, or what begins so: a member may tell otherwise
 _LETTER = 0.4  # … of a single letter that a class begins with: it may be anything
-_OBJECT = f"{TYPES}Object"
 _NUMBERED = re.compile(r"_?\d+$|^(?:my|new|this|the|old|orig|src|dst|active|selected|cur|current)_(?=\w)")
 
 # Names that scripts give to instances of a class, besides the class's own name and its beginning. A camera, light or
@@ -170,7 +169,7 @@ def _of_data(name: str) -> list[str]:
     """The classes of the data of objects that scripts call so: ``cam_data`` as ``cam``."""
     holder, mark, _ = name.rpartition("_data")
     classes = _BY_NAME.get(holder, []) if mark and name.endswith(mark) else []
-    return [cls for cls in classes if cls != _OBJECT] if _OBJECT in classes else []
+    return [cls for cls in classes if cls != OBJECT] if OBJECT in classes else []
 
 
 def classes_of_parts(variable: str) -> list[str]:

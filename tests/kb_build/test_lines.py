@@ -8,12 +8,12 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.records import NOT_TAKEN, Deprecation, EnumItem, NewValue, Symbol
+from kb_build.symbol_facts import new_subscript
 from kb_build.symbol_lines import (
     default_text,
     first_sentence,
     literal,
     member_line,
-    new_subscript,
     taken_text,
     type_text,
     written,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.flow.types import ClassObject
 from kb_check.findings import Edit
 from kb_check.migrate.change import Change
@@ -59,7 +60,7 @@ def _registered(place: Place, classes: list[ast.ClassDef]) -> set[str]:
 
 def _is_blenders(place: Place, base: ast.expr) -> bool:
     kind = place.script.type_of(base)
-    return isinstance(kind, ClassObject) and kind.cls.startswith("bpy.types.")
+    return isinstance(kind, ClassObject) and kind.cls.startswith(TYPES)
 
 
 def _name(node: ast.expr) -> str:

@@ -6,6 +6,7 @@ import ast
 import keyword
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_build.flow.types import Mapping
 from kb_check.findings import Span
 from kb_check.migrate.change import Change
@@ -17,7 +18,6 @@ if TYPE_CHECKING:
 
     from kb_check.migrate.place import Place
 
-_OPS = "bpy.ops."
 _SINCE = (4, 0)
 _WITH = "bpy.types.Context.temp_override"
 _SOURCE = "release notes 4.0: Python API"
@@ -33,7 +33,7 @@ def _propose(place: Place) -> Iterator[Change]:
             continue
         statement = place.parent(call)
         if (
-            not all(symbol.startswith(_OPS) for symbol in row.symbols)
+            not all(symbol.startswith(OPERATORS) for symbol in row.symbols)
             or not isinstance(statement, (ast.Expr, ast.Assign))
             or not place.has_line(statement)
             or (members := _members(place, call.args[0])) is None

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
 from kb_check.migrate.rewrite import Rewrite
 
 if TYPE_CHECKING:
@@ -13,8 +14,6 @@ if TYPE_CHECKING:
     from kb_check.findings import Edit
     from kb_check.migrate.change import Change
     from kb_check.migrate.place import Place
-
-_OPS = "bpy.ops."
 
 
 def _propose(place: Place) -> Iterator[Change]:
@@ -32,10 +31,10 @@ def _propose(place: Place) -> Iterator[Change]:
             or not isinstance(node.value, ast.Attribute)
             or len(successors) != 1
             or successors[0].how
-            or not successors[0].target.startswith(_OPS)
+            or not successors[0].target.startswith(OPERATORS)
         ):
             continue
-        text = f"{place.text(node.value.value)}.{successors[0].target.removeprefix(_OPS)}"
+        text = f"{place.text(node.value.value)}.{successors[0].target.removeprefix(OPERATORS)}"
         edits = [place.write(node, text)]
         call = place.parent(node)
         if isinstance(call, ast.Call) and call.func is node:

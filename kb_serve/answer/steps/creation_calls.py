@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, TYPES
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.steps.made_line import made_line
 from kb_serve.answer.steps.operators import before
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -73,7 +73,7 @@ class CreationCalls:
             made = reader.made_by_call(earlier)
             if made and made not in self._scene.shown:
                 yield made_line(made, earlier, self._scene)
-        if call.startswith("bpy.ops.") and (operator := reader.symbol(call.partition("(")[0])):
+        if call.startswith(OPERATORS) and (operator := reader.symbol(call.partition("(")[0])):
             yield from before(operator, self._scene)
 
 

@@ -10,11 +10,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OBJECT, OPERATORS, TYPES
 from kb_build.symbol_lines import held
 from kb_serve.answer.steps.members import part_given_with
 from kb_serve.answer.steps.pointer_fills import Ready
-from kb_serve.answer.steps.variable_names import MESH, OBJECT, TREE
-from kb_serve.reader import TYPES
+from kb_serve.answer.steps.variable_names import MESH, TREE
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
@@ -114,7 +114,7 @@ class Instances:
             self._scene.variables.add(cls, "mesh")
             return Ready([f"`mesh = {self._scene.obj.mesh_object()}.data`, of a mesh object"], "mesh")
         creation = self._reader.creations([cls]).get(cls)
-        if creation is None or creation.maker.startswith("bpy.ops."):
+        if creation is None or creation.maker.startswith(OPERATORS):
             return self._reached(cls) or self._of_a_kind(cls, depth)
         ready = self._call(creation, depth) if depth < _DEEPEST else None
         if ready is None:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, TYPES
 from kb_build.symbol_lines import SET
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
@@ -52,7 +52,7 @@ def part_given_with(pointer: SymbolEntry, reader: BaseReader) -> SymbolEntry | N
     parts = {
         f"{TYPES}{entry.target}"
         for entry in reader.members(f"{TYPES}{pointer.target}").values()
-        if entry.type == "collection" and not reader.descends(f"{TYPES}{entry.target}", f"{TYPES}ID")
+        if entry.type == "collection" and not reader.descends(f"{TYPES}{entry.target}", ID)
     }
     members = reader.members(pointer.owner).values() if parts else ()
     fitting = (
@@ -69,7 +69,7 @@ def part_given_with(pointer: SymbolEntry, reader: BaseReader) -> SymbolEntry | N
 def _is_given(entry: SymbolEntry, reader: BaseReader) -> bool:
     """Whether a property takes a data-block, and has none on a new instance."""
     is_empty = entry.type == "pointer" and entry.head.endswith(_NONE)
-    return is_empty and reader.descends(f"{TYPES}{entry.target}", f"{TYPES}ID")
+    return is_empty and reader.descends(f"{TYPES}{entry.target}", ID)
 
 
 def call_of(function: SymbolEntry) -> str:

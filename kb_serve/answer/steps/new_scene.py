@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.steps.makers import Makers
-from kb_serve.answer.steps.object_kinds import ObjectKinds
 from kb_serve.answer.steps.pointer_fills import PointerFills
 from kb_serve.answer.steps.variable_names import VariableNames
 from kb_serve.answer.steps.working_object import WorkingObject
@@ -20,8 +19,7 @@ class NewScene:
     def __init__(self, reader: BaseReader) -> None:
         self.reader = reader
         self.shown: set[str] = set()  # classes of which a step has made, set or used an instance
-        self.kinds = ObjectKinds(reader)
         self.makers = Makers(reader)
-        self.variables = VariableNames(reader, self.kinds)
-        self.obj = WorkingObject(reader, self.kinds, self.makers, self.variables)
+        self.variables = VariableNames(reader)
+        self.obj = WorkingObject(reader, self.makers, self.variables)
         self.pointers = PointerFills(reader, self.obj, self.variables)

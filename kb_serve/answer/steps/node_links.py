@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import SIDES, TYPES
 from kb_build.records import NOT_TAKEN, PAIRS
 from kb_build.symbol_lines import written
-from kb_serve.reader import EXTEND, TYPES
+from kb_serve.reader import EXTEND
 
 if TYPE_CHECKING:
     from collections.abc import Generator, Iterator
@@ -31,7 +32,6 @@ OF_WORLDS = frozenset(
 _END = "tree.get_output_node('ALL')"
 _END_NODE = f"{TYPES}ShaderNodeOutputMaterial"  # what that gives
 _GROUP_END = "group_output"
-_IDENTIFIER, _TYPED_BY = "identifier:", "type-by:"  # flags of sockets
 _DISPLACES = "displacement_method = 'DISPLACEMENT'"
 _PRINCIPLED = 'tree.nodes["Principled BSDF"]'
 _BACKGROUND = 'tree.nodes["Background"].inputs["Color"]'
@@ -115,7 +115,7 @@ class NodeLinks:
         given, taken = self._socket(node, "inputs", group.given), self._socket(node, "outputs", group.taken)
         if not (given or taken) and (switch := self._type_switch(node, group)):
             yield f"`{variable}.{switch} = '{group.kind.upper()}'`"
-            given, taken = (self._typed(node, side, switch) for side in ("inputs", "outputs"))
+            given, taken = (self._typed(node, side, switch) for side in SIDES)
         by_items = self._items.may_extend(node, "inputs") or self._items.may_extend(node, "outputs")
         own_end = self._socket(node, "outputs", ()) if by_items and given and not taken else ""
         source = ""
@@ -192,7 +192,7 @@ class NodeLinks:
         for name, entry in self._reader.members(node).items():
             symbol = self._reader.symbol(entry.path) if name.startswith(f"{side}[") else None
             if symbol is not None:
-                found[written(symbol)[len(node) + 1 :]] = next(iter(symbol.flagged(_IDENTIFIER)), "")
+                found[written(symbol)[len(node) + 1 :]] = symbol.identifier
         return found
 
     def _type_switch(self, node: str, group: _Group) -> str:
@@ -202,7 +202,7 @@ class NodeLinks:
             items = symbol.enum_items if symbol else ()
             types = {item.identifier for item in items if item.where != NOT_TAKEN}
             is_taken = group.kind.upper() in types
-            if is_taken and all(self._typed(node, side, name) for side in ("inputs", "outputs")):
+            if is_taken and all(self._typed(node, side, name) for side in SIDES):
                 return name
         return ""
 
@@ -210,7 +210,7 @@ class NodeLinks:
         """The first socket of a side whose type a property says; empty for none."""
         for name, entry in self._reader.members(node).items():
             symbol = self._reader.symbol(entry.path) if name.startswith(f"{side}[") else None
-            if symbol is not None and f"{_TYPED_BY}{switch}" in symbol.flags:
+            if symbol is not None and switch in symbol.type_settings:
                 return written(symbol)[len(node) + 1 :]
         return ""
 

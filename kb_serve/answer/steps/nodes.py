@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.records import PAIRS
 from kb_serve.answer.render import is_machinery
 from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.node_items import NodeItems
 from kb_serve.answer.steps.node_links import NodeLinks
 from kb_serve.answer.steps.pointer_fills import stays_empty
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.trees import TreeSteps
     from kb_serve.reader import Creation, SymbolEntry
 
-NODE = f"{TYPES}Node"
 _FUNCTIONS = 3  # of one node
 # Those whose new trees have a node that ends them, and the nodes that these end take of those of shaders.
 _WITH_OUTPUT = {
@@ -52,7 +51,7 @@ class NodeSteps:
 
     def in_own_tree(self, cls: str) -> Iterator[str]:
         """The nodes of what holds a tree, as a material does."""
-        if self._scene.kinds.is_data(cls):
+        if self._reader.is_object_data(cls):
             return
         for entry in self._reader.members(cls).values():
             if entry.type == "pointer" and entry.target.endswith("NodeTree"):

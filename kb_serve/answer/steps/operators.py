@@ -6,18 +6,12 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import (
-    held,
-    literal,
-    operator_active,
-    operator_areas,
-    operator_needs,
-    refused_nothing,
-)
+from kb_build.symbol_facts import operator_active, operator_areas, refused_nothing
+from kb_build.symbol_lines import held, literal, operator_needs
 from kb_serve.answer.arguments import of_file_browser
 from kb_serve.answer.panel_lines import panel_lines, switches_off
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OBJECT, TYPES
 from kb_serve.answer.steps.members import settings_of
-from kb_serve.answer.steps.variable_names import OBJ, OBJECT, TREE
-from kb_serve.reader import TYPES
+from kb_serve.answer.steps.variable_names import OBJ, TREE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
@@ -32,7 +32,7 @@ class PlaceSteps:
     def of(self, cls: str) -> Iterator[str]:
         """The steps that put a new instance of a class where it counts."""
         variable = self._scene.variables.of(cls)
-        if self._scene.kinds.is_data(cls):
+        if self._reader.is_object_data(cls):
             yield from self._scene.obj.made_of(cls)
             yield from self._deforming(cls)
             variable = OBJ

@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import OBJECT, OPERATORS, TYPES
 from kb_build.records import FILLED_ON
-from kb_build.symbol_lines import empty_when_new, fillers
-from kb_serve.answer.steps.variable_names import OBJ, OBJECT, class_called
-from kb_serve.reader import TYPES
+from kb_build.symbol_facts import empty_when_new, fillers
+from kb_serve.answer.steps.variable_names import OBJ, class_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
@@ -196,7 +196,7 @@ class PointerFills:
         """The steps by which an operator adds an element to a collection of the object; None if no such is known."""
         target = f"{TYPES}{collection.target}"
         made = self._reader.creations([target]).get(target)
-        if made is None or made.choice or not made.call.startswith("bpy.ops."):
+        if made is None or made.choice or not made.call.startswith(OPERATORS):
             return None
         if made.call in self._called:
             return []
@@ -214,7 +214,7 @@ class PointerFills:
         if calls[-1].partition("(")[0] in self._called:
             return []
         self._called.update(calls)
-        needs_active = any(call.startswith("bpy.ops.") for call in calls)
+        needs_active = any(call.startswith(OPERATORS) for call in calls)
         return [*(self._obj.activation() if needs_active else ()), *calls]
 
 

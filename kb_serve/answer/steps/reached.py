@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import TYPES
 from kb_build.symbol_lines import held
 from kb_serve.answer.steps.members import UNSEEN, settings_of
-from kb_serve.reader import TYPES
+from kb_serve.interface import is_of_interface
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator
@@ -14,21 +15,6 @@ if TYPE_CHECKING:
     from kb_serve.answer.steps.new_scene import NewScene
 
 _MOST = 2
-_INTERFACE = (
-    "tool_settings",
-    "space_data",
-    "preferences",
-    "window",
-    "studio_light",
-    "region",
-    ".area",
-    "gizmo",
-)
-
-
-def is_of_interface(expression: str) -> bool:
-    """Whether an expression leads to what belongs to Blender's windows and tools."""
-    return any(part in expression for part in _INTERFACE)
 
 
 class ReachedSettings:

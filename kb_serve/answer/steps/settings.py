@@ -5,15 +5,16 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, OPERATORS, TYPES
 from kb_build.records import EMPTY
-from kb_build.symbol_lines import empty_when_new, mode_needed
+from kb_build.symbol_facts import empty_when_new
+from kb_build.symbol_lines import mode_needed
 from kb_serve.answer.steps.members import UNSEEN, call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
 from kb_serve.answer.steps.pointer_fills import stays_empty
 from kb_serve.answer.steps.variable_names import OBJ
 from kb_serve.answer.steps.working_object import OTHER
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -63,7 +64,7 @@ class SettingSteps:
 
     def _expression(self, cls: str, creation: Creation) -> str:
         """What leads to a new thing; empty where what an operator made is an element of something else."""
-        symbol = self._reader.symbol(cls) if creation.call.startswith("bpy.ops.") else None
+        symbol = self._reader.symbol(cls) if creation.call.startswith(OPERATORS) else None
         if symbol is None or not symbol.reached:
             return self._scene.variables.of(cls)
         return "" if OTHERS_ELEMENT.search(symbol.reached) else symbol.reached
@@ -104,7 +105,7 @@ class SettingSteps:
 
     def _mode_of(self, collection: SymbolEntry) -> str:
         """The mode of the object in which alone something is added to a collection of its data; empty for any."""
-        if not self._scene.kinds.is_data(collection.owner):
+        if not self._reader.is_object_data(collection.owner):
             return ""
         made = self._adding(collection)
         maker = self._reader.symbol(made.maker) if made else None
@@ -219,7 +220,7 @@ class SettingSteps:
         if entry.type != "pointer" or not self._belongs(target):
             return None
         # What is a thing's own cannot be replaced; another data-block can.
-        if not entry.is_read_only and not self._reader.descends(target, f"{TYPES}ID"):
+        if not entry.is_read_only and not self._reader.descends(target, ID):
             return None
         pointer = self._reader.symbol(entry.path)
         return None if pointer is None or stays_empty(pointer) else pointer

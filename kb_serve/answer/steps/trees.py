@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
+from kb_build.api_names import TYPES
 from kb_serve.answer.steps.made_line import made_line
 from kb_serve.answer.steps.node_links import OF_WORLDS, SHADER_TREE
 from kb_serve.answer.steps.parts import parts
-from kb_serve.reader import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

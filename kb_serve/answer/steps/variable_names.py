@@ -5,15 +5,14 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import TYPES
+from kb_build.api_names import OBJECT, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Callable
 
-    from kb_serve.answer.steps.object_kinds import ObjectKinds
     from kb_serve.reader import BaseReader
 
-OBJECT, MESH, TREE = f"{TYPES}Object", f"{TYPES}Mesh", f"{TYPES}NodeTree"
+MESH, TREE = f"{TYPES}Mesh", f"{TYPES}NodeTree"
 OBJ = "obj"
 DATA = "object_data"
 # What every script has, or writes without a step that makes it.
@@ -36,9 +35,8 @@ def class_called(name: str) -> str:
 class VariableNames:
     """The names of instances in one list of steps."""
 
-    def __init__(self, reader: BaseReader, kinds: ObjectKinds) -> None:
+    def __init__(self, reader: BaseReader) -> None:
         self._reader = reader
-        self._kinds = kinds
         self._expressions: dict[str, str] = {}
 
     def add(self, cls: str, expression: str) -> None:
@@ -84,7 +82,7 @@ class VariableNames:
         """What a script calls an instance: ``object_data``, or the name's last word; its last two if another is so."""
         if cls == OBJECT:
             return OBJ
-        if self._kinds.is_data(cls):
+        if self._reader.is_object_data(cls):
             return DATA
         *before, last = _HUMPS.findall(cls.removeprefix(TYPES)) or ["it"]
         name = last.lower()

@@ -5,17 +5,16 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OBJECT, TYPES
 from kb_build.index.analysis import key
-from kb_build.symbol_lines import operator_active
-from kb_serve.answer.steps.variable_names import OBJ, OBJECT
-from kb_serve.reader import TYPES
+from kb_build.symbol_facts import operator_active
+from kb_serve.answer.steps.variable_names import OBJ
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
     from kb_build.records import Symbol
     from kb_serve.answer.steps.makers import Makers
-    from kb_serve.answer.steps.object_kinds import ObjectKinds
     from kb_serve.answer.steps.variable_names import VariableNames
     from kb_serve.reader import BaseReader, Creation
 
@@ -33,11 +32,8 @@ _NEW_NAME = re.compile(r'\bnew\("[^"]*"')
 class WorkingObject:
     """The ``obj`` of one list of steps: a mesh object until another is made."""
 
-    def __init__(
-        self, reader: BaseReader, kinds: ObjectKinds, makers: Makers, variables: VariableNames
-    ) -> None:
+    def __init__(self, reader: BaseReader, makers: Makers, variables: VariableNames) -> None:
         self._reader = reader
-        self._kinds = kinds
         self._makers = makers
         self._variables = variables
         self._kind = _MESH
@@ -46,10 +42,10 @@ class WorkingObject:
 
     def made_of(self, data: str) -> list[str]:
         """The steps that make an object of new data, given by its class; none for what is no object's data."""
-        creation = self._reader.creations([OBJECT]).get(OBJECT) if self._kinds.is_data(data) else None
+        creation = self._reader.creations([OBJECT]).get(OBJECT) if self._reader.is_object_data(data) else None
         if creation is None:
             return []
-        self._replace(self._kinds.of_data(data))
+        self._replace(self._reader.object_type(data))
         call = _NEW_NAME.sub(f'new("{data.removeprefix(TYPES)}"', creation.call)
         return [f"`obj = {call}`; `bpy.context.collection.objects.link(obj)`"]
 
@@ -76,7 +72,7 @@ class WorkingObject:
 
     def data_class(self) -> str:
         """The class of its data."""
-        return self._kinds.data_of(self._kind)
+        return self._reader.object_data.get(self._kind, "")
 
     def filling(self, ways: Sequence[str]) -> list[str]:
         """What gives it something that only objects of some ways have: ``object by object.armature_add()``; nothing if
@@ -132,9 +128,8 @@ class WorkingObject:
         Of several types the one that the choice is called after; empty for a type without data.
         """
         choice, kinds = key(creation.choice), self._makers.kinds_taken(creation)
-        return self._kinds.data_of(
-            min(kinds, key=lambda kind: (not choice.startswith(key(kind)), kind), default="")
-        )
+        likeliest = min(kinds, key=lambda kind: (not choice.startswith(key(kind)), kind), default="")
+        return self._reader.object_data.get(likeliest, "")
 
     def is_made_on(self, name: str, creation: Creation) -> bool:
         """Whether what a call makes can be made on the object of this name; anything can on what is no object."""

@@ -5,15 +5,15 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import ID, STRUCT, TYPES
 from kb_build.records import WITHOUT_ACTIVE
-from kb_build.symbol_lines import empty_when_new, fillers
-from kb_serve.reader import STRUCT, TYPES
+from kb_build.symbol_facts import empty_when_new, fillers
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
 ANY = frozenset(
-    {STRUCT, f"{TYPES}ID", f"{TYPES}PropertyGroup", f"{TYPES}AnyType"}
+    {STRUCT, ID, f"{TYPES}PropertyGroup", f"{TYPES}AnyType"}
 )  # what leads to these may lead to anything
 WEIGHTY = 9.0  # the weight from which on a pointer is one that scripts come upon without having asked for it
 _CONTEXT, _DATA = f"{TYPES}Context", f"{TYPES}BlendData"

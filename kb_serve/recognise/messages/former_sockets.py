@@ -6,10 +6,10 @@ from collections import Counter
 from itertools import islice
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import SIDES, TYPES
 from kb_build.index.analysis import key, terms
-from kb_serve.reader import TYPES
+from kb_build.paths import socket_name, socket_node
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.removed_symbols import socket_node
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
@@ -35,7 +35,7 @@ class FormerSockets:
         around = set(terms(forms.prose_of(query))) - set(terms(f"{name} node"))
         paths = [
             path
-            for side in ("inputs", "outputs")
+            for side in SIDES
             for path in self._reader.removed_by_key(key(f'{side}["{name}"]'))
             if path.endswith(f'["{name}"]')  # keys tell small letters from capitals
         ]
@@ -82,8 +82,7 @@ class FormerSockets:
         """What the node calls the socket now, or what takes the node's place, in brackets; empty for neither."""
         target = next((successor.target for successor in self._reader.successors(path)), "")
         if target and socket_node(target) == socket_node(path):
-            new = target.partition('["')[2].removesuffix('"]')
-            return f" (now `{new}`)"
+            return f" (now `{socket_name(target)}`)"
         if self._reader.entry(node := socket_node(path)):
             return ""
         others = (successor.target for successor in self._reader.successors(node))
@@ -92,9 +91,7 @@ class FormerSockets:
 
     def _tell_still_taken(self, name: str, taken: dict[str, str], recognition: Recognition) -> None:
         """A former name that most of the nodes which had it still take: where it fails."""
-        sockets_now = Counter(target.rpartition(".")[2] for target in taken.values())
-        socket = sockets_now.most_common(1)[0][0]
-        new = socket.partition('["')[2].rstrip('"]')
+        new = Counter(map(socket_name, taken.values())).most_common(1)[0][0]
         taking = {socket_node(path) for path in taken}
         sockets = [entry for entry in self._reader.by_name(new) if entry.kind == "socket"]
         having = {entry.owner: entry.path for entry in sockets if entry.owner not in taking}
@@ -120,7 +117,7 @@ class FormerSockets:
         if having * _FEW > len(paths):
             return []
         targets = [targets[0].target for path in paths if (targets := list(self._reader.successors(path)))]
-        names = Counter(target.rpartition('["')[2].rstrip('"]') for target in targets)
+        names = Counter(map(socket_name, targets))
         new, count = names.most_common(1)[0] if names else ("", 0)
         if len(paths) < _FEW or not new or count * 2 < len(paths):
             return list(paths)

@@ -5,10 +5,11 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS
+from kb_build.paths import argument_of, plain_path
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.calls import unknown_keywords
 from kb_serve.recognise.corrections import nearest
-from kb_serve.recognise.removed_symbols import plain_path
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
@@ -78,7 +79,7 @@ class Keywords:
         once = [
             path
             for path in self._reader.removed_named(name)
-            if path.startswith("bpy.ops.") and path.endswith(f"({name})")
+            if path.startswith(OPERATORS) and path.endswith(f"({name})")
         ]
         uses = self._reader.use_counts([plain_path(path) for path in once])
         once.sort(key=lambda path: -uses.get(plain_path(path), 0))
@@ -86,7 +87,7 @@ class Keywords:
             recognition.add_removed(removed)
         recognition.is_open = len(recognition.removed) > 1
         words = {
-            target.rpartition("(")[2].rstrip(")")
+            argument_of(target)
             for old in recognition.removed
             for target in old.targets
             if target.endswith(")")

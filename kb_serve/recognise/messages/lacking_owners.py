@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import TYPES
+from kb_build.api_names import ID, TYPES
 from kb_serve.recognise.elements import elsewhere
 from kb_serve.recognise.members_within import members_within
 from kb_serve.recognise.messages.context_members import note_on_absent
@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition
     from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
-_ID = f"{TYPES}ID"
 _OF_NO_BLOCK = frozenset({"BlendData", "Context", "Depsgraph", "Event"})
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}
 _PROPERTIES, _OPERATOR = "bpy.props", f"{TYPES}Operator"
@@ -100,10 +99,10 @@ class LackingOwners:
 
     def _of_its_block(self, owner: str, name: str, recognition: Recognition) -> None:
         """A member that a class lacks, and that the data-block has which it is a part of."""
-        of_block = self._reader.entry(f"{_ID}.{name}")
+        of_block = self._reader.entry(f"{ID}.{name}")
         cls = self._reader.entry(owner)
         is_part = cls is not None and cls.group == "data" and cls.name not in _OF_NO_BLOCK
-        if of_block and is_part and not self._reader.descends(owner, _ID):
+        if of_block and is_part and not self._reader.descends(owner, ID):
             recognition.add(of_block.path, 0.96, "error message")
             recognition.notes.append(
                 f"The data-block that it is part of has it: `.id_data.{name}` (`{of_block.path}`)."

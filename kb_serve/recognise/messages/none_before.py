@@ -7,10 +7,10 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
+from kb_build.api_names import OPERATORS, TYPES
 from kb_build.index.analysis import terms
 from kb_build.records import FILLED_BY
-from kb_build.symbol_lines import empty_when_new, fillers
-from kb_serve.reader import TYPES
+from kb_build.symbol_facts import empty_when_new, fillers
 from kb_serve.recognise.bindings import with_bindings
 from kb_serve.recognise.chains import find_chains
 from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
@@ -73,7 +73,7 @@ class NoneBefore:
         if few and len(holders) <= _MANY and (not usual or self._are_used(holders)):
             likely = likely or holders
         elif not few and len(owners) <= _MANY and not likely:
-            likely = [entry for entry in holders if self._flag(entry, FILLED_BY) is not None]
+            likely = [entry for entry in holders if self._is_flagged(entry, FILLED_BY)]
             told = set(self._reader.heaviest(likely)[:1])
         if not likely:
             likely = self._empty_before(name)
@@ -161,7 +161,7 @@ class NoneBefore:
                 for entry in empty
                 if len(empty) <= _MANY
                 and entry.owner != TYPES + target
-                and (self._flag(entry, FILLED_BY) or self._setting(entry))
+                and (self._is_flagged(entry, FILLED_BY) or self._setting(entry))
             ]
         return self._empty[target]
 
@@ -171,7 +171,7 @@ class NoneBefore:
         if symbol is None or "readonly" in symbol.flags or not empty_when_new(symbol):
             return ""
         made = self._reader.creations([TYPES + entry.target]).get(TYPES + entry.target)
-        is_value = made is not None and not made.maker.startswith("bpy.ops.")  # operators return no thing
+        is_value = made is not None and not made.maker.startswith(OPERATORS)  # operators return no thing
         value = made.call if made and is_value else entry.target.lower()
         return f"{entry.owner.removeprefix(TYPES).lower()}.{entry.name} = {value}"
 
@@ -200,7 +200,7 @@ class NoneBefore:
             entry
             for kind in kinds
             for entry in self._reader.pointing_at(kind)
-            if entry.group != "ui" and self._flag(entry, "never-none") is None
+            if entry.group != "ui" and not self._is_flagged(entry, "never-none")
         ]
         return [entry for entry in holders if entry.owner != TYPES + cls] or holders
 
@@ -216,8 +216,7 @@ class NoneBefore:
         symbol = self._reader.symbol(entry.path)
         return fillers(symbol) if symbol else []
 
-    def _flag(self, entry: SymbolEntry, prefix: str) -> str | None:
-        """What follows the prefix in a symbol's flags; None where no flag begins with it."""
+    def _is_flagged(self, entry: SymbolEntry, flag: str) -> bool:
+        """Whether one of a symbol's flags begins so."""
         symbol = self._reader.symbol(entry.path)
-        flags = symbol.flags if symbol else ()
-        return next((flag.removeprefix(prefix) for flag in flags if flag.startswith(prefix)), None)
+        return symbol is not None and symbol.flagged(flag) != ()

@@ -5,8 +5,9 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import operator_given, operator_needs, refused_nothing
-from kb_serve.reader import TYPES
+from kb_build.api_names import OPERATORS, TYPES
+from kb_build.symbol_facts import operator_given, refused_nothing
+from kb_build.symbol_lines import operator_needs
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.corrections import nearest
@@ -84,7 +85,7 @@ class Operators:
         """
         if operator_needs(operator) or refused_nothing(operator):
             return ""
-        others = map(self._reader.symbol, self._reader.operators_of(operator.owner.removeprefix("bpy.ops.")))
+        others = map(self._reader.symbol, self._reader.operators_of(operator.owner.removeprefix(OPERATORS)))
         given = {operator_given(other) for other in others if other} - {""}
         member = given.pop() if len(given) == 1 else ""
         return member if member and _SAID.get(member, member.replace("_", " ")) in message else ""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import TYPES
+from kb_build.api_names import ID
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.corrections import nearest
 
@@ -12,7 +12,6 @@ if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
-_ID = f"{TYPES}ID"
 _ANIMATABLE = "animatable"
 _MOST_KINDS = 8  # of data-blocks, those that scripts use most
 
@@ -27,7 +26,7 @@ class PathsNotFound:
         """Adds what is called nearly so of the data-blocks that scripts use most and that lack the name itself."""
         for match in forms.first_matches(forms.NO_PATH, query):
             name = match["name"]
-            kinds = self._reader.heaviest(self._reader.descendants(_ID))[:_MOST_KINDS]
+            kinds = self._reader.heaviest(self._reader.descendants(ID))[:_MOST_KINDS]
             found = (self._like(kind.path, name) for kind in kinds)
             paths = next(filter(None, found), [])
             for rank, path in enumerate(paths):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_serve.reader import COLLECTION, TYPES
+from kb_build.api_names import COLLECTION, TYPES
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

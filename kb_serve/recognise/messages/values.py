@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
+from kb_build.paths import plain_path
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.likely_values import likely_values
 
@@ -55,7 +56,7 @@ class Values:
                 owners = self._of_classes(owners) or owners
             owners = owners[:_MOST_OWNERS]
             for rank, owner in enumerate(owners[:2]):
-                recognition.add(owner.partition("(")[0], 0.95 - 0.02 * rank, "error message")
+                recognition.add(plain_path(owner), 0.95 - 0.02 * rank, "error message")
             likely = self._enum_values.as_likely_as_the_first(owners, items)
             if removed := self._lost_value(likely, match["name"]):
                 recognition.add_removed(removed)
@@ -106,8 +107,8 @@ class Values:
         """
         found: list[RemovedSymbol] = []
         for owner in owners:
-            path, _, parameter = owner.partition("(")
-            if removed := self._removed.of_part(path, f"({parameter}:{value}" if parameter else f":{value}"):
+            path = plain_path(owner)
+            if removed := self._removed.of_part(path, f"{owner.removeprefix(path)}:{value}"):
                 found.append(removed)
         return min(found, key=lambda removed: not removed.targets, default=None)
 

@@ -15,14 +15,8 @@ from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
 from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, WITHOUT_ACTIVE, WITHOUT_AREA, NewValue
-from kb_build.symbol_lines import (
-    fillers,
-    never_taken,
-    operator_needs,
-    refused_nothing,
-    type_text,
-    usual_default,
-)
+from kb_build.symbol_facts import fillers, never_taken, refused_nothing, usual_default
+from kb_build.symbol_lines import operator_needs, type_text
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.index.passages import address_of, find_passages
+from kb_build.pages.definitions import passage_text, term_lines
 from kb_build.records import INVERTED, Link, Page, Section, Symbol
-from kb_build.symbol_lines import passage_text, term_lines
 
 if TYPE_CHECKING:
     from kb_build.index.passages import Passage

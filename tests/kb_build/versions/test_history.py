@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import StoreError
+from kb_build.paths import split_path
 from kb_build.versions.history import ApiHistory, Arrival, RemovedSpan
 from kb_build.versions.history_merge import merge_versions
-from kb_build.versions.paths import split_path
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,7 +7,8 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_serve.reader import TYPES, BaseReader
+from kb_build.api_names import TYPES
+from kb_serve.reader import BaseReader
 from kb_serve.recognise.subscripts import CustomProperties
 
 if TYPE_CHECKING:

@@ -2,89 +2,89 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
 ANIMATION = (
     NamelessMessage(
         ("Follow Path constraint not found",),
-        ("bpy.ops.constraint.followpath_path_animate", f"{_T}FollowPathConstraint"),
+        ("bpy.ops.constraint.followpath_path_animate", f"{T}FollowPathConstraint"),
         "The operator looks for a constraint of that name on the active object: "
         "`with bpy.context.temp_override(active_object=obj, object=obj): "
         "bpy.ops.constraint.followpath_path_animate(constraint=con.name)`.",
     ),
     NamelessMessage(
         ("the track does not have any space to accommodate this new strip",),
-        (f"{_T}NlaStrips.new", f"{_T}NlaTracks.new"),
+        (f"{T}NlaStrips.new", f"{T}NlaTracks.new"),
         "The track has a strip in these frames: give another `start`, or add it to a new track "
         "(`animation_data.nla_tracks.new()`).",
     ),
     NamelessMessage(
         ("keyframe_insert() property", "not found"),
-        (f"{_T}bpy_struct.keyframe_insert",),
+        (f"{T}bpy_struct.keyframe_insert",),
         'The path is a property of the very thing, as text: `obj.keyframe_insert("location")`; what belongs to its '
         "data is keyed there (`obj.data.keyframe_insert(…)`).",
     ),
     NamelessMessage(
         ('Assign action "', "before calling this function"),
-        (f"{_T}Action.fcurve_ensure_for_datablock", f"{_T}AnimData.action"),
+        (f"{T}Action.fcurve_ensure_for_datablock", f"{T}AnimData.action"),
         "The object must have the action: `obj.animation_data_create().action = action`.",
     ),
     NamelessMessage(
         ("Cannot set slot without an assigned Action",),
-        (f"{_T}AnimData.action", f"{_T}AnimData.action_slot"),
+        (f"{T}AnimData.action", f"{T}AnimData.action_slot"),
         "Assign the action first: `obj.animation_data.action = action`, then the slot.",
     ),
     NamelessMessage(
         ("This slot (", "is not suitable for this data-block type"),
-        (f"{_T}AnimData.action_suitable_slots", f"{_T}ActionSlots.new"),
+        (f"{T}AnimData.action_suitable_slots", f"{T}ActionSlots.new"),
         "A slot is for one type of data-block, its `target_id_type`: take one of the "
         "`animation_data.action_suitable_slots`, or make one: `action.slots.new(obj.id_type, obj.name)`.",
     ),
     NamelessMessage(
         ("'list' object has no attribute 'driver'",),
-        (f"{_T}bpy_struct.driver_add", f"{_T}FCurve.driver"),
+        (f"{T}bpy_struct.driver_add", f"{T}FCurve.driver"),
         "Of a property with several numbers `driver_add` returns a list, an F-curve each, unless an index is given: "
         '`obj.driver_add("location", 0).driver`.',
     ),
     NamelessMessage(
         ("keyframe_insert() path includes index",),
-        (f"{_T}bpy_struct.keyframe_insert",),
+        (f"{T}bpy_struct.keyframe_insert",),
         'One number of several is keyed by its index: `obj.keyframe_insert("location", index=0)`.',
     ),
     NamelessMessage(
         ("keyframe_delete() path includes index",),
-        (f"{_T}bpy_struct.keyframe_delete",),
+        (f"{T}bpy_struct.keyframe_delete",),
         'The key of one number of several goes by its index: `obj.keyframe_delete("location", index=0)`.',
     ),
     NamelessMessage(
         ("driver_add(): path includes index",),
-        (f"{_T}bpy_struct.driver_add",),
+        (f"{T}bpy_struct.driver_add",),
         'One number of several is driven by its index, given by place: `obj.driver_add("location", 0)`.',
     ),
     NamelessMessage(
         ("driver_remove(): path includes index",),
-        (f"{_T}bpy_struct.driver_remove",),
+        (f"{T}bpy_struct.driver_remove",),
         'The driver of one number of several goes by its index: `obj.driver_remove("location", 0)`.',
     ),
     NamelessMessage(
         ("keyframe_insert()() takes at most 1 positional argument",),
-        (f"{_T}bpy_struct.keyframe_insert",),
+        (f"{T}bpy_struct.keyframe_insert",),
         'All but the path is given by name: `obj.keyframe_insert("location", frame=10)`.',
     ),
     NamelessMessage(
         ("driver_add(): property", "not found"),
-        (f"{_T}bpy_struct.driver_add",),
+        (f"{T}bpy_struct.driver_add",),
         'The path is a property of the very thing, as text: `obj.driver_add("location", 0)`; what belongs to its '
         "data is driven there (`obj.data.driver_add(…)`).",
     ),
     NamelessMessage(
         ("Dependency cycle detected",),
         (
-            f"{_T}Object.constraints",
+            f"{T}Object.constraints",
             "animation/drivers/troubleshooting",
-            f"{_T}Object.parent",
-            f"{_T}AnimData.drivers",
+            f"{T}Object.parent",
+            f"{T}AnimData.drivers",
         ),
         "Each of the things in the lines below it waits for the next, and the last for the first. The lines name what "
         "links them ('Parent', a constraint, a driver): take one of these links away, or let it read something that "

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
 _NO_CUSTOM_PROPERTIES = (
     "Only data-blocks (objects, scenes, materials …), bones and their collections, nodes, strips, view layers, "
     "property groups, the metadata of assets and geometry-nodes modifiers take custom properties in brackets. "
@@ -21,7 +21,7 @@ _ONLY_DEFINED = (
 CUSTOM_PROPERTIES = (
     NamelessMessage(
         ("value to the existing '", "Group IDProperty"),
-        ("bpy.props.PointerProperty", f"{_T}PropertyGroup", f"{_T}ID.bl_system_properties_get"),
+        ("bpy.props.PointerProperty", f"{T}PropertyGroup", f"{T}ID.bl_system_properties_get"),
         "The group of a `PointerProperty` cannot be put in another one's place: set its members as attributes "
         "(`target.settings.size = source.settings.size`), or copy all that were set: "
         '`target.bl_system_properties_get()["settings"].update(source.bl_system_properties_get()["settings"])`. '
@@ -29,19 +29,19 @@ CUSTOM_PROPERTIES = (
     ),
     NamelessMessage(
         ("value to the existing '", "IDProperty"),
-        (f"{_T}ID.bl_system_properties_get", "bpy.props"),
+        (f"{T}ID.bl_system_properties_get", "bpy.props"),
         "What is stored of a property that `bpy.props` registered keeps its type: give a value of that type, best by "
         "the attribute (`scene.count = 3`). Custom properties of your own do take another type.",
         ("Group IDProperty", "existing 'Socket_"),
     ),
     NamelessMessage(
         ("id properties not supported",),
-        (f"{_T}bpy_struct.keys", f"{_T}PropertyGroup"),
+        (f"{T}bpy_struct.keys", f"{T}PropertyGroup"),
         _NO_CUSTOM_PROPERTIES,
     ),
     NamelessMessage(
         ("his type doesn't support IDProperties",),
-        (f"{_T}bpy_struct.keys", f"{_T}PropertyGroup"),
+        (f"{T}bpy_struct.keys", f"{T}PropertyGroup"),
         _NO_CUSTOM_PROPERTIES,
     ),
     NamelessMessage(
@@ -52,7 +52,7 @@ CUSTOM_PROPERTIES = (
     ),
     NamelessMessage(
         ("_PropertyDeferred",),
-        ("bpy.props", f"{_T}PropertyGroup"),
+        ("bpy.props", f"{T}PropertyGroup"),
         _ONLY_DEFINED,
         ("is not subscriptable",),
     ),

@@ -2,25 +2,25 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
 FILES = (
     NamelessMessage(
         ("Selected data-blocks are already assets",),
-        ("bpy.ops.asset.mark", f"{_T}ID.asset_mark", f"{_T}ID.asset_data"),
+        ("bpy.ops.asset.mark", f"{T}ID.asset_mark", f"{T}ID.asset_data"),
         "All of them are assets already (their `asset_data` is not None), or of a type that cannot be one. "
         "`ob.asset_mark()` marks one data-block, needs no context, and raises nothing if it is marked.",
     ),
     NamelessMessage(
         ("Cannot read '", "No such file or directory"),
-        (f"{_T}BlendDataImages.load", "bpy.path.abspath"),
+        (f"{T}BlendDataImages.load", "bpy.path.abspath"),
         "There is no such file where Blender looks: `//` begins a path beside the saved .blend; any other relative "
         "path begins where Blender was started.",
     ),
     NamelessMessage(
         ("Image '", "could not be saved to ''"),
-        (f"{_T}Image.save", f"{_T}Image.filepath_raw", f"{_T}Image.file_format"),
+        (f"{T}Image.save", f"{T}Image.filepath_raw", f"{T}Image.file_format"),
         "The image has no path: `image.filepath_raw = \"/folder/name.png\"`, `image.file_format = 'PNG'`, then "
         "`image.save()`.",
     ),
@@ -31,7 +31,7 @@ FILES = (
     ),
     NamelessMessage(
         ("failed to open blend file",),
-        (f"{_T}BlendDataLibraries.load", "bpy.path.abspath"),
+        (f"{T}BlendDataLibraries.load", "bpy.path.abspath"),
         "There is no such .blend where Blender looks: `//` begins a path beside the saved one.",
     ),
     NamelessMessage(

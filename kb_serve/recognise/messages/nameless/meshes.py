@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
 _O = "bpy.ops.object."
 MESHES = (
     NamelessMessage(
         ("Tangent space can only be computed for tris/quads",),
-        (f"{_T}Mesh.calc_tangents", "bmesh.ops.triangulate"),
+        (f"{T}Mesh.calc_tangents", "bmesh.ops.triangulate"),
         "A face has more than four corners: triangulate such faces first (`bmesh.ops.triangulate`).",
     ),
     NamelessMessage(
@@ -20,23 +20,23 @@ MESHES = (
     ),
     NamelessMessage(
         ("sequence length mismatch given",),
-        (f"{_T}bpy_prop_collection.foreach_set", f"{_T}bpy_prop_collection.foreach_get"),
+        (f"{T}bpy_prop_collection.foreach_set", f"{T}bpy_prop_collection.foreach_get"),
         "It wants as many numbers as elements × values of each (3 for `co`); of none, add elements first "
         "(`mesh.vertices.add(count)`).",
     ),
     NamelessMessage(
         ("internal error setting the array",),
-        (f"{_T}bpy_prop_collection.foreach_set",),
+        (f"{T}bpy_prop_collection.foreach_set",),
         "The list is longer or shorter than elements × values of each (3 for `co`), or of another type.",
     ),
     NamelessMessage(
         ("Vertex not in group",),
-        (f"{_T}VertexGroup.weight", f"{_T}MeshVertex.groups"),
+        (f"{T}VertexGroup.weight", f"{T}MeshVertex.groups"),
         "Ask only for vertices that are in the group: `any(one.group == group.index for one in vertex.groups)`.",
     ),
     NamelessMessage(
         ("Curve sizes must be greater than zero",),
-        (f"{_T}Curves.add_curves",),
+        (f"{T}Curves.add_curves",),
         "Each size is the number of points in a curve, 1 or more: `curves.add_curves([3, 5])`.",
     ),
     NamelessMessage(
@@ -51,17 +51,17 @@ MESHES = (
     ),
     NamelessMessage(
         ("Key ", " is out of range"),
-        (f"{_T}GreasePencilDrawing.strokes", f"{_T}GreasePencilDrawing.add_strokes"),
+        (f"{T}GreasePencilDrawing.strokes", f"{T}GreasePencilDrawing.add_strokes"),
         "There are fewer strokes, or points in a stroke: `drawing.add_strokes([3])` adds a stroke of three points.",
     ),
     NamelessMessage(
         ("spline cannot have points added",),
-        (f"{_T}SplinePoints.add", f"{_T}SplineBezierPoints.add"),
+        (f"{T}SplinePoints.add", f"{T}SplineBezierPoints.add"),
         "The points of a Bézier spline are its `bezier_points`: `spline.bezier_points.add(count)`.",
     ),
     NamelessMessage(
         ("not in edit mode, cannot add an editbone",),
-        (f"{_T}ArmatureEditBones.new", f"{_O}mode_set"),
+        (f"{T}ArmatureEditBones.new", f"{_O}mode_set"),
         "Edit bones are there in Edit Mode: make the armature's object active, then "
         "`bpy.ops.object.mode_set(mode='EDIT')`.",
     ),

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
 _O = "bpy.ops.object."
 MODES = (
     NamelessMessage(
         ("Converting py args to operator properties", "not found in ('OBJECT'"),
-        (f"{_O}mode_set", f"{_T}Object.mode"),
+        (f"{_O}mode_set", f"{T}Object.mode"),
         "The active object has no such mode: its type decides which there are ('POSE' wants an armature, and an empty, "
         "a light or a camera has no 'EDIT'). Make the object that is meant active first.",
     ),

@@ -2,20 +2,20 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
 _O = "bpy.ops.object."
 MODIFIERS = (
     NamelessMessage(
         ("Modifier cannot be applied to a mesh with shape keys",),
-        (f"{_O}modifier_apply", f"{_T}Object.shape_key_clear"),
+        (f"{_O}modifier_apply", f"{T}Object.shape_key_clear"),
         "Remove the shape keys first (`obj.shape_key_clear()`), or make a mesh of the result: "
         "`bpy.data.meshes.new_from_object(obj.evaluated_get(depsgraph))`.",
     ),
     NamelessMessage(
         ("Modifier is disabled, skipping apply",),
-        (f"{_O}modifier_apply", f"{_T}Modifier.show_viewport"),
+        (f"{_O}modifier_apply", f"{T}Modifier.show_viewport"),
         "The modifier lacks what it works with (a Boolean without an object), or is not shown: "
         "`modifier.show_viewport = True`.",
     ),
@@ -31,7 +31,7 @@ MODIFIERS = (
     ),
     NamelessMessage(
         ("value to the existing 'Socket_", "IDProperty"),
-        (f"{_T}NodesModifier",),
+        (f"{T}NodesModifier",),
         "An input of a geometry nodes modifier keeps its type: give a value of that type.",
     ),
 )

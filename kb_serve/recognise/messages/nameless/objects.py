@@ -2,43 +2,43 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
 OBJECTS = (
     NamelessMessage(
         ("selected because it is not in View Layer",),
-        (f"{_T}Object.select_set", f"{_T}CollectionObjects.link"),
+        (f"{T}Object.select_set", f"{T}CollectionObjects.link"),
         "The object is in no collection of the view layer: `scene.collection.objects.link(obj)` first.",
     ),
     NamelessMessage(
         ("ViewLayer '", "does not contain object '"),
-        (f"{_T}LayerObjects.active", f"{_T}CollectionObjects.link"),
+        (f"{T}LayerObjects.active", f"{T}CollectionObjects.link"),
         "The object is in no collection of the view layer: `scene.collection.objects.link(obj)` first.",
     ),
     NamelessMessage(
         ("Object '", "already in collection '"),
-        (f"{_T}CollectionObjects.link",),
+        (f"{T}CollectionObjects.link",),
         "Link it only where it is not yet: `if obj.name not in collection.objects:`. What operators add is linked.",
     ),
     NamelessMessage(
         ("Collection '", "already in collection '"),
-        (f"{_T}CollectionChildren.link",),
+        (f"{T}CollectionChildren.link",),
         "Link it only where it is not yet: `if child.name not in collection.children:`.",
     ),
     NamelessMessage(
         ("Object '", "not in collection '"),
-        (f"{_T}CollectionObjects.unlink", f"{_T}Object.users_collection"),
+        (f"{T}CollectionObjects.unlink", f"{T}Object.users_collection"),
         "It is in others: `for collection in obj.users_collection: collection.objects.unlink(obj)`.",
     ),
     NamelessMessage(
         ("has no evaluated mesh data",),
-        (f"{_T}Object.ray_cast", f"{_T}Object.closest_point_on_mesh", f"{_T}ID.evaluated_get"),
+        (f"{T}Object.ray_cast", f"{T}Object.closest_point_on_mesh", f"{T}ID.evaluated_get"),
         "The object must be in the view layer and computed: link it, then `bpy.context.view_layer.update()`.",
     ),
     NamelessMessage(
         ("ID type '", "is not valid for an object"),
-        (f"{_T}BlendDataObjects.new", f"{_T}ID.copy"),
+        (f"{T}BlendDataObjects.new", f"{T}ID.copy"),
         "The second argument is the data, not an object: `bpy.data.objects.new(name, obj.data)`. `obj.copy()` "
         "copies an object.",
     ),

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import COLLECTION
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
-_GET = f"{_T}bpy_prop_collection.get"
+_GET = f"{T}bpy_prop_collection.get"
 _FROM_WHERE = (
     "`.get(name)` of a collection finds nothing of that name, a pointer was not set (`obj.active_material`, "
     "`scene.camera`), or a function ended without `return`."
@@ -13,7 +14,7 @@ _FROM_WHERE = (
 PYTHON = (
     NamelessMessage(
         ("__init__() takes 1 positional argument but ",),
-        (f"{_T}Operator", f"{_T}Panel"),
+        (f"{T}Operator", f"{T}Panel"),
         "Blender gives arguments to the `__init__` of classes that derive from its own (operators, panels, property "
         "groups …): take them and hand them on: `def __init__(self, *args, **kwargs):`, and first in it "
         "`super().__init__(*args, **kwargs)`.",
@@ -27,24 +28,24 @@ PYTHON = (
     ),
     NamelessMessage(
         ('bpy_struct[key]: key "Input_',),
-        (f"{_T}NodesModifier", f"{_T}NodeTreeInterfaceSocket.identifier"),
+        (f"{T}NodesModifier", f"{T}NodeTreeInterfaceSocket.identifier"),
         "Since 4.0 the inputs of a group are called `Socket_2` and so on, not `Input_2`: `item.identifier` of its "
         "`interface.items_tree` tells it.",
     ),
     NamelessMessage(
         ("'builtin_function_or_method' object is not subscriptable",),
-        (f"{_T}bpy_struct.items", f"{_T}NodeTreeInterface.items_tree"),
+        (f"{T}bpy_struct.items", f"{T}NodeTreeInterface.items_tree"),
         "What stands before the bracket is a function (`items`, `keys`, `get`): call it, or take the collection that "
         "is meant, as `interface.items_tree`.",
     ),
     NamelessMessage(
         ('bpy_struct[key]: key "Socket_',),
-        (f"{_T}NodesModifier", f"{_T}NodeTreeInterfaceSocket.identifier"),
+        (f"{T}NodesModifier", f"{T}NodeTreeInterfaceSocket.identifier"),
         "The group has no input of that identifier: `item.identifier` of its `interface.items_tree` tells it.",
     ),
     NamelessMessage(
         ("bpy_prop_collection[key]: invalid key, must be",),
-        (f"{_T}bpy_prop_collection", f"{_T}bpy_prop_collection.get"),
+        (COLLECTION, f"{T}bpy_prop_collection.get"),
         "A collection is asked for a name or a whole number: `collection[thing.name]`, `collection[int(number)]`.",
     ),
     NamelessMessage(

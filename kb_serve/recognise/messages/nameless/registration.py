@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
 REGISTRATION = (
     NamelessMessage(
         ("register_class(...): already registered as a subclass",),
@@ -23,31 +23,31 @@ REGISTRATION = (
     ),
     NamelessMessage(
         ("contain '_PT_' with prefix",),
-        (f"{_T}Panel.bl_idname",),
+        (f"{T}Panel.bl_idname",),
         "The `bl_idname` of a panel, or its class's name where it has none, is like `MY_PT_panel`: capitals, `_PT_`, "
         "a name.",
     ),
     NamelessMessage(
         ("Registering panel class: '", "' has category '"),
-        (f"{_T}Panel.bl_region_type", f"{_T}Panel.bl_category"),
+        (f"{T}Panel.bl_region_type", f"{T}Panel.bl_category"),
         "Only panels of a sidebar have a category, the tab that they stand in: `bl_region_type = 'UI'`. Panels of "
         "other regions have no `bl_category`.",
     ),
     NamelessMessage(
         ("contain '_MT_' with prefix",),
-        (f"{_T}Menu.bl_idname",),
+        (f"{T}Menu.bl_idname",),
         "The `bl_idname` of a menu, or its class's name where it has none, is like `MY_MT_menu`: capitals, `_MT_`, a "
         "name.",
     ),
     NamelessMessage(
         ("Registering operator class '", "invalid bl_idname '"),
-        (f"{_T}Operator.bl_idname",),
+        (f"{T}Operator.bl_idname",),
         "An operator's `bl_idname` is two names with one dot between, in small letters: "
         '`bl_idname = "object.my_tool"`.',
     ),
     NamelessMessage(
         ("Function.result expected a set, not a NoneType",),
-        (f"{_T}Operator.execute",),
+        (f"{T}Operator.execute",),
         "The function ended without a result: `return {'FINISHED'}`, or `{'CANCELLED'}`, at each of its ends.",
     ),
     NamelessMessage(

@@ -2,22 +2,22 @@
 
 from __future__ import annotations
 
+from kb_build.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
-_T = "bpy.types."
 _O = "bpy.ops.object."
 RENDERING = (
     NamelessMessage(
         ("Cannot render, no camera",),
-        (f"{_T}Scene.camera", f"{_T}BlendDataCameras.new"),
+        (f"{T}Scene.camera", f"{T}BlendDataCameras.new"),
         "`scene.camera = obj`, an object with a camera as data.",
     ),
     NamelessMessage(
         ("Cannot write a single file with an animation format selected",),
         (
             "bpy.ops.render.render",
-            f"{_T}ImageFormatSettings.media_type",
-            f"{_T}ImageFormatSettings.file_format",
+            f"{T}ImageFormatSettings.media_type",
+            f"{T}ImageFormatSettings.file_format",
         ),
         "A video is rendered by `bpy.ops.render.render(animation=True)`. For one image choose a format of images: "
         "`settings = scene.render.image_settings`, `settings.media_type = 'IMAGE'` (since 5.0), "
@@ -32,25 +32,25 @@ RENDERING = (
     ),
     NamelessMessage(
         ("Current render engine does not support baking",),
-        (f"{_O}bake", f"{_T}RenderSettings.engine"),
+        (f"{_O}bake", f"{T}RenderSettings.engine"),
         "Cycles does: `scene.render.engine = 'CYCLES'`.",
     ),
     NamelessMessage(
         ("No active ", "image ", "found in material "),
-        (f"{_O}bake", f"{_T}Nodes.active"),
+        (f"{_O}bake", f"{T}Nodes.active"),
         "A bake writes into the image of each material's active node, which must be selected, too: add one "
         "(`node = nodes.new('ShaderNodeTexImage')`), give it an image, then `nodes.active = node` and "
         "`node.select = True`.",
     ),
     NamelessMessage(
         ("No active image found, add a material",),
-        (f"{_O}bake", f"{_T}Nodes.active"),
+        (f"{_O}bake", f"{T}Nodes.active"),
         "The object has no material with an image to bake into: give it one whose active node is an image texture, or "
         "bake with `target='VERTEX_COLORS'` or `save_mode='EXTERNAL'`.",
     ),
     NamelessMessage(
         ("No valid selected objects",),
-        (f"{_O}bake", f"{_T}Object.select_set"),
+        (f"{_O}bake", f"{T}Object.select_set"),
         "Select the objects first (`obj.select_set(True)`), and make one active.",
     ),
     NamelessMessage(
@@ -60,7 +60,7 @@ RENDERING = (
     ),
     NamelessMessage(
         ("Bake failed: invalid domain",),
-        ("bpy.ops.fluid.bake_all", f"{_T}FluidModifier.fluid_type"),
+        ("bpy.ops.fluid.bake_all", f"{T}FluidModifier.fluid_type"),
         "The active object must be the fluid's domain, of `fluid_type = 'DOMAIN'`.",
     ),
 )

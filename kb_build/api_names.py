@@ -1,0 +1,30 @@
+"""Names of Blender's API that much else is spelled with."""
+
+from __future__ import annotations
+
+import re
+
+TYPES = "bpy.types."
+OPERATORS = "bpy.ops."
+
+STRUCT = f"{TYPES}bpy_struct"
+COLLECTION = f"{TYPES}bpy_prop_collection"
+GROUPS = f"{TYPES}bpy_prop_collection_idprop"
+ID = f"{TYPES}ID"
+NODE = f"{TYPES}Node"
+OBJECT = f"{TYPES}Object"
+
+# Where a node has its sockets.
+SIDES = ("inputs", "outputs")
+
+# Panels, menus, headers, operators, lists, asset shelves, gizmos and their groups, file handlers, keying sets, engines.
+_OF_INTERFACE = re.compile(r"(?:bpy\.types\.)?[A-Z0-9_]+_(PT|MT|HT|OT|UL|AST|GGT|GT|FH|KSI|RE)_")
+
+
+def interface_part(path: str) -> str:
+    """What a class, given by its name or path, is of the interface: ``PT`` of ``VIEW3D_PT_tools``; empty for others.
+
+    A member is of what its class is.
+    """
+    found = _OF_INTERFACE.match(path)
+    return found[1] if found else ""

@@ -1,0 +1,57 @@
+"""The definition lists in the Markdown of pages."""
+
+from __future__ import annotations
+
+import textwrap
+from itertools import dropwhile, takewhile
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+
+def term_lines(text: str) -> Iterator[tuple[int, str]]:
+    """(line, term) of every definition in a section's Markdown."""
+    for number, line in enumerate(text.split("\n")):
+        if "**" in line and (term := term_of(line)):
+            yield number, term
+
+
+def term_of(line: str) -> str:
+    """The term that a line of a section's Markdown defines; empty for none."""
+    term = line.strip()
+    is_one = term.startswith("**") and term.rstrip(":").endswith("**")
+    return term.strip("*: ") if is_one else ""
+
+
+def passage_text(text: str, line: int) -> str:
+    """What stands at a line of a section's Markdown: a term's definition, or a paragraph; at -1 its first paragraph."""
+    lines = text.split("\n")
+    if line < 0:
+        blocks = list(dropwhile(lambda block: not _is_prose(block), text.split("\n\n")))
+        announces = blocks and blocks[0].endswith(":")
+        return "\n\n".join(blocks[: 2 if announces else 1])
+    if line >= len(lines):
+        return ""
+    if lines[line].startswith(">"):
+        quoted = takewhile(lambda each: each.startswith(">"), lines[line:])
+        return passage_text("\n".join(each.removeprefix(">").removeprefix(" ") for each in quoted), 0)
+    depth = _depth(lines[line])
+    if not lines[line].strip().startswith("**"):
+        return "\n".join(takewhile(str.strip, lines[line:]))
+    while (
+        line + 1 < len(lines) and lines[line + 1].startswith("**", depth) and _depth(lines[line + 1]) == depth
+    ):
+        line += 1  # several terms share the definition
+    below = takewhile(lambda each: not each.strip() or _depth(each) > depth, lines[line + 1 :])
+    return textwrap.dedent("\n".join(below)).strip()
+
+
+def _is_prose(paragraph: str) -> bool:
+    return paragraph[:1] not in {"", ">", "|", "-", "*", "`", "$", "#"} and not paragraph.startswith(
+        "Figure: "
+    )
+
+
+def _depth(line: str) -> int:
+    return len(line) - len(line.lstrip())
