@@ -76,6 +76,7 @@ def test_a_range_that_is_not_kept_says_so(symbols: Mapping[str, Symbol], tmp_pat
     # An end so far out that what is one beyond is nearly the same number.
     assert not symbols["bpy.types.ColorManagedViewSettings.white_balance_temperature"].flagged("unbounded:")
     assert not symbols["bpy.types.ParticleSettings.mass"].flagged("unbounded:")
+    assert symbols["bpy.types.Scene.frame_current"].flagged("unbounded:") == ("max",)
     code = ["import bpy", "bpy.ops.rigidbody.object_add()", "bpy.context.object.rigid_body.mass = -1"]
     rows = run_statements(tmp_path, code, {2: "bpy.context.object.rigid_body.mass"})
     assert rows[2][2] == "-1.0"
