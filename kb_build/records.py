@@ -169,6 +169,11 @@ class Parameter:
 
 
 @dataclass(frozen=True, slots=True)
+    @property
+    def has_stand_in(self) -> bool:
+        """Whether RNA lists nothing but what is refused, since the values are put together while Blender runs."""
+        return bool(self.enum_items) and all(item.where == NOT_TAKEN for item in self.enum_items)
+
 class Deprecation:
     """What Blender itself, or its release notes, say of a property that is on its way out. Versions as ``"5.0"``."""
 

@@ -27,6 +27,7 @@ from kb_build.records import (
     LOCKED_WITH,
     MUST_HAVE,
     NEEDS,
+    NOT_TAKEN,
     STOPS,
     UNBOUNDED,
 )
@@ -61,6 +62,28 @@ def _add_choices(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
     for parameter in row.get("parameters", ()) if row is not None and asked["items"] else ():
         if parameter["name"] == asked["parameter"]:
             parameter["enum_items"] = asked["items"]
+
+
+def _add_refused_default(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
+    """Adds that an operator's argument never takes what RNA has for it.
+
+    Where RNA lists nothing else, it stands for values that Blender puts together later: those that it named are kept.
+    """
+    for parameter in (row or {}).get("parameters", ()):
+        if parameter["name"] != asked["argument"]:
+            continue
+        items, values = parameter.get("enum_items", ()), asked.get("values")
+        others = [item for item in items if item["identifier"] != parameter["default"]]
+        if others and not values:
+            continue  # it may be taken where there are any
+        del parameter["default"]
+        if others:
+            parameter["enum_items"] = others
+            continue
+        for item in items:
+            item["where"] = NOT_TAKEN
+        if values:
+            parameter["values_asked"] = values
 
 
 def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
@@ -204,6 +227,7 @@ ADDED = {
     "operator_areas": _add_areas,
     "operator_calls": _add_calls,
     "refusals": _add_refusals,
+    "refused_default": _add_refused_default,
     "empty_collection": _add_empty,
     "evaluated": _add_evaluated,
     "inverted": _add_inverted,

@@ -13,6 +13,9 @@ compare = tree.nodes.new("FunctionNodeCompare")
 compare.data_type = "BOOLEAN"  # reported: RNA lists it for other nodes
 mix = material.node_tree.nodes.new("ShaderNodeMix")
 mix.data_type = "ROTATION"  # reported: geometry node trees have it only
+bpy.ops.rigidbody.mass_calculate(
+    material="DEFAULT"
+)  # reported: RNA lists it in the place of values made later
 ```
 
 What a script sets before decides. Where it names the other setting nowhere, what a new scene has does, which a file
@@ -51,11 +54,12 @@ from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.settings_before import made_just_before, set_before
 
+from kb_check.tried import is_tried
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_build.records import EnumItem, NewValue, Symbol
+    from kb_build.records import EnumItem, NewValue, Parameter, Symbol
     from kb_check.script import Script
 
 _VALUES = r"(\w+)=('[^'|]*'(?:\|'[^'|]*')*)"
@@ -69,6 +73,7 @@ _BY = re.compile(r"(only|not) by ([^…]+)")
 _SCENE, _NODE = f"{T}Scene", f"{T}Node"
 _OPERATORS = "bpy.ops."
 _RESETTING = "bpy.ops.wm.read_factory_settings"
+_TOLD = 4
 
 
 class _Setting(NamedTuple):
@@ -106,6 +111,11 @@ def _check(script: Script) -> Iterator[Finding]:
         elif kind := _other_kind(script, node.value, item):
             yield _finding(script, statement.value, item, symbol.path, f"this is a {kind}")
     for call in calls(script):
+    yield from _given_to_calls(script)
+
+
+def _given_to_calls(script: Script) -> Iterator[Finding]:
+    """Values that functions and operators are given."""
         function = call.node.func
         if isinstance(function, ast.Attribute) and call.callee.symbol.kind == "function":
             for parameter, given in call.arguments():
@@ -113,6 +123,10 @@ def _check(script: Script) -> Iterator[Finding]:
                 if item and (kind := _other_kind(script, function.value, item)):
                     yield _finding(script, given, item, call.callee.symbol.path, f"this is a {kind}")
 
+        elif call.callee.symbol.kind == "operator" and not is_tried(script, call.node):
+            for parameter, given in call.arguments():
+                if parameter.has_stand_in and _item(parameter.enum_items, given):
+                    yield _stand_in(script, given, call.callee.symbol.path, parameter)
 
 def _is_certain(row: Resolution) -> bool:
     return row.sure and not row.guarded and not row.missing and not row.possible and len(row.symbols) == 1
@@ -140,6 +154,22 @@ def _never_taken(script: Script, node: ast.expr, item: EnumItem, symbol: Symbol)
 
 
 # Other settings.
+def _stand_in(script: Script, node: ast.expr, operator: str, parameter: Parameter) -> Finding:
+    """What RNA lists for an argument whose values are put together while Blender runs."""
+    asked = [f"`{value}`" for value in parameter.values_asked]
+    takes = (
+        f" In a new file it takes {', '.join(asked[:_TOLD])}{' …' if len(asked) > _TOLD else ''}."
+        if asked
+        else ""
+    )
+    return Finding(
+        RULE.id, "error", script.span(node),
+        f"{ast.unparse(node)} stands for nothing in `{operator}({parameter.name})`, which refuses it: leave it out, or "
+        f"give one of the values that there are at that time.{takes}",
+        operator,
+    )  # fmt: skip
+
+
 
 
 def _setting(script: Script, symbol: Symbol, item: EnumItem) -> _Setting | None:

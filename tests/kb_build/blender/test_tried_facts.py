@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.blender.extract_reader import Extract
-    from kb_build.records import Symbol
+    from kb_build.records import Parameter, Symbol
 
 pytestmark = pytest.mark.blender
 
@@ -80,6 +80,26 @@ def test_a_range_that_is_not_kept_says_so(symbols: Mapping[str, Symbol], tmp_pat
     code = ["import bpy", "bpy.ops.rigidbody.object_add()", "bpy.context.object.rigid_body.mass = -1"]
     rows = run_statements(tmp_path, code, {2: "bpy.context.object.rigid_body.mass"})
     assert rows[2][2] == "-1.0"
+
+
+def test_a_default_that_an_operator_never_takes_is_none(symbols: Mapping[str, Symbol]) -> None:
+    def argument(path: str, name: str) -> Parameter:
+        return next(one for one in symbols[path].parameters if one.name == name)
+
+    material = argument("bpy.ops.rigidbody.mass_calculate", "material")
+    assert material.has_stand_in
+    assert material.default is None
+    assert {"Steel", "Custom"} <= set(material.values_asked)
+    # In areas alone.
+    assert argument("bpy.ops.anim.keyframe_insert", "type").has_stand_in
+    # One of a list whose others are taken.
+    kind = argument("bpy.ops.graph.fmodifier_add", "type")
+    assert (kind.default, kind.has_stand_in) == (None, False)
+    assert "NULL" not in {item.identifier for item in kind.enum_items}
+    # One of a list of which some contexts take only a part.
+    kind = argument("bpy.ops.object.modifier_add", "type")
+    assert (kind.default, kind.has_stand_in) == ("SUBSURF", False)
+    assert argument("bpy.ops.object.select_all", "action").default == "TOGGLE"
 
 
 @pytest.mark.parametrize(
