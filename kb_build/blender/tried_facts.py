@@ -11,6 +11,7 @@ from kb_build.records import (
     ALSO,
     ANY,
     AREAS,
+    AT_TIMES,
     BARE_DATA,
     CALLS,
     EMPTY,
@@ -43,6 +44,16 @@ def add_items(
     if row is not None:
         listed, texts = row.get("enum_items", ()), asked.get("texts", {})
         row["enum_items"] = items_in_contexts(listed, asked["contexts"], texts, neighbours)
+
+
+def _add_source_items(row: dict[str, Any] | None, found: dict[str, Any]) -> None:
+    """Adds the items that others have to those that were taken here: there are no more."""
+    if row is not None:
+        taken = [item for item in row.get("enum_items", ()) if item.get("where") != NOT_TAKEN]
+        known = {item["identifier"] for item in taken}
+        others = ({**item, "where": AT_TIMES} for item in found["items"] if item["identifier"] not in known)
+        row["enum_items"] = [*taken, *others]
+        row["enum_computed"] = False
 
 
 def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
@@ -228,6 +239,7 @@ ADDED = {
     "operator_calls": _add_calls,
     "refusals": _add_refusals,
     "refused_default": _add_refused_default,
+    "source_items": _add_source_items,
     "empty_collection": _add_empty,
     "evaluated": _add_evaluated,
     "inverted": _add_inverted,

@@ -25,6 +25,7 @@ from . import (
     own_classes,
     refusals,
     rna,
+    source_items,
     undo_steps,
 )
 from .apart import Beside, can_work_apart
@@ -144,6 +145,8 @@ STEPS = (
     ),
     ("neighbours", lambda write, found: found["neighbours"].write(write)),
     ("instances", lambda write, found: found["observer"].write(write)),
+    # Of enumerations of which the instances have told their items.
+    ("items in sources", lambda write, _found: source_items.find_all(write)),
     ("refusals", write_refusals),
 )
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.records import BARE_DATA, INVERTED
+from kb_build.records import AT_TIMES, BARE_DATA, INVERTED
 from kb_build.symbol_lines import default_text, shown_when, type_text
 
 if TYPE_CHECKING:
@@ -100,6 +100,15 @@ def test_a_default_that_an_operator_never_takes_is_none(symbols: Mapping[str, Sy
     kind = argument("bpy.ops.object.modifier_add", "type")
     assert (kind.default, kind.has_stand_in) == ("SUBSURF", False)
     assert argument("bpy.ops.object.select_all", "action").default == "TOGGLE"
+
+
+def test_items_of_other_machines_are_listed_where_a_source_has_them(symbols: Mapping[str, Symbol]) -> None:
+    denoiser = symbols["bpy.types.CyclesRenderSettings.denoiser"]
+    assert not denoiser.enum_computed
+    where = {item.identifier: item.where for item in denoiser.enum_items}
+    assert where.keys() == {"OPENIMAGEDENOISE", "OPTIX"}
+    assert (where["OPENIMAGEDENOISE"], where["OPTIX"] in {"", AT_TIMES}) == ("", True)
+    assert {item.name for item in denoiser.enum_items} == {"OpenImageDenoise", "OptiX"}
 
 
 @pytest.mark.parametrize(
