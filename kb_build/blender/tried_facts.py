@@ -56,6 +56,13 @@ def _add_source_items(row: dict[str, Any] | None, found: dict[str, Any]) -> None
         row["enum_computed"] = False
 
 
+def _add_never_reached(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds which values nothing that was tried came to have."""
+    for item in (row or {}).get("enum_items", ()):
+        if item["identifier"] in seen["items"]:
+            item["where"] = NOT_TAKEN
+
+
 def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     """Adds what new instances have where it is not RNA's default, and that they were compared.
 
@@ -232,6 +239,7 @@ ADDED = {
     "argument_items": _add_argument_items,
     "bare_data": _add_bare_data,
     "choices": _add_choices,
+    "never_reached": _add_never_reached,
     "new_values": _add_values,
     "new_pointer": _add_pointer,
     "operator_needs": _add_needs,

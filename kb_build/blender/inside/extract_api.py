@@ -23,6 +23,7 @@ from . import (
     operator_needs,
     operators,
     own_classes,
+    reached_modes,
     refusals,
     rna,
     source_items,
@@ -98,6 +99,7 @@ def start_beside(_write, found):
             limits.find_all(write, observer)
             left_out.find_all(write)
             undo_steps.find_all(write)
+            reached_modes.find_all(write)
 
         found["refusals"] = Beside("refusals", tried)
         found["needs"] = Beside("needs", lambda write: operator_needs.find_alone(write, skipped))

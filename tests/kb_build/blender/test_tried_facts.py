@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.records import AT_TIMES, BARE_DATA, INVERTED
+from kb_build.records import AT_TIMES, BARE_DATA, INVERTED, NOT_TAKEN
 from kb_build.symbol_lines import default_text, shown_when, type_text
 
 if TYPE_CHECKING:
@@ -109,6 +109,15 @@ def test_items_of_other_machines_are_listed_where_a_source_has_them(symbols: Map
     assert where.keys() == {"OPENIMAGEDENOISE", "OPTIX"}
     assert (where["OPENIMAGEDENOISE"], where["OPTIX"] in {"", AT_TIMES}) == ("", True)
     assert {item.name for item in denoiser.enum_items} == {"OpenImageDenoise", "OptiX"}
+
+
+def test_modes_that_nothing_enters_are_told(symbols: Mapping[str, Symbol]) -> None:
+    def never(path: str) -> set[str]:
+        return {item.identifier for item in symbols[path].enum_items if item.where == NOT_TAKEN}
+
+    former = {f"{mode}_GPENCIL" for mode in ("EDIT", "PAINT", "SCULPT", "VERTEX", "WEIGHT")}
+    assert never("bpy.types.Context.mode") == never("bpy.context.mode") == former
+    assert never("bpy.types.Object.mode") == {"EDIT_GPENCIL"}
 
 
 @pytest.mark.parametrize(
