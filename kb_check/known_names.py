@@ -122,11 +122,7 @@ class KnownNames:
         """A keyword that a function or operator does not take; ``names`` are those that it takes."""
         part = f"({name})"
         if removed := self._lookup.of_part(function, part) or self._of_former(function, part):
-            lacking = self._removed(removed)
-            if removed.path.startswith(f"{function}("):
-                return lacking
-            why = f"`{function}` takes no `{name}`, as what it took the place of did: "
-            return replace(lacking, message=why + lacking.message)
+            return self._removed_of(f"{function}(", removed, f"`{function}` takes no `{name}`")
         names = list(names)
         symbol = self.reader.symbol(function)
         labels = {one.name: one.label for one in symbol.parameters} if symbol else {}
@@ -147,7 +143,7 @@ class KnownNames:
         whole, mark, argument = owner.partition("(")
         part = f"{mark}{argument}:{value}"
         if removed := self._lookup.of_part(whole, part) or self._of_former(whole, part):
-            return self._removed(removed)
+            return self._removed_of(f"{whole}{mark or ':'}", removed, f"`{owner}` takes no {value!r}")
         values = list(values)
         similar = likely_values(value, values) or self._enum_values.explaining(owner, value)
         return self._no_part(
@@ -159,7 +155,7 @@ class KnownNames:
         for side in ("inputs", "outputs"):
             part = f'.{side}["{name}"]'
             if removed := self._lookup.of_path(node + part) or self._of_former(node, part):
-                return self._removed(removed)
+                return self._removed_of(f"{node}.", removed, f"`{node}` has no socket {name!r}", "had")
         return self._no_part(node, name, names, f"`{node}` has no socket {name!r}", "It has")
 
     def still_works(self, path: str) -> bool:
@@ -175,6 +171,13 @@ class KnownNames:
         return Lacking(
             removed.path, self._notes.removed(removed), targets, replacement, sure=sure, removed=True
         )
+
+    def _removed_of(self, beginning: str, removed: RemovedSymbol, lacks: str, did: str = "did") -> Lacking:
+        """What is removed of something; ``lacks`` says so where what that took the place of ``did`` otherwise."""
+        lacking = self._removed(removed)
+        if removed.path.startswith(beginning):
+            return lacking
+        return replace(lacking, message=f"{lacks}, as what it took the place of {did}: {lacking.message}")
 
     def _never(self, owner: str, name: str) -> Lacking:
         machinery = self.reader.members(STRUCT) if owner != STRUCT else {}
