@@ -29,6 +29,8 @@ LinkKind = Literal["manual", "base", "pointer", "collection", "socket-of"]
 
 # Where an enum item is taken that RNA lists and every instance refused.
 NOT_TAKEN = "by none that was tried"
+# Where one is taken that the machine which was asked did not have, and others do.
+AT_TIMES = "where the machine or a setting allows it"
 # How the types of parameters end that are texts for which None can be given, too.
 OR_NONE = " or None"
 # How flags begin that say what fills a pointer that is None on a new thing, and on which new things it is not None.
@@ -163,6 +165,11 @@ class Parameter:
     def is_open(self) -> bool:
         """Whether the values depend on the instance: one that was not asked may take others."""
         return any(item.where for item in self.enum_items)
+
+    @property
+    def has_stand_in(self) -> bool:
+        """Whether RNA lists nothing but what is refused, since the values are put together while Blender runs."""
+        return bool(self.enum_items) and all(item.where == NOT_TAKEN for item in self.enum_items)
 
 
 @dataclass(frozen=True, slots=True)

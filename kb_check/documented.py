@@ -34,6 +34,8 @@ _BMESH, _BMESH_OPERATORS, _BMESH_TYPES = "bmesh.", "bmesh.ops.", "bmesh.types."
 _MATHUTILS, _MATRIX, _VECTOR_CLASS = "mathutils.", "mathutils.Matrix", "mathutils.Vector"
 # ``bpy.types.Mesh``, ``Sequence[BMVert | BMEdge]``, ``bpy.types.Area | None``.
 _CLASSES = re.compile(r"(?P<many>Sequence\[)?(?P<classes>[\w.]+(?: \| [\w.]+)*)(?(many)\])")
+_CLASS = re.compile(r"type(\[.*\])?")  # of what takes a class itself
+_DECLARING = "bpy.props."  # has a rule of its own
 _IN_C = ("bmesh.", "mathutils.", "gpu.", "imbuf.", T)
 _ANYTHING = frozenset({f"{T}AnyType", f"{T}Property", f"{T}Struct"})
 _NUMBERS = frozenset({"bool", "int", "float"})
@@ -104,6 +106,9 @@ def _plain_misfit(taker: Taker, kind: Type) -> Misfit | None:
     if is_math or is_vector or _is_vector_member(taker):
         is_refused = isinstance(kind, Plain) and kind.kind != "bytes"
         return Misfit("a sequence of numbers", describe(kind)) if is_refused else None
+    if taker.is_parameter and _CLASS.fullmatch(documented) and not path.startswith(_DECLARING):
+        is_refused = isinstance(kind, (Plain, Tuple, Sequence, Mapping))
+        return Misfit("a class", describe(kind)) if is_refused else None
     is_member = not taker.is_parameter and path.startswith(_BMESH_TYPES)
     strict = _STRICT if is_member or path.startswith(_BMESH_OPERATORS) else _DOCUMENTED
     fits = strict.get(documented)

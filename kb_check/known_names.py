@@ -131,11 +131,7 @@ class KnownNames:
         """A keyword that a function or operator does not take; ``names`` are those that it takes."""
         part = f"({name})"
         if removed := self._lookup.of_part(function, part) or self._of_former(function, part):
-            lacking = self._removed(removed)
-            if removed.path.startswith(f"{function}("):
-                return lacking
-            why = f"`{function}` takes no `{name}`, as what it took the place of did: "
-            return replace(lacking, message=why + lacking.message)
+            return self._removed_of(f"{function}(", removed, f"`{function}` takes no `{name}`")
         names = list(names)
         symbol = self.reader.symbol(function)
         labels = {one.name: one.label for one in symbol.parameters} if symbol else {}
@@ -156,7 +152,8 @@ class KnownNames:
         whole = plain_path(owner)
         part = f"{owner.removeprefix(whole)}:{value}"
         if removed := self._lookup.of_part(whole, part) or self._of_former(whole, part):
-            return self._removed(removed)
+            beginning = whole + part[0]
+            return self._removed_of(beginning, removed, f"`{owner}` takes no {value!r}")
         values = list(values)
         similar = likely_values(value, values) or self._enum_values.explaining(owner, value)
         return self._no_part(
@@ -168,7 +165,7 @@ class KnownNames:
         for side in SIDES:
             part = f'.{side}["{name}"]'
             if removed := self._lookup.of_path(node + part) or self._of_former(node, part):
-                return self._removed(removed)
+                return self._removed_of(f"{node}.", removed, f"`{node}` has no socket {name!r}", "had")
         return self._no_part(node, name, names, f"`{node}` has no socket {name!r}", "It has")
 
     def still_works(self, path: str) -> bool:
@@ -184,6 +181,13 @@ class KnownNames:
         return Lacking(
             removed.path, self._notes.removed(removed), targets, replacement, sure=sure, removed=True
         )
+
+    def _removed_of(self, beginning: str, removed: RemovedSymbol, lacks: str, did: str = "did") -> Lacking:
+        """What is removed of something; ``lacks`` says so where what that took the place of ``did`` otherwise."""
+        lacking = self._removed(removed)
+        if removed.path.startswith(beginning):
+            return lacking
+        return replace(lacking, message=f"{lacks}, as what it took the place of {did}: {lacking.message}")
 
     def _never(self, owner: str, name: str) -> Lacking:
         machinery = self.reader.members(STRUCT) if owner != STRUCT else {}

@@ -70,6 +70,19 @@ def is_named_before(script: Script, word: str, place: ast.expr) -> bool:
     return first is not None and first <= stage(script, place)
 
 
+def is_named_only_behind(script: Script, word: str, statement: ast.stmt) -> bool:
+    """Whether nothing but later statements of the same body name a setting, which has no effect then the first time."""
+    if statement not in places(script):
+        return False
+    body, _ = places(script)[statement]
+    start = statement.end_lineno or 0, statement.end_col_offset or 0
+    end = body[-1].end_lineno or 0, body[-1].end_col_offset or 0
+    naming = [
+        node for node in script.all(ast.Attribute, ast.keyword, ast.Constant) if word in words_of([node])
+    ]
+    return all(start <= (node.lineno, node.col_offset) < end for node in naming)
+
+
 def stage(script: Script, place: ast.expr) -> int:
     """The number of the statement of the module that a place is in; within a function, the last one."""
     body = script.tree.body

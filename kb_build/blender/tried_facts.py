@@ -11,6 +11,7 @@ from kb_build.records import (
     ALSO,
     ANY,
     AREAS,
+    AT_TIMES,
     BARE_DATA,
     CALLS,
     EMPTY,
@@ -27,6 +28,7 @@ from kb_build.records import (
     LOCKED_WITH,
     MUST_HAVE,
     NEEDS,
+    NOT_TAKEN,
     STOPS,
     UNBOUNDED,
 )
@@ -42,6 +44,23 @@ def add_items(
     if row is not None:
         listed, texts = row.get("enum_items", ()), asked.get("texts", {})
         row["enum_items"] = items_in_contexts(listed, asked["contexts"], texts, neighbours)
+
+
+def _add_source_items(row: dict[str, Any] | None, found: dict[str, Any]) -> None:
+    """Adds the items that others have to those that were taken here: there are no more."""
+    if row is not None:
+        taken = [item for item in row.get("enum_items", ()) if item.get("where") != NOT_TAKEN]
+        known = {item["identifier"] for item in taken}
+        others = ({**item, "where": AT_TIMES} for item in found["items"] if item["identifier"] not in known)
+        row["enum_items"] = [*taken, *others]
+        row["enum_computed"] = False
+
+
+def _add_never_reached(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
+    """Adds which values nothing that was tried came to have."""
+    for item in (row or {}).get("enum_items", ()):
+        if item["identifier"] in seen["items"]:
+            item["where"] = NOT_TAKEN
 
 
 def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
@@ -61,6 +80,28 @@ def _add_choices(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
     for parameter in row.get("parameters", ()) if row is not None and asked["items"] else ():
         if parameter["name"] == asked["parameter"]:
             parameter["enum_items"] = asked["items"]
+
+
+def _add_refused_default(row: dict[str, Any] | None, asked: dict[str, Any]) -> None:
+    """Adds that an operator's argument never takes what RNA has for it.
+
+    Where RNA lists nothing else, it stands for values that Blender puts together later: those that it named are kept.
+    """
+    for parameter in (row or {}).get("parameters", ()):
+        if parameter["name"] != asked["argument"]:
+            continue
+        items, values = parameter.get("enum_items", ()), asked.get("values")
+        others = [item for item in items if item["identifier"] != parameter["default"]]
+        if others and not values:
+            continue  # it may be taken where there are any
+        del parameter["default"]
+        if others:
+            parameter["enum_items"] = others
+            continue
+        for item in items:
+            item["where"] = NOT_TAKEN
+        if values:
+            parameter["values_asked"] = values
 
 
 def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
@@ -198,12 +239,15 @@ ADDED = {
     "argument_items": _add_argument_items,
     "bare_data": _add_bare_data,
     "choices": _add_choices,
+    "never_reached": _add_never_reached,
     "new_values": _add_values,
     "new_pointer": _add_pointer,
     "operator_needs": _add_needs,
     "operator_areas": _add_areas,
     "operator_calls": _add_calls,
     "refusals": _add_refusals,
+    "refused_default": _add_refused_default,
+    "source_items": _add_source_items,
     "empty_collection": _add_empty,
     "evaluated": _add_evaluated,
     "inverted": _add_inverted,

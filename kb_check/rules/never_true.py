@@ -8,6 +8,8 @@ if context.mode == "WEIGHT_PAINT":  # reported: the mode is called PAINT_WEIGHT
     ...
 if context.mode == "PAINT_WEIGHT":
     ...
+if context.mode == "EDIT_GPENCIL":  # reported in 5.1: RNA lists it, and no object comes into such a mode
+    ...
 ```
 
 The fix is never sure: a branch that has not run for some versions runs again with it, and may need more than a name.
@@ -25,6 +27,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.paths import item_of
+from kb_build.records import NOT_TAKEN
+from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
@@ -32,11 +36,12 @@ from kb_check.script import once_per_script
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_check.findings import Finding
+    from kb_build.records import EnumItem, Symbol
     from kb_check.script import Script
 
 
 def _check(script: Script) -> Iterator[Finding]:
+    yield from _never_reached(script)
     left_over: dict[str, list[Finding]] = {}
     for row in script.missing("compared"):
         if row.value:
@@ -56,6 +61,51 @@ def _check(script: Script) -> Iterator[Finding]:
     for first, *others in left_over.values():
         more = f" The same holds for {len(others)} more in this file." if others else ""
         yield replace(first, message=first.message + more)
+
+
+def _never_reached(script: Script) -> Iterator[Finding]:
+    """Comparisons with what RNA lists for a property that Blender alone sets, and nothing that was tried came to have.
+
+    Meant is what has the same label.
+    """
+    for row in script.resolutions("compared"):
+        if (
+            not row.sure
+            or row.guarded
+            or row.missing
+            or row.possible
+            or not isinstance(row.node, ast.Constant)
+        ):
+            continue
+        symbols = [script.api.symbols.symbol(path) for path in row.symbols]
+        never = [
+            item
+            for symbol in symbols
+            if symbol
+            for item in _never_had(symbol)
+            if item.identifier == row.value
+        ]
+        if not never or len(never) < len(symbols) or (symbol := symbols[0]) is None:
+            continue
+        had = [item for item in symbol.enum_items if item.where != NOT_TAKEN]
+        meant = [item.identifier for item in had if item.name == never[0].name]
+        if not _beside(script).get(row.node, frozenset()).isdisjoint(meant):
+            continue
+        edit = script.renamed(row.node, meant[0]) if len(meant) == 1 else None
+        told = f" {' or '.join(map(repr, meant))} has its label." if meant else ""
+        yield Finding(
+            RULE.id, RULE.severity, script.span(row.node),
+            f"RNA lists {row.value!r} for `{symbol.path}`, and nothing comes to have it: the comparison never matches "
+            f"it.{told}",
+            symbol.path, tuple(f"{symbol.path}:{name}" for name in meant),
+            Fix(f"Write {meant[0]}", (edit,)) if edit else None,
+        )  # fmt: skip
+
+
+def _never_had(symbol: Symbol) -> list[EnumItem]:
+    """The items that a property is never read as; none of one that scripts may set."""
+    items = symbol.enum_items if "readonly" in symbol.flags else ()
+    return [item for item in items if item.where == NOT_TAKEN]
 
 
 @once_per_script

@@ -8,8 +8,9 @@ material.roughness = 5  # reported: it becomes 1
 bpy.ops.mesh.primitive_circle_add(vertices=1)  # reported: it becomes 3
 ```
 
-Not reported: values of sockets, which the range of their slider does not bound, values of shape keys, whose range is
-set beside them, and arguments of functions.
+Not reported: ends of ranges that Blender does not keep to, as was tried when the base was built (the mass of a rigid
+body); values of sockets, which the range of their slider does not bound; values of shape keys, whose range is set
+beside them; and arguments of functions.
 """
 
 from __future__ import annotations
@@ -17,6 +18,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
+from kb_build.records import STOPS, UNBOUNDED
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import given_values
 from kb_check.literals import items, number
@@ -31,44 +33,20 @@ if TYPE_CHECKING:
 
 _LONGEST_INT = 2**31
 _ROUNDING = 1e-5  # of the limits, which Blender keeps as 32-bit floats
-# Properties whose values RNA's range does not bound: their setters, or ranges that other values decide, do. Found by
-# setting every number of some 900 instances just beyond its range, and again with each other setting of the same thing
-# changed: only shape keys have a range that is set so.
+# Properties of which RNA's range says nothing, and Blender's own values when the base was made neither: what stays of a
+# number depends on other things, or on the machine.
 _BOUND_OTHERWISE = {
-    "Brush": {"size", "unprojected_size"},
-    "Camera": {"angle", "angle_x", "angle_y"},
-    "CameraDOFSettings": {"aperture_blades"},
-    "ClothSettings": {
-        "bending_stiffness", "bending_stiffness_max", "compression_stiffness", "compression_stiffness_max",
-        "internal_compression_stiffness", "internal_compression_stiffness_max", "internal_tension_stiffness",
-        "internal_tension_stiffness_max", "sewing_force_max", "shear_stiffness", "shear_stiffness_max", "shrink_max",
-        "shrink_min", "tension_stiffness", "tension_stiffness_max",
-    },
     "ColorManagedViewSettings": {"white_balance_whitepoint"},
-    "CurveMapping": {"clip_max_x", "clip_max_y", "clip_min_x", "clip_min_y"},
     "MeshLoop": {"edge_index", "vertex_index"},
     "MeshPolygon": {"vertices"},
-    "MultiresModifier": {"levels", "render_levels", "sculpt_levels"},
     "NodeSocket": {"default_value", "link_limit"},
-    "NodeTreeInterface": {"active_index"},
-    "Object": {"active_shape_key_index"},
-    "OceanModifier": {"choppiness"},
-    "ParticleSettings": {"hair_length", "line_length_head", "line_length_tail", "timestep"},
-    "PointCache": {"frame_step"},
     "PointCacheItem": {"frame_step"},
     "PreferencesEdit": {"undo_steps"},
     "RenderSettings": {"threads"},
-    "RigidBodyWorld": {"solver_iterations"},
-    "Scene": {"frame_current", "frame_float"},
-    "ShapeKey": {"slider_max", "slider_min", "value"},
-    "Spline": {"material_index", "order_u", "order_v"},
-    "Strip": {"animation_offset_end", "animation_offset_start", "content_trim_end", "content_trim_start"},
-    "TextCharacterFormat": {"material_index"},
+    "ShapeKey": {"value"},
     "ThemeWidgetColors": {"roundness"},
     "ToolSettings": {"snap_playhead_frame_step", "snap_playhead_second_step"},
-    "UnifiedPaintSettings": {"size", "unprojected_size"},
-    "ViewLayer": {"active_aov_index", "active_lightgroup_index"},
-}  # fmt: skip
+}
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -94,7 +72,7 @@ def _judged(script: Script, taker: Taker, node: ast.expr) -> Iterator[Finding]:
     value = number(script, node)
     if value is None or (taker.kind == "int" and (isinstance(value, float) or abs(value) >= _LONGEST_INT)):
         return
-    low, high = taker.hard_min, taker.hard_max
+    low, high = _kept_ends(taker)
     limit = low if low is not None and value < low - _slack(low) else None
     if high is not None and value > high + _slack(high):
         limit = high
@@ -109,6 +87,17 @@ def _judged(script: Script, taker: Taker, node: ast.expr) -> Iterator[Finding]:
         f"`{taker.path}` holds {start} … {end}: {value:g} becomes {kept}.{_advice(taker, value)}", taker.path, (),
         Fix(f"Write {kept}", (Edit(span, kept),)) if literal and not _advice(taker, value) else None,
     )  # fmt: skip
+
+
+def _kept_ends(taker: Taker) -> tuple[float | None, float | None]:
+    """The ends of a range that Blender keeps to, as tried: beyond the others a value stays, or stops elsewhere."""
+    if taker.is_parameter:
+        return taker.hard_min, taker.hard_max
+    others = {
+        *taker.symbol.flagged(UNBOUNDED),
+        *(stop.partition("=")[0] for stop in taker.symbol.flagged(STOPS)),
+    }
+    return None if "min" in others else taker.hard_min, None if "max" in others else taker.hard_max
 
 
 def _advice(taker: Taker, value: float) -> str:

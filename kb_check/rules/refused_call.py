@@ -14,6 +14,7 @@ strip.modifiers.new("Curves", "CURVES")  # reported: ends Blender in a new file
 gpu.types.GPUShader(
     vertex, fragment
 )  # reported since 5.0: functions make it, such as `gpu.shader.create_from_info`
+bpy.utils.register_class(Grow())  # reported: Blender makes the instances of its classes, and takes Grow
 bpy.data.meshes.remove(ob.to_mesh())  # reported: ob.to_mesh_clear()
 bpy.ops.sculpt.face_sets_create(
     mode="ALL"
@@ -31,9 +32,9 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import NODE, OBJECT
+from kb_build.api_names import NODE, OBJECT, STRUCT
 from kb_build.api_names import TYPES as T
-from kb_build.flow.types import ClassObject, Instance
+from kb_build.flow.types import UNKNOWN, ClassObject, Instance, LocalClass, members
 from kb_build.object_data import OBJECT_DATA
 from kb_build.paths import last_name
 from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS
@@ -50,6 +51,7 @@ from kb_check.made_here import (
     knows_all,
 )
 from kb_check.node_trees import tree_of
+from kb_check.own_classes import own_classes
 from kb_check.removed import OUTSIDE_MAIN
 from kb_check.repeated_calls import follows
 from kb_check.rule import Rule
@@ -68,6 +70,7 @@ _LIGHT = "bpy.types.Light"
 _GREASE_PENCIL, _FORMER_MODIFIERS = "GreasePencil", f"{T}GpencilModifier"
 # Modules whose classes are written in C and have a signature if, and only if, they can be called.
 _SIGNED = frozenset({"bmesh.types", "gpu.types", "idprop.types", "imbuf.types"})
+_REGISTERING = frozenset({"bpy.utils.register_class", "bpy.utils.unregister_class"})
 _NOT_AFTER = {"any": "a second time", "other": "after another", "same": "a second time"}
 _FIRST_OF_ZONE, _SECOND_OF_ZONE = "Input", "Output"
 _ENTERING = frozenset({"bpy.ops.object.mode_set", "bpy.ops.sculpt.sculptmode_toggle"})
@@ -77,6 +80,7 @@ _REMOVES_DATA = re.compile(r"bpy\.types\.BlendData\w+\.remove")
 def _check(script: Script) -> Iterator[Finding]:
     yield from _called_properties(script)
     yield from _called_classes(script)
+    yield from _called_structs(script)
     unknown = {row.node for row in script.missing("keyword")}
     earlier: dict[tuple[str, str, str], CallSite] = {}
     for call in calls(script):
@@ -187,6 +191,66 @@ def _called_classes(script: Script) -> Iterator[Finding]:
             )  # fmt: skip
 
 
+def _called_structs(script: Script) -> Iterator[Finding]:
+    """Calls of classes of data, and of those that a script derives from them: they take an instance, and nothing else.
+
+    Blender makes the instances of those that it registers.
+    """
+    for node in script.all(ast.Call):
+        path = _struct_called(script, node.func)
+        if not path:
+            continue
+        row = script.analysis.resolutions.get(node.func)
+        is_open = any(isinstance(given, ast.Starred) for given in node.args) or any(
+            keyword.arg is None for keyword in node.keywords
+        )
+        is_copied = len(node.args) == 1 and not node.keywords and not isinstance(node.args[0], ast.Constant)
+        if (
+            is_open
+            or is_copied
+            or (row is not None and (row.guarded or not row.sure))
+            or is_tried(script, node)
+        ):
+            continue
+        is_registered = node in _registered(script)
+        advice = " Give the class itself." if is_registered else ""
+        yield Finding(
+            RULE.id, "error", script.span(node),
+            f"`{ast.unparse(node.func)}` cannot be called: Blender makes the instances of a `{path}`.{advice}",
+            path, (), _uncalled(script, node, "Give the class") if is_registered else None,
+        )  # fmt: skip
+
+
+def _struct_called(script: Script, node: ast.expr) -> str:
+    """The class of Blender's data that an expression surely is, or derives from; empty for none."""
+    paths: list[str] = []
+    for kind in members(script.type_of(node) or UNKNOWN):
+        if isinstance(kind, ClassObject) and script.api.descends(kind.cls, STRUCT):
+            paths.append(kind.cls)
+        elif isinstance(kind, LocalClass):
+            paths.append(_derived(script).get(script.analysis.classes[kind.number], ""))
+        else:
+            paths.append("")
+    return paths[0] if all(paths) else ""
+
+
+@once_per_script
+def _derived(script: Script) -> dict[ast.ClassDef, str]:
+    """Each class of the script that Blender makes the instances of → what it derives from."""
+    return {own.node: own.path for own in own_classes(script) if own.lacks("__new__")}
+
+
+@once_per_script
+def _registered(script: Script) -> frozenset[ast.expr]:
+    """What is given to be registered or no longer registered."""
+    return frozenset(
+        node
+        for call in calls(script)
+        if call.callee.symbol.path in _REGISTERING
+        for _, node in call.arguments()
+    )
+
+
 def _removing_of_object(script: Script, call: CallSite) -> Iterator[Finding]:
     """Data that an object makes for itself, and that the script removes from Blender's."""
     path = call.callee.symbol.path
@@ -258,12 +322,12 @@ def _called_properties(script: Script) -> Iterator[Finding]:
             )  # fmt: skip
 
 
-def _uncalled(script: Script, node: ast.Call) -> Fix | None:
+def _uncalled(script: Script, node: ast.Call, title: str = "Read it") -> Fix | None:
     if node.args or node.keywords:
         return None
     called, whole = script.span(node.func), script.span(node)
     behind = Span(called.end_line, called.end_column, whole.end_line, whole.end_column)
-    return Fix("Read it", (Edit(behind, ""),), sure=True) if script.text(behind) == "()" else None
+    return Fix(title, (Edit(behind, ""),), sure=True) if script.text(behind) == "()" else None
 
 
 def _is_of(script: Script, refusal: Refusal, call: CallSite) -> bool:

@@ -13,10 +13,13 @@ compare = tree.nodes.new("FunctionNodeCompare")
 compare.data_type = "BOOLEAN"  # reported: RNA lists it for other nodes
 mix = material.node_tree.nodes.new("ShaderNodeMix")
 mix.data_type = "ROTATION"  # reported: geometry node trees have it only
+bpy.ops.rigidbody.mass_calculate(
+    material="DEFAULT"
+)  # reported: RNA lists it in the place of values made later
 ```
 
-What a script sets before decides. Where it names the other setting nowhere, what a new scene has does, which a file
-that is open may have otherwise: that is a warning.
+What a script sets before decides. Where it names the other setting nowhere, or only in later statements of the same
+body, what a new scene has does, which a file that is open may have otherwise: that is a warning.
 
 Not reported: what follows calls that may change the other setting out of sight, and add-ons.
 """
@@ -42,6 +45,7 @@ from kb_check.made_here import (
     bindings,
     called_operators,
     callee_path,
+    is_named_only_behind,
     is_new,
     knows_all,
     member_path,
@@ -53,12 +57,13 @@ from kb_check.raised import REFUSES_ENUM
 from kb_check.rule import Rule
 from kb_check.script import once_per_script
 from kb_check.settings_before import made_just_before, set_before
+from kb_check.tried import is_tried
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_build.records import EnumItem, NewValue, Symbol
+    from kb_build.records import EnumItem, NewValue, Parameter, Symbol
     from kb_check.script import Script
 
 _VALUES = r"(\w+)=('[^'|]*'(?:\|'[^'|]*')*)"
@@ -70,6 +75,7 @@ _TEXT = re.compile(r"'([^']*)'")
 _OF = re.compile(r"(.+) of an? (\w+)")
 _BY = re.compile(r"(only|not) by ([^…]+)")
 _SCENE = f"{T}Scene"
+_TOLD = 4
 _RESETTING = "bpy.ops.wm.read_factory_settings"
 
 
@@ -107,6 +113,11 @@ def _check(script: Script) -> Iterator[Finding]:
             yield _finding(script, statement.value, item, symbol.path, f"this node is in a {tree}")
         elif kind := _other_kind(script, node.value, item):
             yield _finding(script, statement.value, item, symbol.path, f"this is a {kind}")
+    yield from _given_to_calls(script)
+
+
+def _given_to_calls(script: Script) -> Iterator[Finding]:
+    """Values that functions and operators are given."""
     for call in calls_not_ready_for(script, REFUSES_ENUM):
         function = call.node.func
         if isinstance(function, ast.Attribute) and call.callee.symbol.kind == "function":
@@ -114,6 +125,10 @@ def _check(script: Script) -> Iterator[Finding]:
                 item = _item(parameter.enum_items, given)
                 if item and (kind := _other_kind(script, function.value, item)):
                     yield _finding(script, given, item, call.callee.symbol.path, f"this is a {kind}")
+        elif call.callee.symbol.kind == "operator" and not is_tried(script, call.node):
+            for parameter, given in call.arguments():
+                if parameter.has_stand_in and _item(parameter.enum_items, given):
+                    yield _stand_in(script, given, call.callee.symbol.path, parameter)
 
 
 def _is_certain(row: Resolution) -> bool:
@@ -144,6 +159,22 @@ def _never_taken(script: Script, node: ast.expr, item: EnumItem, symbol: Symbol)
     return Finding(
         RULE.id, "error", script.span(node),
         f"{item.identifier!r} is refused by every `{symbol.owner}`. It takes {taken}.", symbol.path,
+    )  # fmt: skip
+
+
+def _stand_in(script: Script, node: ast.expr, operator: str, parameter: Parameter) -> Finding:
+    """What RNA lists for an argument whose values are put together while Blender runs."""
+    asked = [f"`{value}`" for value in parameter.values_asked]
+    takes = (
+        f" In a new file it takes {', '.join(asked[:_TOLD])}{' …' if len(asked) > _TOLD else ''}."
+        if asked
+        else ""
+    )
+    return Finding(
+        RULE.id, "error", script.span(node),
+        f"{ast.unparse(node)} stands for nothing in `{operator}({parameter.name})`, which refuses it: leave it out, or "
+        f"give one of the values that there are at that time.{takes}",
+        operator,
     )  # fmt: skip
 
 
@@ -200,19 +231,26 @@ def _refused_by_setting(
             told = "nothing sets it before" if name in named_words(script) else "this script does not set it"
             why = f"`{name}` of a new one is {own!r}: {told}"
             yield _finding(script, statement.value, item, setting.symbol.path, why)
-    elif name in named_words(script):
+    elif (told := _told_unset(script, name, statement)) is None:
         return
     elif owner := _new_owner(script, target.value, setting.symbol):
         value = owner.value
         if setting.refuses(value):
-            why = f"`{name}` of a new {' or '.join(owner.made)} is {value!r}: this script does not set it"
+            why = f"`{name}` of a new {' or '.join(owner.made)} is {value!r}: {told}"
             yield _finding(script, statement.value, item, setting.symbol.path, why)
     elif all(map(setting.refuses, _values_of_scene(script, setting.symbol))) and _works_on_a_scene(
         script, target.value
     ):
         usual = usual_default(setting.symbol)
-        why = f"in a new scene `{name}` is {usual!r}: this script does not set it"
+        why = f"in a new scene `{name}` is {usual!r}: {told}"
         yield replace(_finding(script, statement.value, item, setting.symbol.path, why), severity="warning")
+
+
+def _told_unset(script: Script, name: str, statement: ast.stmt) -> str | None:
+    """That a setting has not been set when a script comes to a statement; None where it may have been."""
+    if name not in named_words(script):
+        return "this script does not set it"
+    return "this script does not set it before" if is_named_only_behind(script, name, statement) else None
 
 
 def _refused_beside(

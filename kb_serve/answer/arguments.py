@@ -127,9 +127,12 @@ def _parameter_line(
         text += f": {parameter.label}"
     if parameter.values_asked:
         text += f"\n  in a new file one of {_values(parameter.values_asked)}"
-    elif parameter.enum_items:
+    elif parameter.enum_items and not parameter.has_stand_in:
         taken = [item.identifier for item in parameter.enum_items if item.identifier not in refused]
         text += f"\n  one of {_values(taken)}"
+    if parameter.has_stand_in:
+        listed = [item.identifier for item in parameter.enum_items]
+        text += f"\n  {_values(listed)}, which RNA lists, is refused"
     return text
 
 

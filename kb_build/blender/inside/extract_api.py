@@ -24,8 +24,10 @@ from . import (
     operator_needs,
     operators,
     own_classes,
+    reached_modes,
     refusals,
     rna,
+    source_items,
     undo_steps,
 )
 from .apart import Beside, can_work_apart
@@ -98,6 +100,7 @@ def start_beside(_write, found):
             limits.find_all(write, observer)
             left_out.find_all(write)
             undo_steps.find_all(write)
+            reached_modes.find_all(write)
 
         found["refusals"] = Beside("refusals", tried)
         found["addons"] = Beside("addons", addon_names.write_all)
@@ -147,6 +150,8 @@ STEPS = (
     ),
     ("neighbours", lambda write, found: found["neighbours"].write(write)),
     ("instances", lambda write, found: found["observer"].write(write)),
+    # Of enumerations of which the instances have told their items.
+    ("items in sources", lambda write, _found: source_items.find_all(write)),
     ("refusals", write_begun),
 )
 

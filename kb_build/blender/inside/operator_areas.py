@@ -14,6 +14,7 @@ import bpy
 
 from .apart import apart, can_work_apart
 from .instances.making import SEQUENCER_SCENE, activate, choices, no_sequencer_scene
+from .operator_defaults import Defaults
 
 # Of area types; those that run in more run in any.
 MOST_AREAS = 8
@@ -208,6 +209,7 @@ def find_all(write, known, scene):
     things = stage.things()
     given, areas = {}, defaultdict(set)
     known = {path: operator for path, operator in known.items() if not path.endswith(NOT_ASKED)}
+    defaults = Defaults(known)
     for state in stage.states():
         for path in polled(known):
             del known[path]
@@ -219,7 +221,9 @@ def find_all(write, known, scene):
         for editor in EDITORS if state in MANY else EDITORS[:1]:
             if stage.show(editor):
                 with stage.within():
-                    for path in polled(known):
+                    running = polled(known)
+                    defaults.ask(sorted(running))
+                    for path in running:
                         areas[path].add(stage.area.type)
     with_scene = wanting_sequencer_scene(stage, {path: known[path] for path in areas if path in known})
     for path, operator in sorted(known.items()):
@@ -230,3 +234,4 @@ def find_all(write, known, scene):
             types = ["any"] if len(areas[path]) > MOST_AREAS else sorted(areas[path])
             also = f"{SEQUENCER_SCENE} = scene" if path in with_scene else ""
             write("operator_areas", path=path, areas=types, given=member, also=also)
+    defaults.write(write)

@@ -23,6 +23,7 @@ from .instances.making import (
     object_of,
     remove,
 )
+from .operator_defaults import Defaults
 
 MOST_TYPES = 6
 MOST_CASES = 3
@@ -140,7 +141,8 @@ def in_modes(passed, refused):
 class Objects:
     """With which types of active objects, in which modes, each operator can run."""
 
-    def __init__(self):
+    def __init__(self, defaults):
+        self.defaults = defaults
         # type → all modes that were tried
         self.tried = {}
         # path → {type: modes in which it can run}
@@ -178,7 +180,9 @@ class Objects:
             self.tried[kind] = []
             for mode in modes(obj):
                 self.tried[kind].append(mode)
-                for path in can_run(known):
+                found = can_run(known)
+                self.defaults.ask(found)
+                for path in found:
                     passed.setdefault(path, {}).setdefault(kind, []).append(mode)
             if "OBJECT" in self.tried[kind]:
                 self.left.update(
@@ -316,7 +320,7 @@ def run_in_modes(known):
     return found
 
 
-def parts_needed(known, observer):
+def parts_needed(known, observer, defaults):
     """path → (mode, the calls after which an operator can run there that cannot with a new object alone)."""
     found = {}
     for calls in (adding_calls(observer), modifier_calls()):
@@ -332,7 +336,9 @@ def parts_needed(known, observer):
         for call in made if any(wanting.values()) else ():
             add([call])
             for mode in modes(bpy.context.object):
-                for path in can_run(wanting.get(mode, {})):
+                running = can_run(wanting.get(mode, {}))
+                defaults.ask(running)
+                for path in running:
                     found.setdefault(path, (mode, []))[1].append(call)
     return found
 
@@ -352,22 +358,26 @@ def with_objects(write, known, _observer):
     """What operators want of which it is enough that an object is active, or nothing is: these leave ``known``."""
     empty_scene()
     no_sequencer_scene()
-    free = Objects()
+    defaults = Defaults(known)
+    free = Objects(defaults)
     free.ask({path: known.pop(path) for path in can_run(known)})
     for path in free.passed:
         write("operator_needs", path=path, needs=free.free_needs(path))
-    objects = Objects()
+    objects = Objects(defaults)
     objects.ask(known)
     for path in objects.passed:
         write("operator_needs", path=path, needs=objects.needs(path))
         del known[path]
+    defaults.write(write)
 
 
 def with_parts(write, known, observer):
     """What operators want that is added to an object: these leave ``known``."""
-    for path, (mode, calls) in sorted(parts_needed(known, observer).items()):
+    defaults = Defaults(known)
+    for path, (mode, calls) in sorted(parts_needed(known, observer, defaults).items()):
         write("operator_needs", path=path, needs=added(path, mode, calls))
         del known[path]
+    defaults.write(write)
 
 
 def with_areas(write, known, _observer):
@@ -413,7 +423,9 @@ def find_all(write, observer, skipped, begun):
     for row in rows:
         if row["record"] == "operator_needs":
             del known[row["path"]]
+    of_parts = set(known)
     find(write, (with_parts,), known, observer, skipped)
+    of_parts.difference_update(known)
     for row in rows:
-        if row["record"] != "operator_areas" or row["path"] in known:
+        if row.get("path") not in of_parts:
             write(**row)

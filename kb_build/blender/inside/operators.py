@@ -15,9 +15,10 @@ NOTHING_SAID = "(undocumented operator)"  # what Blender puts in a description's
 
 
 def names_in_file():
-    """The names of all data-blocks."""
+    """The names of all data-blocks, and of the keying sets of scenes."""
     kinds = [prop.identifier for prop in bpy.data.bl_rna.properties if prop.type == "COLLECTION"]
-    return {block.name for kind in kinds for block in getattr(bpy.data, kind)}
+    blocks = {block.name for kind in kinds for block in getattr(bpy.data, kind)}
+    return blocks.union(*(scene.keying_sets.keys() for scene in bpy.data.scenes))
 
 
 def values_asked(operator, prop):

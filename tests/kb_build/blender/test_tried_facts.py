@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.records import BARE_DATA, INVERTED
+from kb_build.records import AT_TIMES, BARE_DATA, INVERTED, NOT_TAKEN
 from kb_build.symbol_lines import default_text, shown_when, type_text
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.blender.extract_reader import Extract
-    from kb_build.records import Symbol
+    from kb_build.records import Parameter, Symbol
 
 pytestmark = pytest.mark.blender
 
@@ -76,9 +76,48 @@ def test_a_range_that_is_not_kept_says_so(symbols: Mapping[str, Symbol], tmp_pat
     # An end so far out that what is one beyond is nearly the same number.
     assert not symbols["bpy.types.ColorManagedViewSettings.white_balance_temperature"].flagged("unbounded:")
     assert not symbols["bpy.types.ParticleSettings.mass"].flagged("unbounded:")
+    assert symbols["bpy.types.Scene.frame_current"].flagged("unbounded:") == ("max",)
     code = ["import bpy", "bpy.ops.rigidbody.object_add()", "bpy.context.object.rigid_body.mass = -1"]
     rows = run_statements(tmp_path, code, {2: "bpy.context.object.rigid_body.mass"})
     assert rows[2][2] == "-1.0"
+
+
+def test_a_default_that_an_operator_never_takes_is_none(symbols: Mapping[str, Symbol]) -> None:
+    def argument(path: str, name: str) -> Parameter:
+        return next(one for one in symbols[path].parameters if one.name == name)
+
+    material = argument("bpy.ops.rigidbody.mass_calculate", "material")
+    assert material.has_stand_in
+    assert material.default is None
+    assert {"Steel", "Custom"} <= set(material.values_asked)
+    # In areas alone.
+    assert argument("bpy.ops.anim.keyframe_insert", "type").has_stand_in
+    # One of a list whose others are taken.
+    kind = argument("bpy.ops.graph.fmodifier_add", "type")
+    assert (kind.default, kind.has_stand_in) == (None, False)
+    assert "NULL" not in {item.identifier for item in kind.enum_items}
+    # One of a list of which some contexts take only a part.
+    kind = argument("bpy.ops.object.modifier_add", "type")
+    assert (kind.default, kind.has_stand_in) == ("SUBSURF", False)
+    assert argument("bpy.ops.object.select_all", "action").default == "TOGGLE"
+
+
+def test_items_of_other_machines_are_listed_where_a_source_has_them(symbols: Mapping[str, Symbol]) -> None:
+    denoiser = symbols["bpy.types.CyclesRenderSettings.denoiser"]
+    assert not denoiser.enum_computed
+    where = {item.identifier: item.where for item in denoiser.enum_items}
+    assert where.keys() == {"OPENIMAGEDENOISE", "OPTIX"}
+    assert (where["OPENIMAGEDENOISE"], where["OPTIX"] in {"", AT_TIMES}) == ("", True)
+    assert {item.name for item in denoiser.enum_items} == {"OpenImageDenoise", "OptiX"}
+
+
+def test_modes_that_nothing_enters_are_told(symbols: Mapping[str, Symbol]) -> None:
+    def never(path: str) -> set[str]:
+        return {item.identifier for item in symbols[path].enum_items if item.where == NOT_TAKEN}
+
+    former = {f"{mode}_GPENCIL" for mode in ("EDIT", "PAINT", "SCULPT", "VERTEX", "WEIGHT")}
+    assert never("bpy.types.Context.mode") == never("bpy.context.mode") == former
+    assert never("bpy.types.Object.mode") == {"EDIT_GPENCIL"}
 
 
 @pytest.mark.parametrize(

@@ -401,3 +401,23 @@ def test_what_one_of_several_owners_takes_is_not_denied(checker: Checker) -> Non
     assert checker.check(f"{code}one.new(type='NOISE')\ntwo.new(name='x', type='SUBSURF')\n") == []
     found = checker.check(f"{code}one.new(type='NOTHING')\ntwo.new(type='NOTHING')\n")
     assert [row.rule for row in found] == ["unknown-value", "unknown-value"]
+
+
+@pytest.mark.parametrize(
+    ("code", "names"),
+    [
+        (
+            "tree = bpy.data.node_groups.new('x', 'ShaderNodeTree')\ntree.nodes.new('ShaderNodeMix').inputs['Fac']",
+            "`bpy.types.ShaderNodeMix` has no socket 'Fac', as what it took the place of had",
+        ),
+        (
+            "bpy.ops.wm.obj_export(filepath='x', use_selection=True)",
+            "`bpy.ops.wm.obj_export` takes no `use_selection`, as what it took the place of did",
+        ),
+    ],
+)
+def test_what_the_script_writes_is_named_before_what_it_took_the_place_of(
+    rule_checker: Checker, code: str, names: str
+) -> None:
+    [finding] = rule_checker.check(f"import bpy\n{code}\n", rules=["unknown-socket", "unknown-keyword"])
+    assert finding.message.startswith(f"{names}: ")

@@ -122,6 +122,7 @@ WRONG = {
         _RESET + "bpy.context.scene.render.image_settings.file_format = 'FFMPEG'",
         "bpy.context.scene.render.image_settings.file_format = 'OPEN_EXR_MULTILAYER'",
         "render = bpy.context.scene.render\nrender.image_settings.file_format = 'FFMPEG'",
+        "images = bpy.context.scene.render.image_settings\nimages.file_format = 'FFMPEG'\nimages.media_type = 'VIDEO'",
         _OUTPUT + "out.format.file_format = 'PNG'",
         _OUTPUT + "settings = out.format\nsettings.file_format = 'OPEN_EXR'",
         _OUTPUT + "out.format.media_type = 'VIDEO'",
@@ -285,6 +286,9 @@ RIGHT = [
     _TREE + "tree.nodes.new('FunctionNodeRandomValue').inputs['Max']",
     _IMAGES + "images.media_type = 'VIDEO'\nimages.file_format = 'FFMPEG'",
     _IMAGES + "images.media_type = 'VIDEO'\nimages.media_type = 'IMAGE'\nimages.file_format = 'PNG'",
+    _IMAGES + "def video():\n    images.media_type = 'VIDEO'\nvideo()\nimages.file_format = 'FFMPEG'",
+    _IMAGES + "for kind in ('VIDEO', 'IMAGE'):\n    images.media_type = kind\n    break\n"
+    "images.file_format = 'FFMPEG'\nimages.media_type = 'VIDEO'",
     _IMAGES + "images.media_type = 'VIDEO'\nimages = bpy.data.scenes.new('x').render.image_settings\n"
     "images.file_format = 'PNG'",
     _IMAGES + "def still():\n    images.media_type = 'IMAGE'\nimages.media_type = 'VIDEO'\nstill()\n"

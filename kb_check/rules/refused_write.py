@@ -1,0 +1,176 @@
+"""A write to data in a function in which Blender lets nothing be written: `poll`, and what draws.
+
+Blender asks and draws as often as it likes, and refuses to change data-blocks meanwhile: an AttributeError ends the
+function, so that a `poll` says no and a panel stays empty from there on. An operator that is called there is refused
+with a RuntimeError.
+
+```python
+class Grow(bpy.types.Operator):
+    @classmethod
+    def poll(cls, context):
+        context.scene.frame_current = 7  # reported
+        return True
+
+
+class Tools(bpy.types.Panel):
+    def draw(self, context):
+        bpy.ops.object.select_all(
+            action="SELECT"
+        )  # reported: self.layout.operator draws a button that calls it
+```
+
+So are functions that a script appends to a panel, a menu or a header.
+
+Not reported: writes to what belongs to no scene (window managers, screens, workspaces, preferences), which are
+taken; what a function does that is called from there; what a `try` around it catches; getters, setters and updates of
+properties, `execute` and `invoke`, and functions given to `popup_menu`, which may write.
+"""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.api import STRUCT
+from kb_build.flow.facts import T
+from kb_build.flow.trees import children
+from kb_build.flow.types import ClassObject, Instance, LocalClass
+from kb_check.findings import Finding
+from kb_check.literals import times_bound
+from kb_check.made_here import bindings, callee_path
+from kb_check.own_classes import own_classes
+from kb_check.rule import Rule
+from kb_check.tried import is_tried
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_check.own_classes import FunctionDefinition
+    from kb_check.script import Script
+
+_ID, _VIEW_LAYER = f"{T}ID", f"{T}ViewLayer"
+# Data-blocks that may be written to at any time.
+_OF_WINDOWS = frozenset(f"{T}{name}" for name in ("Screen", "WindowManager", "WorkSpace"))
+# Other functions than those that are called poll and draw in which nothing may be written: each was tried.
+_OTHERS = {f"{T}UIList": frozenset({"filter_items"})}
+_MAY_WRITE = f"{T}RenderEngine"  # whose functions draw pictures
+_DRAWING = tuple(f"{T}{name}" for name in ("Header", "Menu", "Panel"))
+_ADDING = frozenset({"append", "prepend"})
+_SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
+_VECTORS = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Quaternion", "Vector"))
+_DEEPEST = 8
+_OPERATORS, _DOTS = "bpy.ops.", 3
+
+
+def _check(script: Script) -> Iterator[Finding]:
+    seen: set[ast.stmt] = set()
+    for function, what in (*_of_classes(script), *_appended(script)):
+        if function in seen:
+            continue
+        seen.add(function)
+        for node in _own_nodes(function):
+            if is_tried(script, node):
+                continue
+            if isinstance(node, ast.Call):
+                yield from _called(script, node, what)
+            elif _is_checked(script, node) and (owner := _holder(script, node.value)):
+                yield Finding(
+                    RULE.id, "error", script.span(node),
+                    f"Blender refuses to write to data in {what}: `{ast.unparse(node)}` belongs to a `{owner}`.", owner,
+                )  # fmt: skip
+
+
+def _of_classes(script: Script) -> Iterator[tuple[FunctionDefinition, str]]:
+    """The functions of classes that Blender calls to ask or to draw, and what each is."""
+    for own in own_classes(script):
+        for symbol, function in own.callbacks(script) if own.path != _MAY_WRITE else ():
+            asks = symbol.name == "poll" or symbol.name in _OTHERS.get(own.path, ())
+            if asks or symbol.name.partition("_")[0] == "draw":
+                yield function, f"`{symbol.name}` of {own.label}"
+
+
+def _appended(script: Script) -> Iterator[tuple[FunctionDefinition, str]]:
+    """The functions that are drawn with a panel, a menu or a header, and what each is."""
+    functions = {node.name: node for node in script.all(ast.FunctionDef)}
+    own = {one.node: one.path for one in own_classes(script)}
+    times = times_bound(script)
+    for node in script.all(ast.Call):
+        match node:
+            case ast.Call(func=ast.Attribute(value=drawn, attr=how), args=[ast.Name(id=name)]) if (
+                how in _ADDING and name in functions and times[name] == 1
+            ):
+                match script.type_of(drawn):
+                    case ClassObject(cls=path):
+                        pass
+                    case LocalClass(number=number):
+                        path = own.get(script.analysis.classes[number], "")
+                    case _:
+                        continue
+                if any(script.api.descends(path, cls) for cls in _DRAWING):
+                    yield functions[name], f"`{name}`, which is drawn with `{ast.unparse(drawn)}`"
+            case _:
+                pass
+
+
+def _own_nodes(function: FunctionDefinition) -> Iterator[ast.Attribute | ast.Subscript | ast.Call]:
+    """What a function calls, and sets or deletes, itself; not what the functions in it do."""
+    queue: list[ast.AST] = list(function.body)
+    while queue:
+        node = queue.pop(0)
+        if isinstance(node, _SCOPES):
+            continue
+        if isinstance(node, ast.Call) or (
+            isinstance(node, (ast.Attribute, ast.Subscript)) and not isinstance(node.ctx, ast.Load)
+        ):
+            yield node
+        queue.extend(children(node))
+
+
+def _called(script: Script, node: ast.Call, what: str) -> Iterator[Finding]:
+    path = callee_path(script, node)
+    if path.startswith(_OPERATORS) and path.count(".") == _DOTS:
+        yield Finding(
+            RULE.id, "error", script.span(node),
+            f"Blender refuses to call operators in {what}: `{path}` raises a RuntimeError there.", path,
+        )  # fmt: skip
+
+
+def _is_checked(script: Script, node: ast.Attribute | ast.Subscript) -> bool:
+    """Whether Blender checks that it may write: the items of its own arrays, and of collections, are set unseen."""
+    kind = script.type_of(node.value)
+    return isinstance(node, ast.Attribute) or (
+        isinstance(kind, Instance) and (kind.cls in _VECTORS or script.api.descends(kind.cls, STRUCT))
+    )
+
+
+def _holder(script: Script, node: ast.expr, depth: int = _DEEPEST) -> str:
+    """The class of the data-block that something surely belongs to and that is locked; empty for none."""
+    kind = script.type_of(node)
+    if isinstance(kind, Instance) and kind.sure:
+        if kind.cls == _VIEW_LAYER:
+            return f"{T}Scene"
+        if script.api.descends(kind.cls, _ID):
+            return "" if kind.cls == _ID or kind.cls in _OF_WINDOWS else kind.cls
+    match node:
+        case ast.Attribute(value=owner):
+            return _holder(script, owner, depth - 1) if depth else ""
+        case ast.Subscript(value=owner):
+            return _holder(script, owner, depth - 1) if depth and _is_struct(script, node) else ""
+        case ast.Name(id=name):
+            values = bindings(script).get(name, [])
+            held = {
+                _holder(script, value, depth - 1) if isinstance(value, (ast.Attribute, ast.Subscript)) else ""
+                for value in values
+            }
+            return held.pop() if depth and len(held) == 1 else ""
+        case _:
+            return ""
+
+
+def _is_struct(script: Script, node: ast.expr) -> bool:
+    """Whether something is one of Blender's structures: a part of an array may be set all the same."""
+    kind = script.type_of(node)
+    return isinstance(kind, Instance) and kind.sure and script.api.descends(kind.cls, STRUCT)
+
+
+RULE = Rule("refused-write", "error", "A write to data where Blender only asks or draws", _check)
