@@ -195,6 +195,7 @@ class Calls(Narrowing):
     def _forget_data(self) -> None:
         """Objects have got data of another kind: a mesh has become a curve."""
         state = self.scope.state
+        self.spend(len(state.names) + len(state.chains))
         for name, kind in state.names.items():
             if isinstance(kind, Instance) and kind.cls == _OBJECT and kind.traits:
                 state.names[name] = replace(kind, traits=())
@@ -655,8 +656,10 @@ class Calls(Narrowing):
                 grown = Mapping(UNKNOWN, kind if is_empty else join(receiver.value, kind))
             case _:
                 return
-        for name in [name for name, held in self.scope.state.names.items() if held is receiver]:
-            self.scope.bind(name, grown)
+        held = self.scope.state.names
+        self.spend(len(held))
+        for name in [name for name, one in held.items() if one is receiver]:
+            self.bind(name, grown)
 
     _callers: ClassVar[dict[type, Callable[..., Type]]] = {
         Operator: _operator,

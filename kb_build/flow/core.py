@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
-from kb_build.flow.scopes import CHOSEN, name_doubt
+from kb_build.flow.scopes import CHOSEN, State, name_doubt
 from kb_build.flow.source_files import SourceFile
 from kb_build.flow.types import (
     UNKNOWN,
@@ -32,6 +32,7 @@ if TYPE_CHECKING:
 DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other
 _MOST_BASES = 40
+_IN_ONE_STEP = 64  # names that are gone through in about the time in which an expression is read
 Reader = FunctionDefinition | SourceFile
 ANY = "*"  # any class, any name: what a script computes
 
@@ -82,6 +83,34 @@ class Core:
         self.statement: ast.stmt | None = None
         self._bases: dict[int, tuple[tuple[str, ...], bool]] = {}
         self._denials: list[tuple[dict[ast.AST, Resolution], ast.AST, Reader]] = []
+
+    # What the analysis may spend.
+
+    def spend(self, things: int) -> None:
+        """Takes the time to go once through so many names, chains or doubts off what may be spent."""
+        self.steps_left -= things // _IN_ONE_STEP
+        if self.steps_left < 0:
+            raise StepsExhausted
+
+    def copied(self, state: State) -> State:
+        """The same state, to be changed on its own; this pays for joining it with others too."""
+        names = len(state.names)
+        if names >= _IN_ONE_STEP or state.chains or state.doubted:
+            self.spend(names + len(state.chains) + len(state.doubted))
+        return state.copy()
+
+    def bind(self, name: str, kind: Type) -> None:
+        """Binds a name here; the chains that begin with it are sought for."""
+        if self.scope.state.chains:
+            self.spend(len(self.scope.state.chains))
+        self.scope.bind(name, kind)
+
+    def doubt_here(self, doubts: frozenset[str]) -> None:
+        """Adds to what is doubted from here on (see :class:`scopes.State`)."""
+        state = self.scope.state
+        if state.doubted:
+            self.spend(len(state.doubted))
+        state.doubted |= doubts
 
     # What the parts give each other.
 
@@ -231,6 +260,7 @@ class Core:
         number = self.numbers.get(node)
         if number is None:
             number = self.numbers[node] = len(self.functions)
+            self.spend(len(self.scope.state.doubted))
             doubted = self.scope.state.doubted_names
             self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file, doubted=doubted))
         elif not self.tries:

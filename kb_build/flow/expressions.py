@@ -329,11 +329,12 @@ class Expressions(Members):
                 break
             if place < len(node.values) - 1:
                 if place == 0:
-                    self.scope.state = before.copy()
+                    self.scope.state = self.copied(before)
                 self.narrow(value, holds=holds)
-        assigned = {name: kind for name, kind in self.scope.state.names.items() if name not in before.names}
-        self.scope.state = before
-        before.names.update(assigned)
+        after, self.scope.state = self.scope.state, before
+        if after is not before:
+            assigned = {name: kind for name, kind in after.names.items() if name not in before.names}
+            before.names.update(assigned)
         if kinds[-1] == settles:
             return settles
         open_kinds = [kind for kind in kinds if not is_decided(kind)]
@@ -351,10 +352,10 @@ class Expressions(Members):
             chosen = self.evaluate(body)
             return telling(chosen, VERSION, value=True) if is_decided(test) else chosen
         before = self.scope.state
-        self.scope.state = before.copy()
+        self.scope.state = self.copied(before)
         self.narrow(node.test, holds=True)
         first = self._behind(node.body)
-        self.scope.state = before.copy()
+        self.scope.state = self.copied(before)
         self.narrow(node.test, holds=False)
         second = self._behind(node.orelse)
         self.scope.state = before
@@ -406,7 +407,7 @@ class Expressions(Members):
     def _inside(self, generators: list[ast.comprehension], read: Callable[[], None]) -> None:
         """Reads a comprehension's element with the names that its loops bind."""
         before = self.scope.state
-        self.scope.state = before.copy()
+        self.scope.state = self.copied(before)
         try:
             for generator in generators:
                 kind = self.iterated(self.evaluate(generator.iter))

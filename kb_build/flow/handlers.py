@@ -34,21 +34,21 @@ class Handlers(Guards, Ways):
         forgiving = any(forgives)
         before = self.scope.state
         self.tolerant += forgiving
-        after = self.way(before.copy(), node.body)
+        after = self.way(self.copied(before), node.body)
         self.tolerant -= forgiving
         within = joined([before, after or self.scope.state])
         if after is not None and node.orelse:
             after = self.way(after, node.orelse)
         ways = [after]
         for handler, is_ready in zip(node.handlers, forgives, strict=True):
-            self.scope.state = within.copy()
+            self.scope.state = self.copied(within)
             if handler.name:
-                self.scope.bind(handler.name, UNKNOWN)
+                self.bind(handler.name, UNKNOWN)
             # What is done where a name is lacking may be for another Blender.
             self.tolerant += is_ready
             ways.append(self.way(self.scope.state, handler.body))
             self.tolerant -= is_ready
-        reached = self.meet(ways, within.copy())
+        reached = self.meet(ways, self.copied(within))
         if forgiving:
             handled = [statement for handler in node.handlers for statement in handler.body]
             self.tell(assigned_names([*node.body, *node.orelse, *handled]), self.lacked(node.body))

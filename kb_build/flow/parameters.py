@@ -42,16 +42,14 @@ class Parameters(Contradictions, Annotations):
         defaults = default_values(arguments)
         for place, argument in enumerate((*positional, *arguments.kwonlyargs)):
             given = declared[place] if place < len(declared) else UNKNOWN
-            self.scope.bind(
-                argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg))
-            )
+            self.bind(argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg)))
         for rest in (arguments.vararg, arguments.kwarg):
             if rest is not None and rest.annotation is not None:
                 self.annotated(rest.annotation)
         if arguments.vararg is not None:
-            self.scope.bind(arguments.vararg.arg, Sequence("tuple", UNKNOWN))
+            self.bind(arguments.vararg.arg, Sequence("tuple", UNKNOWN))
         if arguments.kwarg is not None:
-            self.scope.bind(arguments.kwarg.arg, Mapping(STR, UNKNOWN))
+            self.bind(arguments.kwarg.arg, Mapping(STR, UNKNOWN))
 
     def _parameter(  # noqa: PLR0911 - one return a source
         self, function: FunctionDefinition, argument: ast.arg, declared: Type, default: ast.expr | None
