@@ -22,6 +22,7 @@ from kb_build.flow.facts import (
 )
 from kb_build.flow.narrowing import Narrowing
 from kb_build.flow.texts import passed
+from kb_build.flow.type_parts import bounded
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
@@ -45,7 +46,6 @@ from kb_build.flow.types import (
     Tuple,
     Type,
     Union,
-    bounded,
     instance_of,
     join,
     literal,

@@ -94,9 +94,11 @@ class Core:
 
     def copied(self, state: State) -> State:
         """The same state, to be changed on its own; this pays for joining it with others too."""
-        names = len(state.names)
-        if names >= _IN_ONE_STEP or state.chains or state.doubted:
-            self.spend(names + len(state.chains) + len(state.doubted))
+        things = len(state.names)
+        if state.chains or state.doubted:
+            things += len(state.chains) + len(state.doubted)
+        if things >= _IN_ONE_STEP:
+            self.spend(things)
         return state.copy()
 
     def bind(self, name: str, kind: Type) -> None:

@@ -12,6 +12,7 @@ from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS,
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import chain_text, name_doubt
 from kb_build.flow.trees import children
+from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
@@ -33,8 +34,6 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     members,
-    telling,
-    tells,
     union,
     without_none,
 )

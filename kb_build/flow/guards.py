@@ -13,6 +13,7 @@ from kb_build.flow.expressions import Expressions, is_decided
 from kb_build.flow.facts import VERSION
 from kb_build.flow.scopes import CHOSEN, EVERYTHING, name_doubt
 from kb_build.flow.trees import children, walk
+from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
     UNKNOWN,
     LocalFunction,
@@ -25,8 +26,6 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     members,
-    telling,
-    tells,
 )
 
 if TYPE_CHECKING:

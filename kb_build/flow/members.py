@@ -18,6 +18,7 @@ from kb_build.flow.facts import (
     VERSION,
     T,
 )
+from kb_build.flow.type_parts import unsure
 from kb_build.flow.types import (
     FLOAT,
     MOST_MEMBERS,
@@ -44,7 +45,6 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     union,
-    unsure,
 )
 from kb_build.unlisted import SOMETIMES
 

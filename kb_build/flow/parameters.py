@@ -9,6 +9,7 @@ from kb_build.flow.annotations import Annotations
 from kb_build.flow.contradictions import Contradictions
 from kb_build.flow.facts import PARAMETERS, T
 from kb_build.flow.trees import default_values, walk
+from kb_build.flow.type_parts import can_be_unsure, unsure
 from kb_build.flow.types import (
     NONE,
     STR,
@@ -21,10 +22,8 @@ from kb_build.flow.types import (
     Plain,
     Sequence,
     Type,
-    can_be_unsure,
     general,
     join,
-    unsure,
 )
 
 if TYPE_CHECKING:

@@ -6,19 +6,8 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import (
-    Builtin,
-    Function,
-    Instance,
-    LocalFunction,
-    Mapping,
-    Tuple,
-    Type,
-    Union,
-    bounded,
-    join,
-    unsure,
-)
+from kb_build.flow.type_parts import bounded, unsure
+from kb_build.flow.types import Builtin, Function, Instance, LocalFunction, Mapping, Tuple, Type, Union, join
 from kb_build.flow.types import Sequence as ListType
 
 if TYPE_CHECKING:
