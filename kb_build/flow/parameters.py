@@ -98,8 +98,9 @@ class Parameters(Contradictions, Annotations):
             member = self.api.member(base, node.name)
             if member is not None and isinstance(member.type, Function):
                 symbol = member.symbol
-                rest = [p for p in symbol.parameters if p.name not in {"self", "cls"}]
-                return first + [self.api.read_type(parameter.plain_type, symbol.path) for parameter in rest]
+                return first + [
+                    self.api.read_type(parameter.plain_type, symbol.path) for parameter in symbol.positional
+                ]
         return first
 
     def _by_convention(self, function: FunctionDefinition, name: str) -> Type:
