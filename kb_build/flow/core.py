@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 
     from kb_build.flow.api import Api
     from kb_build.flow.scopes import Loop, Scope
-    from kb_build.flow.types import Given
+    from kb_build.flow.types import Given, ResolutionKind
 
 DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other
@@ -180,7 +180,7 @@ class Core:
     def resolve(  # noqa: PLR0913, PLR0917 - the fields of a resolution
         self,
         node: ast.AST,
-        kind: str,
+        kind: ResolutionKind,
         value: str,
         symbols: Sequence[str] = (),
         missing: Sequence[str] = (),

@@ -43,6 +43,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Sequence as Rows
 
+    from kb_build.flow.types import ResolutionKind
+
 _ERRORS = frozenset(
     name
     for name, kind in vars(builtins).items()
@@ -423,7 +425,7 @@ class Expressions(Members):
 
     # Values of enumerations.
 
-    def check_value(self, kind: Type, node: ast.expr, use: str = "value") -> None:
+    def check_value(self, kind: Type, node: ast.expr, use: ResolutionKind = "value") -> None:
         """Records literals that are assigned to a value of an enumeration, or ``compared`` with it."""
         source = self.source_of(kind)
         if not source:
@@ -482,7 +484,7 @@ class Expressions(Members):
         sources: tuple[str, ...],
         parameter: str = "",
         *,
-        use: str = "value",
+        use: ResolutionKind = "value",
         only_lacking: bool = False,
     ) -> None:
         """Records a text as one of the values of properties, or of a parameter of functions."""

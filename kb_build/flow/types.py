@@ -7,7 +7,7 @@ Types are immutable and compare by value. ``None`` as a Python value is :data:`N
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     import ast
@@ -273,6 +273,12 @@ def literal_texts(kind: Type) -> Iterator[str]:
         yield from (text for text in found if text is not None)
 
 
+ResolutionKind = Literal[
+    "attribute", "store", "name", "call", "keyword", "value", "compared", "item", "text", "button", "product", "sum",
+    "class",
+]  # fmt: skip
+
+
 @dataclass(slots=True)
 class Resolution:
     """What a part of a script stands for in the API.
@@ -294,7 +300,7 @@ class Resolution:
     """
 
     node: ast.AST
-    kind: str
+    kind: ResolutionKind
     value: str
     symbols: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()
