@@ -276,6 +276,11 @@ class Symbol:
         return socket_side(self.path)
 
     @property
+    def positional(self) -> list[Parameter]:
+        """What calls give by place: all parameters but what a method is read from."""
+        return [parameter for parameter in self.parameters if parameter.name not in {"self", "cls"}]
+
+    @property
     def has_empty_signature(self) -> bool:
         """Whether it is known to take no arguments, and is not one whose arguments are unknown."""
         return self.signature == f"{self.name}()"

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.api import Api
-    from kb_build.flow.types import Resolution, Type
+    from kb_build.flow.types import Resolution, ResolutionKind, Type
     from kb_check.known_names import KnownNames
     from kb_check.package import Package
 
@@ -67,7 +67,7 @@ class Script:
             found[type(node)].append(node)
         return found
 
-    def resolutions(self, *kinds: str) -> Iterator[Resolution]:
+    def resolutions(self, *kinds: ResolutionKind) -> Iterator[Resolution]:
         """What parts of the script stand for, of some kinds (see :class:`flow.types.Resolution`), in order."""
         yield from (row for row in self._in_order if not kinds or row.kind in kinds)
 
@@ -76,7 +76,7 @@ class Script:
         rows = [*self.analysis.resolutions.values(), *self.analysis.carried]
         return sorted(rows, key=lambda row: (_start(row.node), row.kind))
 
-    def missing(self, *kinds: str) -> Iterator[Resolution]:
+    def missing(self, *kinds: ResolutionKind) -> Iterator[Resolution]:
         """The parts that surely stand for nothing that this Blender, or the package, has."""
         for row in self.resolutions(*kinds):
             lacking = row.missing and not row.symbols and not row.possible

@@ -81,7 +81,7 @@ class Assignments(Guards, Annotations):
             grown = isinstance(before, (Sequence, Tuple)) and isinstance(right, (Sequence, Tuple))
             if grown:
                 before = Sequence("list", join(self.iterated(before), self.iterated(right)))
-            self.scope.bind(node.target.id, general(before))
+            self.bind(node.target.id, general(before))
         elif isinstance(node.target, ast.Attribute):
             self._store(node.target, general(before), None)
         return True
@@ -91,7 +91,7 @@ class Assignments(Guards, Annotations):
         kind = self.told(kind, value)
         match target:
             case ast.Name():
-                self.scope.bind(target.id, kind)
+                self.bind(target.id, kind)
                 self.types[target] = kind
             case ast.Attribute():
                 self._store(target, kind, value)
@@ -136,7 +136,7 @@ class Assignments(Guards, Annotations):
                 return
         match target.value:
             case ast.Name(id=name) if name in self.scope.state.names:
-                self.scope.bind(name, filled)
+                self.bind(name, filled)
             case ast.Name(id=name):
                 self.scope.fill_outside(name, filled)
             case ast.Attribute(value=value, attr=name):
@@ -169,6 +169,7 @@ class Assignments(Guards, Annotations):
                 return
         is_expected = text in self.scope.state.chains
         if text and self.scope.state.chains:
+            self.spend(len(self.scope.state.chains))
             self.scope.forget(text)
         self.resolutions.pop(target, None)
         if owner is UNKNOWN:
@@ -199,6 +200,7 @@ class Assignments(Guards, Annotations):
             self.api.settable_kind(kind.cls) for kind in members(owner) if isinstance(kind, Instance)
         } - {""}
         chains = self.scope.state.chains
+        self.spend(len(chains))
         for text, kind in [*chains.items()] if bases else ():
             if any(self.api.descends(one.cls, base) for one in members(kind) for base in bases
                    if isinstance(one, Instance)):  # fmt: skip

@@ -27,7 +27,7 @@ class Branches(Guards, Ways):
             if isinstance(truth, bool) and truth is not holds:
                 self.file.left_out.update(body)
                 continue
-            self.scope.state = before.copy()
+            self.scope.state = self.copied(before)
             self.narrow(node.test, holds=holds, asked=asked)
             ways.append(self.way(self.scope.state, body))
         reached = self.meet(ways, before)
@@ -41,12 +41,12 @@ class Branches(Guards, Ways):
         """Reads ``match``: each case with what it tells of the subject."""
         subject = self.evaluate(node.subject)
         before = self.scope.state
-        otherwise = before.copy()
+        otherwise = self.copied(before)
         otherwise.doubted |= self.asked(node.subject) | {CHOSEN}
         ways: list[State | None] = []
         whole = False
         for case in node.cases:
-            self.scope.state = otherwise.copy()
+            self.scope.state = self.copied(otherwise)
             self._bind_pattern(case.pattern, subject, node.subject)
             if case.guard is not None:
                 self.evaluate(case.guard)
@@ -81,4 +81,4 @@ class Branches(Guards, Ways):
                     pass
             name = getattr(part, "name", None) or getattr(part, "rest", None)
             if isinstance(name, str):
-                self.scope.bind(name, UNKNOWN)
+                self.bind(name, UNKNOWN)

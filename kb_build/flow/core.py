@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
-from kb_build.flow.scopes import CHOSEN, name_doubt
+from kb_build.flow.scopes import CHOSEN, State, name_doubt
 from kb_build.flow.source_files import SourceFile
 from kb_build.flow.types import (
     UNKNOWN,
@@ -27,11 +27,12 @@ if TYPE_CHECKING:
 
     from kb_build.flow.api import Api
     from kb_build.flow.scopes import Loop, Scope
-    from kb_build.flow.types import Given
+    from kb_build.flow.types import Given, ResolutionKind
 
 DEEPEST_RUN = 60  # a function that is called further inside is read later
 DEEPEST = 160  # expressions and calls within each other
 _MOST_BASES = 40
+_IN_ONE_STEP = 64  # names that are gone through in about the time in which an expression is read
 Reader = FunctionDefinition | SourceFile
 EVERY_ERROR = "BaseException"
 ANY = "*"  # any class, any name: what a script computes
@@ -83,6 +84,36 @@ class Core:
         self.statement: ast.stmt | None = None
         self._bases: dict[int, tuple[tuple[str, ...], bool]] = {}
         self._denials: list[tuple[dict[ast.AST, Resolution], ast.AST, Reader]] = []
+
+    # What the analysis may spend.
+
+    def spend(self, things: int) -> None:
+        """Takes the time to go once through so many names, chains or doubts off what may be spent."""
+        self.steps_left -= things // _IN_ONE_STEP
+        if self.steps_left < 0:
+            raise StepsExhausted
+
+    def copied(self, state: State) -> State:
+        """The same state, to be changed on its own; this pays for joining it with others too."""
+        things = len(state.names)
+        if state.chains or state.doubted:
+            things += len(state.chains) + len(state.doubted)
+        if things >= _IN_ONE_STEP:
+            self.spend(things)
+        return state.copy()
+
+    def bind(self, name: str, kind: Type) -> None:
+        """Binds a name here; the chains that begin with it are sought for."""
+        if self.scope.state.chains:
+            self.spend(len(self.scope.state.chains))
+        self.scope.bind(name, kind)
+
+    def doubt_here(self, doubts: frozenset[str]) -> None:
+        """Adds to what is doubted from here on (see :class:`scopes.State`)."""
+        state = self.scope.state
+        if state.doubted:
+            self.spend(len(state.doubted))
+        state.doubted |= doubts
 
     # What the parts give each other.
 
@@ -160,7 +191,7 @@ class Core:
     def resolve(  # noqa: PLR0913, PLR0917 - the fields of a resolution
         self,
         node: ast.AST,
-        kind: str,
+        kind: ResolutionKind,
         value: str,
         symbols: Sequence[str] = (),
         missing: Sequence[str] = (),
@@ -242,6 +273,7 @@ class Core:
         number = self.numbers.get(node)
         if number is None:
             number = self.numbers[node] = len(self.functions)
+            self.spend(len(self.scope.state.doubted))
             doubted = self.scope.state.doubted_names
             self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file, doubted=doubted))
         elif not self.tries:

@@ -45,7 +45,7 @@ class Defining(Expressions):
                     kind = UNKNOWN if cls is None else kind
         self.read_defaults(node.args)
         self._read_type_parameters(node)
-        self.scope.bind(node.name, kind)
+        self.bind(node.name, kind)
         return True
 
     def read_class_definition(self, node: ast.ClassDef) -> bool:
@@ -75,7 +75,7 @@ class Defining(Expressions):
         self._add_to_api(node.name, number, scope.state.names.get("bl_idname"))
         for name, kind in scope.ever.items():
             definition.bind(name, general(kind) if isinstance(kind, Plain) else kind)
-        self.scope.bind(node.name, LocalClass(number))
+        self.bind(node.name, LocalClass(number))
         return True
 
     def read_type_alias(self, node: ast.stmt) -> bool:
@@ -85,7 +85,7 @@ class Defining(Expressions):
             case [ast.Name(id=name), *_, ast.expr() as value]:
                 with self.ready_for():
                     self.evaluate(value)
-                self.scope.bind(name, UNKNOWN)
+                self.bind(name, UNKNOWN)
             case _:
                 pass
         return True

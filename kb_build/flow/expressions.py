@@ -13,6 +13,7 @@ from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS,
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import chain_text, name_doubt
 from kb_build.flow.trees import children
+from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
@@ -34,8 +35,6 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     members,
-    telling,
-    tells,
     union,
     without_none,
 )
@@ -44,6 +43,8 @@ from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES, STAND_INS
 if TYPE_CHECKING:
     from collections.abc import Callable
     from collections.abc import Sequence as Rows
+
+    from kb_build.flow.types import ResolutionKind
 
 _ERRORS = frozenset(
     name
@@ -330,11 +331,12 @@ class Expressions(Members):
                 break
             if place < len(node.values) - 1:
                 if place == 0:
-                    self.scope.state = before.copy()
+                    self.scope.state = self.copied(before)
                 self.narrow(value, holds=holds)
-        assigned = {name: kind for name, kind in self.scope.state.names.items() if name not in before.names}
-        self.scope.state = before
-        before.names.update(assigned)
+        after, self.scope.state = self.scope.state, before
+        if after is not before:
+            assigned = {name: kind for name, kind in after.names.items() if name not in before.names}
+            before.names.update(assigned)
         if kinds[-1] == settles:
             return settles
         open_kinds = [kind for kind in kinds if not is_decided(kind)]
@@ -352,10 +354,10 @@ class Expressions(Members):
             chosen = self.evaluate(body)
             return telling(chosen, VERSION, value=True) if is_decided(test) else chosen
         before = self.scope.state
-        self.scope.state = before.copy()
+        self.scope.state = self.copied(before)
         self.narrow(node.test, holds=True)
         first = self._behind(node.body)
-        self.scope.state = before.copy()
+        self.scope.state = self.copied(before)
         self.narrow(node.test, holds=False)
         second = self._behind(node.orelse)
         self.scope.state = before
@@ -407,7 +409,7 @@ class Expressions(Members):
     def _inside(self, generators: list[ast.comprehension], read: Callable[[], None]) -> None:
         """Reads a comprehension's element with the names that its loops bind."""
         before = self.scope.state
-        self.scope.state = before.copy()
+        self.scope.state = self.copied(before)
         try:
             for generator in generators:
                 kind = self.iterated(self.evaluate(generator.iter))
@@ -424,7 +426,7 @@ class Expressions(Members):
 
     # Values of enumerations.
 
-    def check_value(self, kind: Type, node: ast.expr, use: str = "value") -> None:
+    def check_value(self, kind: Type, node: ast.expr, use: ResolutionKind = "value") -> None:
         """Records literals that are assigned to a value of an enumeration, or ``compared`` with it."""
         source = self.source_of(kind)
         if not source:
@@ -483,7 +485,7 @@ class Expressions(Members):
         sources: tuple[str, ...],
         parameter: str = "",
         *,
-        use: str = "value",
+        use: ResolutionKind = "value",
         only_lacking: bool = False,
     ) -> None:
         """Records a text as one of the values of properties, or of a parameter of functions."""

@@ -12,16 +12,14 @@ from kb_build.flow.scopes import CHOSEN, Scope, State, kept, name_doubt
 from kb_build.flow.texts import for_one_call, has_passed, has_texts, texts_in, without_texts
 from kb_build.flow.trees import default_values
 from kb_build.flow.trials import Trials
+from kb_build.flow.type_parts import HOLDING, parts
 from kb_build.flow.types import (
     NONE,
     UNKNOWN,
     Given,
     Instance,
-    Mapping,
     NoneValue,
     Plain,
-    Sequence,
-    Tuple,
     Type,
     Union,
     Unknown,
@@ -142,18 +140,16 @@ class Functions(Parameters, Trials):
         return more than all do.
         """
         match kind:
+            case None:
+                return True
             case Unknown():
                 return False
-            case Union():
-                things = [one for one in kind.members if _has_things(one)]
-                return len(things) < 2 and all(self._is_one(one, with_texts=with_texts) for one in things)
             case Instance():
                 return not (with_texts and self.api.descendants(kind.cls))
-            case Tuple() | Sequence() | Mapping():
-                parts = filter(_has_things, _parts(kind))
-                return all(self._is_one(part, with_texts=with_texts) for part in parts)
             case _:
-                return True
+                things = list(filter(_has_things, parts(kind)))
+                is_choice = isinstance(kind, Union) and len(things) > 1
+                return not is_choice and all(self._is_one(one, with_texts=with_texts) for one in things)
 
     def reading_for(self, number: int, received: Given) -> FunctionDefinition | None:
         """A function as it is for one call; None where that is too deep inside, or too much to read."""
@@ -227,18 +223,6 @@ def _may_help(kind: Type | None) -> bool:
 
 def _has_things(kind: Type) -> bool:
     """Whether a type has more than plain values, and what is not known, in it."""
-    if isinstance(kind, Union):
-        return any(map(_has_things, kind.members))
-    if isinstance(kind, (Tuple, Sequence, Mapping)):
-        return any(map(_has_things, _parts(kind)))
+    if isinstance(kind, HOLDING):
+        return any(map(_has_things, parts(kind)))
     return not isinstance(kind, (Unknown, Plain, NoneValue))
-
-
-def _parts(kind: Tuple | Sequence | Mapping) -> tuple[Type, ...]:
-    match kind:
-        case Tuple(items=items):
-            return items
-        case Sequence():
-            return (kind.element,)
-        case Mapping():
-            return (kind.value,)

@@ -13,6 +13,7 @@ from kb_build.flow.expressions import Expressions, is_decided
 from kb_build.flow.facts import VERSION
 from kb_build.flow.scopes import CHOSEN, EVERYTHING, name_doubt
 from kb_build.flow.trees import children, walk
+from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
     UNKNOWN,
     LocalFunction,
@@ -25,8 +26,6 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     members,
-    telling,
-    tells,
 )
 
 if TYPE_CHECKING:
@@ -42,9 +41,9 @@ class Guards(Expressions):
         """
         kind = self.types.get(test, UNKNOWN)
         if not is_decided(kind):
-            self.scope.state.doubted |= self.asked(test, chooses=True) if asked is None else asked
+            self.doubt_here(self.asked(test, chooses=True) if asked is None else asked)
         elif literal(kind) is not holds:
-            self.scope.state.doubted |= {EVERYTHING}
+            self.doubt_here(frozenset({EVERYTHING}))
 
     def asked(self, node: ast.expr, *, chooses: bool = False) -> frozenset[str]:
         """What an expression, which was read, asks without being decided: doubts, as State has them.
@@ -96,7 +95,7 @@ class Guards(Expressions):
         for name in names if source else ():
             kind = held.get(name, UNKNOWN)
             if _may_tell(kind):
-                self.scope.bind(name, telling(kind, source, value=decided))
+                self.bind(name, telling(kind, source, value=decided))
 
     def lacked(self, statements: Iterable[ast.stmt]) -> frozenset[str]:
         """The names in statements, which were read, that this Blender lacks, as doubts."""

@@ -34,19 +34,19 @@ class Handlers(Guards, Ways):
         caught = [self._caught(handler) for handler in node.handlers]
         before = self.scope.state
         with self.ready_for(self._let_pass(node.handlers, caught)):
-            after = self.way(before.copy(), node.body)
+            after = self.way(self.copied(before), node.body)
         within = joined([before, after or self.scope.state])
         if after is not None and node.orelse:
             after = self.way(after, node.orelse)
         ways = [after]
         for handler, errors in zip(node.handlers, caught, strict=True):
-            self.scope.state = within.copy()
+            self.scope.state = self.copied(within)
             if handler.name:
-                self.scope.bind(handler.name, UNKNOWN)
+                self.bind(handler.name, UNKNOWN)
             # What is done where a name is lacking may be for another Blender.
             with self.ready_for((EVERY_ERROR,) if errors else ()):
                 ways.append(self.way(self.scope.state, handler.body))
-        reached = self.meet(ways, within.copy())
+        reached = self.meet(ways, self.copied(within))
         if any(caught):
             handled = [statement for handler in node.handlers for statement in handler.body]
             self.tell(assigned_names([*node.body, *node.orelse, *handled]), self.lacked(node.body))

@@ -34,9 +34,9 @@ class Imports(Members):
                 whole = self.local_module(alias.name)
                 self._tell_lost(alias, alias.name)
             if alias.asname:
-                self.scope.bind(alias.asname, whole)
+                self.bind(alias.asname, whole)
             else:
-                self.scope.bind(top, self._module(top) if known else self.local_module(top))
+                self.bind(top, self._module(top) if known else self.local_module(top))
         return True
 
     def read_import_from(self, node: ast.ImportFrom) -> bool:
@@ -52,12 +52,12 @@ class Imports(Members):
                 self._import_all(owner)
                 continue
             if owner is UNKNOWN:
-                self.scope.bind(name, UNKNOWN)
+                self.bind(name, UNKNOWN)
                 continue
             found = self.attribute(owner, alias.name)
             if found.symbols or found.missing:
                 self.resolve(alias, "name", alias.name, found.symbols, found.missing)
-            self.scope.bind(name, found.type)
+            self.bind(name, found.type)
         return True
 
     def _import_all(self, owner: Type) -> None:
@@ -68,7 +68,7 @@ class Imports(Members):
             names = list(file.module.ever)
         for name in names:
             if not name.startswith("_"):
-                self.scope.bind(name, self.attribute(owner, name).type)
+                self.bind(name, self.attribute(owner, name).type)
 
     def _module(self, path: str) -> Type:
         symbol = self.api.symbols.symbol(path)

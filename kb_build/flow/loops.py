@@ -41,11 +41,14 @@ class Loops(Members, Trials, Ways):
         outer, loops, returned = self.scope, self.loops, self.function.returned if self.function else None
 
         def read() -> None:
+            self.spend(len(outer.ever))
+            self.scope = replace(
+                outer, state=self.copied(start), ever=outer.ever.copy(), asked=outer.asked.copy()
+            )
             self.statement = node
             self.bind_target(node.target, kind)
             self.read_body(node.body)
 
-        self.scope = replace(outer, state=start.copy(), ever=outer.ever.copy(), asked=outer.asked.copy())
         self.loops, self.turning = [Loop()], True
         try:
             self.try_reading(read)
@@ -89,7 +92,7 @@ class Loops(Members, Trials, Ways):
         self.loops.append(loop)
         start = before
         for turn in range(2):
-            self.scope.state = start.copy()
+            self.scope.state = self.copied(start)
             enter()
             after = self.way(self.scope.state, body)
             ends = [state for state in (after, *loop.continued) if state is not None]
@@ -99,7 +102,7 @@ class Loops(Members, Trials, Ways):
         self.loops.pop()
         if try_turns is not None:
             try_turns(start)
-        self.scope.state = start.copy()
+        self.scope.state = self.copied(start)
         reached = self.read_body(orelse) if orelse else True
         return self.meet([self.scope.state if reached else None, *loop.left], start)
 

@@ -19,6 +19,7 @@ from kb_build.flow.facts import (
     OPEN_CLASSES,
     VERSION,
 )
+from kb_build.flow.type_parts import unsure
 from kb_build.flow.types import (
     FLOAT,
     MOST_MEMBERS,
@@ -45,7 +46,6 @@ from kb_build.flow.types import (
     literal,
     literal_text,
     union,
-    unsure,
 )
 from kb_build.unlisted import SOMETIMES
 

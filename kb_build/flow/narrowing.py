@@ -75,7 +75,7 @@ class Narrowing(Guards):
 
     def _doubt_chain(self, text: str) -> None:
         if text:
-            self.scope.state.doubted |= {text}
+            self.doubt_here(frozenset({text}))
 
     def _type_of(self, node: ast.expr) -> Type:
         return self.types.get(node, UNKNOWN)
@@ -101,7 +101,7 @@ class Narrowing(Guards):
         before = self.scope.state
         kinds: dict[str, list[Type]] = {}
         for test in tests:
-            self.scope.state = before.copy()
+            self.scope.state = self.copied(before)
             self._narrow(test, holds=True)
             for name, kind in self.scope.state.names.items():
                 if before.names.get(name) is not kind:

@@ -10,6 +10,7 @@ from kb_build.flow.annotations import Annotations
 from kb_build.flow.contradictions import Contradictions
 from kb_build.flow.facts import PARAMETERS
 from kb_build.flow.trees import default_values, walk
+from kb_build.flow.type_parts import can_be_unsure, unsure
 from kb_build.flow.types import (
     NONE,
     STR,
@@ -22,10 +23,8 @@ from kb_build.flow.types import (
     Plain,
     Sequence,
     Type,
-    can_be_unsure,
     general,
     join,
-    unsure,
 )
 
 if TYPE_CHECKING:
@@ -43,16 +42,14 @@ class Parameters(Contradictions, Annotations):
         defaults = default_values(arguments)
         for place, argument in enumerate((*positional, *arguments.kwonlyargs)):
             given = declared[place] if place < len(declared) else UNKNOWN
-            self.scope.bind(
-                argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg))
-            )
+            self.bind(argument.arg, self._parameter(function, argument, given, defaults.get(argument.arg)))
         for rest in (arguments.vararg, arguments.kwarg):
             if rest is not None and rest.annotation is not None:
                 self.annotated(rest.annotation)
         if arguments.vararg is not None:
-            self.scope.bind(arguments.vararg.arg, Sequence("tuple", UNKNOWN))
+            self.bind(arguments.vararg.arg, Sequence("tuple", UNKNOWN))
         if arguments.kwarg is not None:
-            self.scope.bind(arguments.kwarg.arg, Mapping(STR, UNKNOWN))
+            self.bind(arguments.kwarg.arg, Mapping(STR, UNKNOWN))
 
     def _parameter(  # noqa: PLR0911 - one return a source
         self, function: FunctionDefinition, argument: ast.arg, declared: Type, default: ast.expr | None
@@ -102,8 +99,9 @@ class Parameters(Contradictions, Annotations):
             member = self.api.member(base, node.name)
             if member is not None and isinstance(member.type, Function):
                 symbol = member.symbol
-                rest = [p for p in symbol.parameters if p.name not in {"self", "cls"}]
-                return first + [self.api.read_type(parameter.plain_type, symbol.path) for parameter in rest]
+                return first + [
+                    self.api.read_type(parameter.plain_type, symbol.path) for parameter in symbol.positional
+                ]
         return first
 
     def _by_convention(self, function: FunctionDefinition, name: str) -> Type:

@@ -6,19 +6,8 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import (
-    Builtin,
-    Function,
-    Instance,
-    LocalFunction,
-    Mapping,
-    Tuple,
-    Type,
-    Union,
-    bounded,
-    join,
-    unsure,
-)
+from kb_build.flow.type_parts import bounded, unsure
+from kb_build.flow.types import Builtin, Function, Instance, LocalFunction, Mapping, Tuple, Type, Union, join
 from kb_build.flow.types import Sequence as ListType
 
 if TYPE_CHECKING:
@@ -75,7 +64,10 @@ def joined(states: Sequence[State]) -> State:
     chains = first.chains
     for other in others:
         for name, kind in other.names.items():
-            names[name] = join(names[name], kind) if name in names else kind
+            if name not in names:
+                names[name] = kind
+            elif names[name] is not kind:
+                names[name] = join(names[name], kind)
         chains = {text: kind for text, kind in chains.items() if other.chains.get(text) == kind}
     active = first.active if all(other.active == first.active for other in others) else None
     return State(names, dict(chains), frozenset.intersection(*(state.doubted for state in states)), active)

@@ -13,7 +13,8 @@ from kb_build.flow.expressions import is_decided
 from kb_build.flow.handlers import Handlers
 from kb_build.flow.imports import Imports
 from kb_build.flow.loops import Loops
-from kb_build.flow.types import NONE, ClassObject, bounded, join, literal
+from kb_build.flow.type_parts import bounded
+from kb_build.flow.types import NONE, ClassObject, join, literal
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -3,35 +3,28 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING
 
-from kb_build.flow.types import FLOAT, PASSED, Mapping, Plain, Sequence, Tuple, Type, Union, general, union
+from kb_build.flow.type_parts import HOLDING, NAMES_PASSED, parts, with_parts
+from kb_build.flow.types import FLOAT, PASSED, Mapping, Plain, Tuple, Type, general
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator
 
 _NUMBERS = frozenset({"int", "float"})
-_WITH_PARTS = (Plain, Tuple, Union, Sequence, Mapping)
 
 
 def texts_in(kind: Type) -> Iterator[Plain]:
     """The text literals in a type."""
-    if not isinstance(kind, _WITH_PARTS):
-        return
-    match kind:
-        case Plain(kind="str", value=str()):
+    if isinstance(kind, Plain):
+        if isinstance(kind.value, str):
             yield kind
-        case Tuple(items=parts) | Union(members=parts):
-            for part in parts:
-                yield from texts_in(part)
-        case Sequence():
-            yield from texts_in(kind.element)
-        case Mapping():
+    elif isinstance(kind, HOLDING):
+        if isinstance(kind, Mapping):
             yield from (name for name, _ in pairs_of(kind))
-            for part in (kind.value, *(value for _, value in kind.items)):
-                yield from texts_in(part)
-        case _:
-            pass
+        for part in parts(kind):
+            yield from texts_in(part)
 
 
 def pairs_of(kind: Mapping) -> list[tuple[Plain, Type]]:
@@ -77,35 +70,19 @@ def _of_one_call(kind: Plain) -> Type:
     return Plain(kind.kind, kind.value) if kind.source == PASSED else kind
 
 
-def _change_key(kind: Mapping, change: Callable[[Plain], Type]) -> Type:
-    """What the keys of a dictionary are; its literal ones have no types of their own."""
-    if kind.items and change is _as_passed:
-        return Plain("str", None, PASSED)
-    return _each_plain(kind.key, change)
-
-
-def _each_plain(  # noqa: PLR0911 - one return a type
-    kind: Type, change: Callable[[Plain], Type], *, numbers: bool = False
-) -> Type:
+def _each_plain(kind: Type, change: Callable[[Plain], Type], *, numbers: bool = False) -> Type:
     """A type with each plain part changed; with ``numbers``, a tuple of numbers is one of fractions."""
-
-    if not isinstance(kind, _WITH_PARTS):
-        return kind
     if isinstance(kind, Plain):
         return change(kind)
+    if not isinstance(kind, HOLDING):
+        return kind
+    if numbers and isinstance(kind, Tuple) and kind.items and all(map(_is_number, kind.items)):
+        return Tuple((FLOAT,) * len(kind.items))
+    found = with_parts(kind, partial(_each_plain, change=change, numbers=numbers))
+    # The literal keys of a dictionary have no types of their own.
+    is_passed = isinstance(found, Mapping) and found.items and change is _as_passed
+    return replace(found, key=NAMES_PASSED) if is_passed else found
 
-    def each(part: Type) -> Type:
-        return _each_plain(part, change, numbers=numbers)
 
-    match kind:
-        case Tuple(items=items):
-            if numbers and items and all(isinstance(one, Plain) and one.kind in _NUMBERS for one in items):
-                return Tuple((FLOAT,) * len(items))
-            return Tuple(tuple(map(each, items)))
-        case Union():
-            return union(map(each, kind.members))
-        case Sequence():
-            return replace(kind, element=each(kind.element))
-        case Mapping():
-            pairs = tuple((name, each(value)) for name, value in kind.items)
-            return Mapping(_change_key(kind, change), each(kind.value), pairs)
+def _is_number(kind: Type) -> bool:
+    return isinstance(kind, Plain) and kind.kind in _NUMBERS

@@ -7,17 +7,14 @@ Types are immutable and compare by value. ``None`` as a Python value is :data:`N
 from __future__ import annotations
 
 import builtins
-from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
-
-from kb_build.flow.facts import VERSION
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
     import ast
     from collections.abc import Iterable, Iterator
 
 PASSED = "?"
-DEEPEST_TYPE = 6  # parts within each other of what a name holds
 MOST_MEMBERS = 8  # of a union; more are UNKNOWN
 
 
@@ -231,69 +228,6 @@ def general(kind: Type) -> Type:
     return kind
 
 
-def unsure(kind: Type) -> Type:  # noqa: PLR0911 - one return a type
-    """A type that is only one of those that a value may have."""
-    match kind:
-        case Union():
-            return union(map(unsure, kind.members))
-        case Instance():
-            return replace(kind, sure=False)
-        case Plain():
-            return Plain(kind.kind, None, tells(kind))
-        case Sequence():
-            return replace(kind, element=unsure(kind.element))
-        case Tuple():
-            return Tuple(tuple(map(unsure, kind.items)))
-        case Mapping():
-            items = tuple((name, unsure(value)) for name, value in kind.items)
-            return Mapping(kind.key, unsure(kind.value), items)
-        case _:
-            return kind
-
-
-def can_be_unsure(kind: Type) -> bool:
-    """Whether :func:`unsure` marks everything in a type that an error could be told of."""
-    match kind:
-        case Unknown() | Plain() | Instance() | NoneValue():
-            return True
-        case Union():
-            return all(map(can_be_unsure, kind.members))
-        case Sequence():
-            return can_be_unsure(kind.element)
-        case Tuple():
-            return all(map(can_be_unsure, kind.items))
-        case Mapping():
-            return can_be_unsure(kind.value) and all(can_be_unsure(value) for _, value in kind.items)
-        case _:
-            return False
-
-
-def tells(kind: Type) -> str:
-    """The source (see :class:`Plain`) by which a value, or a part of it, tells of this Blender; empty for none."""
-    for member in members(kind):
-        found = ""
-        if isinstance(member, Plain):
-            found = member.source if member.source.startswith((VERSION, ".")) else ""
-        elif isinstance(member, Tuple):
-            found = next(filter(None, map(tells, member.items)), "")
-        elif isinstance(member, Sequence):
-            found = tells(member.element)
-        if found:
-            return found
-    return ""
-
-
-def telling(kind: Type, source: str, *, value: bool = False) -> Type:
-    """A plain type as one that tells of this Blender, by ``source`` if any; its literal stays with ``value``."""
-    if not source:
-        return kind
-    if isinstance(kind, Union):
-        return union(telling(member, source) for member in kind.members)
-    if isinstance(kind, Plain) and kind.source in {"", PASSED}:
-        return Plain(kind.kind, kind.value if value else None, source)
-    return kind
-
-
 def union(kinds: Iterable[Type]) -> Type:
     """One of ``kinds``; UNKNOWN as soon as one of them is, or when they are too many."""
     found: dict[Type, None] = {}
@@ -314,38 +248,6 @@ def union(kinds: Iterable[Type]) -> Type:
 def join(first: Type, second: Type) -> Type:
     """What a name holds after two ways led to the same place."""
     return first if first is second or first == second else union((first, second))
-
-
-_WITHOUT_PARTS = frozenset(
-    {Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalModule, LocalClass, LocalInstance}
-)
-
-
-def bounded(kind: Type, depth: int = DEEPEST_TYPE) -> Type:  # noqa: PLR0911 - one return a type
-    """A type whose parts lie at most so deep within each other: a list that holds itself has no end."""
-    if type(kind) in _WITHOUT_PARTS:
-        return kind
-    if depth == 0:
-        return UNKNOWN
-    below = depth - 1
-    match kind:
-        case Sequence():
-            return Sequence(kind.kind, bounded(kind.element, below))
-        case Tuple():
-            return Tuple(tuple(bounded(item, below) for item in kind.items))
-        case Mapping():
-            items = tuple((name, bounded(value, below)) for name, value in kind.items)
-            return Mapping(bounded(kind.key, below), bounded(kind.value, below), items)
-        case Union():
-            return union(bounded(member, below) for member in kind.members)
-        case Instance() if kind.traits:
-            return replace(kind, traits=tuple((name, bounded(trait, below)) for name, trait in kind.traits))
-        case Function() | Builtin() | LocalFunction() if kind.receiver is not None:
-            return replace(kind, receiver=bounded(kind.receiver, below))
-        case Collection():
-            return replace(kind, owner=bounded(kind.owner, below))
-        case _:
-            return kind
 
 
 def instance_of(kind: Type) -> Type:
@@ -372,6 +274,12 @@ def literal_texts(kind: Type) -> Iterator[str]:
         yield from (text for text in found if text is not None)
 
 
+ResolutionKind = Literal[
+    "attribute", "store", "name", "call", "keyword", "value", "compared", "item", "text", "button", "product", "sum",
+    "class",
+]  # fmt: skip
+
+
 @dataclass(slots=True)
 class Resolution:
     """What a part of a script stands for in the API.
@@ -394,7 +302,7 @@ class Resolution:
     """
 
     node: ast.AST
-    kind: str
+    kind: ResolutionKind
     value: str
     symbols: tuple[str, ...] = ()
     missing: tuple[str, ...] = ()

@@ -170,7 +170,7 @@ def _defined(analysis: Analysis) -> Iterator[tuple[str, str, int, Resolution]]:
         for base in definition.bases:
             kind = analysis.types.get(base)
             if isinstance(kind, ClassObject):
-                yield kind.cls, "derived", 1, Resolution(base, "derived", "", statement=definition)
+                yield kind.cls, "derived", 1, Resolution(base, "name", "", statement=definition)
     for definition in analysis.functions:
         if not isinstance(definition, (ast.FunctionDef, ast.AsyncFunctionDef)):
             continue
@@ -178,7 +178,7 @@ def _defined(analysis: Analysis) -> Iterator[tuple[str, str, int, Resolution]]:
             kind = analysis.types.get(decorator)
             if isinstance(kind, (ClassObject, Function)):
                 path = kind.cls if isinstance(kind, ClassObject) else kind.path
-                yield path, "decorates", 1, Resolution(decorator, "decorates", "", statement=definition)
+                yield path, "decorates", 1, Resolution(decorator, "name", "", statement=definition)
 
 
 class _Script:

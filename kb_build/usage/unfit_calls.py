@@ -34,5 +34,5 @@ def _lacks_an_argument(call: ast.Call, symbol: Symbol) -> bool:
     if not is_of_rna or is_open:
         return False
     given = {keyword.arg for keyword in call.keywords}
-    taken = [one for one in symbol.parameters if one.name not in {"self", "cls"}]
+    taken = symbol.positional
     return any(one.required and one.name not in given for one in taken[len(call.args) :])

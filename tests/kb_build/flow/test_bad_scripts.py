@@ -8,8 +8,11 @@ import pytest
 
 from kb_build.flow import analysis as analysis_module
 from kb_build.flow.analysis import analyse
+from kb_build.flow.scopes import Scope, State
 
 if TYPE_CHECKING:
+    from collections.abc import Callable
+
     from kb_build.flow.api import Api
 
 
@@ -69,6 +72,79 @@ def test_what_takes_too_much_work_is_left(api: Api, monkeypatch: pytest.MonkeyPa
     found = analyse("import bpy\n" + "bpy.context.object.location\n" * 1_000, api)
     assert not found.complete
     assert len(found.resolutions) > 100
+
+
+_MANY, _STEPS = 1_000, 3_000
+_NAMES = "".join(f"a{n} = 1\n" for n in range(_MANY))
+
+
+def counted(
+    monkeypatch: pytest.MonkeyPatch, cls: type, method: str, work_of: Callable[..., int]
+) -> Callable[[], int]:
+    """Has the calls of a method counted, each with the work that it is for what it is called with; gives the sum."""
+    plain, works = getattr(cls, method), [0]
+
+    def count(*given: object) -> object:
+        works.append(work_of(*given))
+        return plain(*given)
+
+    monkeypatch.setattr(cls, method, count)
+    return lambda: sum(works)
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        "if q: pass",
+        "1 if q else 2",
+        "q or z",
+        "assert q or z",
+        "[1 for one in q]",
+        "for one in q: pass",
+        "for one in ('a', 'b'): pass",
+        "try: pass\nexcept E: pass",
+        "match q:\n    case 1: pass",
+    ],
+)
+def test_what_each_branch_copies_is_work(api: Api, monkeypatch: pytest.MonkeyPatch, line: str) -> None:
+    """Many names and many branches: each copies all names."""
+
+    def names(state: State) -> int:
+        return len(state.names)
+
+    monkeypatch.setattr(analysis_module, "MOST_STEPS", _STEPS)
+    copied = counted(monkeypatch, State, "copy", names)
+    found = analyse(_NAMES + f"{line}\n" * _MANY, api)
+    assert not found.complete
+    assert _MANY < copied() < 64 * _STEPS
+
+
+@pytest.mark.parametrize("line", ["held.append(1)", "bpy.ops.object.convert()"])
+@pytest.mark.parametrize("names", [_NAMES, "a = 1\n" * _MANY])
+def test_what_all_names_are_looked_at_for_is_work(
+    api: Api, monkeypatch: pytest.MonkeyPatch, line: str, names: str
+) -> None:
+    """It is read to its end where the same number of expressions has but one name."""
+    monkeypatch.setattr(analysis_module, "MOST_STEPS", 3 * _STEPS)
+    found = analyse(f"import bpy\nheld = []\n{names}" + f"{line}\n" * _MANY, api)
+    assert found.complete is (names is not _NAMES)
+
+
+def test_what_many_chains_are_sought_in_is_work(api: Api, monkeypatch: pytest.MonkeyPatch) -> None:
+    def chains(scope: Scope, _name: str) -> int:
+        return len(scope.state.chains)
+
+    monkeypatch.setattr(analysis_module, "MOST_STEPS", 3 * _STEPS)
+    sought = counted(monkeypatch, Scope, "forget", chains)
+    known = "".join(f"assert hasattr(bpy.context.object, 'x{n}')\n" for n in range(300))
+    found = analyse(f"import bpy\n{known}" + "a = 1\n" * 6_000, api)
+    assert not found.complete
+    assert _MANY < sought() < 64 * 3 * _STEPS
+
+
+def test_many_names_and_branches_of_a_usual_script_are_read(api: Api) -> None:
+    names = "".join(f"setting_{n} = {n}\n" for n in range(500))
+    assert analyse(names + "if setting_1 > 3:\n    setting_2 = setting_3\n" * 500, api).complete
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,224 @@
+"""Evaluates calls of Python's own functions, and of the methods of its values."""
+
+from __future__ import annotations
+
+import ast
+from typing import TYPE_CHECKING
+
+from kb_build.flow.core import ANY
+from kb_build.flow.facts import VERSION
+from kb_build.flow.script_calls import ScriptCalls
+from kb_build.flow.types import (
+    BOOL,
+    FLOAT,
+    INT,
+    NONE,
+    STR,
+    UNKNOWN,
+    Builtin,
+    ClassObject,
+    Collection,
+    Instance,
+    LocalClass,
+    LocalFunction,
+    LocalInstance,
+    Mapping,
+    Operator,
+    Plain,
+    Sequence,
+    Tuple,
+    Type,
+    join,
+    literal_text,
+    union,
+)
+
+if TYPE_CHECKING:
+    from collections.abc import Sequence as Rows
+
+    from kb_build.flow.read_calls import ReadCall
+
+_ITERATORS = {
+    "list": "list", "sorted": "list", "set": "set", "frozenset": "set", "tuple": "list", "reversed": "iterator",
+    "iter": "iterator",
+}  # fmt: skip
+_PLAIN_RESULTS: dict[str, Type] = {
+    "len": INT, "int": INT, "float": FLOAT, "str": STR, "bool": BOOL, "repr": STR, "isinstance": BOOL,
+    "any": BOOL, "all": BOOL, "callable": BOOL, "print": NONE,
+}  # fmt: skip
+_STRING_RESULTS: dict[str, Type] = {
+    "split": Sequence("list", STR), "rsplit": Sequence("list", STR), "splitlines": Sequence("list", STR),
+    "partition": Tuple((STR, STR, STR)), "rpartition": Tuple((STR, STR, STR)), "find": INT, "rfind": INT,
+    "index": INT, "count": INT, "startswith": BOOL, "endswith": BOOL, "encode": Plain("bytes"), "isdigit": BOOL,
+}  # fmt: skip
+
+
+class PythonCalls(ScriptCalls):
+    """Evaluates calls of what Python has."""
+
+    def call_builtin(  # noqa: PLR0911, PLR0912 - one case a function
+        self, callee: Builtin, call: ReadCall
+    ) -> Type:
+        """What one of Python's functions, or a method of a value, returns."""
+        if callee.receiver is not None:
+            return self._method(callee.receiver, callee.name, call.arguments)
+        name = callee.name
+        if name in _PLAIN_RESULTS:
+            return _PLAIN_RESULTS[name]
+        arguments, first = call.arguments, call.argument(0)
+        if name in {"list", "tuple"} and isinstance(first, Tuple):
+            return first
+        if name in _ITERATORS:
+            return Sequence(_ITERATORS[name], self.iterated(first) if arguments else UNKNOWN)
+        match name:
+            case "next":
+                return (
+                    self.iterated(first) if len(arguments) < 2 else join(self.iterated(first), arguments[1])
+                )
+            case "enumerate":
+                return Sequence("iterator", Tuple((INT, self.iterated(first))))
+            case "zip":
+                return Sequence("iterator", Tuple(tuple(self.iterated(kind) for kind in arguments)))
+            case "range":
+                return Sequence("iterator", INT)
+            case "filter" if len(arguments) == 2:
+                return Sequence("iterator", self._applied(arguments[0], arguments[1], keep=True))
+            case "map" if len(arguments) == 2:
+                return Sequence("iterator", self._applied(arguments[0], arguments[1], keep=False))
+            case "min" | "max":
+                compared = self.iterated(first) if len(arguments) == 1 else union(arguments)
+                if isinstance(key := call.keywords.get("key"), LocalFunction):
+                    self.pass_to(key.number, [compared], {})
+                return compared
+            case "abs":
+                return Plain(first.kind) if isinstance(first, Plain) else UNKNOWN
+            case "round":
+                whole = len(arguments) == 1 and not call.keywords and isinstance(first, Plain)
+                return INT if whole else first
+            case "sum":
+                element = self.iterated(first)
+                return Plain(element.kind) if isinstance(element, Plain) and len(arguments) == 1 else UNKNOWN
+            case "super":
+                return self._super()
+            case "type" if len(arguments) == 3:
+                self.own_operators.add(ANY)
+                self.own_types[ANY] = UNKNOWN
+                return UNKNOWN
+            case "type":
+                return self._class_of(first)
+            case "setattr" if len(arguments) == 3:
+                declared = self.is_declared(call.node.args[2])
+                name = literal_text(arguments[1])
+                self.register(first, name or ANY, arguments[2], declared=declared)
+                if name and isinstance(first, (LocalInstance, LocalClass)):
+                    self.classes[first.number].bind(name, arguments[2])
+                return NONE
+            case "hasattr":
+                text = literal_text(arguments[1]) if len(arguments) == 2 else None
+                return Plain("bool", True, VERSION) if text and self.has(first, text) else BOOL
+            case "getattr" | "delattr":
+                return self._named_attribute(call)
+            case "dict":
+                return Mapping(UNKNOWN, UNKNOWN)
+            case _:
+                return UNKNOWN
+
+    def _applied(self, function: Type, values: Type, *, keep: bool) -> Type:
+        element = self.iterated(values)
+        if isinstance(function, LocalFunction):
+            self.pass_to(function.number, [element], {})
+        return element if keep else UNKNOWN
+
+    def _class_of(self, kind: Type) -> Type:
+        if isinstance(kind, Instance):
+            return ClassObject(kind.cls)
+        return LocalClass(kind.number) if isinstance(kind, LocalInstance) else UNKNOWN
+
+    def _super(self) -> Type:
+        if self.function is None or self.function.cls is None:
+            return UNKNOWN
+        bases = self.classes[self.function.cls].bases
+        found: list[Type] = []
+        for base in bases:
+            if isinstance(base, LocalClass):
+                found.append(LocalInstance(base.number))
+            elif isinstance(base, ClassObject):
+                found.append(Instance(base.cls))
+            else:
+                return UNKNOWN
+        return found[0] if len(found) == 1 else UNKNOWN
+
+    def _named_attribute(self, call: ReadCall) -> Type:
+        """``getattr(x, "name")``: read like an attribute, but a script that asks so is ready for its absence."""
+        text = literal_text(call.argument(1))
+        if not text or call.argument(0) is UNKNOWN:
+            return UNKNOWN
+        found = self.attribute(call.argument(0), text)
+        if found.symbols:
+            self.resolve(call.node.args[1], "text", text, found.symbols, sure=found.sure)
+        kind = found.type
+        return join(kind, call.argument(2)) if len(call.arguments) > 2 else kind
+
+    def _method(self, receiver: Type, name: str, arguments: Rows[Type]) -> Type:  # noqa: PLR0911, PLR0912 - one case a method
+        first = arguments[0] if arguments else UNKNOWN
+        if isinstance(receiver, Plain):
+            return _STRING_RESULTS.get(name, STR) if receiver.kind == "str" else UNKNOWN
+        if isinstance(receiver, Collection):
+            return receiver.element if name == "add" else NONE
+        if isinstance(receiver, Operator):
+            return BOOL if name == "operator.poll" else UNKNOWN
+        if isinstance(receiver, Mapping):
+            match name:
+                case "update":
+                    self._grow(receiver, UNKNOWN)
+                    return NONE
+                case "setdefault" if len(arguments) > 1:
+                    kind = join(self.item(receiver, first, ast.Pass()), arguments[1])
+                    self._grow(receiver, arguments[1])
+                    return kind
+                case "get" | "pop" | "setdefault":
+                    kind = self.item(receiver, first, ast.Pass())
+                    return join(kind, arguments[1]) if len(arguments) > 1 else kind
+                case "items":
+                    return Sequence("list", Tuple((receiver.key, receiver.value)))
+                case "keys":
+                    return Sequence("list", receiver.key)
+                case "values":
+                    return Sequence("list", receiver.value)
+                case "copy":
+                    return receiver
+                case _:
+                    return UNKNOWN
+        match name:
+            case "pop":
+                return self.iterated(receiver)
+            case "copy" | "union" | "intersection" | "difference":
+                return receiver
+            case "index" | "count":
+                return INT
+            case "append" | "add" | "insert" | "appendleft" if arguments:
+                self._grow(receiver, arguments[-1])
+                return NONE
+            case "extend" | "update" if arguments:
+                self._grow(receiver, self.iterated(first))
+                return NONE
+            case _:
+                return UNKNOWN
+
+    def _grow(self, receiver: Type, kind: Type) -> None:
+        """A list or a dictionary that names hold gets one more element: their types follow."""
+        grown: Type
+        match receiver:
+            case Sequence() | Tuple():
+                before = receiver.element if isinstance(receiver, Sequence) else union(receiver.items)
+                after = kind if before is UNKNOWN else join(before, kind)
+                grown = Sequence(receiver.kind if isinstance(receiver, Sequence) else "list", after)
+            case Mapping():
+                is_empty = receiver.value is UNKNOWN and not receiver.items
+                grown = Mapping(UNKNOWN, kind if is_empty else join(receiver.value, kind))
+            case _:
+                return
+        held = self.scope.state.names
+        self.spend(len(held))
+        for name in [name for name, one in held.items() if one is receiver]:
+            self.bind(name, grown)
