@@ -104,6 +104,8 @@ def calls(script: Script) -> list[CallSite]:
 @once_for_each
 def calls_not_ready_for(script: Script, errors: tuple[str, ...]) -> list[CallSite]:
     """The same, also where the script is ready for other errors than those, which are the names of their classes."""
+    if errors and not _has_guarded_calls(script):
+        return calls(script)
     found: list[CallSite] = []
     for node, called in _sure_calls(script, errors):
         kinds = [kind for kind in called if kind != NoneValue()]
@@ -111,6 +113,12 @@ def calls_not_ready_for(script: Script, errors: tuple[str, ...]) -> list[CallSit
         if symbols and (symbol := symbols[0]) and all(other == symbol for other in symbols):
             found.append(_site(node, symbol))
     return found
+
+
+@once_per_script
+def _has_guarded_calls(script: Script) -> bool:
+    """Whether any call is where the script is ready for some error."""
+    return any(row.guarded for row in script.resolutions("call"))
 
 
 @once_per_script

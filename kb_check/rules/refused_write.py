@@ -58,7 +58,7 @@ _DRAWING = tuple(f"{T}{name}" for name in ("Header", "Menu", "Panel"))
 _ADDING = frozenset({"append", "prepend"})
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
 _VECTORS = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Quaternion", "Vector"))
-_DEEPEST = 8
+_DEEPEST, _MOST_VALUES = 8, 8  # steps, and what a name is bound to, to what something belongs to
 _OPERATORS, _DOTS = "bpy.ops.", 3
 
 
@@ -69,15 +69,9 @@ def _check(script: Script) -> Iterator[Finding]:
             continue
         seen.add(function)
         for node in _own_nodes(function):
-            if is_tried(script, node):
-                continue
-            if isinstance(node, ast.Call):
-                yield from _called(script, node, what)
-            elif _is_checked(script, node) and (owner := _holder(script, node.value)):
-                yield Finding(
-                    RULE.id, "error", script.span(node),
-                    f"Blender refuses to write to data in {what}: `{ast.unparse(node)}` belongs to a `{owner}`.", owner,
-                )  # fmt: skip
+            finding = _called(script, node, what) or _written(script, node, what)
+            if finding and not is_tried(script, node):
+                yield finding
 
 
 def _of_classes(script: Script) -> Iterator[tuple[FunctionDefinition, str]]:
@@ -114,25 +108,37 @@ def _appended(script: Script) -> Iterator[tuple[FunctionDefinition, str]]:
 
 def _own_nodes(function: FunctionDefinition) -> Iterator[ast.Attribute | ast.Subscript | ast.Call]:
     """What a function calls, and sets or deletes, itself; not what the functions in it do."""
-    queue: list[ast.AST] = list(function.body)
-    while queue:
-        node = queue.pop(0)
+    left: list[ast.AST] = [*reversed(function.body)]
+    while left:
+        node = left.pop()
         if isinstance(node, _SCOPES):
             continue
         if isinstance(node, ast.Call) or (
             isinstance(node, (ast.Attribute, ast.Subscript)) and not isinstance(node.ctx, ast.Load)
         ):
             yield node
-        queue.extend(children(node))
+        left.extend(children(node))
 
 
-def _called(script: Script, node: ast.Call, what: str) -> Iterator[Finding]:
-    path = callee_path(script, node)
-    if path.startswith(_OPERATORS) and path.count(".") == _DOTS:
-        yield Finding(
-            RULE.id, "error", script.span(node),
-            f"Blender refuses to call operators in {what}: `{path}` raises a RuntimeError there.", path,
-        )  # fmt: skip
+def _called(script: Script, node: ast.expr, what: str) -> Finding | None:
+    path = callee_path(script, node) if isinstance(node, ast.Call) else ""
+    if not path.startswith(_OPERATORS) or path.count(".") != _DOTS:
+        return None
+    return Finding(
+        RULE.id, "error", script.span(node),
+        f"Blender refuses to call operators in {what}: `{path}` raises a RuntimeError there.", path,
+    )  # fmt: skip
+
+
+def _written(script: Script, node: ast.expr, what: str) -> Finding | None:
+    if not isinstance(node, (ast.Attribute, ast.Subscript)) or not _is_checked(script, node):
+        return None
+    if not (owner := _holder(script, node.value)):
+        return None
+    return Finding(
+        RULE.id, "error", script.span(node),
+        f"Blender refuses to write to data in {what}: `{ast.unparse(node)}` belongs to a `{owner}`.", owner,
+    )  # fmt: skip
 
 
 def _is_checked(script: Script, node: ast.Attribute | ast.Subscript) -> bool:
@@ -156,13 +162,13 @@ def _holder(script: Script, node: ast.expr, depth: int = _DEEPEST) -> str:
             return _holder(script, owner, depth - 1) if depth else ""
         case ast.Subscript(value=owner):
             return _holder(script, owner, depth - 1) if depth and _is_struct(script, node) else ""
-        case ast.Name(id=name):
+        case ast.Name(id=name) if depth:
             values = bindings(script).get(name, [])
             held = {
                 _holder(script, value, depth - 1) if isinstance(value, (ast.Attribute, ast.Subscript)) else ""
-                for value in values
+                for value in values[:_MOST_VALUES]
             }
-            return held.pop() if depth and len(held) == 1 else ""
+            return held.pop() if len(held) == 1 and len(values) <= _MOST_VALUES else ""
         case _:
             return ""
 
