@@ -10,8 +10,8 @@ if TYPE_CHECKING:
 
     from kb_build.blender.extract_reader import Extract
     from kb_build.pages.sources import DocumentationSource
-    from kb_build.records import Page
     from kb_build.summaries.types import SummaryRun
+    from kb_build.symbols.records import Page
 
 
 def counts(extract: Extract, pages: Sequence[Page]) -> dict[str, Any]:

@@ -34,9 +34,9 @@ if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract
     from kb_build.pages.reading import PageReader
     from kb_build.pages.sources import DocumentationSource, MissingSource
-    from kb_build.records import Page
     from kb_build.summaries.types import SummaryReport, SummaryRun
-    from kb_build.symbol_tables import SymbolTables
+    from kb_build.symbols.records import Page
+    from kb_build.symbols.tables import SymbolTables
     from kb_build.usage.usage_index import ScriptUsage
     from kb_build.versions.removed_symbols import RemovedSymbols
     from simworlds.sandbox.runtime import Runtime
@@ -46,7 +46,7 @@ SummaryMethod = Literal["shipped", "extractive", "claude", "none"]
 _LOADED_AHEAD = (
     "kb_build.blender.extract_reader",
     "kb_build.summaries.methods",
-    "kb_build.symbol_tables",
+    "kb_build.symbols.tables",
     "kb_build.usage.usage_index",
 )
 
@@ -310,7 +310,7 @@ def _symbol_tables(
     from kb_build.flow.symbols import SymbolList  # noqa: PLC0415 - loaded ahead
     from kb_build.panels.conditions import panel_conditions  # noqa: PLC0415 - not when nothing changed
     from kb_build.panels.gating import settled  # noqa: PLC0415 - loaded ahead
-    from kb_build.symbol_tables import symbol_tables  # noqa: PLC0415 - likewise
+    from kb_build.symbols.tables import symbol_tables  # noqa: PLC0415 - likewise
     from kb_build.usage.examples import SymbolUsage  # noqa: PLC0415 - loaded ahead
     from kb_build.usage.usage_index import merged, page_usage, with_aliases  # noqa: PLC0415 - loaded ahead
 

@@ -8,9 +8,9 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import interface_part
 from kb_build.errors import KBBuildError
 from kb_build.index.analysis import key
+from kb_build.symbols.api_names import interface_part
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -31,7 +31,6 @@ from kb_build.index.query_expansions import load_query_expansions, query_expansi
 from kb_build.index.stem_numbers import StemNumbers
 from kb_build.index.value_names import find_value_names
 from kb_build.index.weights import symbol_weights
-from kb_build.records import PAGE_SOURCES, Link, Page, Symbol, to_json
 from kb_build.schema import (
     APPLICATION_ID,
     DDL,
@@ -42,7 +41,8 @@ from kb_build.schema import (
     UNITS,
     pack,
 )
-from kb_build.symbol_tables import SymbolTables, symbol_tables
+from kb_build.symbols.records import PAGE_SOURCES, Link, Page, Symbol, to_json
+from kb_build.symbols.tables import SymbolTables, symbol_tables
 from kb_build.versions.removed_symbols import RemovedSymbols
 from simworlds.files import staged_file
 

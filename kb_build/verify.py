@@ -12,13 +12,13 @@ from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from kb_build.api_names import TYPES
 from kb_build.base_file import open_base, read_meta
 from kb_build.index.analysis import key
 from kb_build.live.values import compare_values, runtime_at_hand
-from kb_build.records import page_from_json, symbol_from_json
 from kb_build.reference_list import WANTED, ReferenceResolution, read_reference, resolve
 from kb_build.schema import FORM_PATH, POSTING_BYTES, UNITS, unpack
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import page_from_json, symbol_from_json
 from simworlds.sandbox.errors import ProgramFailed
 
 if TYPE_CHECKING:

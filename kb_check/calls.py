@@ -7,8 +7,8 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.flow.types import ClassObject, Function, NoneValue, Operator, members
+from kb_build.symbols.api_names import TYPES
 from kb_check.literals import times_bound
 from kb_check.made_here import bindings
 from kb_check.script import once_for_each, once_per_script
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Type
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
     from kb_check.script import Script
 
 _RNA_TYPE = re.compile(r"(boolean|int|float|string|enum|set\[enum\])(\[\d+\])*|list of \w+|[A-Z]\w*")

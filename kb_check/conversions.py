@@ -20,8 +20,6 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, STRUCT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import (
     NONE,
     Collection,
@@ -34,7 +32,9 @@ from kb_build.flow.types import (
     Type,
     members,
 )
-from kb_build.object_data import OBJECT_DATA
+from kb_build.symbols.api_names import ID, STRUCT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.object_data import OBJECT_DATA
 from kb_check.documented import (
     LENGTHS,
     documented_misfit,

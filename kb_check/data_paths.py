@@ -10,17 +10,17 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, Type, members
-from kb_build.unlisted import SOMETIMES
+from kb_build.symbols.api_names import ID
+from kb_build.symbols.unlisted import SOMETIMES
 from kb_check.calls import calls
 from kb_check.conversions import CHANGING_ARRAYS
 from kb_check.made_here import is_new
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _PART = re.compile(r'(?P<dot>\.?)(?P<name>[A-Za-z_]\w*)|\["(?P<key>(?:[^"\\]|\\.)*)"\]|\[\d+\]')

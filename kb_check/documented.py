@@ -10,9 +10,9 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import ELEMENT, ELEMENTS, LAYER_ITEM
 from kb_build.flow.types import NONE, UNKNOWN, Instance, Mapping, Plain, Sequence, Tuple, members
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls_by_node
 from kb_check.literals import items, written
 from kb_check.made_here import bindings

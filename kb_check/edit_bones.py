@@ -9,9 +9,9 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import Instance
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls_by_node
 from kb_check.literals import bound_names
 from kb_check.made_here import bodies, callee_path, computes_names, named_words

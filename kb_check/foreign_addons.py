@@ -9,10 +9,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import ADDONS
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, literal_texts
+from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator

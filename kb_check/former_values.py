@@ -9,9 +9,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.paths import argument_of, plain_path
+from kb_build.symbols.paths import argument_of, plain_path
 from kb_check.literals import written
-from kb_serve.recognise.likely_values import likely_values
+from kb_serve.recognise.names.likely_values import likely_values
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

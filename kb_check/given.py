@@ -7,9 +7,9 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import STRUCT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import NONE, UNKNOWN, Collection, Instance, members
+from kb_build.symbols.api_names import STRUCT
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls_not_ready_for
 from kb_check.own_classes import own_classes
 from kb_check.raised import REFUSES
@@ -19,7 +19,7 @@ from kb_check.shown_sockets import socket_classes
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
     from kb_check.script import Script
 
 _SIZES = re.compile(r"\[(\d+)\]")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID
-from kb_build.api_names import TYPES as T
+from kb_build.symbols.api_names import ID
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.made_here import (
     attributes,
     called_operators,
@@ -22,7 +22,7 @@ from kb_check.script import once_per_script
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _GROUPS, _GROUPS_NEW, _TREE = "node_groups", f"{T}BlendDataNodeTrees.new", f"{T}NodeTree"

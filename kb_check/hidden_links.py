@@ -13,7 +13,7 @@ from kb_check.socket_modes import deciding, is_shown, showing
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _LINKS_NEW = "bpy.types.NodeLinks.new"

@@ -9,14 +9,14 @@ import sqlite3
 import textwrap
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.flow.parse import parsed
+from kb_build.symbols.api_names import TYPES
 from kb_check.beside import checker_beside
 from kb_check.source import split_lines
 from kb_check.summary import mended
-from kb_serve.recognise.given_values import NO_VALUE
-from kb_serve.recognise.lost_names import is_telling
-from kb_serve.recognise.variables import is_guess, usual_classes
+from kb_serve.recognise.code.wrong_values import NO_VALUE
+from kb_serve.recognise.removed.lost_names import is_telling
+from kb_serve.recognise.resolving.variables import is_guess, usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterator, Sequence

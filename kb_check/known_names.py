@@ -6,24 +6,24 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.index.analysis import distinct_words
-from kb_build.paths import last_name, plain_path
+from kb_build.symbols.api_names import OPERATORS, SIDES, STRUCT, TYPES
+from kb_build.symbols.paths import last_name, plain_path
 from kb_check.likely_names import by_label
-from kb_serve.recognise.corrections import by_first_word, is_misspelling, nearest
-from kb_serve.recognise.enum_values import EnumValues
-from kb_serve.recognise.likely_keywords import likely_keywords
-from kb_serve.recognise.likely_values import likely_values
-from kb_serve.recognise.node_names import is_like_a_node, nodes_meant
+from kb_serve.recognise.names.corrections import by_first_word, is_misspelling, nearest
+from kb_serve.recognise.names.enum_values import EnumValues
+from kb_serve.recognise.names.likely_keywords import likely_keywords
+from kb_serve.recognise.names.likely_values import likely_values
+from kb_serve.recognise.names.node_names import is_like_a_node, nodes_meant
+from kb_serve.recognise.names.operator_words import OperatorWords
 from kb_serve.recognise.notes import Notes
-from kb_serve.recognise.operator_words import OperatorWords
-from kb_serve.recognise.removed_symbols import RemovedSymbolLookup, for_reading
+from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup, for_reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.removed_symbols import RemovedSymbol
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
 _MOST_NAMED = 3
 _FEW_MEMBERS = 8

@@ -8,9 +8,9 @@ import sys
 from bisect import bisect_right
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, OBJECT, OPERATORS
 from kb_build.flow.trees import walk
-from kb_build.symbol_facts import fillers
+from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
+from kb_build.symbols.flags import fillers
 from kb_check.computing import RUNNING, STORING, computing
 from kb_check.script import once_for_each, once_per_script
 

@@ -7,13 +7,13 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_facts import Wanted, operator_active
-from kb_build.symbol_lines import with_article
+from kb_build.symbols.flags import Wanted, operator_active
+from kb_build.symbols.lines import with_article
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.calls import CallSite
     from kb_check.script import Script
 

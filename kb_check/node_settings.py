@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_facts import usual_default
+from kb_build.symbols.flags import usual_default
 from kb_check.made_here import attributes, bindings, is_new, keywords_and_texts, places
 from kb_check.script import once_for_each, once_per_script
 

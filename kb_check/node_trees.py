@@ -6,15 +6,15 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Collection, Instance
-from kb_build.paths import last_name
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.paths import last_name
 from kb_check.calls import calls_by_node
 from kb_check.made_here import bindings
 from kb_check.script import once_for_each
 
 if TYPE_CHECKING:
-    from kb_build.records import EnumItem
+    from kb_build.symbols.records import EnumItem
     from kb_check.calls import CallSite
     from kb_check.script import Script
 

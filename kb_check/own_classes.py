@@ -16,7 +16,7 @@ from kb_check.script import once_per_script
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 # Name → the one statement of a body that gives it; None where several do, or one that may not be run.

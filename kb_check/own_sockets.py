@@ -13,9 +13,9 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import SIDES
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import UNKNOWN, Instance, literal_texts
+from kb_build.symbols.api_names import SIDES
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls, calls_by_node
 from kb_check.computing import CALLING, computing
 from kb_check.group_inputs import makes_all_groups

@@ -7,14 +7,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
-from kb_build.records import MUST_HAVE
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.records import MUST_HAVE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.api import Api
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 _WITH_PROPERTIES = (
     "AddonPreferences", "Gizmo", "GizmoGroup", "Macro", "Node", "NodeSocket", "NodeTree", "Operator", "PropertyGroup",

@@ -9,15 +9,15 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import ID
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Collection, Instance
+from kb_build.symbols.api_names import ID
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls_by_node
 from kb_check.edit_bones import bound_in, names_in, names_of_others
 from kb_check.made_here import callee_path
 
 if TYPE_CHECKING:
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _ELEMENTS = frozenset({f"bmesh.types.BM{kind}Seq.remove" for kind in ("Vert", "Edge", "Face")})

@@ -15,9 +15,9 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS
 from kb_build.flow.facts import READ_ACTIVE, made_by
 from kb_build.flow.trees import walk
+from kb_build.symbols.api_names import OPERATORS
 from kb_check.calls import calls_by_node
 from kb_check.made_here import callee_path, places
 from kb_check.script import once_for_each
@@ -25,7 +25,7 @@ from kb_check.script import once_for_each
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 

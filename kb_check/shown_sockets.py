@@ -13,16 +13,16 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance
-from kb_build.symbol_facts import usual_default
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flags import usual_default
 from kb_check.node_settings import setting_of
 from kb_check.socket_modes import showing
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _SOCKET = f"{T}NodeSocket"

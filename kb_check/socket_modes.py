@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import shown_when
+from kb_build.symbols.lines import shown_when
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 

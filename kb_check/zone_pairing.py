@@ -5,12 +5,12 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.records import PAIRS, WHEN_PAIRED
+from kb_build.symbols.records import PAIRS, WHEN_PAIRED
 from kb_check.made_here import attributes, named_words, statement_of
 from kb_check.script import once_per_script
 
 if TYPE_CHECKING:
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _PLAIN = (ast.Expr, ast.Assign, ast.AnnAssign)

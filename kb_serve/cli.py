@@ -103,8 +103,8 @@ def _print_answer(answer: DocsAnswer, *, as_json: bool) -> bool:
 
 
 def _print_raw(base: KnowledgeBase, answer: DocsAnswer) -> bool:
-    from kb_build.paths import plain_path  # noqa: PLC0415 - only for --json
-    from kb_build.records import to_json  # noqa: PLC0415 - likewise
+    from kb_build.symbols.paths import plain_path  # noqa: PLC0415 - only for --json
+    from kb_build.symbols.records import to_json  # noqa: PLC0415 - likewise
 
     for hit in answer.hits[:1]:
         # Enum items and parameters are in the record of their owner.

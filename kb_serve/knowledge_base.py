@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
     from types import TracebackType
 
-    from kb_build.records import Page, Symbol
+    from kb_build.symbols.records import Page, Symbol
     from kb_serve.answer.docs_answer import DocsAnswer
 
 

@@ -11,10 +11,10 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from kb_build.api_names import TYPES
-from kb_build.object_data import data_class
-from kb_build.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
 from kb_build.schema import NoBase, open_read_only, unpack
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.object_data import data_class
+from kb_build.symbols.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
 from kb_serve.errors import BadQuery, BaseMissing, BaseUnreadable
 from kb_serve.kept_rows import KeptRows
 

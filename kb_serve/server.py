@@ -15,7 +15,7 @@ from mcp.shared.exceptions import MCPError
 from mcp.shared.uri_template import UriTemplate
 from starlette.responses import Response
 
-from kb_build.records import to_json
+from kb_build.symbols.records import to_json
 from kb_serve.errors import KBServeError
 from kb_serve.served_tools import TOOL_NAMES, answer, is_quick, listing
 from simworlds.installed import own_version

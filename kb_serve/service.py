@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 from kb_serve.errors import BadQuery, BaseMissing, KBServeError
 
 if TYPE_CHECKING:
-    from kb_build.records import Page, Symbol
+    from kb_build.symbols.records import Page, Symbol
     from kb_serve.answer.docs_answer import DocsAnswer
     from kb_serve.bases import Bases
     from kb_serve.knowledge_base import KnowledgeBase

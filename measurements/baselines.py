@@ -19,9 +19,9 @@ from rank_bm25 import BM25Okapi
 from kb_build.index.analysis import terms
 from kb_build.index.documents import Document, make_units
 from kb_build.index.query_expansions import query_expansions
-from kb_build.records import Link, symbol_from_json
 from kb_build.schema import unpack
 from kb_build.summaries.methods import summarise
+from kb_build.symbols.records import Link, symbol_from_json
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:

@@ -10,16 +10,16 @@ from typing import TYPE_CHECKING
 from bench.markdown_tables import Table
 from kb_build.base_file import read_meta
 from kb_build.live.values import compare_values, runtime_at_hand
-from kb_build.records import NOT_TAKEN, symbol_from_json
 from kb_build.schema import open_read_only, unpack
-from kb_build.symbol_facts import empty_when_new, fillers
+from kb_build.symbols.flags import empty_when_new, fillers
+from kb_build.symbols.records import NOT_TAKEN, symbol_from_json
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import say
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from measurements.setting import Setting
 
 

@@ -13,7 +13,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
-from kb_build.paths import split_path
+from kb_build.symbols.paths import split_path
 from kb_serve.knowledge_base import KnowledgeBase
 from kb_serve.reader import BaseReader
 from measurements.report import ReportPart, TargetFigure

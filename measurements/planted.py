@@ -34,7 +34,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
     from pathlib import Path
 
-    from kb_build.records import Parameter
+    from kb_build.symbols.records import Parameter
     from kb_check.findings import Finding
     from measurements.setting import Setting
 

@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.symbols import Symbols
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
 
 _T = "bpy.types."
 _CALLED_BY_BLENDER = {

@@ -7,15 +7,15 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 from bench.markdown_tables import Table
-from kb_build.records import symbol_from_json
 from kb_build.schema import open_read_only, unpack
+from kb_build.symbols.records import symbol_from_json
 from measurements.report import ReportPart
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
     from pathlib import Path
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from measurements.setting import Setting
 
 _HEADER = (

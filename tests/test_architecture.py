@@ -66,15 +66,15 @@ RULES = (
         "kb_build.flow",
         ("kb_build",),
         (
-            "kb_build.api_names",
+            "kb_build.symbols.api_names",
             "kb_build.flow",
-            "kb_build.math_classes",
-            "kb_build.python_values",
-            "kb_build.object_data",
-            "kb_build.paths",
-            "kb_build.records",
+            "kb_build.symbols.math_classes",
+            "kb_build.symbols.python_values",
+            "kb_build.symbols.object_data",
+            "kb_build.symbols.paths",
+            "kb_build.symbols.records",
             "kb_build.schema",
-            "kb_build.unlisted",
+            "kb_build.symbols.unlisted",
         ),
     ),
     # Checking words its findings as the knowledge base words its answers. The server loads the tool by its name.
@@ -83,29 +83,29 @@ RULES = (
         "kb_check",
         ("kb_build",),
         (
-            "kb_build.api_names",
+            "kb_build.symbols.api_names",
             "kb_build.flow",
-            "kb_build.python_values",
-            "kb_build.object_data",
-            "kb_build.paths",
-            "kb_build.records",
+            "kb_build.symbols.python_values",
+            "kb_build.symbols.object_data",
+            "kb_build.symbols.paths",
+            "kb_build.symbols.records",
             "kb_build.schema",
-            "kb_build.symbol_facts",
-            "kb_build.symbol_lines",
+            "kb_build.symbols.flags",
+            "kb_build.symbols.lines",
             "kb_build.index.analysis",
-            "kb_build.unlisted",
+            "kb_build.symbols.unlisted",
         ),
     ),
-    Rule("kb_build.api_names", ("kb_build", "kb_check")),
-    Rule("kb_build.paths", ("kb_build", "kb_check")),
-    Rule("kb_build.records", ("kb_build", "kb_check"), ("kb_build.paths",)),
+    Rule("kb_build.symbols.api_names", ("kb_build", "kb_check")),
+    Rule("kb_build.symbols.paths", ("kb_build", "kb_check")),
+    Rule("kb_build.symbols.records", ("kb_build", "kb_check"), ("kb_build.symbols.paths",)),
     Rule("kb_build.schema", ("kb_build", "kb_check")),
-    Rule("kb_build.unlisted", ("kb_build", "kb_check")),
-    Rule("kb_build.object_data", ("kb_build", "kb_check")),
-    Rule("kb_build.math_classes", ("kb_build", "kb_check"), ("kb_build.records",)),
-    Rule("kb_build.python_values", ("kb_build", "kb_check"), ("kb_build.records",)),
+    Rule("kb_build.symbols.unlisted", ("kb_build", "kb_check")),
+    Rule("kb_build.symbols.object_data", ("kb_build", "kb_check")),
+    Rule("kb_build.symbols.math_classes", ("kb_build", "kb_check"), ("kb_build.symbols.records",)),
+    Rule("kb_build.symbols.python_values", ("kb_build", "kb_check"), ("kb_build.symbols.records",)),
     # How text is cut into words belongs to the store's schema: index and query must agree on it.
-    Rule("kb_build.index.analysis", ("kb_build",), ("kb_build.api_names",)),
+    Rule("kb_build.index.analysis", ("kb_build",), ("kb_build.symbols.api_names",)),
     Rule("kb_build.index.everyday_table", ("kb_build",)),
     Rule("kb_serve", others("simworlds", "kb_build", "kb_serve"), through=True),
     Rule(
@@ -113,19 +113,19 @@ RULES = (
         ("kb_build",),
         # What a base holds, which words it lends each other, and one way to make it.
         (
-            "kb_build.api_names",
-            "kb_build.paths",
+            "kb_build.symbols.api_names",
+            "kb_build.symbols.paths",
             "kb_build.pages.definitions",
-            "kb_build.records",
+            "kb_build.symbols.records",
             "kb_build.schema",
             "kb_build.index.analysis",
             "kb_build.index.everyday_table",
-            "kb_build.math_classes",
-            "kb_build.python_values",
-            "kb_build.object_data",
-            "kb_build.symbol_facts",
-            "kb_build.symbol_lines",
-            "kb_build.unlisted",
+            "kb_build.symbols.math_classes",
+            "kb_build.symbols.python_values",
+            "kb_build.symbols.object_data",
+            "kb_build.symbols.flags",
+            "kb_build.symbols.lines",
+            "kb_build.symbols.unlisted",
             "kb_build.pipeline",
         ),
     ),
@@ -384,7 +384,13 @@ def test_no_modules_import_each_other_in_a_circle() -> None:
 
 def test_the_tree_that_is_checked_is_the_real_one() -> None:
     names = set(modules(REPO))
-    assert {"kb_build.records", "kb_serve", "agents", "bench", "kb_build.blender.inside.extract_api"} <= names
+    assert {
+        "kb_build.symbols.records",
+        "kb_serve",
+        "agents",
+        "bench",
+        "kb_build.blender.inside.extract_api",
+    } <= names
 
 
 def test_the_server_reaches_the_build_through_one_function_at_most() -> None:
@@ -397,7 +403,11 @@ def test_the_server_reaches_the_build_through_one_function_at_most() -> None:
     ("path", "code", "breach"),
     [
         ("simworlds/files.py", "import kb_build.errors", "simworlds.files imports kb_build.errors"),
-        ("kb_build/records.py", "import kb_build.errors", "kb_build.records imports kb_build.errors"),
+        (
+            "kb_build/symbols/records.py",
+            "import kb_build.errors",
+            "kb_build.symbols.records imports kb_build.errors",
+        ),
         ("kb_build/store.py", "from kb_serve.reader import read", "kb_build.store imports kb_serve.reader"),
         ("kb_build/store.py", "def f():\n    import bpy", "kb_build.store imports bpy"),
         (
@@ -478,8 +488,8 @@ def test_a_circle_is_seen(tmp_path: Path, first: str, second: str) -> None:
 @pytest.mark.parametrize(
     ("path", "code"),
     [
-        ("kb_serve/search.py", "from kb_build.records import Symbol\nfrom kb_build import schema"),
-        ("kb_check/a.py", "from kb_build.records import Symbol\nfrom kb_build.schema import unpack"),
+        ("kb_serve/search.py", "from kb_build.symbols.records import Symbol\nfrom kb_build import schema"),
+        ("kb_check/a.py", "from kb_build.symbols.records import Symbol\nfrom kb_build.schema import unpack"),
         ("kb_build/blender/inside/a.py", "import bpy, json\nfrom . import b\nfrom mathutils import Vector"),
         (
             "agents/blender/inside/x/a.py",

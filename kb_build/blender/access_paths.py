@@ -10,16 +10,16 @@ from dataclasses import dataclass, field
 from itertools import takewhile
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.flow.facts import NARROWER
-from kb_build.lineages import lineage
-from kb_build.records import EVALUATED
-from kb_build.symbol_lines import of_evaluated
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.lineages import lineage
+from kb_build.symbols.lines import of_evaluated
+from kb_build.symbols.records import EVALUATED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 
 # Where scripts start. Other context members depend on the editor under the mouse.

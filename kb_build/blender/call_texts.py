@@ -9,7 +9,7 @@ from kb_build.index.analysis import split_arguments
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kb_build.records import Default, Parameter
+    from kb_build.symbols.records import Default, Parameter
 
 # Defaults that are not told, by type: empty ones, and those that are no value to give, as of arrays of any length.
 _UNTOLD = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from kb_build.api_names import TYPES
+from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

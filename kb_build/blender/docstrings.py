@@ -16,7 +16,7 @@ from docutils.parsers.rst import Directive, Parser, directives, roles
 from docutils.utils import new_document
 
 from kb_build.docutils_states import states_when_entered
-from kb_build.records import Default, EnumItem, Parameter
+from kb_build.symbols.records import Default, EnumItem, Parameter
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence

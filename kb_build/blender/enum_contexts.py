@@ -6,7 +6,7 @@ from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
 from kb_build.blender.enum_neighbours import TriedNeighbours, setting_text
-from kb_build.records import NOT_TAKEN
+from kb_build.symbols.records import NOT_TAKEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence

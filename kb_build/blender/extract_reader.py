@@ -8,7 +8,6 @@ from collections import defaultdict
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
-from kb_build.api_names import TYPES
 from kb_build.blender.call_texts import (
     all_optional,
     by_name_too,
@@ -24,7 +23,8 @@ from kb_build.blender.owners_animated import unmark_unanimated
 from kb_build.blender.tried_facts import ADDED, add_items
 from kb_build.errors import ExtractError
 from kb_build.index.creation import with_whole_calls
-from kb_build.records import (
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import (
     EnumItem,
     Link,
     Page,

@@ -8,15 +8,15 @@ from collections import defaultdict
 from functools import cache
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, TYPES
-from kb_build.known_prefixes import KnownPrefixes
-from kb_build.lineages import lineage
-from kb_build.records import Link
+from kb_build.symbols.api_names import ID, TYPES
+from kb_build.symbols.known_prefixes import KnownPrefixes
+from kb_build.symbols.lineages import lineage
+from kb_build.symbols.records import Link
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 _INDEXABLE = re.compile(r"[\[*?]")
 _FAR = 4  # pointers that lead from a data-block to what belongs to it

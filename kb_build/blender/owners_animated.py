@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-from kb_build.api_names import ID, TYPES
+from kb_build.symbols.api_names import ID, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping

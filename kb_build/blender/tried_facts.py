@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 from kb_build.blender.call_texts import LEFT_OUT
 from kb_build.blender.enum_contexts import items_in_contexts
 from kb_build.blender.refused_calls import refusals
-from kb_build.records import (
+from kb_build.symbols.records import (
     ALSO,
     ANY,
     AREAS,

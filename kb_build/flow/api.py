@@ -6,8 +6,6 @@ import re
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Protocol
 
-from kb_build.api_names import COLLECTION, GROUPS, STRUCT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import (
     CALLED,
     CLASS_OF_VALUE,
@@ -41,15 +39,17 @@ from kb_build.flow.types import (
     members,
     union,
 )
-from kb_build.math_classes import math_class
-from kb_build.object_data import data_class
-from kb_build.python_values import is_new_list
+from kb_build.symbols.api_names import COLLECTION, GROUPS, STRUCT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.math_classes import math_class
+from kb_build.symbols.object_data import data_class
+from kb_build.symbols.python_values import is_new_list
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.symbols import Symbols
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
 
 ARRAY = "bpy.types.bpy_prop_array"
 _ROOTS = {"bpy.data": f"{T}BlendData", "bpy.context": f"{T}Context"}

@@ -44,7 +44,7 @@ from kb_build.flow.types import (
 
 if TYPE_CHECKING:
     from kb_build.flow.read_calls import Keywords, ReadCall
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
 
 # Arguments that name a property of another argument or of the receiver: function → (text, owner; -1 the receiver).
 _NAMES_PROPERTY = {

@@ -7,7 +7,6 @@ from collections import defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.api_calls import ApiCalls
 from kb_build.flow.expressions import constants
 from kb_build.flow.facts import leaves_active, made_by
@@ -30,6 +29,7 @@ from kb_build.flow.types import (
     literal_text,
     union,
 )
+from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

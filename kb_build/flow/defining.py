@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import ast
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.core import ANY
 from kb_build.flow.definitions import ClassDefinition
 from kb_build.flow.expressions import Expressions
 from kb_build.flow.scopes import Scope
 from kb_build.flow.trees import children
 from kb_build.flow.types import UNKNOWN, ClassObject, LocalClass, LocalFunction, Plain, Type, general, literal
+from kb_build.symbols.api_names import TYPES as T
 
 _MOST_CLASSES = 1_000  # of one script; which ones later classes are mixed into is not asked
 

@@ -7,7 +7,6 @@ import builtins
 import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS, VERSION
 from kb_build.flow.members import Members
@@ -38,7 +37,8 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
-from kb_build.unlisted import FEWEST_VALUES, MORE_VALUES, STAND_INS
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.unlisted import FEWEST_VALUES, MORE_VALUES, STAND_INS
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -6,8 +6,6 @@ from dataclasses import dataclass, field, replace
 from fnmatch import fnmatchcase
 from typing import TYPE_CHECKING, ClassVar
 
-from kb_build.api_names import COLLECTION, GROUPS, STRUCT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.api import ARRAY
 from kb_build.flow.core import ANY, Core
 from kb_build.flow.facts import (
@@ -47,7 +45,9 @@ from kb_build.flow.types import (
     literal_text,
     union,
 )
-from kb_build.unlisted import SOMETIMES
+from kb_build.symbols.api_names import COLLECTION, GROUPS, STRUCT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.unlisted import SOMETIMES
 
 if TYPE_CHECKING:
     import ast

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 from dataclasses import replace
 
-from kb_build.api_names import OBJECT
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.guards import Guards
 from kb_build.flow.scopes import chain_text
@@ -27,6 +26,7 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
+from kb_build.symbols.api_names import OBJECT
 
 
 class Narrowing(Guards):

@@ -5,7 +5,6 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.annotations import Annotations
 from kb_build.flow.contradictions import Contradictions
 from kb_build.flow.facts import PARAMETERS
@@ -26,6 +25,7 @@ from kb_build.flow.types import (
     general,
     join,
 )
+from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
     from kb_build.flow.definitions import FunctionDefinition

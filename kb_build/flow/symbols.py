@@ -6,8 +6,8 @@ from collections import defaultdict
 from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
-from kb_build.records import Symbol, symbol_from_json
 from kb_build.schema import open_read_only, unpack
+from kb_build.symbols.records import Symbol, symbol_from_json
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

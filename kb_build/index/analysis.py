@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import snowballstemmer
 
-from kb_build.api_names import OPERATORS, TYPES
+from kb_build.symbols.api_names import OPERATORS, TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -12,14 +12,14 @@ from collections import Counter, defaultdict
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import NODE, OPERATORS, TYPES
 from kb_build.index.analysis import key, terms
-from kb_build.symbol_lines import held
+from kb_build.symbols.api_names import NODE, OPERATORS, TYPES
+from kb_build.symbols.lines import held
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kb_build.records import EnumItem, NewValue, Parameter, Symbol
+    from kb_build.symbols.records import EnumItem, NewValue, Parameter, Symbol
 
 _MAKERS = ("new", "create", "add")
 _NEW_KIND = "new_"

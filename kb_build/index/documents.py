@@ -12,16 +12,16 @@ from collections import defaultdict
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.index.passages import Passage, find_passages
 from kb_build.pages.definitions import passage_text
+from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping, Sequence
 
-    from kb_build.records import Link, Page, Symbol
     from kb_build.schema import DocumentKind
     from kb_build.summaries.types import PageSummary
+    from kb_build.symbols.records import Link, Page, Symbol
 
 FIELDS = ("name", "heading", "context", "body", "related", "expansions")
 # How to write the manual, single add-ons, features kept for old files, the colours of Blender's own windows.

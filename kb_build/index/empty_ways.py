@@ -6,15 +6,15 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
-from kb_build.lineages import lineage
-from kb_build.records import EMPTY
-from kb_build.symbol_facts import empty_when_new
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flags import empty_when_new
+from kb_build.symbols.lineages import lineage
+from kb_build.symbols.records import EMPTY
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 _WAY = re.compile(r"(?P<before>.+)\.(?P<name>\w+)(?P<key>\[[^\]]+\])?")
 _FIRST = (None, "[0]")  # of a collection whose elements have no names; who asks for a name has made it

@@ -12,18 +12,18 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.index.passages import KIND_WORDS, Passage, keys_of_term
 from kb_build.pages.definitions import term_of
-from kb_build.symbol_facts import new_subscript
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flags import new_subscript
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.index.operator_labels import LabelledOperator
-    from kb_build.records import Page, Symbol
+    from kb_build.symbols.records import Page, Symbol
 
 _MOST = 2
 _LISTED = re.compile(r"\s*(?:/|,|&| and | or )\s*")

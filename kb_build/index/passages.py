@@ -14,16 +14,16 @@ from dataclasses import dataclass, field
 from functools import cache
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.pages.definitions import passage_text, term_lines
-from kb_build.records import INVERTED
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import INVERTED
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.records import Link, Page, Symbol
+    from kb_build.symbols.records import Link, Page, Symbol
 
 _KINDS = frozenset({"property", "socket", "operator", "class"})
 _BEGINNING = 400  # letters of a definition that say what it is about

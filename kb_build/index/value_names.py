@@ -12,19 +12,19 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
 from kb_build.index.analysis import terms as terms_of
 from kb_build.index.analysis import words as words_of
 from kb_build.index.label_names import LabelName
 from kb_build.pages.definitions import term_of
-from kb_build.records import NOT_TAKEN
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import NOT_TAKEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.index.passages import Passage
-    from kb_build.records import Page, Symbol
+    from kb_build.symbols.records import Page, Symbol
 
 _SHOWN_VALUES = 8
 _LEAST = 2  # choices below a heading that make it a list of them

@@ -10,11 +10,11 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import TYPE_CHECKING, Any, NamedTuple
 
-from kb_build.api_names import TYPES
-from kb_build.records import EMPTY, FILLED_ON, symbol_from_json
 from kb_build.schema import open_read_only, unpack
-from kb_build.symbol_facts import empty_when_new, fillers
-from kb_build.symbol_lines import literal
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flags import empty_when_new, fillers
+from kb_build.symbols.lines import literal
+from kb_build.symbols.records import EMPTY, FILLED_ON, symbol_from_json
 from simworlds.installed import installed_bpy
 from simworlds.sandbox.program import Program
 from simworlds.sandbox.runtime import Runtime, run_program
@@ -22,7 +22,7 @@ from simworlds.sandbox.runtime import Runtime, run_program
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kb_build.records import Default, Symbol
+    from kb_build.symbols.records import Default, Symbol
 
     _Symbols = Mapping[str, Symbol | str]
 

@@ -9,14 +9,14 @@ from typing import TYPE_CHECKING
 
 from kb_build.errors import SourceError
 from kb_build.fingerprint import reader_digest
-from kb_build.records import page_from_json, to_json
+from kb_build.symbols.records import page_from_json, to_json
 from simworlds.files import remove_unfinished_files, staged_file
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.pages.sources import DocumentationSource
-    from kb_build.records import Page, PageSource
+    from kb_build.symbols.records import Page, PageSource
     from simworlds.terminal.progress import Progress
 
 _KEPT = 12

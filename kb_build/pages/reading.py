@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
     from kb_build.pages.sources import DocumentationSource
-    from kb_build.records import Page
+    from kb_build.symbols.records import Page
     from simworlds.terminal.progress import Progress
 
 _REPORT_SECONDS = 0.1

@@ -5,16 +5,16 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.panels.formulas import TRUE_VALUE, Clause, Need, follows
-from kb_build.records import PanelCondition
 from kb_build.schema import TEST_OFF, TEST_ON
-from kb_build.symbol_facts import fillers
+from kb_build.symbols.flags import fillers
+from kb_build.symbols.records import PanelCondition
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
     from kb_build.flow.symbols import Symbols
     from kb_build.panels.gating import Gating
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 _MOST_CLAUSES = 3
 _YES = frozenset({TRUE_VALUE})

@@ -11,11 +11,11 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS
 from kb_build.flow.trees import children, walk
 from kb_build.flow.types import UNKNOWN, Instance, literal_texts
 from kb_build.panels.expressions import Conditions, Held, Script, is_unknown
 from kb_build.panels.formulas import FALSE, TRUE, Formula, all_of, chosen, either_of, is_large, negated
+from kb_build.symbols.api_names import OPERATORS
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping

@@ -5,16 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
-from kb_build.api_names import TYPES
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.panels.formulas import Clause, Clauses, Need, Question, common, consequences
+from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping
 
     from kb_build.flow.symbols import Symbols
     from kb_build.panels.drawing import Place
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 # What only hides a part of a panel, or keeps the interface from changing what has an effect all the same, and what
 # Blender sets itself.

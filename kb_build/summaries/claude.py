@@ -38,7 +38,7 @@ if TYPE_CHECKING:
 
     from anthropic.types.messages.batch_create_params import Request
 
-    from kb_build.records import Page
+    from kb_build.symbols.records import Page
 
 MIN_CHARS = 120
 """A page with less text than this is not worth a question: it is its own summary."""

@@ -9,10 +9,10 @@ from collections import defaultdict
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.flow.analysis import analyse
 from kb_build.flow.trees import children
 from kb_build.flow.types import UNKNOWN, ClassObject, Function, Instance, Operator, Resolution
+from kb_build.symbols.api_names import TYPES
 from kb_build.usage.definitions import decorated_function, derived_class
 from kb_build.usage.scripts import PRESETS
 from kb_build.usage.unfit_calls import unfit_statements
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.api import Api
-    from kb_build.records import PanelCondition
+    from kb_build.symbols.records import PanelCondition
 
 MOST_EXAMPLES = 3  # of one symbol
 _MOST_LINES = 3

@@ -5,12 +5,12 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
+from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
     from kb_build.flow.analysis import Analysis
     from kb_build.flow.symbols import Symbols
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 
 def unfit_statements(analysis: Analysis, symbols: Symbols) -> set[ast.stmt]:

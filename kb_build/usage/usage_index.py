@@ -31,7 +31,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Generator, Iterable, Sequence
     from pathlib import Path
 
-    from kb_build.records import Page, Symbol
+    from kb_build.symbols.records import Page, Symbol
     from kb_build.usage.scripts import Script
 
 _KEPT = 12

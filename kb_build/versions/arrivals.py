@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_build.versions.history import ApiHistory, Arrival
     from kb_build.versions.successors import Succession
 

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
     from kb_build.blender.extract_reader import Extract
-    from kb_build.records import EnumItem, Parameter, Symbol
+    from kb_build.symbols.records import EnumItem, Parameter, Symbol
 
 _REPEATED = ".bl_rna_get_subclass"
 _NOT_DATA = frozenset({"ui", "operator"})

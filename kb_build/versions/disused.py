@@ -10,13 +10,13 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.records import BARE_DATA, Deprecation
+from kb_build.symbols.records import BARE_DATA, Deprecation
 from simworlds.releases import version_key
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_build.versions.successors import Succession
 
 _RELEASE_NOTES = re.compile(r"release notes (\d+\.\d+)\b")

@@ -18,7 +18,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.errors import StoreError
-from kb_build.paths import split_path
+from kb_build.symbols.paths import split_path
 from simworlds.errors import UserError
 from simworlds.releases import minor_of, version_key
 
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
     from kb_build.blender.extract_reader import Extract
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 HISTORY_FILE = Path(__file__).resolve().parents[2] / "corpora" / "history" / "api.csv.gz"
 COLUMNS = ["path", "items_of"]  # and one for each version

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import Counter, defaultdict
 from typing import TYPE_CHECKING
 
-from kb_build.paths import split_path
+from kb_build.symbols.paths import split_path
 from kb_build.versions.history import SHARED, ApiHistory, is_from_stubs, is_module
 from simworlds.releases import minor_of, version_key
 

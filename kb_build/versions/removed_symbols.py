@@ -7,10 +7,10 @@ from collections import Counter
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import interface_part
 from kb_build.flow.facts import LOST_MODULES
 from kb_build.index.analysis import key, short_path
-from kb_build.paths import item_of, socket_name, socket_side, split_path
+from kb_build.symbols.api_names import interface_part
+from kb_build.symbols.paths import item_of, socket_name, socket_side, split_path
 from kb_build.versions.arrivals import told_arrivals
 from kb_build.versions.history import SHARED, paths_of
 from kb_build.versions.similar_names import find_similar_names
@@ -19,7 +19,7 @@ from kb_build.versions.successors import Successors, load_successors, lost_modul
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_build.versions.history import ApiHistory
 
 

@@ -15,16 +15,16 @@ from collections import Counter, defaultdict
 from functools import cache
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, STRUCT, TYPES, interface_part
 from kb_build.index.analysis import key, stem, words
-from kb_build.paths import split_path
+from kb_build.symbols.api_names import OPERATORS, STRUCT, TYPES, interface_part
+from kb_build.symbols.paths import split_path
 from kb_build.versions.feature_index import Bag, FeatureIndex, Mentions
 from simworlds.releases import minor_of
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Mapping, Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_build.versions.history import ApiHistory
 
 KEPT = 5

@@ -7,8 +7,8 @@ from collections import defaultdict
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, TYPES, interface_part
-from kb_build.paths import split_path
+from kb_build.symbols.api_names import OPERATORS, TYPES, interface_part
+from kb_build.symbols.paths import split_path
 from kb_build.versions.history import SHARED
 
 if TYPE_CHECKING:

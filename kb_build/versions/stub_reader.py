@@ -11,8 +11,8 @@ import re
 from typing import TYPE_CHECKING
 from warnings import catch_warnings, simplefilter
 
-from kb_build.api_names import OPERATORS
 from kb_build.errors import KBBuildError
+from kb_build.symbols.api_names import OPERATORS
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.paths import argument_of, plain_path, split_path
+from kb_build.symbols.paths import argument_of, plain_path, split_path
 from kb_check.migrate.place import version_of
 
 if TYPE_CHECKING:

@@ -23,8 +23,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import TYPES
 from kb_build.flow.trees import called_name, children
+from kb_build.symbols.api_names import TYPES
 from kb_check.calls import callee_of
 from kb_check.findings import Finding, Fix
 from kb_check.literals import set_of
@@ -36,7 +36,7 @@ from kb_check.script import once_per_script
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.own_classes import OwnClass
     from kb_check.script import Script
 

@@ -23,7 +23,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.own_classes import FunctionDefinition, own_classes
 from kb_check.registered_types import FEWEST_ARGUMENTS
@@ -32,7 +32,7 @@ from kb_check.rule import Rule
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.own_classes import OwnClass
     from kb_check.script import Script
 

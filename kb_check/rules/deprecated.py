@@ -13,7 +13,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import version_meant
+from kb_build.symbols.lines import version_meant
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _REPLACED = re.compile(r"[Rr]eplaced by '\.(?P<name>\w+)'")

@@ -16,12 +16,12 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OBJECT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
-from kb_build.paths import last_name
-from kb_build.records import EMPTY
+from kb_build.symbols.api_names import OBJECT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import EMPTY
 from kb_check.edit_bones import edited_outside
 from kb_check.findings import Finding
 from kb_check.made_here import (
@@ -39,7 +39,7 @@ from kb_check.tried import is_tried
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 # What fills nothing of the thing that it is called on, and what only takes a thing in.

@@ -18,7 +18,7 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.emptied import empties_only, is_emptied_before
 from kb_check.findings import Finding
 from kb_check.made_here import (

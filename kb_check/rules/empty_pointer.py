@@ -23,12 +23,12 @@ import math
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, OBJECT, OPERATORS
-from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import READ_ACTIVE
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import stem, words
-from kb_build.symbol_facts import empty_when_new, fillers
+from kb_build.symbols.api_names import ID, OBJECT, OPERATORS
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flags import empty_when_new, fillers
 from kb_check.findings import Finding
 from kb_check.made_here import (
     asked_names,
@@ -57,7 +57,7 @@ from kb_check.tried import is_tried
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 # What fills animation data besides what makes nothing else: methods, and operators of these modules.

@@ -28,7 +28,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import shown_when
+from kb_build.symbols.lines import shown_when
 from kb_check.findings import Finding
 from kb_check.hidden_links import hidden_link
 from kb_check.made_here import is_new, knows_all, named_words
@@ -41,7 +41,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS
+from kb_build.symbols.api_names import OPERATORS
 from kb_check.findings import Finding
 from kb_check.foreign_addons import may_register
 from kb_check.former_values import new_value

@@ -22,8 +22,8 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Builtin, Mapping, Operator
-from kb_build.symbol_facts import operator_areas, operator_given
-from kb_build.symbol_lines import area_text
+from kb_build.symbols.flags import operator_areas, operator_given
+from kb_build.symbols.lines import area_text
 from kb_check.background import is_called_by_others, lines_of_others
 from kb_check.calls import calls
 from kb_check.findings import Finding
@@ -32,7 +32,7 @@ from kb_check.rule import Rule
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 

@@ -26,8 +26,8 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.paths import item_of
-from kb_build.records import NOT_TAKEN
+from kb_build.symbols.paths import item_of
+from kb_build.symbols.records import NOT_TAKEN
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
@@ -36,7 +36,7 @@ from kb_check.script import once_per_script
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import EnumItem, Symbol
+    from kb_build.symbols.records import EnumItem, Symbol
     from kb_check.script import Script
 
 

@@ -24,8 +24,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import UNKNOWN, Instance, LocalInstance, members
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Finding, Fix
 from kb_check.own_classes import own_classes
 from kb_check.rule import Rule

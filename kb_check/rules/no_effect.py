@@ -19,14 +19,14 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Builtin, Function, Instance, Plain, Sequence
-from kb_build.python_values import on_changing
+from kb_build.symbols.python_values import on_changing
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.rule import Rule
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _MATH = "mathutils."

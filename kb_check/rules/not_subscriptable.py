@@ -22,8 +22,6 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import GROUPS, SIDES, STRUCT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.api import ARRAY
 from kb_build.flow.facts import NODES_WITH_SOCKETS_OF_THEIR_OWN
 from kb_build.flow.trees import walk
@@ -41,7 +39,9 @@ from kb_build.flow.types import (
     Type,
     members,
 )
-from kb_build.records import NAMES_ITEMS
+from kb_build.symbols.api_names import GROUPS, SIDES, STRUCT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.records import NAMES_ITEMS
 from kb_check.calls import nothing_from
 from kb_check.conversions import CHANGING_ARRAYS
 from kb_check.documented import LENGTHS

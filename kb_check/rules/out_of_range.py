@@ -18,7 +18,7 @@ from __future__ import annotations
 import math
 from typing import TYPE_CHECKING
 
-from kb_build.records import STOPS, UNBOUNDED
+from kb_build.symbols.records import STOPS, UNBOUNDED
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import given_values
 from kb_check.literals import items, number

@@ -45,7 +45,7 @@ from kb_check.rule import Rule
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Parameter
+    from kb_build.symbols.records import Parameter
     from kb_check.calls import CallSite
     from kb_check.script import Script
 

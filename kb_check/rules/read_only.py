@@ -20,10 +20,10 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.flow.types import Instance
-from kb_build.records import FREE_ON
-from kb_build.symbol_facts import freed_by, is_locked
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flags import freed_by, is_locked
+from kb_build.symbols.records import FREE_ON
 from kb_check.findings import Edit, Finding, Fix
 from kb_check.given import is_of_instance
 from kb_check.made_here import alias, named_words
@@ -35,7 +35,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _HANDLERS = "bpy.app.handlers."

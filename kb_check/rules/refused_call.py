@@ -32,13 +32,13 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import NODE, OBJECT, STRUCT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import UNKNOWN, ClassObject, Instance, LocalClass, members
-from kb_build.object_data import OBJECT_DATA
-from kb_build.paths import last_name
-from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS
-from kb_build.symbol_lines import with_article
+from kb_build.symbols.api_names import NODE, OBJECT, STRUCT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.lines import with_article
+from kb_build.symbols.object_data import OBJECT_DATA
+from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import ENDS_BEFORE, ENDS_WITHOUT, PAIRS
 from kb_check.calls import CallSite, calls, calls_by_node
 from kb_check.findings import Edit, Finding, Fix, Span
 from kb_check.literals import number
@@ -61,7 +61,7 @@ from kb_check.tried import is_tried
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Refusal
+    from kb_build.symbols.records import Refusal
     from kb_check.script import Script
 
 _WITH_PROPERTIES = (T, "mathutils.", "bmesh.types.")

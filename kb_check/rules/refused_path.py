@@ -23,9 +23,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import ID, OBJECT
-from kb_build.api_names import TYPES as T
-from kb_build.paths import last_name
+from kb_build.symbols.api_names import ID, OBJECT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.paths import last_name
 from kb_check.calls import calls
 from kb_check.data_paths import follow, item, size
 from kb_check.findings import Edit, Finding, Fix
@@ -37,7 +37,7 @@ from kb_check.tried import is_tried
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.calls import CallSite
     from kb_check.data_paths import Followed
     from kb_check.script import Script

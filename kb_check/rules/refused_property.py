@@ -22,9 +22,9 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import ClassObject
+from kb_build.symbols.api_names import ID
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls
 from kb_check.findings import Finding, Fix
 from kb_check.literals import functions, number, set_of, times_bound, written

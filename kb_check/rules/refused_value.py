@@ -31,13 +31,13 @@ import re
 from dataclasses import replace
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import ID, NODE, OPERATORS
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance
 from kb_build.index.analysis import words
-from kb_build.paths import last_name
-from kb_build.records import NOT_TAKEN
-from kb_build.symbol_facts import usual_default
+from kb_build.symbols.api_names import ID, NODE, OPERATORS
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flags import usual_default
+from kb_build.symbols.paths import last_name
+from kb_build.symbols.records import NOT_TAKEN
 from kb_check.calls import calls_not_ready_for
 from kb_check.findings import Finding
 from kb_check.made_here import (
@@ -63,7 +63,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_build.records import EnumItem, NewValue, Parameter, Symbol
+    from kb_build.symbols.records import EnumItem, NewValue, Parameter, Symbol
     from kb_check.script import Script
 
 _VALUES = r"(\w+)=('[^'|]*'(?:\|'[^'|]*')*)"

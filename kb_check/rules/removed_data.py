@@ -23,8 +23,8 @@ import ast
 from collections import Counter
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Instance, Sequence, Tuple, Type
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls_by_node
 from kb_check.edit_bones import surely_run
 from kb_check.findings import Finding

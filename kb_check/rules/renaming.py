@@ -10,10 +10,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Module, Plain, members
-from kb_build.paths import item_of, split_path
+from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.paths import item_of, split_path
 from kb_check.conversions import misfit
 from kb_check.findings import Edit, Fix, Span
 from kb_check.given import assigned, property_taker
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterator
 
     from kb_build.flow.types import Resolution
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
     from kb_check.known_names import Lacking
     from kb_check.script import Script
 

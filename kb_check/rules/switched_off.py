@@ -16,8 +16,8 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_facts import usual_default
-from kb_build.symbol_lines import switches
+from kb_build.symbols.flags import usual_default
+from kb_build.symbols.lines import switches
 from kb_check.findings import Finding
 from kb_check.made_here import computes_names, is_new, named_words
 from kb_check.rule import Rule
@@ -25,7 +25,7 @@ from kb_check.rule import Rule
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 

@@ -26,11 +26,11 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OBJECT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Plain, members
-from kb_build.object_data import OBJECT_DATA
+from kb_build.symbols.api_names import OBJECT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.object_data import OBJECT_DATA
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.calls import nothing_from
 from kb_check.findings import Finding, Fix
@@ -41,7 +41,7 @@ from kb_check.rules.lacking import lacking_finding
 from kb_check.script import once_per_script
 from kb_check.shown_sockets import socket_classes
 from kb_check.tried import is_tried
-from kb_serve.recognise.elements import elsewhere
+from kb_serve.recognise.names.elements import elsewhere
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -14,7 +14,7 @@ import ast
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.paths import argument_of
+from kb_build.symbols.paths import argument_of
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
 from kb_check.rules.renaming import may_take

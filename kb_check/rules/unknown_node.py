@@ -22,11 +22,11 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import NODE
-from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import CLASS_NAMES
-from kb_build.paths import last_name
-from kb_build.symbol_facts import NODE_FAMILIES, alike_nodes
+from kb_build.symbols.api_names import NODE
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flags import NODE_FAMILIES, alike_nodes
+from kb_build.symbols.paths import last_name
 from kb_check.calls import CallSite, calls_not_ready_for
 from kb_check.findings import Finding, Fix
 from kb_check.mode_keeping import own_names
@@ -38,7 +38,7 @@ from kb_check.script import once_for_each, once_per_script
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.known_names import Lacking
     from kb_check.script import Script
 

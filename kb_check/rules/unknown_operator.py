@@ -16,7 +16,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS
+from kb_build.symbols.api_names import OPERATORS
 from kb_check.made_here import members_taken
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding

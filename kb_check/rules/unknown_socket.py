@@ -32,10 +32,10 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import SIDES
 from kb_build.flow.types import Instance, Resolution
-from kb_build.records import NEVER_BY_IDENTIFIER, WHEN_PAIRED
-from kb_build.symbol_lines import subscripts_text
+from kb_build.symbols.api_names import SIDES
+from kb_build.symbols.lines import subscripts_text
+from kb_build.symbols.records import NEVER_BY_IDENTIFIER, WHEN_PAIRED
 from kb_check.findings import Finding
 from kb_check.group_inputs import makes_all_groups, named_inputs
 from kb_check.made_here import is_new
@@ -48,7 +48,7 @@ from kb_check.socket_modes import is_internal
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.script import Script
 
 _MODIFIER = "bpy.types.NodesModifier"

@@ -21,12 +21,12 @@ from dataclasses import replace
 from difflib import SequenceMatcher
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.expressions import constants
 from kb_build.flow.types import UNKNOWN, Resolution
-from kb_build.paths import argument_of, last_name, plain_path, split_path
-from kb_build.records import NOT_TAKEN
-from kb_build.symbol_facts import NODE_FAMILIES, never_taken
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.flags import NODE_FAMILIES, never_taken
+from kb_build.symbols.paths import argument_of, last_name, plain_path, split_path
+from kb_build.symbols.records import NOT_TAKEN
 from kb_check.calls import calls_not_ready_for
 from kb_check.findings import Finding
 from kb_check.given import assigned, class_values

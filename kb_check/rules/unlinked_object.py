@@ -16,10 +16,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OBJECT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import SET_ACTIVE
 from kb_build.flow.types import Instance
+from kb_build.symbols.api_names import OBJECT
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.calls import calls_by_node
 from kb_check.edit_bones import bound_in, names_of_others, run_in, surely_run
 from kb_check.findings import Finding

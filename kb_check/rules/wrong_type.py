@@ -33,10 +33,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import GROUPS, ID, NODE, OBJECT, STRUCT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.types import Collection, Instance, Plain
-from kb_build.object_data import OBJECT_DATA
+from kb_build.symbols.api_names import GROUPS, ID, NODE, OBJECT, STRUCT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.object_data import OBJECT_DATA
 from kb_check.annotated_parameters import ONE_IS_WRONG, is_annotated
 from kb_check.conversions import misfit
 from kb_check.documented import layer_misfit

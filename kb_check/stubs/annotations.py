@@ -9,8 +9,6 @@ import ast
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import COLLECTION, GROUPS
-from kb_build.api_names import TYPES as T
 from kb_build.flow.api import ARRAY
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, ELEMENT, OPEN_CLASSES
 from kb_build.flow.types import (
@@ -23,12 +21,14 @@ from kb_build.flow.types import (
     Type,
     Union,
 )
+from kb_build.symbols.api_names import COLLECTION, GROUPS
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.stubs.enums import Enums, values_of
 from kb_check.stubs.python_protocols import GENERIC
 
 if TYPE_CHECKING:
     from kb_build.flow.api import Api
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
     from kb_check.stubs.families import Families
 
 ANY = "typing.Any"

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import COLLECTION, STRUCT
-from kb_build.api_names import TYPES as T
+from kb_build.symbols.api_names import COLLECTION, STRUCT
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.stubs.annotations import ANY
 from kb_check.stubs.names import docstring, is_writable
 from kb_check.stubs.properties import open_class_body
@@ -15,7 +15,7 @@ from kb_check.stubs.python_protocols import GENERIC, body
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.stubs.annotations import Annotations
     from kb_check.stubs.families import Members
     from kb_check.stubs.functions import Functions

@@ -10,7 +10,7 @@ from kb_check.stubs.names import is_writable
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kb_build.records import EnumItem, Symbol
+    from kb_build.symbols.records import EnumItem, Symbol
 
 MODULE = "bpy._enums"
 _LONGEST_INLINE = 8

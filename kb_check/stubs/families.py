@@ -9,10 +9,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, NODE, STRUCT
-from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
-from kb_build.object_data import OBJECT_DATA
+from kb_build.symbols.api_names import ID, NODE, STRUCT
+from kb_build.symbols.api_names import TYPES as T
+from kb_build.symbols.object_data import OBJECT_DATA
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

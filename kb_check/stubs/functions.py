@@ -6,14 +6,14 @@ import ast
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, SAME_CLASS
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.stubs.annotations import ANY, MAYBE_NONE, RNA_TYPES
 from kb_check.stubs.names import docstring, is_writable
 from kb_serve.signatures import signature_arguments
 
 if TYPE_CHECKING:
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
     from kb_check.stubs.annotations import Annotations
 
 # Modules written in C, whose documentation leaves out only the result None.

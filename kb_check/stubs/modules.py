@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.api import Api
 from kb_build.flow.symbols import SymbolList
 from kb_build.flow.types import Instance
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.stubs import enums, families, sockets
 from kb_check.stubs.annotations import ANY, Annotations
 from kb_check.stubs.classes import Classes, lines_of
@@ -24,7 +24,7 @@ from kb_check.stubs.sockets import Sockets
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 TYPING_MODULE = "bpy._typing"
 # Multiple inheritance and Blender's own overriding do not keep to the rules that are made for scripts.

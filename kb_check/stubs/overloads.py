@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import NODE
-from kb_build.api_names import TYPES as T
+from kb_build.symbols.api_names import NODE
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.stubs.enums import values_of
 from kb_check.stubs.names import is_writable
 
 if TYPE_CHECKING:
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
     from kb_check.stubs.annotations import Annotations
     from kb_check.stubs.functions import Functions
 

@@ -10,8 +10,8 @@ from dataclasses import dataclass
 from pathlib import PurePosixPath
 from typing import TYPE_CHECKING
 
-from kb_build.records import Symbol, symbol_from_json
 from kb_build.schema import open_read_only, unpack
+from kb_build.symbols.records import Symbol, symbol_from_json
 from kb_check.stubs.modules import MARK, Stubs, write_modules
 from simworlds.errors import UserError
 from simworlds.files import staged_file, staged_folder

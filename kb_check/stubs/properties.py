@@ -8,17 +8,17 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES as T
 from kb_build.flow.api import ARRAY
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, OPEN_CLASSES
 from kb_build.flow.types import Instance, Sequence
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.stubs.annotations import ANY, ITEMS, MAYBE_NONE
 from kb_check.stubs.families import OBJECT_DATA_FAMILY
 from kb_check.stubs.names import docstring
 
 if TYPE_CHECKING:
     from kb_build.flow.types import Type
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_check.stubs.annotations import Annotations
 
 # What a context always has, as a window or none is open, and what Blender gives to whatever it draws or runs.

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import NamedTuple
 
-from kb_build.api_names import TYPES
 from kb_build.index.analysis import stem, words
+from kb_build.symbols.api_names import TYPES
+from kb_serve.recognise.code.products import CLASSES, WITH_AT
 from kb_serve.recognise.messages.ways_to_run import NO_FLUIDS
-from kb_serve.recognise.products import CLASSES, WITH_AT
 
 _STROKE = "_bpy_internal.grease_pencil.stroke.GreasePencilStroke"
 _STYLE = f"{TYPES}MaterialGPencilStyle"

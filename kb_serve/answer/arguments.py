@@ -7,8 +7,8 @@ import textwrap
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_facts import never_taken
-from kb_build.symbol_lines import SET, literal, refusal_lines, said_taken, taken_where
+from kb_build.symbols.flags import never_taken
+from kb_build.symbols.lines import SET, literal, refusal_lines, said_taken, taken_where
 from kb_serve.answer.budget import AnswerBlock
 from kb_serve.answer.enum_items import item_lines
 from kb_serve.answer.property_facts import UNITS, range_text
@@ -17,7 +17,7 @@ from kb_serve.signatures import signature_arguments
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
     from kb_serve.answer.asked_values import AskedOf
 
 _PARAGRAPH = "\n\n"

@@ -7,12 +7,12 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import terms
-from kb_build.records import NOT_TAKEN
+from kb_build.symbols.records import NOT_TAKEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kb_build.records import EnumItem, Symbol
+    from kb_build.symbols.records import EnumItem, Symbol
 
 MOST = 3
 # Of arguments that most functions have, and of values that say little by themselves.

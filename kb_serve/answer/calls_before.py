@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_facts import fillers
+from kb_build.symbols.flags import fillers
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

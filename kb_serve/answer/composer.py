@@ -8,8 +8,8 @@ from functools import lru_cache
 from itertools import zip_longest
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.index.analysis import stems_of
+from kb_build.symbols.api_names import TYPES
 from kb_serve.answer.asked_values import ASKED_NOTHING, asked_of, asked_words
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.docs_answer import DocsAnswer, Draft, draft_of, paged, with_notes

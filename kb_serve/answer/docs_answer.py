@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 from kb_serve.answer.budget import AnswerBlock, clip, cut, names_of, shown, tokens
 from kb_serve.answer.next_call import next_call
 from kb_serve.errors import BadQuery
-from kb_serve.recognise.given_values import NO_VALUE
+from kb_serve.recognise.code.wrong_values import NO_VALUE
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Sequence

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.records import NOT_TAKEN
-from kb_build.symbol_lines import said_taken, taken_text
+from kb_build.symbols.lines import said_taken, taken_text
+from kb_build.symbols.records import NOT_TAKEN
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
 
-    from kb_build.records import EnumItem
+    from kb_build.symbols.records import EnumItem
 
 
 def item_lines(

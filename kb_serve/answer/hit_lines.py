@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.symbol_lines import first_sentence, written
+from kb_build.symbols.lines import first_sentence, written
 from kb_serve.answer.asked_values import asked_values, may_have_more
 from kb_serve.answer.budget import AnswerBlock, clip
 from kb_serve.answer.pages import said_of

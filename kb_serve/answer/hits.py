@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.records import PAGE_SOURCES
+from kb_build.symbols.records import PAGE_SOURCES
 from kb_serve.answer.pages import load_manual_pages, manual_page
 
 if TYPE_CHECKING:

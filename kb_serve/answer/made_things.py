@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
+from kb_build.symbols.api_names import TYPES
 from kb_serve.answer.budget import AnswerBlock, clip
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
 
 _SETTINGS = 6

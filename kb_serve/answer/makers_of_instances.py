@@ -5,13 +5,13 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
-from kb_build.paths import last_name
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.paths import last_name
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
 
 _MOST = 4

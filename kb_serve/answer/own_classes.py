@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
-from kb_build.records import DEFINED, DEFINED_ALWAYS, MUST_HAVE
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import DEFINED, DEFINED_ALWAYS, MUST_HAVE
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 
 def definition(symbol: Symbol) -> str:

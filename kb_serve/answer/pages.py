@@ -6,13 +6,13 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.pages.definitions import passage_text
-from kb_build.symbol_lines import first_sentence
+from kb_build.symbols.lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
 
-    from kb_build.records import Section
+    from kb_build.symbols.records import Section
     from kb_serve.reader import BaseReader, PageEntry
 
 _SHORT_PAGE = 80  # letters

@@ -7,14 +7,14 @@ from __future__ import annotations
 from itertools import groupby
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.schema import TEST_OFF, TEST_ON
-from kb_build.symbol_facts import usual_default
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flags import usual_default
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Sequence
 
-    from kb_build.records import PanelCondition, Symbol
+    from kb_build.symbols.records import PanelCondition, Symbol
     from kb_serve.reader import BaseReader
 
 _MOST_SWITCHED = 8

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import NODE, TYPES
-from kb_build.records import EVALUATED, NAMES_ITEMS, WITHOUT_ACTIVE, WITHOUT_AREA
-from kb_build.symbol_facts import alike_nodes, empty_when_new, fillers, new_subscript
-from kb_build.symbol_lines import default_text, of_evaluated
+from kb_build.symbols.api_names import NODE, TYPES
+from kb_build.symbols.flags import alike_nodes, empty_when_new, fillers, new_subscript
+from kb_build.symbols.lines import default_text, of_evaluated
+from kb_build.symbols.records import EVALUATED, NAMES_ITEMS, WITHOUT_ACTIVE, WITHOUT_AREA
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.makers_of_instances import told_makers
 from kb_serve.answer.pages import manual_page
@@ -15,7 +15,7 @@ from kb_serve.answer.pages import manual_page
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
 
 _NONE_IN_CONTEXT = {

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import stem, words
 from kb_serve.answer.advice import ADVICE
-from kb_serve.recognise.subscripts import NODES_MODIFIER, CustomProperties
+from kb_serve.recognise.resolving.subscripts import NODES_MODIFIER, CustomProperties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

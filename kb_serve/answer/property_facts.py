@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.records import STOPS, UNBOUNDED
-from kb_build.symbol_facts import is_locked
-from kb_build.symbol_lines import default_text, locked_text, shown_when, subscripts_text, type_text
+from kb_build.symbols.flags import is_locked
+from kb_build.symbols.lines import default_text, locked_text, shown_when, subscripts_text, type_text
+from kb_build.symbols.records import STOPS, UNBOUNDED
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 UNITS = {
     "LENGTH": "metres", "ROTATION": "radians", "TIME": "frames", "TIME_ABSOLUTE": "seconds", "MASS": "kg",

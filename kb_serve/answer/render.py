@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import SIDES, STRUCT, TYPES
-from kb_build.records import BARE_DATA, CALLS, PAIRS
-from kb_build.symbol_facts import is_stand_in, operator_areas, operator_given
-from kb_build.symbol_lines import area_text, mode_needed, operator_needs, version_meant, written
+from kb_build.symbols.api_names import SIDES, STRUCT, TYPES
+from kb_build.symbols.flags import is_stand_in, operator_areas, operator_given
+from kb_build.symbols.lines import area_text, mode_needed, operator_needs, version_meant, written
+from kb_build.symbols.records import BARE_DATA, CALLS, PAIRS
 from kb_serve.answer.arguments import argument_lines, arguments, operator_call
 from kb_serve.answer.asked_values import ASKED_NOTHING
 from kb_serve.answer.budget import AnswerBlock
@@ -25,7 +25,7 @@ from kb_serve.answer.swizzles import without_swizzles
 if TYPE_CHECKING:
     from collections.abc import Collection, Iterable, Iterator, Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.answer.asked_values import AskedOf
     from kb_serve.reader import BaseReader, SymbolEntry
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
+from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

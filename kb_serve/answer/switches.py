@@ -9,12 +9,12 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbol_facts import usual_default
+from kb_build.symbols.flags import usual_default
 
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
 
 _SWITCH = "use_"

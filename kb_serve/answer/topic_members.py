@@ -7,9 +7,9 @@ from collections import Counter
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, TYPES
 from kb_build.index.analysis import key, terms, topic_key
-from kb_build.symbol_facts import operator_areas
+from kb_build.symbols.api_names import OPERATORS, TYPES
+from kb_build.symbols.flags import operator_areas
 from kb_serve.answer.steps.operators import calls_needed
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.steps.variable_names import class_called

@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
-from kb_build.symbol_lines import first_sentence
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.lines import first_sentence
 from kb_serve.answer.budget import AnswerBlock, clip, tokens
 from kb_serve.answer.pages import own_summary, said_of
 from kb_serve.answer.topic_members import TopicMembers

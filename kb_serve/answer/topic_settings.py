@@ -6,10 +6,10 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
-from kb_build.paths import argument_of, last_name, plain_path
-from kb_build.symbol_lines import held, written
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.lines import held, written
+from kb_build.symbols.paths import argument_of, last_name, plain_path
 from kb_serve.answer.budget import clip
 from kb_serve.answer.steps.new_scene import NewScene
 

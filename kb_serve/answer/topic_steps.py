@@ -10,10 +10,10 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import NODE, OBJECT, OPERATORS, STRUCT, TYPES
 from kb_build.index.analysis import terms
-from kb_build.symbol_facts import operator_areas, refused_nothing
-from kb_build.symbol_lines import operator_needs
+from kb_build.symbols.api_names import NODE, OBJECT, OPERATORS, STRUCT, TYPES
+from kb_build.symbols.flags import operator_areas, refused_nothing
+from kb_build.symbols.lines import operator_needs
 from kb_serve.answer.budget import AnswerBlock, tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
 from kb_serve.answer.steps.instances import Instances
@@ -31,7 +31,7 @@ from kb_serve.interface import is_of_interface
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.topic_names import TopicNames
     from kb_serve.reader import BaseReader, Creation
 

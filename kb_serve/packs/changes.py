@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.paths import plain_path, split_path
+from kb_build.symbols.paths import plain_path, split_path
 from kb_serve.answer.budget import tokens
 from kb_serve.packs.section import is_for_users, short
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, TYPES
+from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_serve.answer.budget import tokens
 from kb_serve.errors import BadQuery
 from kb_serve.packs.changes import Changes, owner_of

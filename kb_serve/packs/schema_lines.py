@@ -6,15 +6,15 @@ from collections import defaultdict
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import NODE, SIDES, TYPES
-from kb_build.symbol_facts import usual_default
-from kb_build.symbol_lines import literal
+from kb_build.symbols.api_names import NODE, SIDES, TYPES
+from kb_build.symbols.flags import usual_default
+from kb_build.symbols.lines import literal
 from kb_serve.packs.section import fitting, is_for_users, short
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader, SymbolEntry
 
 _MEMBERS = 14  # of a class, the heaviest

@@ -5,14 +5,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
+from kb_build.symbols.api_names import TYPES
 from kb_serve.answer.budget import tokens
 from kb_serve.interface import is_of_interface
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 _TOOLS = ("bpy.data.workspaces", "bpy.data.brushes", ".asset")  # which scripts hardly deal with
 

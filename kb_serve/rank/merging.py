@@ -17,8 +17,8 @@ from kb_serve.rank.sections import asked_section
 from kb_serve.recognise.message_patterns import is_message, prose_of
 from kb_serve.recognise.notes import Notes
 from kb_serve.recognise.recogniser import Recogniser
+from kb_serve.recognise.resolving.variables import is_short_form
 from kb_serve.recognise.unwanted import without_unwanted
-from kb_serve.recognise.variables import is_short_form
 
 if TYPE_CHECKING:
     from collections.abc import Callable

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS
 from kb_build.index.analysis import stem, stems_of, terms
+from kb_build.symbols.api_names import OPERATORS
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

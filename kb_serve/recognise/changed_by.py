@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kb_build.api_names import TYPES as T
+from kb_build.symbols.api_names import TYPES as T
 
 _CONTEXT = (
     "bpy.context."  # what an editor adds to the context stands there, what is always in it in its class

@@ -5,17 +5,17 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING, Final
 
-from kb_build.api_names import STRUCT, TYPES, interface_part
-from kb_build.paths import as_code, split_path
-from kb_serve.recognise.corrections import nearest
-from kb_serve.recognise.enum_values import EnumValues
+from kb_build.symbols.api_names import STRUCT, TYPES, interface_part
+from kb_build.symbols.paths import as_code, split_path
+from kb_serve.recognise.names.corrections import nearest
+from kb_serve.recognise.names.enum_values import EnumValues
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import MissingName, Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbol
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
 SIMILAR: Final = "similar name"  # one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named

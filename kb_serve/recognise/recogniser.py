@@ -7,19 +7,16 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, TYPES
 from kb_build.index.analysis import key, terms, tokens
-from kb_build.paths import plain_path, socket_node
-from kb_serve.recognise.addresses import ids_in_urls
-from kb_serve.recognise.bindings import with_bindings
-from kb_serve.recognise.calls import wrong_arguments
-from kb_serve.recognise.chains import Chain, find_chains
-from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE
-from kb_serve.recognise.corrections import Corrector, by_first_word, nearest, shortened
-from kb_serve.recognise.enum_values import EnumValues
-from kb_serve.recognise.expressions import Expressions
-from kb_serve.recognise.given_values import wrong_values
-from kb_serve.recognise.members_within import members_within
+from kb_build.symbols.api_names import ID, TYPES
+from kb_build.symbols.paths import plain_path, socket_node
+from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE
+from kb_serve.recognise.code.expressions import Expressions
+from kb_serve.recognise.code.products import WITH_AT, Products
+from kb_serve.recognise.code.python_methods import is_method_of_python
+from kb_serve.recognise.code.refusals import keywords
+from kb_serve.recognise.code.wrong_arguments import wrong_arguments
+from kb_serve.recognise.code.wrong_values import wrong_values
 from kb_serve.recognise.message_patterns import (
     classes_of_things,
     is_message,
@@ -28,23 +25,26 @@ from kb_serve.recognise.message_patterns import (
     without_wording,
 )
 from kb_serve.recognise.messages.messages import Messages
-from kb_serve.recognise.newer_nodes import (
+from kb_serve.recognise.names.addresses import ids_in_urls
+from kb_serve.recognise.names.corrections import Corrector, by_first_word, nearest, shortened
+from kb_serve.recognise.names.enum_values import EnumValues
+from kb_serve.recognise.names.members_within import members_within
+from kb_serve.recognise.names.operator_words import OperatorWords
+from kb_serve.recognise.names.said_otherwise import said_otherwise
+from kb_serve.recognise.names.spellings import Spellings
+from kb_serve.recognise.notes import SIMILAR
+from kb_serve.recognise.recognition import MissingName, Recognition
+from kb_serve.recognise.removed.newer_nodes import (
     name_on_an_old_node,
     tell_of_the_newer_mix,
     tell_of_the_newer_node,
 )
-from kb_serve.recognise.notes import SIMILAR
-from kb_serve.recognise.old_code import OldCode
-from kb_serve.recognise.operator_words import OperatorWords
-from kb_serve.recognise.products import WITH_AT, Products
-from kb_serve.recognise.python_methods import is_method_of_python
-from kb_serve.recognise.recognition import MissingName, Recognition
-from kb_serve.recognise.refusals import keywords
-from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
-from kb_serve.recognise.resolver import Resolver
-from kb_serve.recognise.said_otherwise import said_otherwise
-from kb_serve.recognise.spellings import Spellings
-from kb_serve.recognise.subscripts import asked_of_inputs
+from kb_serve.recognise.removed.old_code import OldCode
+from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+from kb_serve.recognise.resolving.bindings import with_bindings
+from kb_serve.recognise.resolving.chains import Chain, find_chains
+from kb_serve.recognise.resolving.resolver import Resolver
+from kb_serve.recognise.resolving.subscripts import asked_of_inputs
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

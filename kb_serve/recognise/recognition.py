@@ -6,8 +6,8 @@ from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Literal
 
 if TYPE_CHECKING:
-    from kb_serve.recognise.corrections import Correction
-    from kb_serve.recognise.removed_symbols import RemovedSymbol
+    from kb_serve.recognise.names.corrections import Correction
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
 # What makes a match of something.
 Why = Literal[

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import NamedTuple
 
-from kb_build.api_names import OPERATORS
+from kb_build.symbols.api_names import OPERATORS
 from kb_serve.recognise.message_patterns import is_message
 
 _ANY = r"(?:(?:an?|the|any|using|calling)\s)*"

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import pytest
 from running import COMMAND, REPO, environment, run_here
 
-from kb_build.records import page_from_json, symbol_from_json
+from kb_build.symbols.records import page_from_json, symbol_from_json
 from kb_serve.knowledge_base import KnowledgeBase
 
 if TYPE_CHECKING:

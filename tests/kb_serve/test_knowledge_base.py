@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import paths
 
-from kb_build.records import Page, Symbol
+from kb_build.symbols.records import Page, Symbol
 from kb_serve.errors import BadQuery, BaseMissing, KBServeError
 from kb_serve.knowledge_base import KnowledgeBase
 

@@ -25,7 +25,7 @@ from kb_build.pages.readers.html_elements import (
     plain_text,
     slug_of,
 )
-from kb_build.records import Section
+from kb_build.symbols.records import Section
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterator

@@ -10,7 +10,7 @@ from docutils import nodes
 from sphinx import addnodes
 
 from kb_build.pages.readers import markdown as md
-from kb_build.records import Section
+from kb_build.symbols.records import Section
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable

@@ -27,7 +27,7 @@ from kb_build.pages.readers.assemble import PageText
 from kb_build.pages.readers.doctree import PAGE_SCHEME, DoctreeReader
 from kb_build.pages.readers.docutils_speed import from_elsewhere
 from kb_build.pages.readers.workers import PageBudget, PageWork, ReadPages, read_apart
-from kb_build.records import Section
+from kb_build.symbols.records import Section
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable, Mapping, Sequence, Set

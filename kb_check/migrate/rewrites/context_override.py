@@ -6,8 +6,8 @@ import ast
 import keyword
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS
 from kb_build.flow.types import Mapping
+from kb_build.symbols.api_names import OPERATORS
 from kb_check.findings import Span
 from kb_check.migrate.change import Change
 from kb_check.migrate.place import in_order

@@ -5,7 +5,7 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS
+from kb_build.symbols.api_names import OPERATORS
 from kb_check.migrate.rewrite import Rewrite
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, TYPES
+from kb_build.symbols.api_names import OPERATORS, TYPES
 from kb_serve.answer.calls_before import calls_before
 from kb_serve.answer.steps.made_line import made_line
 from kb_serve.answer.steps.operators import before

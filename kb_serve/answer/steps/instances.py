@@ -10,8 +10,8 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OBJECT, OPERATORS, TYPES
-from kb_build.symbol_lines import held
+from kb_build.symbols.api_names import OBJECT, OPERATORS, TYPES
+from kb_build.symbols.lines import held
 from kb_serve.answer.steps.members import part_given_with
 from kb_serve.answer.steps.pointer_fills import Ready
 from kb_serve.answer.steps.variable_names import MESH, TREE

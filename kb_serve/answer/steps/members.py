@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, TYPES
-from kb_build.symbol_lines import SET
+from kb_build.symbols.api_names import ID, TYPES
+from kb_build.symbols.lines import SET
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry

@@ -8,9 +8,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import SIDES, TYPES
-from kb_build.records import NOT_TAKEN, PAIRS
-from kb_build.symbol_lines import written
+from kb_build.symbols.api_names import SIDES, TYPES
+from kb_build.symbols.lines import written
+from kb_build.symbols.records import NOT_TAKEN, PAIRS
 from kb_serve.reader import EXTEND
 
 if TYPE_CHECKING:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
-from kb_build.records import PAIRS
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import PAIRS
 from kb_serve.answer.render import is_machinery
 from kb_serve.answer.steps.members import call_of
 from kb_serve.answer.steps.node_items import NodeItems

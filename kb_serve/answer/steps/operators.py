@@ -6,17 +6,17 @@ import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
-from kb_build.symbol_facts import operator_active, operator_areas, refused_nothing
-from kb_build.symbol_lines import held, literal, operator_needs
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.flags import operator_active, operator_areas, refused_nothing
+from kb_build.symbols.lines import held, literal, operator_needs
 from kb_serve.answer.arguments import of_file_browser
 from kb_serve.answer.panel_lines import panel_lines, switches_off
 
 if TYPE_CHECKING:
     from collections.abc import Iterator, Mapping
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.new_scene import NewScene
     from kb_serve.answer.steps.topic_names import TopicNames
     from kb_serve.reader import BaseReader

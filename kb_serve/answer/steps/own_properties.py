@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import STRUCT
+from kb_build.symbols.api_names import STRUCT
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

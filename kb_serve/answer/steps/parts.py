@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
+from kb_build.symbols.api_names import TYPES
 from kb_serve.answer.steps.members import call_of
 
 if TYPE_CHECKING:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OBJECT, TYPES
+from kb_build.symbols.api_names import OBJECT, TYPES
 from kb_serve.answer.steps.members import settings_of
 from kb_serve.answer.steps.variable_names import OBJ, TREE
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING, NamedTuple
 
-from kb_build.api_names import OBJECT, OPERATORS, TYPES
-from kb_build.records import FILLED_ON
-from kb_build.symbol_facts import empty_when_new, fillers
+from kb_build.symbols.api_names import OBJECT, OPERATORS, TYPES
+from kb_build.symbols.flags import empty_when_new, fillers
+from kb_build.symbols.records import FILLED_ON
 from kb_serve.answer.steps.variable_names import OBJ, class_called
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.variable_names import VariableNames
     from kb_serve.answer.steps.working_object import WorkingObject
     from kb_serve.reader import BaseReader, SymbolEntry

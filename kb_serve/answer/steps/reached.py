@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
-from kb_build.symbol_lines import held
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.lines import held
 from kb_serve.answer.steps.members import UNSEEN, settings_of
 from kb_serve.interface import is_of_interface
 

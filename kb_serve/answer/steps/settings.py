@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, OPERATORS, TYPES
-from kb_build.records import EMPTY
-from kb_build.symbol_facts import empty_when_new
-from kb_build.symbol_lines import mode_needed
+from kb_build.symbols.api_names import ID, OPERATORS, TYPES
+from kb_build.symbols.flags import empty_when_new
+from kb_build.symbols.lines import mode_needed
+from kb_build.symbols.records import EMPTY
 from kb_serve.answer.steps.members import UNSEEN, call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
@@ -19,7 +19,7 @@ from kb_serve.answer.steps.working_object import OTHER
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.new_scene import NewScene
     from kb_serve.answer.steps.topic_names import TopicNames
     from kb_serve.reader import Creation, SymbolEntry

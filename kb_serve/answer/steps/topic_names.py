@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.index.analysis import key, terms
+from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
     from collections.abc import Iterable

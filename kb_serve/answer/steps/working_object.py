@@ -5,15 +5,15 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OBJECT, TYPES
 from kb_build.index.analysis import key
-from kb_build.symbol_facts import operator_active
+from kb_build.symbols.api_names import OBJECT, TYPES
+from kb_build.symbols.flags import operator_active
 from kb_serve.answer.steps.variable_names import OBJ
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.makers import Makers
     from kb_serve.answer.steps.variable_names import VariableNames
     from kb_serve.reader import BaseReader, Creation

@@ -5,9 +5,9 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, STRUCT, TYPES
-from kb_build.records import WITHOUT_ACTIVE
-from kb_build.symbol_facts import empty_when_new, fillers
+from kb_build.symbols.api_names import ID, STRUCT, TYPES
+from kb_build.symbols.flags import empty_when_new, fillers
+from kb_build.symbols.records import WITHOUT_ACTIVE
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry

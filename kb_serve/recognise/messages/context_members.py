@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 _ANYWHERE = "screen"  # where members are from that every editor of a window gives
 # Member → what gives the same without a window.

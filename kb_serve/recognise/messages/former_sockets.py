@@ -6,9 +6,9 @@ from collections import Counter
 from itertools import islice
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import SIDES, TYPES
 from kb_build.index.analysis import key, terms
-from kb_build.paths import socket_name, socket_node
+from kb_build.symbols.api_names import SIDES, TYPES
+from kb_build.symbols.paths import socket_name, socket_node
 from kb_serve.recognise import message_patterns as forms
 
 if TYPE_CHECKING:
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
 
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 _FEW = 3
 _MOST_LISTED = 8

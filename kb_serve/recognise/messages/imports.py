@@ -6,12 +6,12 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.chain_starts import ROOTS
+from kb_serve.recognise.resolving.chain_starts import ROOTS
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 _IMPORTABLE = frozenset({"class", "function", "data"})
 _HAS_FILE = "SELECT 1 FROM uses WHERE file = ? OR file LIKE ? LIMIT 1"

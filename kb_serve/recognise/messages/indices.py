@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import COLLECTION, TYPES
-from kb_build.records import EVALUATED
-from kb_build.symbol_lines import GET_EVALUATED
+from kb_build.symbols.api_names import COLLECTION, TYPES
+from kb_build.symbols.lines import GET_EVALUATED
+from kb_build.symbols.records import EVALUATED
 from kb_serve.recognise import message_patterns as forms
 
 if TYPE_CHECKING:

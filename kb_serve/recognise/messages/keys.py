@@ -5,10 +5,10 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import COLLECTION, STRUCT, TYPES
+from kb_build.symbols.api_names import COLLECTION, STRUCT, TYPES
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.newer_nodes import tell_of_the_newer_node
-from kb_serve.recognise.subscripts import CustomProperties
+from kb_serve.recognise.removed.newer_nodes import tell_of_the_newer_node
+from kb_serve.recognise.resolving.subscripts import CustomProperties
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

@@ -5,17 +5,17 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS
-from kb_build.paths import argument_of, plain_path
+from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.paths import argument_of, plain_path
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.calls import unknown_keywords
-from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.code.wrong_arguments import unknown_keywords
+from kb_serve.recognise.names.corrections import nearest
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 _FEW = 3
 _MOST_TAKING = 12  # operators with an argument of one name that are listed

@@ -5,17 +5,17 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID, TYPES
-from kb_serve.recognise.elements import elsewhere
-from kb_serve.recognise.members_within import members_within
+from kb_build.symbols.api_names import ID, TYPES
 from kb_serve.recognise.messages.context_members import note_on_absent
+from kb_serve.recognise.names.elements import elsewhere
+from kb_serve.recognise.names.members_within import members_within
 from kb_serve.recognise.recognition import MissingName
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
 _OF_NO_BLOCK = frozenset({"BlendData", "Context", "Depsgraph", "Event"})
 _INSTANCES = {"RNA_Types": "bpy.types", "bpy_types": "bpy.types", "BPyOps": "bpy.ops", "_bpy": "bpy"}

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.products import CLASSES, WITH_AT
+from kb_serve.recognise.code.products import CLASSES, WITH_AT
 
 if TYPE_CHECKING:
     from kb_serve.recognise.recognition import Recognition

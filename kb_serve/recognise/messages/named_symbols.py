@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
 from kb_build.index.analysis import key
+from kb_build.symbols.api_names import TYPES
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry

@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
+from kb_build.symbols.api_names import TYPES
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.node_names import add_nodes_meant
+from kb_serve.recognise.names.node_names import add_nodes_meant
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 _MEANT = 0.95  # how sure a node is that an undefined type may mean
 

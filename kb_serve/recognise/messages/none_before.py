@@ -7,19 +7,19 @@ from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, TYPES
 from kb_build.index.analysis import terms
-from kb_build.records import FILLED_BY
-from kb_build.symbol_facts import empty_when_new, fillers
-from kb_serve.recognise.bindings import with_bindings
-from kb_serve.recognise.chains import find_chains
+from kb_build.symbols.api_names import OPERATORS, TYPES
+from kb_build.symbols.flags import empty_when_new, fillers
+from kb_build.symbols.records import FILLED_BY
 from kb_serve.recognise.messages.absent import ANY, WEIGHTY, is_empty_when_new
+from kb_serve.recognise.resolving.bindings import with_bindings
+from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
     from kb_serve.recognise.messages.absent import Absent
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
 _FEW = 3
 _IS_READ = 0.98  # how sure what may be None is that the code reads the name of: before what it then lacks

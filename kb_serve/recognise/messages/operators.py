@@ -5,16 +5,16 @@ from __future__ import annotations
 import re
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import OPERATORS, TYPES
-from kb_build.symbol_facts import operator_given, refused_nothing
-from kb_build.symbol_lines import operator_needs
+from kb_build.symbols.api_names import OPERATORS, TYPES
+from kb_build.symbols.flags import operator_given, refused_nothing
+from kb_build.symbols.lines import operator_needs
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.contexts import NO_OVERRIDE, OVERRIDE, context_for
-from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.code.contexts import NO_OVERRIDE, OVERRIDE, context_for
 from kb_serve.recognise.messages.guides import ON_OPERATORS, add_guide
+from kb_serve.recognise.names.corrections import nearest
 
 if TYPE_CHECKING:
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import ID
+from kb_build.symbols.api_names import ID
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.corrections import nearest
+from kb_serve.recognise.names.corrections import nearest
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

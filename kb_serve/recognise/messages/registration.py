@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import TYPES
+from kb_build.symbols.api_names import TYPES
 from kb_serve.recognise import message_patterns as forms
 
 if TYPE_CHECKING:

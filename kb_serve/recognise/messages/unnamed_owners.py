@@ -5,12 +5,12 @@ from __future__ import annotations
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from kb_build.api_names import COLLECTION, TYPES
+from kb_build.symbols.api_names import COLLECTION, TYPES
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 _FEW = 3
 

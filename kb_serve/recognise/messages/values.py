@@ -6,18 +6,18 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.paths import plain_path
+from kb_build.symbols.paths import plain_path
 from kb_serve.recognise import message_patterns as forms
-from kb_serve.recognise.likely_values import likely_values
+from kb_serve.recognise.names.likely_values import likely_values
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_serve.reader import BaseReader
-    from kb_serve.recognise.enum_values import EnumValues
     from kb_serve.recognise.messages.named_symbols import NamedSymbols
+    from kb_serve.recognise.names.enum_values import EnumValues
     from kb_serve.recognise.recognition import Recognition
-    from kb_serve.recognise.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
 
 _FEW = 3
 _MOST_OWNERS = 8  # that are compared

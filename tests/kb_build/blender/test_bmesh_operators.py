@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.blender.extract_reader import Extract
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 pytestmark = pytest.mark.blender
 

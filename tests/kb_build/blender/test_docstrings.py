@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.blender.docstrings import call_parameters, parse_docstring
-from kb_build.records import Parameter
+from kb_build.symbols.records import Parameter
 
 if TYPE_CHECKING:
     from pathlib import Path

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from kb_build.blender.enum_contexts import items_in_contexts
-from kb_build.records import NOT_TAKEN
+from kb_build.symbols.records import NOT_TAKEN
 
 
 def context(items: str, *made: tuple[str, str], **states: str) -> dict[str, Any]:

@@ -15,7 +15,7 @@ from kb_build.blender.call_texts import call_text, python_value
 from kb_build.blender.extract_reader import read_extract
 from kb_build.blender.manual_links import manual_links
 from kb_build.errors import ExtractError
-from kb_build.records import EnumItem, NewValue, Parameter, Symbol
+from kb_build.symbols.records import EnumItem, NewValue, Parameter, Symbol
 
 if TYPE_CHECKING:
     from pathlib import Path

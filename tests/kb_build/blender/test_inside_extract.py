@@ -14,9 +14,9 @@ import pytest
 from statements_in_blender import run_statements
 
 from kb_build.blender.extractor import extract_api
-from kb_build.records import ENDS_BEFORE, ENDS_WITHOUT, WITHOUT_ACTIVE, WITHOUT_AREA, NewValue
-from kb_build.symbol_facts import fillers, never_taken, refused_nothing, usual_default
-from kb_build.symbol_lines import operator_needs, type_text
+from kb_build.symbols.flags import fillers, never_taken, refused_nothing, usual_default
+from kb_build.symbols.lines import operator_needs, type_text
+from kb_build.symbols.records import ENDS_BEFORE, ENDS_WITHOUT, WITHOUT_ACTIVE, WITHOUT_AREA, NewValue
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.blender.extract_reader import Extract
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 pytestmark = pytest.mark.blender
 

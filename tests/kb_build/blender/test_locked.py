@@ -7,12 +7,12 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.symbol_facts import freed_by, is_locked
-from kb_build.symbol_lines import locked_text
+from kb_build.symbols.flags import freed_by, is_locked
+from kb_build.symbols.lines import locked_text
 
 if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 pytestmark = pytest.mark.blender
 

@@ -8,15 +8,15 @@ from typing import TYPE_CHECKING
 import pytest
 from statements_in_blender import run_statements
 
-from kb_build.records import AT_TIMES, BARE_DATA, INVERTED, NOT_TAKEN
-from kb_build.symbol_lines import default_text, shown_when, type_text
+from kb_build.symbols.lines import default_text, shown_when, type_text
+from kb_build.symbols.records import AT_TIMES, BARE_DATA, INVERTED, NOT_TAKEN
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
     from pathlib import Path
 
     from kb_build.blender.extract_reader import Extract
-    from kb_build.records import Parameter, Symbol
+    from kb_build.symbols.records import Parameter, Symbol
 
 pytestmark = pytest.mark.blender
 

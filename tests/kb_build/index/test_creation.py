@@ -10,7 +10,7 @@ from statements_in_blender import run_statements
 from kb_build.blender.access_paths import reached_expressions
 from kb_build.index.creation import Creation, creation_calls
 from kb_build.index.weights import symbol_weights
-from kb_build.records import Symbol
+from kb_build.symbols.records import Symbol
 from kb_build.usage.examples import Example, Uses
 
 if TYPE_CHECKING:

@@ -9,7 +9,7 @@ import pytest
 
 from kb_build.index.passages import address_of, find_passages
 from kb_build.pages.definitions import passage_text, term_lines
-from kb_build.records import INVERTED, Link, Page, Section, Symbol
+from kb_build.symbols.records import INVERTED, Link, Page, Section, Symbol
 
 if TYPE_CHECKING:
     from kb_build.index.passages import Passage

@@ -9,8 +9,8 @@ from places import REPO
 
 from kb_build.index.documents import make_units
 from kb_build.index.query_expansions import load_query_expansions
-from kb_build.records import Link, Page, Section, Symbol
 from kb_build.summaries.shipped import ShippedSummary
+from kb_build.symbols.records import Link, Page, Section, Symbol
 
 QUERIES = REPO / "corpora" / "queries"
 SUMMARIES = REPO / "corpora" / "summaries"

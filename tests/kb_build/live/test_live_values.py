@@ -9,8 +9,8 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.live.values import compare_values, same_value, told_empty, told_value
-from kb_build.records import EMPTY, NewValue, Symbol
 from kb_build.schema import pack, unpack
+from kb_build.symbols.records import EMPTY, NewValue, Symbol
 from simworlds.sandbox.runtime import find_runtime
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import json
 from dataclasses import replace
 
 from kb_build.blender.extract_reader import Extract
-from kb_build.records import EnumItem, Parameter, Symbol
+from kb_build.symbols.records import EnumItem, Parameter, Symbol
 from kb_build.versions.diff import SymbolChange, diff, format_diff
 
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from kb_build.blender.tried_facts import ADDED
-from kb_build.records import BARE_DATA, Deprecation, Symbol
+from kb_build.symbols.records import BARE_DATA, Deprecation, Symbol
 from kb_build.versions.disused import with_present_ways, without_effect
 from kb_build.versions.successors import load_successors
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import StoreError
-from kb_build.paths import split_path
+from kb_build.symbols.paths import split_path
 from kb_build.versions.history import ApiHistory, Arrival, RemovedSpan
 from kb_build.versions.history_merge import merge_versions
 

@@ -8,7 +8,7 @@ import pytest
 
 from kb_build.flow.facts import LOST_MODULES
 from kb_build.index.analysis import key
-from kb_build.records import Symbol
+from kb_build.symbols.records import Symbol
 from kb_build.versions.history import ApiHistory, paths_of
 from kb_build.versions.removed_symbols import find_removed_symbols
 

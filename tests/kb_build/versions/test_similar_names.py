@@ -16,7 +16,7 @@ from simworlds.releases import minor_of
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from kb_build.records import Symbol
+    from kb_build.symbols.records import Symbol
 
 CASES = Path(__file__).parent / "similar_name_cases.jsonl"
 JUDGED_FOR = "5.1"

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import pytest
 
 from kb_build.errors import StoreError
-from kb_build.paths import joined_path, split_path
+from kb_build.symbols.paths import joined_path, split_path
 from kb_build.versions.history import ApiHistory
 from kb_build.versions.successors import Succession, Successors, load_successors
 from simworlds.releases import version_key

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 from statements_in_blender import run_statements
 
-from kb_build.paths import last_name
+from kb_build.symbols.paths import last_name
 
 if TYPE_CHECKING:
     from pathlib import Path

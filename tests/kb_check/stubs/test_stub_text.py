@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import ast
 
-from kb_build.records import EnumItem, Parameter, Symbol
+from kb_build.symbols.records import EnumItem, Parameter, Symbol
 from kb_check.stubs.modules import Stubs, write_modules
 from kb_check.stubs.names import docstring, imports_of, shorten
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kb_build.records import NOT_TAKEN, EnumItem, Parameter, Symbol
+from kb_build.symbols.records import NOT_TAKEN, EnumItem, Parameter, Symbol
 from kb_serve.answer.asked_values import asked_values, asked_words, may_have_more
 
 _EFFECT = Symbol(

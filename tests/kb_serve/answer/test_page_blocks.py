@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.records import Section
+from kb_build.symbols.records import Section
 from kb_serve.answer import pages
 from kb_serve.answer.pages import manual_page, outline, page_blocks, said_of, with_names
 from kb_serve.knowledge_base import KnowledgeBase

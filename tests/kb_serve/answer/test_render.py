@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import classes, of_data, paths
 
-from kb_build.records import BARE_DATA, NOT_TAKEN, Deprecation, EnumItem, Parameter, Symbol
-from kb_build.symbol_facts import is_stand_in, usual_default
-from kb_build.symbol_lines import written
+from kb_build.symbols.flags import is_stand_in, usual_default
+from kb_build.symbols.lines import written
+from kb_build.symbols.records import BARE_DATA, NOT_TAKEN, Deprecation, EnumItem, Parameter, Symbol
 from kb_serve.answer.property_facts import facts
 from kb_serve.answer.render import MarkdownRenderer
 

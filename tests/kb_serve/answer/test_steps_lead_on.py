@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import TYPES, steps
 
-from kb_build.records import Link, Page, Section
 from kb_build.store import Contents, write_base
+from kb_build.symbols.records import Link, Page, Section
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.topic_steps import Steps
 from kb_serve.reader import BaseReader

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.records import Link, Page, Section
 from kb_build.store import Contents, write_base
+from kb_build.symbols.records import Link, Page, Section
 from kb_serve.answer.topic_members import TopicMembers
 from kb_serve.answer.topic_overview import Topics
 from kb_serve.answer.topic_steps import Steps

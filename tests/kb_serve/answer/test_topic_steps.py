@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 import pytest
 from asking import TYPES, steps
 
-from kb_build.api_names import STRUCT
+from kb_build.symbols.api_names import STRUCT
 from kb_serve.answer.steps.topic_names import TopicNames
 from kb_serve.answer.topic_steps import Steps
 from measurements.steps import do_steps

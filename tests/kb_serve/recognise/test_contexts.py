@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.chains import find_chains
-from kb_serve.recognise.contexts import with_context
+from kb_serve.recognise.code.contexts import with_context
+from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

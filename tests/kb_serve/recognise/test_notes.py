@@ -6,10 +6,10 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.paths import as_code
+from kb_build.symbols.paths import as_code
 from kb_serve.reader import Successor
 from kb_serve.recognise.notes import Notes
-from kb_serve.recognise.removed_symbols import RemovedSymbol
+from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader

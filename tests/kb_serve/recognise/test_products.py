@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_serve.recognise.products import WITH_AT
+from kb_serve.recognise.code.products import WITH_AT
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

@@ -26,9 +26,9 @@ from asking import (
 from whole import examples
 
 from kb_build.index.analysis import key
-from kb_build.paths import as_code, plain_path
 from kb_build.schema import FORM_SHORT
-from kb_build.symbol_lines import written as as_written
+from kb_build.symbols.lines import written as as_written
+from kb_build.symbols.paths import as_code, plain_path
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

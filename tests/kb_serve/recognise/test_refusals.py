@@ -7,8 +7,8 @@ from typing import TYPE_CHECKING
 import bpy
 import pytest
 
-from kb_serve.recognise.chains import find_chains
-from kb_serve.recognise.refusals import keywords, lacks_keyword, refuses
+from kb_serve.recognise.code.refusals import keywords, lacks_keyword, refuses
+from kb_serve.recognise.resolving.chains import find_chains
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

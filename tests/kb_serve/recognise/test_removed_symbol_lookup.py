@@ -6,8 +6,8 @@ from typing import TYPE_CHECKING
 
 import pytest
 
-from kb_build.paths import plain_path, socket_node
-from kb_serve.recognise.removed_symbols import RemovedSymbolLookup
+from kb_build.symbols.paths import plain_path, socket_node
+from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
 
 if TYPE_CHECKING:
     from kb_serve.knowledge_base import KnowledgeBase

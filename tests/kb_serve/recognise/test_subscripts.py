@@ -7,9 +7,9 @@ from typing import TYPE_CHECKING
 import pytest
 from told_by_blender import told_by_blender
 
-from kb_build.api_names import TYPES
+from kb_build.symbols.api_names import TYPES
 from kb_serve.reader import BaseReader
-from kb_serve.recognise.subscripts import CustomProperties
+from kb_serve.recognise.resolving.subscripts import CustomProperties
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -11,7 +11,7 @@ from mcp import Client
 from mcp.shared.exceptions import MCPError
 from mcp_types import TextResourceContents
 
-from kb_build.records import symbol_from_json
+from kb_build.symbols.records import symbol_from_json
 from kb_serve.server import make_server
 
 if TYPE_CHECKING:

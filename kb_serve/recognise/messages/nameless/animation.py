@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from kb_build.api_names import TYPES as T
+from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
 ANIMATION = (

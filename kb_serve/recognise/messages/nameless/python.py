@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from kb_build.api_names import COLLECTION
-from kb_build.api_names import TYPES as T
+from kb_build.symbols.api_names import COLLECTION
+from kb_build.symbols.api_names import TYPES as T
 from kb_serve.recognise.messages.nameless.message import NamelessMessage
 
 _GET = f"{T}bpy_prop_collection.get"

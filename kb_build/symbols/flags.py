@@ -1,0 +1,163 @@
+"""What the flags and values of a symbol say of it, without words."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from functools import cache
+from typing import TYPE_CHECKING
+
+from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.records import (
+    ALSO,
+    ANY,
+    AREAS,
+    FILLED_BY,
+    FREED_BY,
+    GIVEN,
+    LOCKED_ON,
+    NEEDS,
+    NOT_TAKEN,
+    THEN,
+)
+from kb_build.symbols.unlisted import STAND_INS
+
+if TYPE_CHECKING:
+    from kb_build.symbols.records import Default, NewValue, Symbol
+
+NODE_FAMILIES = ("ShaderNode", "GeometryNode", "CompositorNode", "FunctionNode", "TextureNode")
+# What operators want of the active object, as ``kb_build/blender/inside/operator_needs.py`` words it.
+_NEEDED = re.compile(
+    r"(?:an active(?: and selected)? object|any active object or none)(?P<types>(?:, not)? of type [^ ,]+)?"
+    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and only some types in mode [^ ,]+)?(?: with .+)?"
+)
+_QUOTED = re.compile(r"'(\w+)'")
+
+
+def usual_default(symbol: Symbol) -> Default:
+    """The value that a new instance usually has: what new ones had, else RNA's default; None where nobody knows."""
+    return next((new.value for new in symbol.new_values if not new.when), _own_default(symbol))
+
+
+def _own_default(symbol: Symbol) -> Default:
+    """RNA's default; None where it is none: of what Blender computes, and of what is not among a property's items."""
+    is_computed = "readonly" in symbol.flags or symbol.subtype == "MATRIX"
+    if (is_computed and _is_of_struct(symbol) and "compared" not in symbol.flags) or not is_listed(symbol):
+        return None
+    return None if is_stand_in(symbol) else symbol.default
+
+
+def _is_of_struct(symbol: Symbol) -> bool:
+    return symbol.kind == "property" and symbol.path.startswith(TYPES)
+
+
+def is_listed(symbol: Symbol) -> bool:
+    """Whether the property's items, if it has any, have RNA's default among them."""
+    items = {item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN}
+    given = symbol.default if isinstance(symbol.default, list) else [symbol.default]
+    return not items or symbol.default is None or items.issuperset(given)
+
+
+def is_stand_in(symbol: Symbol) -> bool:
+    """Whether RNA lists no value, or a stand-in for those made while Blender runs, and no new one told any."""
+    items = [item.identifier for item in symbol.enum_items]
+    return symbol.type == "enum" and len(items) <= 1 and STAND_INS.issuperset(items) and is_uncompared(symbol)
+
+
+def is_uncompared(symbol: Symbol) -> bool:
+    """Whether the default is RNA's alone, of a property whose new value may be another one."""
+    return _is_of_struct(symbol) and not {"compared", "readonly"} & set(symbol.flags)
+
+
+def fillers(symbol: Symbol) -> list[str]:
+    """The calls that were seen to fill a pointer which is None on new things, in their order."""
+    return [call for text in symbol.flagged(FILLED_BY) for call in text.split(THEN)]
+
+
+def is_locked(symbol: Symbol) -> bool:
+    """Whether a property cannot be assigned: RNA says so, or Blender refused it on all that was tried."""
+    return "readonly" in symbol.flags or (LOCKED_ON + ANY in symbol.flags and not freed_by(symbol))
+
+
+def freed_by(symbol: Symbol) -> str:
+    """``use_auto_texspace = False``: the setting of its owner that lets a property be assigned; empty for others."""
+    return "".join(symbol.flagged(FREED_BY))
+
+
+def refused_nothing(symbol: Symbol) -> bool:
+    """Whether an operator's poll said yes wherever it was asked: with and without objects, in all modes, in no area."""
+    return NEEDS in symbol.flags
+
+
+@dataclass(frozen=True, slots=True)
+class Wanted:
+    """Which types, or modes, of active objects an operator runs with: these ``names``, or all others."""
+
+    names: tuple[str, ...]
+    is_others: bool = False
+
+    def takes(self, name: str) -> bool:
+        """Whether an operator runs with a type, or in a mode."""
+        return (name in self.names) != self.is_others
+
+
+def operator_active(symbol: Symbol) -> tuple[Wanted | None, Wanted | None]:
+    """With which types of active objects, and in which modes, an operator runs; None where any will do."""
+    return _active("".join(symbol.flagged(NEEDS)))
+
+
+@cache
+def _active(needs: str) -> tuple[Wanted | None, Wanted | None]:
+    found = _NEEDED.fullmatch(needs)
+    return (_wanted(found["types"]), _wanted(found["modes"])) if found else (None, None)
+
+
+def _wanted(text: str | None) -> Wanted | None:
+    if not text or "…" in text:
+        return None
+    return Wanted(tuple(_QUOTED.findall(text)), text.startswith(", not"))
+
+
+def operator_areas(symbol: Symbol) -> tuple[str, ...]:
+    """The types of areas in which alone an operator runs; ``any`` where it is most of them."""
+    return symbol.flagged(AREAS)
+
+
+def operator_given(symbol: Symbol) -> str:
+    """The member of the context that an operator takes instead of an area, or of what an area puts there."""
+    return "".join(symbol.flagged(GIVEN))
+
+
+def operator_also(symbol: Symbol) -> tuple[str, ...]:
+    """What must be set besides for an operator that runs only in areas, as a statement."""
+    return symbol.flagged(ALSO)
+
+
+def never_taken(symbol: Symbol, argument: str) -> frozenset[str]:
+    """The values of an argument that RNA lists, and that were refused whatever else was given."""
+    return frozenset(
+        value
+        for refusal in symbol.refusals
+        if refusal.argument == argument and not (refusal.by or refusal.given or refusal.mode or refusal.again)
+        for value in refusal.values
+    )
+
+
+def empty_when_new(symbol: Symbol) -> NewValue | None:
+    """The new value of a pointer that is None on new things, or on those that it names; None for other symbols."""
+    return next((new for new in symbol.new_values if symbol.type == "pointer" and new.value is None), None)
+
+
+def new_subscript(socket: Symbol) -> str:
+    """The subscript that gives a socket of a new node: its name where that works; empty for none."""
+    if "name-when-shown" in socket.flags and "hidden-by-default" not in socket.flags:
+        return f'{socket.side}["{socket.label}"]'
+    return socket.subscripts[0] if socket.subscripts else ""
+
+
+def alike_nodes(name: str) -> list[str]:
+    """The paths of a node's class under the other families' names: ``ShaderNodeGamma`` for CompositorNodeGamma."""
+    family = next((family for family in NODE_FAMILIES if name.startswith(family) and name != family), None)
+    if family is None:
+        return []
+    return [f"bpy.types.{other}{name[len(family) :]}" for other in NODE_FAMILIES if other != family]

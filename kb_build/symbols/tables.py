@@ -1,0 +1,147 @@
+"""The rows that a base has of its symbols, and of the names of symbols and pages."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, field, replace
+from itertools import groupby
+from operator import attrgetter, itemgetter
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, short_path, topic_key
+from kb_build.index.creation import creation_calls
+from kb_build.index.empty_ways import EmptyWays
+from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, pack
+from kb_build.symbols.lines import member_line, switches
+from kb_build.symbols.records import to_json
+from kb_build.usage.examples import SymbolUsage
+
+if TYPE_CHECKING:
+    from collections.abc import Callable, Container, Iterable, Iterator, Mapping, Sequence
+
+    from kb_build.symbols.records import Page, PanelCondition, Symbol
+    from kb_build.usage.examples import Uses
+
+    Row = tuple[object, ...]
+
+_TWO_ACTIONS = re.compile(r"(?P<first>\w+ing) (?:&|and) (?P<second>\w+ing)(?: (?P<rest>\w+))?")
+
+
+@dataclass(frozen=True, slots=True)
+class SymbolTables:
+    """Rows of the tables symbols, names, enum_items, creation and panel_conditions (see schema.DDL), and where scripts
+    use symbols.
+    """
+
+    symbols: Sequence[Row]
+    names: Sequence[Row]
+    enum_items: Sequence[Row]
+    creation: Sequence[Row]
+    conditions: Sequence[PanelCondition] = ()
+    uses: Mapping[str, Uses] = field(default_factory=dict[str, "Uses"])
+
+
+def symbol_tables(
+    symbols: Sequence[Symbol], pages: Sequence[Page], used: Callable[[], SymbolUsage] = SymbolUsage
+) -> SymbolTables:
+    """The rows of all symbols, and of the names of ``pages``.
+
+    ``used`` gives the uses of the symbols in scripts. It is called last: it may wait for them.
+    """
+    names = {row for symbol in symbols for row in symbol_names(symbol)}
+    # In the order of their keys: SQLite then fills page after page, and splits none.
+    names.update(row for page in pages for row in page_names(page))
+    titles = {name for name, form, _ in names if form == FORM_TOPIC}
+    names = sorted(names.union(action_names(pages, titles)))
+    items = sorted((row for symbol in symbols for row in enum_rows(symbol)), key=itemgetter(0, 1, 2))
+    records = [pack(to_json(symbol)) if symbol.kind != "class" else b"" for symbol in symbols]
+    usage = used()
+    calls = creation_calls(symbols, usage.reached, usage.names)
+    on = _switches(usage.conditions)
+    ways = EmptyWays(symbols, usage.reached)
+    return SymbolTables(
+        symbols=[
+            (
+                number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
+                symbol.collection, symbol.base, symbol.group, symbol.label,
+                member_line(symbol, on.get(symbol.path, "")),
+                record or pack(to_json(_with_way(symbol, usage.reached, ways))),
+            )
+            for number, (symbol, record) in enumerate(zip(symbols, records, strict=True))
+        ],
+        names=names,
+        enum_items=items,
+        creation=[(path, *creation) for path, creation in calls.items()],
+        conditions=usage.conditions,
+        uses=usage.uses,
+    )  # fmt: skip
+
+
+def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:
+    """(key, form, path) for every spelling under which a symbol is asked for."""
+    short = short_path(symbol.path)
+    yield key(symbol.path), FORM_PATH, symbol.path
+    yield key(short), FORM_SHORT, symbol.path
+    if symbol.kind == "operator":
+        yield key(symbol.target), FORM_SHORT, symbol.path
+        yield key(f"bpy.types.{symbol.target}"), FORM_SHORT, symbol.path
+    if symbol.group in {"ui", "operator"} or symbol.name.startswith("bl_rna_get_subclass"):
+        return
+    yield key(symbol.name), FORM_NAME, symbol.path
+    if symbol.kind == "socket":
+        # Not its own name, which hundreds of sockets share.
+        others = (name for name in symbol.socket_keys if name != symbol.name)
+        yield from ((key(f"{symbol.side}{name}"), FORM_SHORT, symbol.path) for name in others)
+    if symbol.kind == "class" and symbol.owner == "bpy.types":
+        yield key(f"types.{symbol.name}"), FORM_SHORT, symbol.path
+    if symbol.label and symbol.kind != "socket":
+        yield key(symbol.label), FORM_LABEL, symbol.path
+
+
+def page_names(page: Page) -> Iterator[tuple[str, int, str]]:
+    """(key, form, slug) for a page: its slug, the slug's last part, its title."""
+    yield key(page.slug), FORM_PATH, page.slug
+    yield key(page.slug.removesuffix("/index")), FORM_SHORT, page.slug
+    yield key(page.slug.removesuffix("/index").rpartition("/")[2]), FORM_NAME, page.slug
+    yield key(page.title), FORM_LABEL, page.slug
+    yield topic_key(page.title), FORM_TOPIC, page.slug
+
+
+def action_names(pages: Iterable[Page], titles: Container[str]) -> Iterator[tuple[str, int, str]]:
+    """The topics of pages on two actions: ``Importing & Exporting Files`` is asked for by either word.
+
+    Not by one that is a page's own title; ``titles`` are the keys of these.
+    """
+    for page in pages:
+        both = _TWO_ACTIONS.fullmatch(page.title)
+        for action in (both["first"], both["second"]) if both else ():
+            named = {topic_key(action), topic_key(f"{action} {both['rest'] or ''}")} if both else set[str]()
+            yield from ((name, FORM_TOPIC, page.slug) for name in sorted(named) if name not in titles)
+
+
+def enum_rows(symbol: Symbol) -> Iterator[tuple[str, str, str, str]]:
+    """(key, owner, identifier, name) of a symbol's own enum items and of its parameters'."""
+    if symbol.kind == "enum":
+        return
+    for item in symbol.enum_items:
+        yield key(item.identifier), symbol.path, item.identifier, item.name
+    for parameter in symbol.parameters:
+        for item in parameter.enum_items:
+            yield key(item.identifier), f"{symbol.path}({parameter.name})", item.identifier, item.name
+
+
+def _with_way(symbol: Symbol, reached: Mapping[str, str], ways: EmptyWays) -> Symbol:
+    """A class with the expression that leads to an instance, and what that way lacks."""
+    path = reached.get(symbol.path)
+    return replace(symbol, reached=path, lacks=ways.last_empty(symbol.name)) if path else symbol
+
+
+def _switches(conditions: Iterable[PanelCondition]) -> dict[str, str]:
+    """Property → the settings of its own class of which panels want one on, else grey it out: ``use_a or use_b``."""
+    found: dict[str, str] = {}
+    for path, rows in groupby(conditions, key=attrgetter("path")):
+        cls = path.rpartition(".")[0]
+        for gates in switches(rows):
+            if all(gate.rpartition(".")[0] == cls for gate in gates):
+                found.setdefault(path, " or ".join(gate.rpartition(".")[2] for gate in gates))
+    return found

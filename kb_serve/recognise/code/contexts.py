@@ -1,0 +1,115 @@
+"""Which context operators need, as a line of Python that gives it to them."""
+
+from __future__ import annotations
+
+import ast
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.symbols.flags import operator_also, operator_areas, operator_given, refused_nothing
+from kb_build.symbols.lines import operator_needs
+
+if TYPE_CHECKING:
+    from kb_build.symbols.records import Symbol
+    from kb_serve.recognise.resolving.chains import Chain
+
+OVERRIDE = "bpy.types.Context.temp_override"
+NO_OVERRIDE = (
+    "Operators take keyword arguments only, after an optional execution context. A context is not an argument: "
+    f"set it with `{OVERRIDE}`."
+)
+_WITH = "with bpy.context.temp_override"
+_ACTIVE = "bpy.context.view_layer.objects.active = ob"
+_SELECTED = "ob.select_set(True)"
+_MODE = re.compile(r"(?P<refused>not )?in mode '(?P<mode>\w+)'")
+# A name for what a member of the context is taken from.
+_THINGS = {"id": "ob", "point_cache": "modifier.point_cache", "edit_image": "image", "edit_text": "text"}
+# Without it, it bakes nothing and says that it did.
+_ARGUMENTS = {"bpy.ops.ptcache.bake": "bake=True"}
+_INSTEAD = {
+    "bpy.ops.ptcache.bake": "`bpy.ops.ptcache.bake_all(bake=True)` needs none, and bakes all of the scene."
+}
+
+
+def context_for(operator: Symbol, like: str = "") -> str:
+    """What lets an operator run whose ``poll()`` failed; ``like`` is the member of the context that those like it want,
+    if nothing is known of itself.
+    """
+    path = operator.path
+    failed = f"`{path}.poll()` failed: "
+    if needs := operator_needs(operator):
+        return f"{failed}of all that was tried, it takes {needs}. {_giving(operator, needs)}".rstrip()
+    if refused_nothing(operator):
+        return (
+            f"{failed}it refused nothing that was tried: no object, objects of all types in all modes, no area. "
+            "What it lacks is in this scene or file."
+        )
+    if like:
+        return (
+            f"{failed}operators like it take `{like}` in the context, here one that it can work on: "
+            f"`{_WITH}({like}={_THINGS.get(like, like)}): {path}()`."
+        )
+    return (
+        f"{failed}it needs another mode, active object, selection or editor than the context has. "
+        f"`{OVERRIDE}` can provide objects and editors, `bpy.ops.object.mode_set` a mode."
+    )
+
+
+def _in_area(path: str, area: str) -> str:
+    """Lines that give an operator an area; ``any`` for the first that there is."""
+    areas = "bpy.context.window.screen.areas"
+    found = f"{areas}[0]" if area == "any" else f"next(a for a in {areas} if a.type == '{area}')"
+    return (
+        f"`area = {found}`; `region = next(r for r in area.regions if r.type == 'WINDOW')`; "
+        f"`{_WITH}(area=area, region=region): {path}()`. Where there is no window, there is no area."
+    )
+
+
+def _giving(operator: Symbol, needs: str) -> str:
+    """Lines that give an operator what it wants; empty where its needs say how."""
+    path = operator.path
+    if member := operator_given(operator):
+        given = f"`{_WITH}({member}={_THINGS.get(member, member)}): {path}({_ARGUMENTS.get(path, '')})`."
+        return f"{given} {_INSTEAD.get(path, '')}".rstrip()
+    if areas := operator_areas(operator):
+        return "".join(f"`{call}`; " for call in operator_also(operator)) + _in_area(path, areas[0])
+    mode = _MODE.search(needs)
+    entered = f"`bpy.ops.object.mode_set(mode='{_entered(mode)}')`" if mode else ""
+    if needs.startswith("any active object or none"):
+        return f"{entered} comes before." if entered else ""
+    if not needs.startswith("an active"):
+        return ""
+    given = f"`{_ACTIVE}`" + (f", `{_SELECTED}`" if "selected" in needs else "")
+    return f"{given}, then {entered}." if entered else f"{given} comes before."
+
+
+def _entered(mode: re.Match[str]) -> str:
+    """The mode to enter for one that is wanted, or refused."""
+    return "OBJECT" if mode["refused"] else mode["mode"]
+
+
+def with_context(chain: Chain) -> str:
+    """The present form of an operator's call with a context as its first argument; empty where it has none."""
+    if chain.call is None:
+        return ""
+    try:
+        call = ast.parse(f"f({chain.call})", mode="eval").body
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
+        return ""
+    if not isinstance(call, ast.Call) or not call.args:
+        return ""
+    first, *rest = call.args
+    given = ", ".join(map(ast.unparse, (*rest, *call.keywords)))
+    return f"{_WITH}({_override(first)}): {chain.dotted}({given})"
+
+
+def _override(first: ast.expr) -> str:
+    """The arguments of ``temp_override`` that say the same as a dictionary."""
+    if not isinstance(first, ast.Dict):
+        return f"**{ast.unparse(first)}"
+    named = [
+        f"{key.value}={ast.unparse(value)}"
+        for key, value in zip(first.keys, first.values, strict=True)
+        if isinstance(key, ast.Constant) and isinstance(key.value, str) and key.value.isidentifier()
+    ]
+    return ", ".join(named) if len(named) == len(first.keys) else f"**{ast.unparse(first)}"

@@ -1,0 +1,124 @@
+"""Finds wrong arguments in calls of operators and functions."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.symbols.paths import split_path
+from kb_serve.recognise.code.contexts import NO_OVERRIDE, with_context
+from kb_serve.recognise.names.likely_keywords import likely_keywords
+from kb_serve.recognise.resolving.call_texts import arguments
+from kb_serve.signatures import signature_arguments
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterable, Iterator
+
+    from kb_build.symbols.records import Symbol
+    from kb_serve.recognise.resolving.chains import Chain
+
+_NESTED = re.compile(r"""\([^()]*\)|\[[^\[\]]*\]|\{[^{}]*\}|'[^']*'|"[^"]*\"""")
+_KEYWORD = re.compile(r"(?:^|,)\s*(\w+)\s*=(?!=)")
+_VALUE = re.compile(r"""(["'])[^"']*\1|-?[\d.]+""")  # a text, a number
+_FRACTION = re.compile(r"-?(?:\d+\.\d*|\.\d+)")
+_EXECUTION_CONTEXT = re.compile(r"(?:INVOKE|EXEC)_\w+")
+_DEPTH = 5
+
+
+def unknown_keywords(symbol: Symbol, names: Iterable[str]) -> Iterator[str]:
+    """A sentence for each of ``names`` that is not a parameter of ``symbol``, with the most similar parameters."""
+    known = [parameter.name for parameter in symbol.parameters]
+    for name in names:
+        if name in known or any(other.startswith("*") for other in known):
+            continue
+        if not known:
+            yield f"`{symbol.path}` takes no arguments."
+            continue
+        similar = likely_keywords(name, {one.name: one.label for one in symbol.parameters})
+        closest = f"; closest: {', '.join(f'`{other}`' for other in similar)}" if similar else ""
+        yield f"`{symbol.path}` takes no `{name}`{closest}."
+
+
+def wrong_arguments(chain: Chain, symbol: Symbol, removed: Collection[str] = ()) -> Iterator[str]:
+    """Sentences on the wrong arguments of a call, as far as its text shows; but on ``removed`` ones, given by path."""
+    is_method = symbol.kind in {"operator", "function"} and not symbol.name.startswith("__")
+    if chain.call is None or not is_method:
+        return
+    text = chain.call
+    once = {name for above, mark, name in map(split_path, removed) if mark == "(" and above == symbol.path}
+    if symbol.kind == "operator" and _gives_context(text, once.union(one.name for one in symbol.parameters)):
+        line = with_context(chain)
+        yield f"{NO_OVERRIDE} Write `{line}`." if line else NO_OVERRIDE
+    elif symbol.kind == "operator":
+        yield from _by_place_to_operator(symbol, text)
+    else:
+        yield from _by_place(symbol, text)
+    for _ in range(_DEPTH):
+        text = _NESTED.sub("0", text)
+    if symbol.kind == "operator" or symbol.path.startswith("bmesh.ops.") or places_of(symbol) is not None:
+        names = [name for name in _KEYWORD.findall(text) if f"{symbol.path}({name})" not in removed]
+        yield from unknown_keywords(symbol, names)
+
+
+def _by_place_to_operator(symbol: Symbol, text: str) -> Iterator[str]:
+    """Operators take by place an execution context and a truth value alone."""
+    given = next((written for name, written in arguments(text) if not name), "")
+    if any(one.name == given for one in symbol.parameters):
+        yield f"`{symbol.path}` takes its arguments by name only: `{given}={given}`."
+    if not _VALUE.fullmatch(given) or _EXECUTION_CONTEXT.fullmatch(given[1:-1]):
+        return
+    named = [
+        one.name for one in symbol.parameters if given[1:-1] in {item.identifier for item in one.enum_items}
+    ]
+    if (
+        given[:1] not in "'\""
+    ):  # Blender takes a whole number for whether to push an undo step, and says nothing
+        how = f"; `{given}` sets none of them"
+    else:
+        how = f": `{named[0]}={given}`" if len(named) == 1 else ""
+    yield f"`{symbol.path}` takes its arguments by name only{how}."
+
+
+def _by_place(symbol: Symbol, text: str) -> Iterator[str]:
+    """More arguments by place than a function has places for."""
+    written = [*arguments(text)]
+    given = [argument for name, argument in written if not name]
+    if (
+        any(argument.startswith(("*", "...", "…")) for argument in given)
+        or (places := places_of(symbol)) is None
+    ):
+        return
+    by_place, by_name = places
+    whole = {one.name for one in symbol.parameters if one.type == "int"}
+    for name, argument in (*zip(by_place, given, strict=False), *written):
+        if name in whole and _FRACTION.fullmatch(argument):
+            yield f"`{name}` of `{symbol.path}` is a whole number: `{argument}` is refused."
+    if len(given) <= len(by_place):
+        return
+    rest = [name for name in by_name if name not in {name for name, _ in written}]
+    if len(given) == len(by_place) + 1 and rest:
+        yield f"`{symbol.path}` takes `{rest[0]}` by name only: `{rest[0]}={given[-1]}`."
+    else:
+        yield f"`{symbol.path}` takes {counted(len(by_place))} by place: `{symbol.signature}`."
+
+
+def places_of(symbol: Symbol) -> tuple[list[str], list[str]] | None:
+    """The arguments that a function takes by place, and those that it takes by name only; None where that is open."""
+    listed = signature_arguments(symbol.signature)
+    if listed is None or listed.vararg or listed.kwarg:
+        return None
+    own = {"self", "cls"} - {parameter.name for parameter in symbol.parameters}
+    names = [argument.arg for argument in (*listed.posonlyargs, *listed.args) if argument.arg not in own]
+    return names, [argument.arg for argument in listed.kwonlyargs]
+
+
+def counted(places: int) -> str:
+    """So many arguments, in words."""
+    return f"{places or 'no'} argument{'s' * (places != 1)}"
+
+
+def _gives_context(arguments: str, parameters: Collection[str]) -> bool:
+    """Whether the first argument is a dictionary, or a variable that is not just the name of a parameter."""
+    first = arguments.strip()
+    variable = re.match(r"([a-z_]\w*)(?:\.\w+)*(?:\.copy\(\))?\s*(?:,|$)", first)
+    return bool(re.match(r"\{|dict\(", first)) or (variable is not None and variable[1] not in parameters)

@@ -1,0 +1,124 @@
+"""How collections without ``new`` or ``remove`` get and lose elements: the functions that do it lie elsewhere."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_build.symbols.api_names import TYPES as T
+
+if TYPE_CHECKING:
+    from kb_serve.reader import BaseReader, SymbolEntry
+
+ADDING = frozenset(
+    {"add", "append", "assign", "create", "extend", "insert", "link", "load", "new", "push", "resize"}
+)
+REMOVING = frozenset({"clear", "delete", "discard", "pop", "remove", "unlink"})
+
+
+class Elsewhere(NamedTuple):
+    """The function or property that adds or removes elements of a collection, and how it is written."""
+
+    path: str
+    how: str
+
+
+_TO_COLLECTION = Elsewhere(
+    f"{T}CollectionObjects.link",
+    "Objects are linked to a collection: `bpy.context.collection.objects.link(obj)`.",
+)
+_OBJECT_REMOVED = Elsewhere(
+    f"{T}BlendDataObjects.remove",
+    "`bpy.data.objects.remove(obj)` removes an object for good, `collection.objects.unlink(obj)` takes it out of one.",
+)
+_SHAPE_KEY_ADDED = Elsewhere(
+    f"{T}Object.shape_key_add",
+    'The object adds them: `obj.shape_key_add(name="Key")`, the first one as the basis.',
+)
+_BONES_ADDED = Elsewhere(
+    f"{T}ArmatureEditBones.new",
+    "Bones are made in Edit Mode: with the armature active, `bpy.ops.object.mode_set(mode='EDIT')`, then "
+    '`armature.edit_bones.new("Bone")`, which needs a `head` and a `tail` apart; back in Object Mode there is a bone '
+    "and a pose bone of that name.",
+)
+_BONES_REMOVED = Elsewhere(
+    f"{T}ArmatureEditBones.remove",
+    'Bones are removed in Edit Mode: `armature.edit_bones.remove(armature.edit_bones["Bone"])`.',
+)
+_WEIGHT_ADDED = Elsewhere(
+    f"{T}VertexGroup.add",
+    "The object's vertex groups assign vertices: `obj.vertex_groups[\"Group\"].add([vertex.index], 1.0, 'REPLACE')`.",
+)
+_WEIGHT_REMOVED = Elsewhere(
+    f"{T}VertexGroup.remove",
+    'The object\'s vertex groups remove vertices: `obj.vertex_groups["Group"].remove([vertex.index])`.',
+)
+_LAYER_COLLECTION_ADDED = Elsewhere(
+    f"{T}CollectionChildren.link",
+    "A layer shows the scene's collections: `scene.collection.children.link(collection)` adds one.",
+)
+# Collection → where elements are added.
+ADDED_BY = {
+    f"{T}Object.material_slots": Elsewhere(
+        f"{T}IDMaterials.append",
+        "The object's data has the materials: `obj.data.materials.append(material)` adds a slot with one.",
+    ),
+    f"{T}Key.key_blocks": _SHAPE_KEY_ADDED,
+    f"{T}BlendData.shape_keys": _SHAPE_KEY_ADDED,
+    f"{T}Armature.bones": _BONES_ADDED,
+    f"{T}Pose.bones": _BONES_ADDED,
+    f"{T}Object.particle_systems": Elsewhere(
+        f"{T}ObjectModifiers.new",
+        "A modifier brings one: `obj.modifiers.new(\"Particles\", 'PARTICLE_SYSTEM').particle_system`.",
+    ),
+    f"{T}Scene.objects": _TO_COLLECTION,
+    f"{T}ViewLayer.objects": _TO_COLLECTION,
+    f"{T}Collection.all_objects": _TO_COLLECTION,
+    f"{T}LayerCollection.children": _LAYER_COLLECTION_ADDED,
+    f"{T}MeshVertex.groups": _WEIGHT_ADDED,
+}
+# Collection → where elements are removed.
+REMOVED_BY = {
+    f"{T}Object.material_slots": Elsewhere(
+        f"{T}IDMaterials.pop",
+        "The object's data has the materials: `obj.data.materials.pop(index=0)` removes one with its slot (the last "
+        "slot stays, empty), `obj.data.materials.clear()` all.",
+    ),
+    f"{T}Key.key_blocks": Elsewhere(
+        f"{T}Object.shape_key_remove",
+        'The object removes them: `obj.shape_key_remove(obj.data.shape_keys.key_blocks["Key"])`.',
+    ),
+    f"{T}Armature.bones": _BONES_REMOVED,
+    f"{T}Pose.bones": _BONES_REMOVED,
+    f"{T}Object.particle_systems": Elsewhere(
+        f"{T}ObjectModifiers.remove",
+        'Remove the modifier that brings it: `obj.modifiers.remove(obj.modifiers["Particles"])`.',
+    ),
+    f"{T}Scene.objects": _OBJECT_REMOVED,
+    f"{T}ViewLayer.objects": _OBJECT_REMOVED,
+    f"{T}Collection.all_objects": _OBJECT_REMOVED,
+    f"{T}MeshVertex.groups": _WEIGHT_REMOVED,
+}
+
+# Class → the collection that scripts mean by ``thing["name"]``, which is a custom property of the thing instead.
+_MEANT = {
+    f"{T}Armature": "bones",
+    f"{T}Collection": "objects",
+    f"{T}Key": "key_blocks",
+    f"{T}NodeTree": "nodes",
+    f"{T}Pose": "bones",
+}
+
+
+def meant_by_key(cls: str, reader: BaseReader) -> SymbolEntry | None:
+    """The collection of a class that has what ``thing["name"].member`` is probably meant to find."""
+    names = (_MEANT.get(entry.path) for entry in reader.lineage(cls))
+    name = next(filter(None, names), "")
+    return reader.member_of(cls, name) if name else None
+
+
+def elsewhere(owner: str, name: str, reader: BaseReader) -> Elsewhere | None:
+    """What does what a collection lacks a function for; ``owner`` is the property, or the collection's class."""
+    table = ADDED_BY if name in ADDING else REMOVED_BY if name in REMOVING else {}
+    paths = (owner, *reader.collections_of(owner.removeprefix(T))) if table else ()
+    found = next((table[path] for path in paths if path in table), None)
+    return found if found and reader.entry(found.path) else None

@@ -1,0 +1,96 @@
+"""Which items of an enumeration may be meant by a value that it lacks."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import terms, words
+from kb_serve.recognise.names.corrections import nearest
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from kb_build.symbols.records import EnumItem
+    from kb_serve.reader import BaseReader
+
+_MOST = 3
+_LONG = 4  # letters of an item that a wrong one begins with
+_TELLING = 2  # words of a label that other texts have
+_SHORT = 3  # … of a wrong one that an item begins with
+_OPPOSITES = frozenset({"neg", "negative"})
+_MINUS = re.compile(r"-(?=[XYZ]$)")
+
+
+def likely_values(written: str, items: Sequence[str]) -> list[str]:
+    """The items that a wrong one may mean: of those that point the same way, ``NEGATIVE_Z`` for ``-Z``, those that are
+    most like it, those that it begins with, or the other way round, or else those that it is made of and more.
+    """
+    written = _MINUS.sub("NEGATIVE_", written)
+    if same := _of_same_sense(written, items):
+        return same
+    items = [*_without_opposites(written, items)]
+    said = written.upper()
+    # ``ARMATURE_AUTOMATIC`` begins with ``ARMATURE_AUTO``.
+    if begun := [item for item in items if "_" in item and said.startswith(item)]:
+        return sorted(begun, key=len, reverse=True)[:_MOST]
+    if similar := [item for item, _ in nearest(written, items)]:
+        return _with_alike(said, similar, items)
+    similar = [item for item in items if len(item) >= _LONG and said.startswith(item.upper())]
+    similar = similar or [item for item in items if len(said) >= _SHORT and item.upper().startswith(said)]
+    if similar:
+        return similar
+    own = set(words(written))
+    return sorted((item for item in items if set(words(item)) <= own), key=len, reverse=True)[:1]
+
+
+def _with_alike(said: str, similar: list[str], items: Iterable[str]) -> list[str]:
+    """Items that one may mean, and behind the one that it only begins with those that begin so, too: ``VERTEX_3``
+    behind ``VERTEX`` for ``VERTEX_TRI``.
+    """
+    if len(similar) > 1 or not said.startswith(f"{similar[0]}_"):
+        return similar
+    return [*similar, *(item for item in items if item.startswith(f"{similar[0]}_"))][:_MOST]
+
+
+def likely_items(written: str, items: Sequence[EnumItem], reader: BaseReader) -> list[str]:
+    """The same of items with their labels: where none is alike, what Blender says that things called so are."""
+    return likely_values(written, [item.identifier for item in items]) or explaining(written, items, reader)
+
+
+def explaining(written: str, items: Iterable[EnumItem], reader: BaseReader) -> list[str]:
+    """The one item with a label of several words that the text on a collection called so has: ``CORNER``, Face Corner,
+    for ``LOOP``, as the loops of a mesh are said to be face corners.
+    """
+    name = written.lower()
+    entries = [entry for one in (name, f"{name}s") for entry in reader.by_name(one)]
+    texts = [" ".join(terms(entry.line)) for entry in entries if entry.type == "collection"]
+    labels = {item.identifier: terms(item.name) for item in items}
+    found = [
+        identifier
+        for identifier, label in labels.items()
+        if len(label) >= _TELLING and any(f" {' '.join(label)} " in f" {text} " for text in texts)
+    ]
+    return found if len(found) == 1 else []
+
+
+def _of_same_sense(written: str, values: Iterable[str]) -> list[str]:
+    """The values that have all words of one but the first, and say as it does that the opposite is meant.
+
+    ``TRACK_NEGATIVE_Z`` for ``FORWARD_NEGATIVE_Z``.
+    """
+    mine = words(written)
+    if _OPPOSITES.isdisjoint(mine):
+        return []
+    wanted = set(mine[1:]) - _OPPOSITES
+    return [value for value in values if wanted <= set(words(value)) and _is_opposite(value)][:_MOST]
+
+
+def _without_opposites(written: str, values: Iterable[str]) -> Iterator[str]:
+    """Values without those that mean the opposite of one."""
+    is_opposite = _is_opposite(written)
+    return (value for value in values if _is_opposite(value) == is_opposite)
+
+
+def _is_opposite(value: str) -> bool:
+    return not _OPPOSITES.isdisjoint(words(value))

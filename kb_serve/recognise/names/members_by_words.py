@@ -1,0 +1,72 @@
+"""Finds the members of a class that words beside its name describe: ``ParticleSettings brownian``."""
+
+from __future__ import annotations
+
+from functools import lru_cache
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import STOP_WORDS, stem, words
+from kb_build.symbols.api_names import NODE, TYPES
+
+if TYPE_CHECKING:
+    from collections.abc import Collection, Iterator
+
+    from kb_serve.reader import BaseReader, SymbolEntry
+
+_MOST_WORDS = 5  # with more of them it is a question, in which the class is one word of many
+_MOST_FOUND = 3  # more members than these are not told apart
+_SHORTEST = 4  # letters of a word that may be a beginning, or misspelt
+_MOST_COMPARED = 4_000  # pairs of words whose likeness is remembered
+_SOCKETS = frozenset({"socket", "sockets"})
+_SLIP = 0.79  # similarity of a word with two letters exchanged
+
+
+def members_by_words(cls: str, beside: Collection[str], reader: BaseReader) -> list[str]:
+    """Paths of the members of a class, or of what a member leads to, that all of some words describe; best first.
+
+    None where too many do.
+    """
+    asked = [word for text in beside for word in words(text) if word not in STOP_WORDS]
+    if _SOCKETS.issuperset(asked) and reader.descends(cls, NODE):
+        return []  # all of them, which the class lists
+    if not 0 < len(asked) <= _MOST_WORDS:
+        return []
+    own = list(_members(cls, reader))
+    found = [(_unsaid(entry, asked), entry.path) for entry in own if not _missing(entry, asked)]
+    if not found:
+        for pointer in own:
+            rest = _missing(pointer, asked) if pointer.target else asked
+            if 0 < len(rest) < len(asked):
+                further = _members(TYPES + pointer.target, reader)
+                found += [(_unsaid(one, rest), one.path) for one in further if not _missing(one, rest)]
+    paths = list(dict.fromkeys(path for _, path in sorted(found)))
+    return paths if len(paths) <= _MOST_FOUND else []
+
+
+def _members(cls: str, reader: BaseReader) -> Iterator[SymbolEntry]:
+    for ancestor in reader.lineage(cls):
+        if not ancestor.name.startswith("bpy_"):
+            yield from reader.members(ancestor.path).values()
+
+
+def _missing(entry: SymbolEntry, asked: Collection[str]) -> list[str]:
+    """The words that a member's name and label do not have."""
+    said = {*words(entry.name), *words(entry.label)}
+    return [word for word in asked if not any(_means(word, other) for other in said)]
+
+
+def _unsaid(entry: SymbolEntry, asked: Collection[str]) -> int:
+    """How many words of a member's name nobody asked for."""
+    return sum(not any(_means(word, other) for word in asked) for other in words(entry.name))
+
+
+@lru_cache(maxsize=_MOST_COMPARED)
+def _means(word: str, other: str) -> bool:
+    """Whether a word is another one, its beginning, or it with a slip of the fingers."""
+    if word == other or stem(word) == stem(other):
+        return True
+    if len(word) < _SHORTEST:
+        return False
+    from rapidfuzz.distance import OSA  # noqa: PLC0415 - most words are spelled right
+
+    return other.startswith(word) or (word[0] == other[0] and OSA.normalized_similarity(word, other) >= _SLIP)

@@ -1,0 +1,136 @@
+"""Finds what a class lacks one step on: on a part of it (``SpaceView3D.overlay`` has ``show_overlays``), on the
+elements of its collections, or on what it is the data of.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, NamedTuple
+
+from kb_build.index.analysis import key
+from kb_build.symbols.api_names import ID, OBJECT, STRUCT, TYPES
+from kb_build.symbols.flags import empty_when_new
+
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+
+    from kb_serve.reader import BaseReader, SymbolEntry
+
+_FEW = 3
+_COUNTS = 1.0  # the weight from which on the data of an object are likely meant by a member of theirs
+
+
+class Within(NamedTuple):
+    """A member that something else has, and a sentence on how it is reached from the class that lacks it."""
+
+    member: SymbolEntry
+    note: str
+
+
+def members_within(owner: str, name: str, reader: BaseReader, *, on_new: bool = False) -> list[Within]:
+    """Where a member of exactly that name is, one step from a class; empty where that may be in many places.
+
+    With ``on_new`` only on what new things have themselves, not on what is None there, nor further on. Only parts of
+    the thing count: not another object that it points to, nor the one of its elements that is active.
+    """
+    members = _members(owner, reader)
+    held = {member.target for member in members if member.type == "collection"}
+    pointers = [one for one in members if one.type == "pointer" and _is_part(one, owner, held, reader)]
+    if on_new:
+        pointers = [one for one in pointers if not _is_none(one, reader)]
+    found = {
+        member: f"Its `.{one.name}` has it: `.{one.name}.{name}` (`{member.path}`)."
+        for one in pointers
+        if (member := _own_of(f"{TYPES}{one.target}", name, reader))
+    }
+    for member, note in (*_of_data(owner, name, reader), *_of_collections(members, name, reader)):
+        found.setdefault(member, note)
+    if not found and not on_new:
+        for one in pointers:
+            beyond = _members(f"{TYPES}{one.target}", reader) if one.is_read_only else []
+            for member, note in _of_collections(beyond, name, reader, f".{one.name}"):
+                found.setdefault(member, note)
+    if not found and (beside := _beside(owner, name, reader)):
+        return [beside]
+    return [Within(member, found[member]) for member in reader.heaviest(found)] if len(found) <= _FEW else []
+
+
+def of_elements(collection: SymbolEntry, name: str, reader: BaseReader, before: str = "") -> Within | None:
+    """The member of that name which the elements of a collection have."""
+    member = _own_of(f"{TYPES}{collection.target}", name, reader)
+    if member is None:
+        return None
+    access = f"{before}.{collection.name}"
+    return Within(member, f"The elements of `{access}` have it: `{access}[0].{name}` (`{member.path}`).")
+
+
+def _members(cls: str, reader: BaseReader) -> list[SymbolEntry]:
+    """The members of a class and of its bases, but for what everything has."""
+    lineage = [entry.path for entry in reader.lineage(cls) if entry.path != STRUCT]
+    return [member for path in lineage for member in reader.members(path).values()]
+
+
+def _own_of(cls: str, name: str, reader: BaseReader) -> SymbolEntry | None:
+    """A class's member of that name, if not everything has it."""
+    member = reader.member_of(cls, name)
+    return member if member and member.owner != STRUCT else None
+
+
+def _is_part(pointer: SymbolEntry, owner: str, held: set[str], reader: BaseReader) -> bool:
+    """Whether what a pointer of a class leads to is the thing's own: no other object or thing of its kind, and none of
+    the elements that it has a collection of.
+    """
+    target = f"{TYPES}{pointer.target}"
+    return bool(pointer.target) and not (
+        reader.descends(target, OBJECT) or reader.descends(owner, target) or pointer.target in held
+    )
+
+
+def _is_none(pointer: SymbolEntry, reader: BaseReader) -> bool:
+    """Whether a pointer is None on new things."""
+    symbol = reader.symbol(pointer.path)
+    return symbol is not None and empty_when_new(symbol) is not None
+
+
+def _of_data(owner: str, name: str, reader: BaseReader) -> Iterator[Within]:
+    """The member of the data of an object that scripts use most, of those of that name."""
+    if not reader.descends(owner, OBJECT):
+        return
+    named = [
+        one for one in reader.by_name(name) if one.kind == "property" and reader.is_object_data(one.owner)
+    ]
+    weights = reader.weights([one.path for one in named])
+    for member in reader.heaviest(named)[:1]:
+        if weights.get(member.path, 0.0) >= _COUNTS:
+            cls = member.owner.removeprefix(TYPES)
+            yield Within(
+                member, f"Its `.data` has it if that is of class `{cls}`: `.data.{name}` (`{member.path}`)."
+            )
+
+
+def _of_collections(
+    members: list[SymbolEntry], name: str, reader: BaseReader, before: str = ""
+) -> Iterator[Within]:
+    """Members of collections of a class of their own (``objects.active``), and of the elements of collections."""
+    for one in members:
+        if one.type != "collection" or not one.target:
+            continue
+        own = _own_of(f"{TYPES}{one.collection}", name, reader) if one.collection else None
+        if own and own.owner == f"{TYPES}{one.collection}":
+            access = f"{before}.{one.name}"
+            yield Within(own, f"Its `{access}` has it: `{access}.{name}` (`{own.path}`).")
+        elif not reader.descends(f"{TYPES}{one.target}", ID) and (
+            element := of_elements(one, name, reader, before)
+        ):
+            yield element
+
+
+def _beside(owner: str, name: str, reader: BaseReader) -> Within | None:
+    """The member of an object with such data, or of what has such a thing under its name (``PoseBone.bone``)."""
+    if reader.is_object_data(owner) and (member := _own_of(OBJECT, name, reader)):
+        return Within(member, f"The object that has such data has it: `obj.{name}` (`{member.path}`).")
+    cls = owner.removeprefix(TYPES)
+    for one in reader.pointing_at(cls):
+        if key(one.name) == key(cls) and one.is_read_only and (member := _own_of(one.owner, name, reader)):
+            holder = one.owner.removeprefix(TYPES)
+            return Within(member, f"`{holder}` has it (`{member.path}`): this is its `.{one.name}`.")
+    return None

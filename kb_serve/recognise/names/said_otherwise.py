@@ -1,0 +1,108 @@
+"""What a class has instead of a name that it lacks: members that Blender calls so on its buttons (``light.power`` is
+``energy``, labelled Power), and operators that do it (``obj.duplicate()``).
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, words
+from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.flags import operator_given
+from kb_serve.recognise.resolving.variables import variable_fit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable
+
+    from kb_serve.reader import BaseReader, SymbolEntry
+    from kb_serve.recognise.names.operator_words import OperatorWords
+    from kb_serve.recognise.recognition import MissingName
+
+_FEW = 3
+_MAKERS = ("new", "add", "append", "link", "load", "resize")
+_MAKING = frozenset({*_MAKERS, "create", "insert", "push"})
+_LOADERS, _LOADING = ("load", "new"), frozenset({"open", "read"})
+_MANY = 6  # more members than these whose labels end alike are not told apart
+_MOST_CASES = 8
+_NAMES_ANOTHER = frozenset({"between", "for", "from", "in", "of", "on", "per", "to", "with"})
+_NAMED_AFTER = (
+    0.6  # how well the name of a module of operators must fit a class: ``ptcache`` PointCache, not ``object``
+)
+
+
+def said_otherwise(missing: MissingName, operators: OperatorWords, reader: BaseReader) -> list[str]:
+    """What the class has that lacks a name: what its buttons call so, else the operators that do it."""
+    owner = reader.entry(missing.owner) if missing.name.isidentifier() else None
+    if owner and owner.path.startswith(OPERATORS):
+        return _operators_called(owner.path, missing.name, reader)
+    if owner is None or owner.kind != "class" or not words(missing.name):
+        return []
+    wanted = _LOADERS if missing.name in _LOADING else _MAKERS if missing.name in _MAKING else ()
+    if makers := _having(owner.path, wanted, reader):
+        return makers
+    found = labelled(owner.path, missing.name, reader)
+    if found or not missing.called:
+        return found
+    return operators_on(owner.path, missing.name, operators, reader)
+
+
+def _operators_called(module: str, name: str, reader: BaseReader) -> list[str]:
+    """The operators of a module whose label is a name: ``remove_doubles`` is Merge by Distance."""
+    return [entry.path for entry in reader.members(module).values() if key(entry.label) == key(name)][:_FEW]
+
+
+def _having(owner: str, names: Iterable[str], reader: BaseReader) -> list[str]:
+    """The members of some names that a class has: what adds an element to a collection, however it is called."""
+    members = reader.members(owner) if names else {}
+    return [members[name].path for name in names if name in members]
+
+
+def labelled(owner: str, name: str, reader: BaseReader) -> list[str]:
+    """The members whose label is a name, those first that count most, else the one whose label ends with it:
+    ``TextCurve.text`` is ``body``, the Body Text. Where a class has none, the few that are cases of it may:
+    ``Light.power`` is ``PointLight.energy``.
+    """
+    found = _called(reader.lineage(owner), name, reader)
+    if not found and len(cases := list(reader.descendants(owner))) <= _MOST_CASES:
+        found = _called(cases, name, reader)
+    return [entry.path for entry in found[:_FEW]]
+
+
+def _called(classes: Iterable[SymbolEntry], name: str, reader: BaseReader) -> list[SymbolEntry]:
+    """The members of classes that are labelled so, those first that count most; of those whose label only ends so one,
+    as it is a guess.
+    """
+    entries = [
+        entry for cls in classes for entry in reader.members(cls.path).values() if entry.kind == "property"
+    ]
+    said = words(name)
+    same = [entry for entry in entries if key(entry.label) == key(name)]
+    ending = [entry for entry in entries if _ends_with(entry, said)]
+    return reader.heaviest(same) or (reader.heaviest(ending)[:1] if len(ending) <= _MANY else [])
+
+
+def _ends_with(entry: SymbolEntry, said: list[str]) -> bool:
+    """Whether a label ends with some words that are what it names: not the lines' distance, the Distance of Text."""
+    label = words(entry.label)
+    before = label[: -len(said)]
+    return bool(before) and label[len(before) :] == said and _NAMES_ANOTHER.isdisjoint(before)
+
+
+def operators_on(owner: str, name: str, operators: OperatorWords, reader: BaseReader) -> list[str]:
+    """The operators of the module that is named after a class which begin with a name, ``ptcache.bake_all`` for the
+    ``bake`` of a PointCache: the very name, and what needs no context override, come first.
+    """
+    cls = owner.rpartition(".")[2]
+    fitting = [
+        path
+        for path in operators.beginning(name)
+        if variable_fit(path.removeprefix(OPERATORS).partition(".")[0], cls) >= _NAMED_AFTER
+    ]
+    weights = reader.weights(fitting)
+
+    def far(path: str) -> tuple[bool, bool, float]:
+        symbol = reader.symbol(path)
+        is_given = symbol is not None and operator_given(symbol) != ""  # by a context override alone
+        return is_given, not path.endswith(f".{name}"), -weights.get(path, 0.0)
+
+    return sorted(fitting, key=far)[:_FEW]

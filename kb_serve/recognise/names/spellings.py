@@ -1,0 +1,213 @@
+"""Recognises a query that is one name as a whole: a path, label, slug or title, in any case and punctuation."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key
+from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT
+from kb_build.symbols.api_names import OPERATORS, TYPES
+from kb_serve.reader import PROPERTIES
+from kb_serve.recognise.names.addresses import find_page
+from kb_serve.recognise.names.enum_values import is_quoted_value, is_value
+from kb_serve.recognise.recognition import WHOLE_LABEL
+
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.recognition import Recognition
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup
+
+_MEMBER = re.compile(r"\s*(?:->|→|::)\s*")
+_FEW = 3
+_NEAR = 2  # dots in the path of a module that a bare word may mean
+_LONG_LABEL = 3  # words, which no question has by chance
+_MOST_WORDS = 9  # of a question in which labels are looked for
+_LABEL_WORDS = (3, 2)
+_LABEL_WITHIN = (
+    0.79  # how sure what a part of a question is called is: it comes after the first that the words find
+)
+_OF_A_LABEL = 2
+_KINDS = frozenset({"modifier", "constraint"})  # last words of labels, which may stand anywhere in a question
+_USUAL, _BESIDE_USUAL = 0.98, 0.97  # … the class that plain words usually mean, and what is spelled so
+_OTHERWISE = 0.85  # how sure a name is that shares only its key with the query
+
+
+def _strangeness(text: str, identifier: str) -> int:
+    """How unlike the query an identifier with the same key (see analysis.key) is, from 0."""
+    if "_OT_" in text.upper():  # the operator says all that its class does
+        return 0 if identifier.startswith(OPERATORS) else 1
+    if identifier == f"bpy.ops.{text}":  # a module of operators is rarely what a bare word means
+        return 2
+    if f".{identifier}".endswith(f".{text}"):
+        return 0
+    if f".{identifier}".lower().endswith(f".{text.lower()}"):
+        return 1
+    return 2 if identifier.removeprefix(TYPES).count(".") == text.removeprefix(TYPES).count(".") else 3
+
+
+def _called(text: str) -> str:
+    """``f`` of ``f(a, b)``; the text itself if it is not a call, or continues after it."""
+    start, depth = text.find("("), 0
+    if start < 0 or not text.endswith(")"):
+        return text
+    for position, char in enumerate(text[start:], start):
+        depth += (char == "(") - (char == ")")
+        if depth == 0 and position + 1 < len(text):
+            return text
+    return text[:start]
+
+
+class Spellings:
+    """Recognises whole spellings against one base."""
+
+    def __init__(self, reader: BaseReader, removed: RemovedSymbolLookup) -> None:
+        self._reader = reader
+        self._removed = removed
+
+    def recognise(self, query: str, recognition: Recognition) -> None:
+        """Adds the symbols and pages that the whole query names."""
+        text = query.strip().strip("`'\"").rstrip(".:;,?!")
+        if is_quoted_value(query, self._reader):
+            return  # ``'EMITTER'`` is not the page of emitters
+        if "[" in text or (
+            " " not in text and not self._reader.entry(PROPERTIES + text)
+        ):  # a path; only sockets' have spaces, in brackets
+            candidates = (text, f"bpy.{text}")
+            self._reader.entry.load(candidates)
+            for path in candidates:
+                if self._reader.entry(path):
+                    recognition.add(path, 1.0, "exact")
+                    return
+            if taken_as := self._reader.still_works(TYPES + text):
+                recognition.add_former_name(taken_as, 1.0)
+                return
+        if slug := find_page(text, self._reader):
+            recognition.add(slug, 1.0, "exact")
+            return
+        called = _MEMBER.sub(".", _called(text))
+        if self._reader.entry(PROPERTIES + called):  # rather than RNA's class of the same name
+            recognition.add(PROPERTIES + called, 1.0, "exact")
+            return
+        if inherited := self._inherited(called):
+            recognition.add(inherited, 1.0, "exact")
+            return
+        if " " in text:
+            self._labelled(text, recognition)
+            self._labels_within(text.split(), recognition)
+        rows = self._reader.by_key(key(called))
+        if rows:
+            self._spelled(called, rows, recognition)
+        in_plain_words = " " in called and called.islower()
+        if not in_plain_words and (recognition.best is None or recognition.best.sure < 1):
+            for removed in self._removed.spelled(called):
+                recognition.add_removed(removed)
+
+    def _inherited(self, text: str) -> str:
+        """The member that a class inherits which is spelled as its own: ``GreasePencilLayer.hide``; "" for others."""
+        cls, _, name = text.removeprefix(TYPES).rpartition(".")
+        if not cls or "." in cls or not self._reader.entry(TYPES + cls):
+            return ""
+        member = self._reader.member_of(TYPES + cls, name)
+        return member.path if member and member.owner != TYPES + cls else ""
+
+    def _spelled(self, text: str, rows: Sequence[tuple[int, str]], recognition: Recognition) -> None:
+        """Adds the symbols and pages with the query's key; the fuller the spelling, the surer."""
+        dotted = "." in text
+        plain = " " not in text.strip()
+        is_long = text.count(" ") + 1 >= _LONG_LABEL
+        strange = {identifier: _strangeness(text, identifier) for _, identifier in rows}
+        typed = 0 in strange.values() or self._is_enum_item(text) or self._is_removed(text)
+        weights = self._reader.weights(strange) if len(rows) > 1 or not plain else {}
+        usual = "" if plain or dotted else self._usual_class(rows, weights)
+        if usual:
+            recognition.add(usual, _USUAL, "label")
+        for form, identifier in sorted(rows, key=lambda row: (strange[row[1]], -weights.get(row[1], 0.0))):
+            if form == FORM_PATH or (form == FORM_SHORT and "/" not in identifier):
+                # ``view_layers`` and ``ViewLayers`` share a key: the one in another spelling is hardly meant.
+                is_meant = not (typed and strange[identifier] > 1)
+                recognition.add(
+                    identifier, _BESIDE_USUAL if usual else 1.0 if is_meant else _OTHERWISE, "exact"
+                )
+            elif form in {FORM_NAME, FORM_LABEL} and not dotted:
+                same = self._last_part(identifier) == text
+                sure = 0.9 if same and plain and "_" in text else WHOLE_LABEL if is_long else 0.7
+                if same and len(strange) == 1 and self._is_main_module(identifier):
+                    sure = 1.0
+                recognition.add(identifier, sure, "name")
+            else:
+                recognition.add(identifier, WHOLE_LABEL if is_long else 0.75, "title")
+
+    def _usual_class(self, rows: Sequence[tuple[int, str]], weights: Mapping[str, float]) -> str:
+        """The class whose whole label plain words are, if it counts more than what has them as its name; empty for
+        none: ``noise texture`` is the node, before the brush's texture.
+        """
+        others = {identifier for form, identifier in rows if form != FORM_LABEL}
+        labelled = [
+            entry
+            for form, identifier in rows
+            if form == FORM_LABEL and identifier not in others and (entry := self._reader.entry(identifier))
+        ]
+        classes = [entry.path for entry in labelled if entry.kind == "class"]
+        best = max(classes, key=lambda path: weights.get(path, 0.0), default="")
+        most = max((weights.get(path, 0.0) for path in others), default=0.0)
+        return best if best and weights.get(best, 0.0) > most else ""
+
+    def _labelled(self, text: str, recognition: Recognition) -> None:
+        """Adds classes and operators with exactly this label; for modifiers, Blender's default name will do."""
+        labels = (f"{text} Modifier", f"{text} Constraint", text)
+        self._reader.by_key.load(map(key, labels))
+        entries = [
+            entry
+            for label in labels
+            for form, identifier in self._reader.by_key(key(label))
+            if form == FORM_LABEL and (entry := self._reader.entry(identifier)) and entry.label == label
+        ]
+        named = [entry for entry in entries if entry.kind in {"class", "operator"}]
+        for rank, entry in enumerate(named[:_FEW]):
+            recognition.add(entry.path, 0.9 if len(named) == 1 else 0.83 - 0.01 * rank, "label")
+
+    def _labels_within(self, words: Sequence[str], recognition: Recognition) -> None:
+        """Adds the classes whose labels, of several words, are part of a question: ``sky texture world``."""
+        if not _LONG_LABEL <= len(words) <= _MOST_WORDS:
+            return
+        parts = [
+            " ".join(words[start : start + length])
+            for length in _LABEL_WORDS
+            for start in range(len(words) - length + 1)
+            if length < len(words)
+        ]
+        typed = frozenset(parts)
+        # Looked up in memory: there are dozens in a question, and hardly ever a class is called so.
+        # ``track to`` is a constraint, and so is ``copy location``; a modifier's name alone is mostly a plain word.
+        parts += [f"{part} constraint" for part in parts]
+        parts += [
+            f"{word} {kind}" for kind in _KINDS.intersection(words) for word in words if word not in _KINDS
+        ]
+        for part in parts:
+            if not (paths := self._reader.labelled_classes.get(part.lower())):
+                continue
+            self._reader.entry.load(paths)
+            classes = list(filter(None, map(self._reader.entry, paths)))
+            is_typed = part.count(" ") + 1 >= _LONG_LABEL and part in typed
+            sure = WHOLE_LABEL if is_typed else _LABEL_WITHIN
+            for rank, entry in enumerate(self._reader.heaviest(classes)[:_OF_A_LABEL]):
+                recognition.add(entry.path, sure - 0.01 * rank, "label")
+
+    def _is_enum_item(self, text: str) -> bool:
+        return "_" in text and is_value(text, self._reader)
+
+    def _is_removed(self, text: str) -> bool:
+        return any(self._reader.removed(path) for path in (text, TYPES + text))
+
+    def _is_main_module(self, identifier: str) -> bool:
+        """Whether an identifier is a module of ``bpy`` that scripts use: ``bpy.app.handlers``."""
+        entry = self._reader.entry(identifier)
+        is_near = identifier.startswith("bpy.") and identifier.count(".") <= _NEAR
+        return is_near and entry is not None and entry.kind == "module"
+
+    @staticmethod
+    def _last_part(identifier: str) -> str:
+        return identifier.rpartition(".")[2]

@@ -1,0 +1,422 @@
+"""Finds the names in code that only other versions have: members, paths, keyword arguments, enum values, sockets."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from itertools import islice
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import key, words
+from kb_build.symbols.api_names import OPERATORS, SIDES, TYPES, interface_part
+from kb_build.symbols.paths import is_socket, socket_node
+from kb_serve.recognise.removed.lost_names import LostName, LostNames, is_telling
+from kb_serve.recognise.resolving.call_texts import arguments, texts_in
+from kb_serve.recognise.resolving.chain_starts import ROOTS
+from kb_serve.recognise.resolving.chains import find_chains
+from kb_serve.recognise.resolving.variables import USUAL, usual_classes, variable_fit
+
+if TYPE_CHECKING:
+    from collections.abc import Iterable, Iterator, Sequence
+
+    from kb_build.symbols.records import Symbol
+    from kb_serve.reader import BaseReader
+    from kb_serve.recognise.removed.removed_symbols import RemovedSymbol, RemovedSymbolLookup
+    from kb_serve.recognise.resolving.chains import Chain, ChainStep
+    from kb_serve.recognise.resolving.resolver import ResolvedChain, Resolver
+
+_LIKELY_FIT = 0.6  # from this fit of a variable's name on, its class is believed if it had the name once
+_BETTER = 0.05  # by this a removed class must fit a name more than one of today
+_NAMED_AFTER = 0.8  # … it is named after a class
+_SHORTEST = 4  # letters of a name that tells a class by its end
+_MOST_NAMES = 6
+_MANY_OWNERS = 3  # more classes than these had a name: which one is meant is not known
+_WORDS_OF_CLASS = re.compile(r"(?=[A-Z]+[a-z_]+[A-Z])[A-Z]\w+")
+_CLASS_NAME = re.compile(rf"""(["'])({_WORDS_OF_CLASS.pattern})\1""")  # not ``"Lamp"``, an object's name
+_OPERATOR_NAME = re.compile(r"""(["'])([a-z]\w*\.[a-z]\w+)\1""")
+# A property named in a string: ``layout.prop(ob, "name")``, ``getattr(ob, "name")``, ``ob.keyframe_insert("name")``.
+_PROPERTY_NAMES = (
+    re.compile(r"""\b(?:prop|prop_search|[gs]etattr|hasattr)\(\s*([A-Za-z_][\w.]*)\s*,\s*["'](\w+)["']"""),
+    re.compile(
+        # Only from the start of a dotted name: trying each part of a long one takes seconds.
+        r"""(?<![\w.])([A-Za-z_][\w.]*)\.(?:keyframe_(?:insert|delete)|driver_(?:add|remove)|property_unset)\("""
+        r"""\s*(?:(?:data_)?path\s*=\s*)?["'](\w+)["']"""
+    ),
+)
+_IMPORT = re.compile(r"\bimport\s+([a-z][\w.]*)")
+_FROM = re.compile(r"\bfrom\s+([a-z][\w.]*)\s+import\s+\(?\s*(\w+(?:\s*,\s*\w+)*)")
+_KEYWORD = re.compile(r"""\W*(\w+)\s*=\s*(['"])([A-Z][A-Z0-9_]+)\2\W*""")  # alone
+_MOST_QUOTED = 12
+_SAY_NOTHING = frozenset({"node", *"0123456789"})  # words of a variable's name that no node is told by
+_THEME = f"{TYPES}Theme"  # its hundreds of colours are called like everything else
+
+
+@dataclass(frozen=True, slots=True)
+class OldName:
+    """A removed symbol that a chain names, and the steps of the chain behind it."""
+
+    removed: RemovedSymbol
+    rest: tuple[ChainStep, ...] = ()
+
+
+class OldCode:
+    """Finds removed names against one base."""
+
+    def __init__(self, reader: BaseReader, resolver: Resolver, removed: RemovedSymbolLookup) -> None:
+        self._reader = reader
+        self._resolver = resolver
+        self._removed = removed
+        self._lost_names = LostNames(reader, removed)
+
+    def in_chain(
+        self, chain: Chain, readings: Sequence[ResolvedChain], *, is_quoted: bool = False
+    ) -> OldName | None:
+        """The first removed name in a chain that this version cannot resolve; None where that is not sure.
+
+        ``is_quoted``: whether the name is a text, of which nothing is set that tells more.
+        """
+        if readings and readings[0].complete and readings[0].fit >= _LIKELY_FIT:
+            return self._member(chain, self._likelier(chain, readings)) or _old(
+                chain, self._lost_names.socket(chain, readings)
+            )
+        return (
+            self._path(chain)
+            or self._class(chain)
+            or _old(chain, self._lost_names.of_named_data(chain))
+            or self._member(chain, readings)
+            or self._socket(chain)
+            or _old(chain, self._lost_names.socket(chain, readings))
+            or self._of_last_part(chain, readings)
+            or self._of_fitting_class(chain, readings)
+            or self._of_any_class(chain, readings)
+            or _old(chain, self._lost_names.reached(chain, readings))
+            or (None if is_quoted else _old(chain, self._lost_names.likelier(chain, readings)))
+        )
+
+    def alike(self, chain: Chain, readings: Sequence[ResolvedChain]) -> RemovedSymbol | None:
+        """What a chain of an unknown variable may name as well as what has the name today."""
+        return self._lost_names.alike(chain, readings)
+
+    def still_taken(self, chain: Chain, readings: Sequence[ResolvedChain]) -> str:
+        """The present symbol that a name missing on a class still leads to under its former name; "" for none."""
+        for resolved in readings:
+            if not resolved.complete and resolved.fit >= _LIKELY_FIT:
+                return self._reader.still_works(f"{resolved.owner}.{resolved.missing}")
+        return "" if readings and readings[0].fit >= _LIKELY_FIT else self._socket_still_taken(chain)
+
+    def _socket_still_taken(self, chain: Chain) -> str:
+        """The socket that a former name gives on the nodes that a variable is named after, if all of those take it."""
+        side, name = chain.steps[:2] if len(chain.steps) > 1 else (None, None)
+        named = set(words(chain.root)) - _SAY_NOTHING
+        if side is None or name is None or name.kind != "key" or side.text not in SIDES:
+            return ""
+        paths = self._reader.removed_by_key(key(f'{side.text}["{name.text}"]')) if named else ()
+        fitting = (path for path in paths if named <= set(words(socket_node(path).removeprefix(TYPES))))
+        taken = [self._reader.still_works(path) for path in fitting]
+        return taken[0] if all(taken) and taken else ""
+
+    def member(self, owner: str, name: str) -> RemovedSymbol | None:
+        """The member of that name which a class had in another version."""
+        return self._removed.of_member(owner, name)
+
+    def had(self, owner: str, name: str) -> bool:
+        """Whether a class, or one below it, had a member of that name in another version."""
+        return bool(self.member(owner, name) or self._removed.paths_below(owner, name))
+
+    def behind(self, before: str, resolved: ResolvedChain, steps: tuple[ChainStep, ...]) -> OldName | None:
+        """The removed name at which a chain breaks off that was followed from the successor of a removed one.
+
+        What was removed ``before`` may have been a collection with a class of its own: NodeTree.outputs of
+        NodeTreeOutputs.
+        """
+        owner, _, name = before.rpartition(".")
+        removed = (
+            self._removed.of_path(f"{owner}{name.title()}.{resolved.missing}") if resolved.missing else None
+        )
+        if removed is None and resolved.missing:
+            removed = self._removed.of_member(resolved.owner, resolved.missing)
+        return OldName(removed, steps[len(steps) - resolved.steps_left + 1 :]) if removed else None
+
+    def _likelier(self, chain: Chain, readings: Sequence[ResolvedChain]) -> list[ResolvedChain]:
+        """The readings that suit the variable better than a complete one, and cannot be a case of it."""
+        whole, usual = readings[0], usual_classes(chain.root)
+        return [
+            reading
+            for reading in readings[1:]
+            if not reading.complete
+            and reading.fit > whole.fit
+            and whole.symbols[0] not in usual
+            and not self._reader.descends(reading.symbols[0], whole.symbols[0])
+        ]
+
+    def _class(self, chain: Chain) -> OldName | None:
+        """A class by its name alone, of several words: ``CompositorNodeComposite``, not ``Lamp``."""
+        if not _WORDS_OF_CLASS.fullmatch(chain.root) or self._reader.entry(TYPES + chain.root):
+            return None
+        removed = self._removed.of_path(TYPES + chain.root)
+        return OldName(removed, chain.steps) if removed else None
+
+    def _path(self, chain: Chain) -> OldName | None:
+        """A removed symbol that the chain spells out from its root: ``bgl.glEnable``, ``bpy.ops.wm.addon_enable``."""
+        if not chain.steps:
+            return None
+        names = chain.dotted.split(".")
+        root = ROOTS.get(names[0], names[0])
+        for length in range(min(len(names), _MOST_NAMES), 0, -1):
+            path = ".".join((root, *names[1:length]))
+            # A script's own panel may bear a name that Blender's had.
+            cls = () if interface_part(path) else (TYPES + path,)
+            for candidate in (path, *cls, f"bpy.{path}"):
+                if removed := self._removed.of_path(candidate):
+                    return OldName(removed, chain.steps[length - 1 :])
+        return None
+
+    def _member(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
+        """A removed member of the class that the chain or its variable leads to."""
+        for resolved in readings:
+            if resolved.complete or resolved.fit < _LIKELY_FIT:
+                continue
+            # ``node.inputs["x"]`` is a node's rather than a tree's that had inputs.
+            if any(one.fit > resolved.fit and one.steps_left < resolved.steps_left for one in readings):
+                continue
+            rest = chain.steps[len(chain.steps) - resolved.steps_left :]
+            if is_socket(resolved.missing):
+                found = self._removed.of_member(resolved.owner, resolved.missing) or self._removed.of_socket(
+                    resolved.owner, resolved.missing, chain.root
+                )
+            else:
+                lost = (
+                    self._removed.of_member(owner, resolved.missing)
+                    for owner in resolved.owners or (resolved.owner,)
+                )
+                found = next(filter(None, lost), None)
+                if not found and (resolved.fit >= 1.0 or is_telling(resolved.missing)):
+                    found = self._removed.below(resolved.owner, resolved.missing, chain.root)
+            if found:
+                return OldName(found, rest[1:])
+        return None
+
+    def _socket(self, chain: Chain) -> OldName | None:
+        """A removed socket, ``bsdf.inputs["Transmission"]``, of a node that only the variable's name tells."""
+        for number, (before, step) in enumerate(zip(chain.steps, chain.steps[1:], strict=False)):
+            if step.kind == "key" and before.text in SIDES:
+                nodes = usual_classes(chain.root)
+                if any(key(chain.root) in key(entry.owner) for entry in self._reader.by_name(step.text)):
+                    return None
+                paths = self._reader.removed_by_key(key(f'{before.text}["{step.text}"]'))
+                for path in paths:
+                    node = socket_node(path)
+                    named = number == 0 and (node in nodes or key(chain.root) in key(node))
+                    if named and (removed := self._removed.of_path(path)):
+                        return OldName(removed, chain.steps[number + 2 :])
+        return None
+
+    def _of_last_part(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
+        """A removed member of what the last part of a variable's name tells: ``title_strip.align_x`` is a strip's.
+
+        None where a class of that kind has the member today.
+        """
+        _, mark, last = chain.root.rpartition("_")
+        if not (mark and chain.steps and chain.steps[0].kind == "attr"):
+            return None
+        for cls in usual_classes(last):
+            if any(
+                self._reader.descends(reading.symbols[0], cls) for reading in readings if reading.complete
+            ):
+                return None
+            if removed := self._removed.below(cls, chain.steps[0].text, chain.root):
+                return OldName(removed, chain.steps[1:])
+        return None
+
+    def _of_fitting_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
+        """A member of a removed class that the variable is named after: ``stroke.line_width`` of a GPencilStroke."""
+        attribute = chain.steps[0] if chain.steps and chain.steps[0].kind == "attr" else None
+        short = len(chain.root.strip("_0123456789")) < _SHORTEST
+        if (
+            attribute is None
+            or short
+            or any(reading.complete and reading.fit >= _LIKELY_FIT for reading in readings)
+        ):
+            return None
+        owners = [
+            (variable_fit(chain.root, path.removesuffix(f".{attribute.text}").removeprefix(TYPES)), path)
+            for path in self._removed.paths_named(attribute.text)
+            if path.startswith(TYPES) and not self._reader.entry(path.rpartition(".")[0])
+        ]
+        fit, path = max(owners, default=(0.0, ""))
+        # A class of today that has the member and fits as well is meant.
+        today = [reading.symbols[0].rpartition(".")[2] for reading in readings if reading.complete]
+        best = max((variable_fit(chain.root, cls) for cls in today), default=0.0)
+        removed = self._removed.of_path(path) if fit >= max(_NAMED_AFTER, best + _BETTER) else None
+        # The class that took its place may have the member, too.
+        if removed is None or any(target.endswith(f".{attribute.text}") for target in removed.targets):
+            return None
+        return OldName(removed, chain.steps[1:])
+
+    def _of_any_class(self, chain: Chain, readings: Sequence[ResolvedChain]) -> OldName | None:
+        """A member that no class has any more, of a variable that may be anything, or by itself; or one that a variable
+        is called as, ``file_slots.new()``.
+        """
+        own = chain.root in {"self", "cls"} or chain.root[:1].isupper()
+        if own or any(reading.fit >= USUAL for reading in readings):
+            return None
+        is_name = bool(chain.steps) and is_telling(chain.root) and not self._reader.by_name(chain.root)
+        if is_name and (removed := self._likeliest(chain.root, chain.root)):
+            return OldName(removed, chain.steps)
+        names = [(number, step.text) for number, step in enumerate(chain.steps, 1) if step.kind == "attr"]
+        for number, name in names if chain.steps else [(0, chain.root)]:
+            if self._reader.by_name(name):
+                return None
+            if (is_telling(name) or _is_set_to_item(chain)) and (
+                removed := self._likeliest(name, chain.root if number == 1 else "")
+            ):
+                return OldName(removed, chain.steps[number:])
+        return None
+
+    def _likeliest(self, name: str, variable: str) -> RemovedSymbol | None:
+        """Of the classes that had a member of that name the likeliest one's: what is known to be replaced first.
+
+        An unknown variable's member may be the script's own: only what a source tells of is believed to be Blender's.
+        """
+        removed = filter(
+            None, (self._removed.of_path(f"{owner}.{name}") for owner in self._owners(name, variable))
+        )
+        known = [symbol for symbol in removed if symbol.successors or not variable]
+        weights = self._reader.weights({symbol.path.rpartition(".")[0] for symbol in known})
+        return min(
+            known,
+            key=lambda symbol: (
+                not symbol.successors,
+                -weights.get(symbol.path.rpartition(".")[0], 0.0),
+                len(symbol.path),
+            ),
+            default=None,
+        )
+
+    def _owners(self, name: str, variable: str) -> list[str]:
+        """The classes that had a member of that name, the likeliest first; none where that is anybody's guess."""
+        paths = [
+            path for path in self._removed.paths_named(name) if path.startswith(TYPES) and _THEME not in path
+        ]
+        owners = [path.removesuffix(f".{name}") for path in paths]
+        usual = usual_classes(variable)
+        if named := [owner for owner in owners if owner in usual]:
+            return named
+        if fitting := [
+            owner for owner in owners if variable_fit(variable, owner.removeprefix(TYPES)) >= _LIKELY_FIT
+        ]:
+            return fitting
+        return owners if len(owners) <= _MANY_OWNERS or not variable or self._went_alike(paths) else []
+
+    def _went_alike(self, paths: Iterable[str]) -> bool:
+        """Whether the same took the place of members of several classes, as of all kinds of strips."""
+        ways = {
+            (removed.gone, *(target.rpartition(".")[2] for target in removed.targets))
+            for removed in filter(None, map(self._removed.of_path, paths))
+        }
+        return len(ways) == 1 and len(ways.pop()) > 1
+
+    # Names in strings, and keyword arguments
+
+    def in_values(self, chain: Chain, symbol: Symbol) -> Iterator[RemovedSymbol]:
+        """What this version lost: values that a property is set to or compared with, a call's arguments and theirs."""
+        for value in chain.values:
+            if removed := self.value(symbol, value):
+                yield removed
+        if chain.call is not None and symbol.parameters:
+            yield from self._arguments(chain.call, symbol)
+
+    def value(self, symbol: Symbol, value: str) -> RemovedSymbol | None:
+        """An item that an enumeration lost; where the items may depend on the build only what a source tells of."""
+        if not symbol.enum_items or any(item.identifier == value for item in symbol.enum_items):
+            return None
+        removed = self._removed.of_part(symbol.path, f":{value}")
+        if removed is None or removed.successors:
+            return removed
+        # Of a class that had another name all items are gone, and of an unlisted enumeration those of one build.
+        same = removed.path.startswith(symbol.path)
+        listed = removed.is_dated(self._reader.history_versions)
+        return removed if same and listed and not symbol.enum_computed else None
+
+    def _arguments(self, text: str, symbol: Symbol) -> Iterator[RemovedSymbol]:
+        parameters = {parameter.name: parameter for parameter in symbol.parameters}
+        positions = list(parameters) if symbol.kind == "function" else []
+        given = list(arguments(text))
+        too_many = sum(not keyword and value != "self" for keyword, value in given) > len(positions)
+        for number, (keyword, value) in enumerate(given):
+            # ``to_mesh(scene, …)``: called like the parameter that it is meant for.
+            named = keyword or (value if too_many and value.isidentifier() else "")
+            name = named or (positions[number] if number < len(positions) else "")
+            if name not in parameters:
+                if named and (removed := self._lost(symbol, named)):
+                    yield removed
+                continue
+            known = {item.identifier for item in parameters[name].enum_items}
+            for item in texts_in(value):
+                # Of what Blender puts together while it runs, the items are not known.
+                if known and item not in known:
+                    yield from filter(None, (self._removed.of_part(symbol.path, f"({name}):{item}"),))
+
+    def _lost(self, symbol: Symbol, keyword: str) -> RemovedSymbol | None:
+        """A parameter that a function had before; not one that only newer versions have."""
+        removed = self._removed.of_part(symbol.path, f"({keyword})")
+        known = removed is not None and (
+            removed.successors or removed.is_dated(self._reader.history_versions)
+        )
+        return removed if known else None
+
+    def in_imports(self, text: str) -> Iterator[RemovedSymbol]:
+        """Removed modules, and removed names of modules, that are imported."""
+        paths = [match[1] for match in _IMPORT.finditer(text)]
+        for match in _FROM.finditer(text):
+            paths += [match[1], *(f"{match[1]}.{name.strip()}" for name in match[2].split(","))]
+        for path in paths[:_MOST_QUOTED]:
+            if removed := self._removed.of_path(path):
+                yield removed
+
+    def in_keyword(self, text: str) -> Iterator[RemovedSymbol]:
+        """The value that an argument lost which is all of a text, ``icon='LAMP'``: of the function that counts most.
+
+        Nothing where something of that name takes it today.
+        """
+        if not (match := _KEYWORD.fullmatch(text)):
+            return
+        today = (owner for owner, *_ in self._reader.enum_owners(key(match[3])))
+        if any(owner.endswith((f"({match[1]})", f".{match[1]}")) for owner in today):
+            return
+        end = f"({match[1]}):{match[3]}"
+        paths = [path for path in self._reader.removed_named(match[3]) if path.endswith(end)]
+        found = [one for one in map(self._removed.of_path, paths) if one and one.targets]
+        weights = self._reader.weights([one.path.removesuffix(end) for one in found])
+        found.sort(key=lambda one: -weights.get(one.path.removesuffix(end), 0.0))
+        yield from found[:1]
+
+    def still_taken_in_strings(self, text: str) -> Iterator[str]:
+        """The classes that one gets by former names which are quoted: ``nodes.new("ShaderNodeBsdfGlossy")``."""
+        yield from filter(None, map(self._reader.still_works, _quoted_paths(text)))
+
+    def in_strings(self, text: str) -> Iterator[RemovedSymbol]:
+        """Removed classes, operators and properties whose names are quoted: ``nodes.new("ShaderNodeTexMusgrave")``."""
+        yield from filter(None, map(self._removed.of_path, _quoted_paths(text)))
+        for pattern in _PROPERTY_NAMES:
+            for match in islice(pattern.finditer(text), _MOST_QUOTED):
+                (chain,) = find_chains(f"{match[1]}.{match[2]}")
+                if old := self.in_chain(chain, self._resolver.resolve(chain), is_quoted=True):
+                    yield old.removed
+
+
+def _is_set_to_item(chain: Chain) -> bool:
+    """Whether a chain is a variable's attribute that is set to what only an enumeration takes: ``c.x = 'PATH'``."""
+    return chain.assigned and len(chain.steps) == 1 and any(value.isupper() for value in chain.values)
+
+
+def _old(chain: Chain, lost: LostName | None) -> OldName | None:
+    """What was lost, with the steps of the chain behind it."""
+    return OldName(lost.removed, chain.steps[lost.steps :]) if lost else None
+
+
+def _quoted_paths(text: str) -> Iterator[str]:
+    """The paths of classes and operators whose names are quoted."""
+    for pattern, prefix in ((_CLASS_NAME, TYPES), (_OPERATOR_NAME, OPERATORS)):
+        for match in islice(pattern.finditer(text), _MOST_QUOTED):
+            yield prefix + match[2]

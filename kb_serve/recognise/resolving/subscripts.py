@@ -1,0 +1,135 @@
+"""Text in brackets behind what is no collection: custom properties, and the inputs of a geometry-nodes modifier."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from kb_build.index.analysis import stem, words
+from kb_build.symbols.api_names import TYPES
+
+if TYPE_CHECKING:
+    from kb_build.symbols.records import Symbol
+    from kb_serve.reader import BaseReader
+
+NODES_MODIFIER = f"{TYPES}NodesModifier"
+PROPERTIES_OF_OPERATORS = f"{TYPES}OperatorProperties"
+_NEW_INPUT = f"{TYPES}NodeTreeInterface.new_socket"
+# The classes whose instances, and whose subclasses' instances, take custom properties.
+_TAKING = frozenset(
+    {
+        "AssetMetaData",
+        "Bone",
+        "BoneCollection",
+        "EditBone",
+        "ID",
+        "Node",
+        "NodesModifier",
+        "OperatorProperties",
+        "PoseBone",
+        "PropertyGroup",
+        "Strip",
+        "ViewLayer",
+    }
+)
+_TAKING_ONCE = frozenset({"AddonPreferences"})  # … before Blender kept registered properties apart
+# There since Blender 5.0, which keeps the properties that are registered apart from the custom ones.
+_APART = f"{TYPES}ID.bl_system_properties_get"
+_REGISTERED = (
+    "A property that is registered by `bpy.props` is not found in brackets since Blender 5.0: it is the attribute "
+    '`.{name}`, and what is stored of it `.bl_system_properties_get()["{name}"]`, once it was set.'
+)
+_PROPERTIES = f"{NODES_MODIFIER}.properties"  # since Blender 5.2
+_ATTRIBUTES = (
+    'An attribute is used instead of a value by `modifier[identifier + "_use_attribute"] = True` and '
+    '`modifier[identifier + "_attribute_name"] = "name"`.'
+)
+_ITEMS = f"{TYPES}NodeTreeInterface.items_tree"
+_MENU = f"{TYPES}NodeTreeInterfaceSocketMenu"
+# How people say in plain words that they want to set an input: of a modifier it may be called anything, of geometry
+# nodes alone it is one where no node is meant.
+_SAID = frozenset(map(stem, ("geometry", "nodes")))
+_INPUT = frozenset(map(stem, ("input", "value", "property", "socket", "slider", "attribute", "setting")))
+_OUTSIDE = frozenset(map(stem, ("parameter", "exposed")))
+_PARTS = frozenset(map(stem, ("input", "socket", "slider", "parameter")))
+_MODIFIER = stem("modifier")
+_NEW = frozenset(map(stem, ("add", "new", "create")))
+_MAKING = _NEW | frozenset(map(stem, ("remove", "delete", "interface", "field")))
+
+
+def asked_of_inputs(query: str) -> str:
+    """What a query in plain words asks for that is about the inputs of a geometry-nodes modifier: the modifier, or what
+    makes an input, which is one of its group; empty for neither.
+    """
+    stems = set(map(stem, words(query)))
+    if not stems >= _SAID:
+        return ""
+    is_of_modifier = _MODIFIER in stems
+    if stems.isdisjoint(_MAKING):
+        return "" if stems.isdisjoint(_OUTSIDE | _INPUT if is_of_modifier else _OUTSIDE) else NODES_MODIFIER
+    is_new = is_of_modifier and not stems.isdisjoint(_PARTS) and not stems.isdisjoint(_NEW)
+    return _NEW_INPUT if is_new else ""
+
+
+class CustomProperties:
+    """Which classes of one base take custom properties, and what is said of one."""
+
+    def __init__(self, reader: BaseReader) -> None:
+        self._reader = reader
+
+    def taken_by(self, cls: str) -> list[str]:
+        """The class, if it takes them; else those below it that do."""
+        taking = _TAKING if self._are_apart else _TAKING | _TAKING_ONCE
+        if any(entry.name in taking for entry in self._reader.lineage(cls)):
+            return [cls]
+        return [entry.path for entry in self._reader.descendants(cls) if entry.name in taking]
+
+    @property
+    def _are_apart(self) -> bool:
+        return self._reader.entry(_APART) is not None
+
+    def on_registered(self, name: str) -> str:
+        """A sentence on a registered property that is not found in brackets; empty where it is."""
+        return _REGISTERED.format(name=name) if self._are_apart and name.isidentifier() else ""
+
+    def note(self, cls: str, name: str) -> str:
+        """A sentence on ``x["name"]``, where ``x`` is of a class that takes custom properties."""
+        if cls == NODES_MODIFIER:
+            return self.on_inputs()
+        said = (
+            f'`["{name}"]` is a custom property of `{cls}`, not one of its attributes: assigning makes it, reading '
+            f'raises KeyError until then; `.get("{name}")` returns None instead.'
+        )
+        return f"{said} {self.on_registered(name)}".rstrip()
+
+    def on_operators(self, function: Symbol, name: str) -> str:
+        """A sentence on what is read or set of the properties of an operator that a function gives; "" for others."""
+        if not any(f"{TYPES}{given.type}" == PROPERTIES_OF_OPERATORS for given in function.returns):
+            return ""
+        return (
+            f"`{function.path}` gives the properties of the operator that it names: `.{name}` is one of those that the "
+            "operator's own class defines."
+        )
+
+    def on_attributes(self) -> str:
+        """How an attribute is used as an input of such a modifier; empty where inputs are no custom properties."""
+        return "" if self._reader.entry(_PROPERTIES) else _ATTRIBUTES
+
+    def on_inputs(self) -> str:
+        """How the inputs of a geometry-nodes modifier are set."""
+        if self._reader.entry(_PROPERTIES):
+            return f"Inputs of a geometry-nodes modifier are values of `{_PROPERTIES}`, by the identifier of the input."
+        items = "interface.items_tree" if self._reader.entry(_ITEMS) else "inputs"
+        told = [
+            "Inputs of a geometry-nodes modifier are set by the identifier of the group's input, not by its name: "
+            f'`modifier[modifier.node_group.{items}["Size"].identifier] = 5.0`, then `obj.update_tag()`. '
+            "Another key makes a custom property that changes nothing."
+        ]
+        told.append(_ATTRIBUTES)
+        if items.startswith("interface"):
+            told.append("Where an output has the same name, take the item whose `in_out` is 'INPUT'.")
+        if self._reader.entry(_MENU):
+            told.append(
+                "A menu takes the number of an entry, which is not its index: the last in the entry's row of "
+                '`modifier.id_properties_ui(identifier).as_dict()["items"]`.'
+            )
+        return " ".join(told)
