@@ -111,7 +111,8 @@ def test_a_module_that_nothing_imports_does_not_count(package: Path, name: str) 
             "import kb_build.symbols.records\n"
         )
     assert digest(name) == before
-    (package / "records.py").write_text((package / "records.py").read_text() + "import kb_build.on_its_own\n")
+    records = package / "symbols" / "records.py"
+    records.write_text(records.read_text() + "import kb_build.on_its_own\n")
     assert digest(name) != before
 
 

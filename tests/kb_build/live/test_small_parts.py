@@ -19,15 +19,12 @@ mesh.from_pydata([(0, 0, 0), (1, 0, 0), (0, 1, 0)], [], [(0, 1, 2)])
 cube = bpy.data.objects["Cube"]
 cube.modifiers.new("x", "SKIN")
 target = cube.constraints.new("ARMATURE").targets.new()
-tree = bpy.data.node_groups.new("x", "CompositorNodeTree")
-item = tree.nodes.new("CompositorNodeOutputFile").file_output_items.new("FLOAT", "x")
 print(json.dumps({
     "MeshVertex.select": mesh.vertices[0].select,
     "MeshEdge.select": mesh.edges[0].select,
     "MeshPolygon.select": mesh.polygons[0].select,
     "MeshSkinVertex.radius": [*cube.data.skin_vertices[0].data[0].radius],
     "ConstraintTargetBone.weight": target.weight,
-    "NodeCompositorFileOutputItem.save_as_render": item.save_as_render,
 }))
 """
 

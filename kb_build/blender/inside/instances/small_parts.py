@@ -83,12 +83,6 @@ def mask_parent():
     return spline.points[0].parent
 
 
-def file_output_item():
-    """An input that is added to a node that writes files."""
-    tree = bpy.data.node_groups.new("new", "CompositorNodeTree")
-    return tree.nodes.new("CompositorNodeOutputFile").file_output_items.new("FLOAT", "new")
-
-
 def cloud_point():
     """A point of a point cloud."""
     cloud = bpy.data.pointclouds.new("new")
@@ -134,7 +128,7 @@ PARTS = (
     ("curve map point of points.new()", curve_map_point), ("curve profile point of points.add()", profile_point),
     ("control point of an envelope modifier", lambda: f_curve().modifiers.new("ENVELOPE").control_points.add(1.0)),
     ("sampled point of an f-curve", sampled_point), ("strip proxy", strip_proxy), ("mask parent", mask_parent),
-    ("item of a file output node", file_output_item), ("point of a point cloud", cloud_point),
+    ("point of a point cloud", cloud_point),
     ("point of hair curves", hair_point), ("target of an armature constraint", constraint_target),
     ("texture slot of a line style", style_texture_slot),
     ("light linking of a collection's object", linked_light),
