@@ -18,7 +18,7 @@ def note_on_method(symbol: Symbol, method: str) -> str:
     kind = python_class(symbol)
     if kind is None or re.match(rf"{kind.__name__}\b", symbol.type):  # the answer names the type itself
         return ""
-    return f"`{symbol.path}` is a `{kind.__name__}` of Python's, which has `{method}`."
+    return f"`{symbol.path}` is a Python `{kind.__name__}`, which has `{method}`."
 
 
 def is_method_of_python(name: str, symbol: Symbol) -> bool:

@@ -39,7 +39,7 @@ def test_a_method_of_a_value_leads_to_what_holds_it(kb: KnowledgeBase, written: 
     [
         ("bpy.context.selected_objects.append(obj)", "`append` changes that one only. Select an object with"),
         ("bpy.context.visible_objects.sort()", "`sort` changes that one only. Keep it in a variable"),
-        ("bpy.context.mode.split('_')", "`bpy.context.mode` is a `str` of Python's, which has `split`."),
+        ("bpy.context.mode.split('_')", "`bpy.context.mode` is a Python `str`, which has `split`."),
     ],
 )
 def test_what_a_method_does_there_is_said(kb: KnowledgeBase, written: str, said: str) -> None:
