@@ -60,7 +60,7 @@ def test_another_file_may_enable_it(rule_checker: Checker) -> None:
 
 
 def test_what_nobody_has_leaves_addons_aside(rule_checker: Checker) -> None:
-    code = "import bpy\nbpy.ops.mesh.ant_landscape_regenerate()\nbpy.context.object.zorn\n"
+    code = "import bpy\nbpy.ops.mesh.ant_landscape_never_was()\nbpy.context.object.zorn\n"
     of_operator, of_object = rule_checker.check(code)
     assert "(add-ons aside)" in of_operator.message
     assert "(add-ons and custom properties aside)" in of_object.message
