@@ -84,10 +84,10 @@ class Script:
                 continue
             if (
                 lacking
-                and not self._is_of_enabled(row)
                 and not row.is_ready_for(*raised_by(row))
                 and (row.sure or self._is_former(row))
                 and not self._is_given(row)
+                and not self._is_of_enabled(row)
             ):
                 yield row
 
