@@ -10,7 +10,7 @@ if TYPE_CHECKING:
     from kb_check.checker import Checker
     from kb_serve.reader import BaseReader
 
-_KEPT = 200  # look-ups: the pieces of code in queries are short
+_KEPT = 100  # look-ups: the pieces of code in queries are short
 _CHECKERS: WeakKeyDictionary[BaseReader, Checker] = WeakKeyDictionary()
 
 
