@@ -5,13 +5,14 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import T
 from kb_build.flow.trees import walk
+from kb_build.symbols.api_names import OPERATORS
+from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
     from kb_build.flow.types import Resolution
 
-_OPERATORS = "bpy.ops"
+_MODULE = "bpy.ops"
 LACKS = ("AttributeError",)
 LACKS_KEY = ("KeyError",)
 # A value that is refused; a sequence of the wrong length is a ValueError.
@@ -35,10 +36,10 @@ def refusing_class(function: str) -> tuple[str, ...]:
 def raised_by(row: Resolution) -> tuple[str, ...]:
     """The errors that one of what is missing raises, by the names of their classes; none where that is not known."""
     owners = row.missing
-    if row.kind == "attribute" and any(owner.startswith(_OPERATORS) for owner in owners):
+    if row.kind == "attribute" and any(owner.startswith(_MODULE) for owner in owners):
         return LACKS_KEY if _asks_for_type(row) else LACKS
     if row.kind == "value":
-        return REFUSES_ENUM if all(owner.startswith((T, f"{_OPERATORS}.")) for owner in owners) else ()
+        return REFUSES_ENUM if all(owner.startswith((T, OPERATORS)) for owner in owners) else ()
     if row.kind == "class":
         return refusing_class(owners[0])
     return _BY_KIND.get(row.kind, ())

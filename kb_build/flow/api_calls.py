@@ -14,7 +14,6 @@ from kb_build.flow.facts import (
     DERIVED_BY_SCRIPTS,
     NAME_OF_PROPERTY,
     OPEN_CALLS,
-    T,
 )
 from kb_build.flow.script_calls import ScriptCalls
 from kb_build.flow.types import (
@@ -41,6 +40,8 @@ from kb_build.flow.types import (
     union,
     without_none,
 )
+from kb_build.symbols.api_names import OBJECT
+from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
     from kb_build.flow.read_calls import Keywords, ReadCall
@@ -61,7 +62,7 @@ _PROPERTIES: dict[str, Type] = {
     "FloatVectorProperty": Sequence("array", FLOAT), "IntVectorProperty": Sequence("array", INT),
     "BoolVectorProperty": Sequence("array", BOOL),
 }  # fmt: skip
-_CONVERTING, _OBJECT = "bpy.ops.object.convert", f"{T}Object"
+_CONVERTING = "bpy.ops.object.convert"
 _OPERATOR_RESULT = Sequence("set", STR)
 
 
@@ -83,7 +84,7 @@ class ApiCalls(ScriptCalls):
         state = self.scope.state
         self.spend(len(state.names) + len(state.chains))
         for name, kind in state.names.items():
-            if isinstance(kind, Instance) and kind.cls == _OBJECT and kind.traits:
+            if isinstance(kind, Instance) and kind.cls == OBJECT and kind.traits:
                 state.names[name] = replace(kind, traits=())
         for chain in [chain for chain in state.chains if chain.endswith(".data")]:
             del state.chains[chain]
@@ -175,7 +176,7 @@ class ApiCalls(ScriptCalls):
             return result
         names = (parameter.name for parameter in symbol.positional)
         given = {**dict(zip(names, call.arguments, strict=False)), **call.keywords}
-        if result.cls == f"{T}Object" and "object_data" in given:
+        if result.cls == OBJECT and "object_data" in given:
             data = without_none(given["object_data"])
             return (
                 replace(result, traits=(("data", data),)) if data is not UNKNOWN and data != NONE else result

@@ -29,12 +29,11 @@ from kb_build.flow.types import (
     literal_text,
     union,
 )
+from kb_build.symbols.api_names import NODE, OBJECT
 from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Iterable
-
-_OBJECT = f"{T}Object"
 
 
 class Calls(ApiCalls, PythonCalls):
@@ -59,7 +58,7 @@ class Calls(ApiCalls, PythonCalls):
         match callee:
             case Operator(path=path) if kind := made_by(path):
                 data = self.api.object_data(kind)
-                return Instance(_OBJECT, (("data", data),)) if data is not UNKNOWN else None
+                return Instance(OBJECT, (("data", data),)) if data is not UNKNOWN else None
             case Operator(path=path) if not leaves_active(path):
                 return None
             case Function(path=path) if path.endswith((".temp_override", ".remove", ".link", ".unlink")):
@@ -100,7 +99,7 @@ class Calls(ApiCalls, PythonCalls):
             case ast.Attribute(value=ast.Attribute(attr="nodes") | ast.Name(id="nodes"), attr="new"):
                 given = [*call.arguments, *call.keywords.values()]
                 text = literal_text(given[0]) if given else None
-                if text and self.api.descends(f"{T}{text}", f"{T}Node"):
+                if text and self.api.descends(f"{T}{text}", NODE):
                     return Instance(f"{T}{text}")
             case _:
                 pass

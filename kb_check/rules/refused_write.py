@@ -31,10 +31,10 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
-from kb_build.flow.api import STRUCT
-from kb_build.flow.facts import T
 from kb_build.flow.trees import children
 from kb_build.flow.types import ClassObject, Instance, LocalClass
+from kb_build.symbols.api_names import ID, OPERATORS, STRUCT
+from kb_build.symbols.api_names import TYPES as T
 from kb_check.findings import Finding
 from kb_check.literals import times_bound
 from kb_check.made_here import bindings, callee_path
@@ -48,7 +48,7 @@ if TYPE_CHECKING:
     from kb_check.own_classes import FunctionDefinition
     from kb_check.script import Script
 
-_ID, _VIEW_LAYER = f"{T}ID", f"{T}ViewLayer"
+_VIEW_LAYER = f"{T}ViewLayer"
 # Data-blocks that may be written to at any time.
 _OF_WINDOWS = frozenset(f"{T}{name}" for name in ("Screen", "WindowManager", "WorkSpace"))
 # Other functions than those that are called poll and draw in which nothing may be written: each was tried.
@@ -59,7 +59,7 @@ _ADDING = frozenset({"append", "prepend"})
 _SCOPES = (ast.FunctionDef, ast.AsyncFunctionDef, ast.ClassDef, ast.Lambda)
 _VECTORS = frozenset(f"mathutils.{name}" for name in ("Color", "Euler", "Quaternion", "Vector"))
 _DEEPEST, _MOST_VALUES = 8, 8  # steps, and what a name is bound to, to what something belongs to
-_OPERATORS, _DOTS = "bpy.ops.", 3
+_DOTS = 3
 
 
 def _check(script: Script) -> Iterator[Finding]:
@@ -122,7 +122,7 @@ def _own_nodes(function: FunctionDefinition) -> Iterator[ast.Attribute | ast.Sub
 
 def _called(script: Script, node: ast.expr, what: str) -> Finding | None:
     path = callee_path(script, node) if isinstance(node, ast.Call) else ""
-    if not path.startswith(_OPERATORS) or path.count(".") != _DOTS:
+    if not path.startswith(OPERATORS) or path.count(".") != _DOTS:
         return None
     return Finding(
         RULE.id, "error", script.span(node),
@@ -155,8 +155,8 @@ def _holder(script: Script, node: ast.expr, depth: int = _DEEPEST) -> str:
     if isinstance(kind, Instance) and kind.sure:
         if kind.cls == _VIEW_LAYER:
             return f"{T}Scene"
-        if script.api.descends(kind.cls, _ID):
-            return "" if kind.cls == _ID or kind.cls in _OF_WINDOWS else kind.cls
+        if script.api.descends(kind.cls, ID):
+            return "" if kind.cls == ID or kind.cls in _OF_WINDOWS else kind.cls
     match node:
         case ast.Attribute(value=owner):
             return _holder(script, owner, depth - 1) if depth else ""

@@ -106,16 +106,16 @@ class AnswerComposer:
             text = "Nothing in this knowledge base matches the query. Try other words, or a name as Blender writes it."
             told = AnswerBlock("" if ranking.recognition.removed else text)  # of those, the notes say it all
             return draft_of("none", (), notes, (told,))
-        if ranking.named:
-            names = ranking.recognition.arguments.get(hits[0].id, ())
-            asked = [*self._renderer.arguments(hits[0].id, names)]
-            sockets = self._renderer.sockets(hits[0].id, text)
-            whole = [*self._whole(hits[0], rows[0], asked_of((), names if asked else ()))]
-            whole[1:1] = self._asked_members(hits[0], ranking.ranked, asked_words(text))
-            blocks = (*asked, *sockets, *whole, *self._lines.further(hits[1:], rows[1:]))
-            return draft_of("page" if hits[0].is_page else "schema", hits, notes, blocks)
         asked = asked_words(text)
         members = self._asked_members(hits[0], ranking.ranked, asked)
+        if ranking.named:
+            names = ranking.recognition.arguments.get(hits[0].id, ())
+            given = [*self._renderer.arguments(hits[0].id, names)]
+            sockets = self._renderer.sockets(hits[0].id, text)
+            whole = [*self._whole(hits[0], rows[0], asked_of((), names if given else ()))]
+            whole[1:1] = members
+            blocks = (*given, *sockets, *whole, *self._lines.further(hits[1:], rows[1:]))
+            return draft_of("page" if hits[0].is_page else "schema", hits, notes, blocks)
         return draft_of("candidates", hits, notes, self._found(hits, rows, asked, members))
 
     def _asked_members(

@@ -18,6 +18,7 @@ from rapidfuzz.distance import OSA
 
 from kb_build.index.analysis import STOP_WORDS, stem, stems_of, words
 from kb_build.schema import DOCUMENT_KINDS
+from kb_build.symbols.api_names import OPERATORS
 from kb_serve.rank.inverted_index import InvertedIndex
 from kb_serve.rank.scoring import Concept, score_all
 from kb_serve.rank.signals import Evidence, scores_of
@@ -46,7 +47,6 @@ _DIFFERENT = 4  # hits, before what says the same as one of them may follow
 _OF_A_CHAPTER = 3
 _WORDS_OF_A_NAME = 2  # of an operator's name that a query hardly says by chance
 _KINDS = frozenset(map(stem, ("modifier", "constraint", "node")))  # who says one means no operator without it
-_OPERATORS = "bpy.ops."
 _NEAREST = 100  # units by their texts, among which such an operator is looked for
 _OTHERS = 0.4  # share of what further phrases add to the nearest that counts
 _MEMBERS = 3  # of a class that are told with it
@@ -218,7 +218,7 @@ class Searcher:
         called: Scores | None = None
         refs = self.index.levels[0].refs
         for place, number in enumerate(numbers[:_NEAREST].tolist()):
-            if not refs[number].startswith(_OPERATORS):
+            if not refs[number].startswith(OPERATORS):
                 continue
             name = stems_of(refs[number].rpartition(".")[2])
             if len(name) >= _WORDS_OF_A_NAME and name <= said and name >= kinds:

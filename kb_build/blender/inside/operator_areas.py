@@ -13,7 +13,7 @@ from contextlib import suppress
 import bpy
 
 from .apart import apart, can_work_apart
-from .instances.making import SEQUENCER_SCENE, activate, choices, no_sequencer_scene
+from .instances.making import SEQUENCER_SCENE, activate, all_strips, choices, no_sequencer_scene
 from .operator_defaults import Defaults
 
 # Of area types; those that run in more run in any.
@@ -100,8 +100,7 @@ class Stage:
         bpy.ops.object.mode_set(mode="OBJECT")
         editor = self.scene.sequence_editor_create()
         with suppress(*TRIED):
-            strips = editor.strips if hasattr(editor, "strips") else editor.sequences
-            strips.new_effect("color", "COLOR", 1, 1, length=20)
+            all_strips(editor).new_effect("color", "COLOR", 1, 1, length=20)
         if hasattr(self.window.workspace, "sequencer_scene"):
             self.window.workspace.sequencer_scene = self.scene
         with suppress(*TRIED):

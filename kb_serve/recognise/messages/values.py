@@ -6,6 +6,7 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
+from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.paths import plain_path
 from kb_serve.recognise import message_patterns as forms
 from kb_serve.recognise.names.likely_values import likely_values
@@ -50,7 +51,7 @@ class Values:
             function = forms.IN_FUNCTION.search(query)
             called = self._symbols.function(function["method"]) if function else ""
             if not called and _OF_OPERATORS in query:
-                called = "bpy.ops."
+                called = OPERATORS
             owners = self._enum_values.taking(items, called)
             if _OF_CLASSES in query:
                 owners = self._of_classes(owners) or owners

@@ -98,13 +98,11 @@ def _of_data(owner: str, name: str, reader: BaseReader) -> Iterator[Within]:
     named = [
         one for one in reader.by_name(name) if one.kind == "property" and reader.is_object_data(one.owner)
     ]
-    weights = reader.weights([one.path for one in named])
-    for member in reader.heaviest(named)[:1]:
-        if weights.get(member.path, 0.0) >= _COUNTS:
-            cls = member.owner.removeprefix(TYPES)
-            yield Within(
-                member, f"Its `.data` has it if that is of class `{cls}`: `.data.{name}` (`{member.path}`)."
-            )
+    for member in reader.heaviest(named, _COUNTS)[:1]:
+        cls = member.owner.removeprefix(TYPES)
+        yield Within(
+            member, f"Its `.data` has it if that is of class `{cls}`: `.data.{name}` (`{member.path}`)."
+        )
 
 
 def _of_collections(

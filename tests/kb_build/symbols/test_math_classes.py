@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import json
-import subprocess
-import sys
 from typing import TYPE_CHECKING
 
 import pytest
+from told_by_blender import told_by_blender
 
 from kb_build.symbols.math_classes import math_class
 
@@ -31,15 +29,17 @@ _ASKED = """
 import bpy, json, sys
 fcurve = bpy.data.objects['Cube'].driver_add('location', 0)
 fcurve.keyframe_points.add(1)
-print(json.dumps([type(eval(text)).__name__ for text in json.loads(sys.argv[1])]))
+with open(sys.argv[-1]) as file:
+    given = json.load(file)
+with open(sys.argv[-1], "w") as file:
+    json.dump([type(eval(text)).__name__ for text in given], file)
 """
 
 
 @pytest.fixture(scope="module")
-def given_by_blender() -> dict[str, str]:
-    command = [sys.executable, "-c", _ASKED, json.dumps(list(_EXPRESSIONS.values()))]
-    done = subprocess.run(command, capture_output=True, text=True, check=True)
-    return dict(zip(_EXPRESSIONS, json.loads(done.stdout.splitlines()[-1]), strict=True))
+def given_by_blender(tmp_path_factory: pytest.TempPathFactory) -> dict[str, str]:
+    names = told_by_blender(_ASKED, tmp_path_factory.mktemp("classes"), list(_EXPRESSIONS.values()))
+    return dict(zip(_EXPRESSIONS, names, strict=True))
 
 
 @pytest.mark.parametrize("path", _EXPRESSIONS)

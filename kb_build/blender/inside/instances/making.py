@@ -22,6 +22,11 @@ def present(thing, collection):
         yield called(elements[0]), elements[0]
 
 
+def all_strips(editor):
+    """The strips of a sequencer, which older Blenders call its sequences."""
+    return editor.strips if hasattr(editor, "strips") else editor.sequences
+
+
 def no_sequencer_scene():
     """Takes the sequencer's scene away, in a Blender that has one."""
     if hasattr(bpy.context.workspace, "sequencer_scene"):

@@ -17,6 +17,7 @@ from .making import (
     MODIFIED,
     activate,
     add_object,
+    all_strips,
     argument_choices,
     attempts,
     block_makers,
@@ -249,11 +250,11 @@ def strips():
     if hasattr(workspace, "sequencer_scene"):
         # Without it, Blender crashes when a strip gets a modifier.
         workspace.sequencer_scene = scene
-    all_strips = editor.strips if hasattr(editor, "strips") else editor.sequences  # pyright: ignore[reportAttributeAccessIssue]
-    making = all_strips.bl_rna.functions["new_effect"].parameters
+    found = all_strips(editor)
+    making = found.bl_rna.functions["new_effect"].parameters
     end = "length" if "length" in making else "frame_end"
     first, second = (
-        all_strips.new_effect(name="new", type="COLOR", channel=channel, frame_start=1, **{end: 9})  # pyright: ignore[reportCallIssue]
+        found.new_effect(name="new", type="COLOR", channel=channel, frame_start=1, **{end: 9})  # pyright: ignore[reportCallIssue]
         for channel in (1, 2)
     )
     yield called(editor), editor
@@ -263,7 +264,7 @@ def strips():
         kind = item.identifier
         for given in ({}, {inputs[0]: first}, {inputs[0]: first, inputs[1]: second}):
             try:
-                strip = all_strips.new_effect(  # pyright: ignore[reportCallIssue]
+                strip = found.new_effect(  # pyright: ignore[reportCallIssue]
                     name="new", type=kind, channel=3 + number, frame_start=1, **{end: 9}, **given
                 )
             except Exception:
@@ -277,7 +278,7 @@ def strips():
         ("new_movie", {"filepath": "none.mp4"}), ("new_clip", {"clip": movie_clip()}),
     ):  # fmt: skip
         try:
-            strip = getattr(all_strips, kind)(name="new", channel=1, frame_start=20, **more)
+            strip = getattr(found, kind)(name="new", channel=1, frame_start=20, **more)
         except Exception:
             continue
         yield called(strip), strip

@@ -6,7 +6,7 @@ Each is made by a function that fails where a Blender has no such thing.
 
 import bpy
 
-from .making import add_object, mesh_object, new_modifier
+from .making import add_object, all_strips, mesh_object, new_modifier
 
 MISSING = (AttributeError, IndexError, RuntimeError, TypeError)
 
@@ -54,7 +54,7 @@ def curve_map_point():
 
 
 def f_curve():
-    """An F-curve of an object that was keyed."""
+    """An F-curve, of a driver."""
     obj = add_object(None)
     return obj.driver_add("location", 0)
 
@@ -69,9 +69,7 @@ def sampled_point():
 
 def strip_proxy():
     """The proxies of a strip that uses some."""
-    strips = bpy.context.scene.sequence_editor_create()
-    strips = strips.strips if hasattr(strips, "strips") else strips.sequences  # pyright: ignore[reportAttributeAccessIssue]
-    strip = strips.new_image("new", "none.png", 1, 1)
+    strip = all_strips(bpy.context.scene.sequence_editor_create()).new_image("new", "none.png", 1, 1)
     strip.use_proxy = True
     return strip.proxy
 
