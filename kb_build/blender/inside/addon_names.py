@@ -38,7 +38,7 @@ def properties(classes):
 
 
 def write_all(write):
-    """Writes what each add-on adds. Blender has them all from then on."""
+    """Writes what each add-on adds, where it adds something. Blender has them all from then on."""
     for name in sorted(module.__name__ for module in addon_utils.modules()):
         if addon_utils.check(name)[1]:
             continue
@@ -47,4 +47,5 @@ def write_all(write):
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
             addon_utils.enable(name, default_set=True)
         added = (types() | operators() | properties(classes)) - before
-        write("addon", name=name, paths=sorted(added))
+        if added:
+            write("addon", name=name, paths=sorted(added))
