@@ -487,8 +487,12 @@ def test_what_blender_starts_with_is_not_called_new(symbols: dict[str, Symbol]) 
 
 
 @pytest.mark.parametrize(
-    "path", ["Object.matrix_world", "PoseBone.matrix", "EditBone.tail", "NlaStrip.frame_start"]
-)
+    "path",
+    [
+        "Object.matrix_world", "PoseBone.matrix", "EditBone.tail", "NlaStrip.frame_start", "NodeSocket.type",
+        "NodeSocketColor.default_value",
+    ],
+)  # fmt: skip
 def test_what_blender_computes_has_no_default(symbols: dict[str, Symbol], path: str) -> None:
     assert usual_default(symbols[f"bpy.types.{path}"]) is None
 

@@ -18,7 +18,8 @@ CHOSEN_OF = frozenset({
     ("CurveMapPoint", "location"), ("CurveProfilePoint", "location"), ("FModifierEnvelopeControlPoint", "frame"),
     ("FieldSettings", "seed"), ("TimelineMarker", "frame"), ("ColorRampElement", "position"),
     ("ColorRampElement", "color"), ("ColorRampElement", "alpha"), ("Driver", "expression"), ("Object", "dimensions"),
-    ("EditBone", "length"), ("NodeTreeInterfaceSocket", "socket_type"),
+    ("EditBone", "length"), ("NodeTreeInterfaceSocket", "socket_type"), ("NodeSocket", "type"),
+    ("NodeSocket", "display_shape"), ("NodeSocket", "link_limit"),
 })  # fmt: skip
 # … of an item of a node.
 CHOSEN_OF_ITEMS = frozenset({"socket_type", "data_type"})
@@ -37,6 +38,7 @@ UNREAD = frozenset({"FILE_PATH", "DIR_PATH", "FILE_NAME", "BYTE_STRING"})
 KINDS = frozenset({
     ("Light", "type"), ("Texture", "type"), ("FluidModifier", "fluid_type"),
     ("NodeTreeInterfaceSocket", "socket_type"), ("ActionSlot", "target_id_type"), ("Spline", "type"),
+    ("NodeSocket", "type"),
 })  # fmt: skip
 
 
@@ -62,6 +64,8 @@ class Field:
             or (cls, self.name) in KIND_UNASKED
             or (cls, self.name) in CHOSEN_OF
             or (cls.endswith("Item") and self.name in CHOSEN_OF_ITEMS)
+            # Each node gives its sockets values of its own.
+            or (cls.startswith("NodeSocket") and self.name == "default_value")
             or (
                 cls in TIMED
                 and not self.name.startswith("select")
