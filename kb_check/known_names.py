@@ -8,8 +8,9 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import distinct_words
 from kb_build.symbols.api_names import OPERATORS, SIDES, STRUCT, TYPES
-from kb_build.symbols.paths import last_name, plain_path
+from kb_build.symbols.paths import is_socket, last_name, plain_path
 from kb_check.likely_names import by_label
+from kb_serve.rank.meant_members import meant_members
 from kb_serve.recognise.names.corrections import by_first_word, is_misspelling, nearest
 from kb_serve.recognise.names.enum_values import EnumValues
 from kb_serve.recognise.names.likely_keywords import likely_keywords
@@ -17,11 +18,13 @@ from kb_serve.recognise.names.likely_values import likely_values
 from kb_serve.recognise.names.node_names import is_like_a_node, nodes_meant
 from kb_serve.recognise.names.operator_words import OperatorWords
 from kb_serve.recognise.notes import Notes
+from kb_serve.recognise.recognition import MissingName
 from kb_serve.recognise.removed.removed_symbols import RemovedSymbolLookup, for_reading
 
 if TYPE_CHECKING:
     from collections.abc import Iterable
 
+    from kb_serve.rank.search import Searcher
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.removed.removed_symbols import RemovedSymbol
 
@@ -120,7 +123,7 @@ class KnownNames:
         removed = removed or self._lookup.below(owner, name)
         if removed:
             return self._removed(for_reading(removed) if reading else removed)
-        return self._never(owner, name)
+        return self._never(owner, name, assigned=not reading)
 
     def path(self, path: str) -> Lacking | None:
         """What another Blender has under exactly this path; None for what none has."""
@@ -189,7 +192,7 @@ class KnownNames:
             return lacking
         return replace(lacking, message=f"{lacks}, as what it took the place of {did}: {lacking.message}")
 
-    def _never(self, owner: str, name: str) -> Lacking:
+    def _never(self, owner: str, name: str, *, assigned: bool) -> Lacking:
         machinery = self.reader.members(STRUCT) if owner != STRUCT else {}
         names = [
             found
@@ -203,18 +206,46 @@ class KnownNames:
         misspelt = [found for found in found if is_misspelling(name, found, self._vocabulary)]
         similar = [found for found in found if found not in machinery or found in misspelt]
         operators = [] if misspelt else self._operators.having(owner, name)
+        of_kinds = "" if similar or operators else self._of_kinds(owner, name)
         if operators:
             similar = [path.removeprefix(OPERATORS) for path in operators]
-        elif not misspelt and owner.startswith(TYPES):
-            similar = _likely(name, similar, self._labels(owner))
+        elif not (misspelt or of_kinds):
+            labels = self._labels(owner) if owner.startswith(TYPES) else {}
+            similar = _likely(name, self._meant(owner, name, assigned=assigned), similar, labels)
         span = "" if self._lookup.paths_below(owner, name) else self._notes.never(owner, name)
         message = f"`{owner}` has no `{name}` in Blender {self.version}{span}."
         return Lacking(
             f"{owner}.{name}",
-            message + (_closest(similar) or self._of_kinds(owner, name) or self._own(owner)),
-            tuple(operators) or tuple(f"{owner}.{found}" for found in similar),
+            message + (of_kinds or _closest(similar) or self._own(owner)),
+            tuple(operators) or tuple(self._path_of(owner, found) for found in similar),
             f"{owner}.{misspelt[0]}" if len(misspelt) == 1 else "",
         )
+
+    def _meant(self, owner: str, name: str, *, assigned: bool) -> list[str]:
+        """What the search finds of a class or module by a name that it lacks; of its cases with theirs. Nothing of what
+        has so few members that all are told.
+        """
+        if not self.reader.entry(owner) or self._own(owner):
+            return []
+        lineage = {owner, *(ancestor.path for ancestor in self.reader.lineage(owner))}
+        missing = MissingName(name, owner, assigned=assigned)
+        paths = meant_members(missing, self._searcher, self.reader).paths
+        return [
+            last_name(path) if path.rpartition(".")[0] in lineage else path.removeprefix(TYPES)
+            for path in paths
+            if not is_socket(path)
+        ]
+
+    @cached_property
+    def _searcher(self) -> Searcher:
+        """Loaded, with numpy, for the first name that nothing resembles."""
+        from kb_serve.rank.search import Searcher  # noqa: PLC0415
+
+        return Searcher(self.reader)
+
+    @staticmethod
+    def _path_of(owner: str, found: str) -> str:
+        return TYPES + found if "." in found else f"{owner}.{found}"
 
     def _labels(self, owner: str) -> dict[str, str]:
         """The names of a class's members, but for those of all structures, with what menus call them."""
@@ -271,11 +302,13 @@ class KnownNames:
         return {word for word in distinct_words("\n".join(name for (name,) in rows)) if len(word) > 2}
 
 
-def _likely(name: str, similar: list[str], labels: dict[str, str]) -> list[str]:
-    """The names that may be meant: those that menus call so, those that are spelt alike, those that begin alike."""
+def _likely(name: str, meant: list[str], similar: list[str], labels: dict[str, str]) -> list[str]:
+    """The names that may be meant: those that menus call so, those that are meant by their words (``meant``), those
+    that are spelt alike, those that begin alike.
+    """
     exact, partly = by_label(name, labels)
-    found = [*exact, *similar, *partly][:_MOST_NAMED] or by_first_word(name, labels)
-    return list(dict.fromkeys(found))
+    found = dict.fromkeys((*exact, *meant, *similar, *partly))
+    return list(found)[:_MOST_NAMED] or by_first_word(name, labels)
 
 
 def _closest(names: list[str]) -> str:

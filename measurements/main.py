@@ -27,6 +27,7 @@ PARTS = (
         "retrieval",
         "names",
         "compound",
+        "invented",
         "defaults",
         "passages",
         "signatures",

@@ -156,6 +156,15 @@ class Searcher:
         best = _with_text_first(evidence.kinds[order].tolist())
         return [self._hit(place, ranked) for place in self._varied(best, ranked, limit)]
 
+    def found(self, text: str) -> Iterator[tuple[str, float]]:
+        """The units that speak of a text, best first, with their scores: each section of a page is one."""
+        if (found := self.find(text)) is None:
+            return
+        numbers, evidence = found
+        scores = scores_of(evidence)
+        for place in np.argsort(-scores, kind="stable").tolist():
+            yield self.index.levels[0].refs[numbers[place]], float(scores[place])
+
     def _hit(self, place: int, ranked: _Ranked) -> SearchHit:
         """The hit at a place, with the members of it that rank best."""
         units, topics = self.index.levels

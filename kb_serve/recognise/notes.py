@@ -145,7 +145,8 @@ class Notes:
                 yield f"{_if(missing.variable)}{self._lacks(missing)}{closest}"
         if (doubted := recognition.doubted) and not recognition.removed:
             names = nearest(doubted.name, self._reader.member_names(doubted.owner))
-            closest = f" Closest: {_list(f'{doubted.owner}.{name}' for name, _ in names)}." if names else ""
+            alike = similar or [f"{doubted.owner}.{name}" for name, _ in names]
+            closest = f" Closest: {_list(alike)}." if alike else ""
             yield f"{_if(doubted.variable)}{self._lacks(doubted)}{closest}"
 
     def _lacks(self, missing: MissingName) -> str:

@@ -57,6 +57,8 @@ _SPELLED_ALIKE = 0.9  # similarity from which on another name may be a slip of t
 _MANY = 12
 _DESCRIBED = 0.85  # … what plain words describe
 _OTHERWISE = 0.96  # what does or is labelled what a class is asked for by another name
+_LABEL_ENDS = 0.87  # … what has a label that ends with that name
+_SHORTENED = 0.92  # … what a word is short for
 _BEGINS_ALIKE = 0.86  # … what begins like a name that its class lacks
 _OWNER_ALONE = 0.81  # how sure a class is whose member exists nowhere
 _OWNER_OF_REMOVED = 0.85  # … one whose removed member has no known successor
@@ -259,7 +261,8 @@ class Recogniser:
             if not is_meant and self._within(missing, recognition, on_new=bool(otherwise)):
                 continue
             for place, path in enumerate(otherwise):
-                recognition.add(path, _OTHERWISE - 0.01 * place, SIMILAR)
+                sure = _OTHERWISE if self._is_called(path, missing.name) else _LABEL_ENDS
+                recognition.add(path, sure - 0.01 * place, SIMILAR)
             if missing.assigned:  # an assignment means ``select_set``, not ``select_get``
                 similar.sort(
                     key=lambda row: (-row[1], not row[0].startswith("set_") and not row[0].endswith("_set"))
@@ -269,12 +272,15 @@ class Recogniser:
                     recognition.add(member.path, 0.95 * alike - 0.01 * place, SIMILAR)
             if not missing.owner or similar or otherwise:
                 continue
-            begun = (
-                (by_first_word(missing.name, names) or shortened(missing.name, names)) if missing.told else ()
+            begun = by_first_word(missing.name, names) if missing.told else []
+            sure, begun = (
+                (_BEGINS_ALIKE, begun)
+                if begun or not missing.told
+                else (_SHORTENED, shortened(missing.name, names))
             )
             for place, name in enumerate(begun):
                 if member := self._reader.member_of(missing.owner, name):
-                    recognition.add(member.path, _BEGINS_ALIKE - 0.01 * place, SIMILAR)
+                    recognition.add(member.path, sure - 0.01 * place, SIMILAR)
             if not self._elsewhere(missing, recognition):
                 recognition.add(missing.owner, _OWNER_ALONE, "owner")
 

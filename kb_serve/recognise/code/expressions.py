@@ -91,8 +91,13 @@ def _is_file_name(chain: Chain) -> bool:
 
 def _is_named_after(chain: Chain, broken: ResolvedChain, resolved: ResolvedChain) -> bool:
     """Whether a variable is called as the very class that lacks what is read, of which the one that has it says less:
-    ``layer_collection`` is no Collection.
+    ``layer_collection`` is no Collection. Or as scripts call that class, of which a property is set, and not the one
+    that has it: ``node``.
     """
+    usual = usual_classes(chain.root)
+    is_set = chain.assigned and len(chain.steps) == 1 and broken.fit > resolved.fit
+    if is_set and broken.symbols[0] in usual and resolved.symbols[0] not in usual:
+        return True
     lacking, having = (key(reading.symbols[0].rpartition(".")[2]) for reading in (broken, resolved))
     return key(chain.root) == lacking != having and having in lacking
 

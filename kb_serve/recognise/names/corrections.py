@@ -10,6 +10,7 @@ from kb_build.index.analysis import distinct_words, key, words
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.paths import socket_name
 from kb_serve.recognise.resolving.chains import Chain, ChainStep
+from kb_serve.recognise.resolving.variables import USUAL
 
 if TYPE_CHECKING:
     from collections.abc import Container, Iterable, Mapping, Sequence
@@ -99,10 +100,18 @@ def by_first_word(written: str, names: Iterable[str]) -> list[str]:
 
 
 def shortened(written: str, names: Iterable[str]) -> list[str]:
-    """The names that a word begins with, without their plural: ``verts`` of ``vertices``."""
+    """The names of one word that a word begins with, or that begin with it, without their plural: ``verts`` for
+    ``vertices``, and the other way round.
+    """
     if "_" in written:
         return []
-    found = [name for name in names if len(name) > _FIRST_WORD and written.startswith(name.removesuffix("s"))]
+    short = written.removesuffix("s")
+    found = [
+        name
+        for name in names
+        if (len(name) > _FIRST_WORD and written.startswith(name.removesuffix("s")))
+        or (len(short) >= _WORD and "_" not in name and name.startswith(short))
+    ]
     return found if len(found) <= _FEW_BEGIN_SO else []
 
 
@@ -210,6 +219,8 @@ class Corrector:
         for resolved in readings[:_READINGS]:
             if resolved.steps_left != readings[0].steps_left:
                 break
+            if resolved.fit < USUAL <= readings[0].fit:
+                continue  # what scripts call so lacks it
             for name, alike in nearest(resolved.missing, self._reader.member_names(resolved.owner), 1):
                 if is_misspelling(resolved.missing, name, self._names.words):
                     return Correction(resolved.missing, name, alike), resolved.steps_left

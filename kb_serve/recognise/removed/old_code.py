@@ -235,6 +235,7 @@ class OldCode:
         if (
             attribute is None
             or short
+            or self._reader.entry(TYPES + chain.root)  # a class is named, and no variable after one
             or any(reading.complete and reading.fit >= _LIKELY_FIT for reading in readings)
         ):
             return None

@@ -168,15 +168,19 @@ class RemovedSymbolLookup:
     def paths_below(self, owner: str, name: str) -> list[str]:
         """Paths of the removed members called ``name`` of a class and of those below it."""
         return [
-            path for path in self.paths_named(name) if self._was_below(path.removesuffix(f".{name}"), owner)
+            path
+            for path in self.paths_named(name)
+            if self._was_below(path.removesuffix(f".{name}"), owner, by_name="_" in name)
         ]
 
-    def _was_below(self, cls: str, owner: str) -> bool:
-        """Whether a class, or what took its place, is below ``owner``; of other removed classes the name tells it."""
+    def _was_below(self, cls: str, owner: str, *, by_name: bool) -> bool:
+        """Whether a class, or what took its place, is below ``owner``; of other removed classes the name tells it, if
+        it may (``by_name``).
+        """
         if any(self._reader.descends(now, owner) for now in self._classes_now(cls)):
             return True
         named = cls.endswith(owner.removeprefix(TYPES)) and not self._reader.entry(cls)
-        return named and bool(self._reader.subclasses(owner))
+        return by_name and named and bool(self._reader.subclasses(owner))
 
     def paths_named(self, name: str) -> list[str]:
         """Paths of the removed members that are called exactly ``name``; none for a name that too many have."""

@@ -9,7 +9,7 @@ from itertools import islice
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key
-from kb_build.symbols.api_names import COLLECTION, GROUPS, NODE, OPERATORS, SIDES, STRUCT, TYPES
+from kb_build.symbols.api_names import COLLECTION, GROUPS, NODE, OBJECT, OPERATORS, SIDES, STRUCT, TYPES
 from kb_build.symbols.paths import is_socket
 from kb_build.symbols.python_values import METHODS, python_class
 from kb_serve.recognise.code.refusals import keywords, lacks_keyword, refuses
@@ -18,6 +18,7 @@ from kb_serve.recognise.resolving.chain_values import ChainValue, ChainValues
 from kb_serve.recognise.resolving.chains import ChainStep
 from kb_serve.recognise.resolving.owners import Owners
 from kb_serve.recognise.resolving.subscripts import PROPERTIES_OF_OPERATORS, CustomProperties
+from kb_serve.recognise.resolving.variables import usual_classes
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -102,13 +103,19 @@ class Resolver:
     def resolve(self, chain: Chain) -> list[ResolvedChain]:
         """Every reading of a chain, best first: most steps resolved, then the likelier class for a variable."""
         readings = [
-            replace(self._follow(value, chain.steps[used:]), fit=fit)
+            replace(self._follow(value, chain.steps[used:], self._data_of(chain.root)), fit=fit)
             for value, used, fit in self._starts.of(chain)
         ]
         unique: dict[tuple[tuple[str, ...], str], ResolvedChain] = {}
         for resolved in self._ranked(readings):
             unique.setdefault((resolved.symbols[-1:], resolved.missing), resolved)
         return self._taking(chain, self._writable(chain, list(unique.values())))
+
+    def _data_of(self, variable: str) -> str:
+        """The class of the data of an object that is called like its data, ``cam``; empty for any other."""
+        classes = usual_classes(variable)
+        data = [cls for cls in classes if self._reader.is_object_data(cls)] if OBJECT in classes else []
+        return data[0] if len(data) == 1 else ""
 
     def _taking(self, chain: Chain, readings: list[ResolvedChain]) -> list[ResolvedChain]:
         """The readings of an unknown variable without those that refuse what the chain is set to, or a keyword that it
@@ -152,8 +159,10 @@ class Resolver:
     def _ranked(readings: Iterable[ResolvedChain]) -> list[ResolvedChain]:
         return sorted(readings, key=lambda reading: (reading.steps_left, -reading.fit, -len(reading.symbols)))
 
-    def _follow(self, value: ChainValue, steps: tuple[ChainStep, ...]) -> ResolvedChain:
-        """Resolves step after step; a base class is tried as each of its descendants."""
+    def _follow(self, value: ChainValue, steps: tuple[ChainStep, ...], data: str = "") -> ResolvedChain:
+        """Resolves step after step; a base class is tried as each of its descendants. ``data`` is the class of an
+        object's data, if that is known.
+        """
         symbols = [value.symbol]
         values = [value]
         alike: tuple[str, ...] = ()
@@ -166,6 +175,8 @@ class Resolver:
                 owners = tuple(dict.fromkeys(self._unresolved(before, step)[1] for before in values))
                 left = len(steps) - number
                 return ResolvedChain(tuple(symbols), missing, owner, steps_left=left, owners=owners)
+            if data and not number and following[0].symbol == _OBJECT_DATA:
+                following = [replace(following[0], cls=data)]
             first = following[0].symbol
             alike = tuple(dict.fromkeys(after.symbol for after in following if after.symbol != first))
             values = following

@@ -159,7 +159,7 @@ def test_what_an_element_lacks_is_told_though_others_have_it(
 ) -> None:
     answer = kb.query(code)
     assert f"`bpy.types.{cls}` has no `{name}`" in answer.text
-    assert answer.hits[0].id == f"{T}{cls}"
+    assert f"{T}{cls}" in [hit.id for hit in answer.hits[:4]]
 
 
 @pytest.mark.parametrize(

@@ -63,7 +63,7 @@ FIRST = {
     # Classes that are spelled like a module, or like a value.
     "'BMesh' object has no attribute 'calc_tessface'": "bmesh.types.BMesh.calc_loop_triangles",
     "'BMesh' object has no attribute 'select_flush_mode'": "bmesh.types.BMesh.select_flush_mode",
-    "'Matrix' object has no attribute 'rotation_part'": "mathutils.Matrix",
+    "'Matrix' object has no attribute 'rotation_part'": "mathutils.Matrix.to_3x3",
     "'Matrix' object is not callable": "mathutils.Matrix",
     "'Color' object has no attribute 'a'": "mathutils.Color",
     "AttributeError: 'Context' object has no attribute 'object'": "bpy.types.Context.object",
