@@ -17,7 +17,6 @@ from kb_build.symbols.records import (
     GIVEN,
     LOCKED_ON,
     NEEDS,
-    NOT_TAKEN,
     THEN,
 )
 from kb_build.symbols.unlisted import STAND_INS
@@ -53,7 +52,7 @@ def _is_of_struct(symbol: Symbol) -> bool:
 
 def is_listed(symbol: Symbol) -> bool:
     """Whether the property's items, if it has any, have RNA's default among them."""
-    items = {item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN}
+    items = {item.identifier for item in symbol.enum_items if item.is_taken}
     given = symbol.default if isinstance(symbol.default, list) else [symbol.default]
     return not items or symbol.default is None or items.issuperset(given)
 

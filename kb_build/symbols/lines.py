@@ -33,7 +33,6 @@ from kb_build.symbols.records import (
     LOCKED_WITH,
     NEEDS,
     NEVER_BY_IDENTIFIER,
-    NOT_TAKEN,
     SHOWN_WHEN,
     STARTUP,
     last_name,
@@ -43,6 +42,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.symbols.records import NewValue, PanelCondition, Refusal, Symbol
+    from kb_build.symbols.taken import Taken
 
 _ACTIVE = "bpy.context.object"
 _REGISTERED = "nodes of a class that a script registers: built-in ones refuse it"
@@ -162,15 +162,9 @@ def taken_where(symbol: Symbol, argument: str) -> dict[str, str]:
     }  # fmt: skip
 
 
-def taken_text(where: str) -> str:
+def taken_text(where: Taken) -> str:
     """Where a value is taken, as it is said of it: ``taken only by a shader or geometry node tree``."""
-    kind, _, labels = where.partition(" by ")
-    if kind in {"only", "not"} or kind.endswith((" there only", " there not")):
-        *names, last = labels.split(", ")
-        more = "" if last != "…" else f", {last}"
-        names = names if more else [*names, last]
-        where = f"{kind} by {_things(names, len(names))}{more}"
-    return said_taken(where)
+    return where.said(lambda things: _things(things, len(things)))
 
 
 def said_taken(where: str) -> str:
@@ -390,7 +384,7 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
         notes += ["= None", *([f"({made})"] if (made := _made_by(symbol)) else [])]
     if EMPTY in symbol.flags:
         notes.append("= []")
-    values = [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]
+    values = [item.identifier for item in symbol.enum_items if item.is_taken]
     if values and not is_stand_in(symbol):
         # In brackets: a default stands before them.
         notes.append(f"({'|'.join(values[:_SHOWN_VALUES])}{'|…' if len(values) > _SHOWN_VALUES else ''})")
