@@ -68,6 +68,11 @@ def is_uncompared(symbol: Symbol) -> bool:
     return _is_of_struct(symbol) and not {"compared", "readonly"} & set(symbol.flags)
 
 
+def has_unseen_default(symbol: Symbol) -> bool:
+    """Whether it has a default of a property that is RNA's alone."""
+    return symbol.kind == "property" and usual_default(symbol) is not None and is_uncompared(symbol)
+
+
 def fillers(symbol: Symbol) -> list[str]:
     """The calls that were seen to fill a pointer which is None on new things, in their order."""
     return [call for text in symbol.flagged(FILLED_BY) for call in text.split(THEN)]

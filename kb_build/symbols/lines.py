@@ -12,6 +12,7 @@ from kb_build.symbols.flags import (
     empty_when_new,
     fillers,
     freed_by,
+    has_unseen_default,
     is_listed,
     is_locked,
     is_stand_in,
@@ -377,7 +378,9 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
     notes = [type_text(symbol)] if symbol.type else []
     default = usual_default(symbol)
     if default is not None and symbol.kind in {"property", "socket"}:
-        notes.append(f"= {literal(default, symbol.type)}" + (" (RNA's)" if is_uncompared(symbol) else ""))
+        notes.append(
+            f"= {literal(default, symbol.type)}" + (" (RNA's)" if has_unseen_default(symbol) else "")
+        )
         modal = _by_setting(new for new in symbol.new_values if new.when and not new.made)
         notes += [f"({literal(new.value, symbol.type)} with {new.when})" for new in modal[:_SHOWN_LABELS]]
     if (empty := empty_when_new(symbol)) and not empty.made:
