@@ -26,7 +26,6 @@ from kb_build.symbols.records import (
     LOCKED_ON,
     LOCKED_WITH,
     MUST_HAVE,
-    NEEDS,
     STOPS,
     UNBOUNDED,
 )
@@ -119,7 +118,7 @@ def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
 def _add_needs(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     """Adds what an operator's poll wants."""
     if row is not None:
-        row["flags"] = [*row.get("flags", ()), NEEDS + seen.get("needs", "")]
+        row["needs"] = seen.get("needs", {})
 
 
 def _add_areas(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:

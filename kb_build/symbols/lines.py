@@ -32,7 +32,6 @@ from kb_build.symbols.records import (
     GIVEN,
     LOCKED_ON,
     LOCKED_WITH,
-    NEEDS,
     NEVER_BY_IDENTIFIER,
     SHOWN_WHEN,
     STARTUP,
@@ -126,7 +125,7 @@ def operator_needs(symbol: Symbol) -> str:
     given = [f"`{member}` in the context (`temp_override({member}=…)`)" for member in symbol.flagged(GIVEN)]
     also = "".join(f", with `{call}`" for call in operator_also(symbol))
     areas = [area_text(operator_areas(symbol)) + also] if operator_areas(symbol) else []
-    return "".join(symbol.flagged(NEEDS)) or ", or ".join(given + areas)
+    return (symbol.needs.text if symbol.needs else "") or ", or ".join(given + areas)
 
 
 def area_text(types: Sequence[str]) -> str:

@@ -1,7 +1,7 @@
 """The records that a knowledge base is made of.
 
 Everything the extractor and the page readers produce, and everything the server answers from, is one of
-these. It imports nothing of the project but two leaves.
+these. It imports nothing of the project but leaves.
 """
 
 from __future__ import annotations
@@ -11,6 +11,7 @@ from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast, get_args
 
+from kb_build.symbols.needs import OperatorNeeds
 from kb_build.symbols.paths import last_name, socket_name, socket_side
 from kb_build.symbols.taken import NEVER, Taken
 
@@ -38,8 +39,6 @@ WITHOUT_ACTIVE = "none-without-active-object"
 WITHOUT_AREA = "none-without-area"
 # The flag of a socket that its identifier gives in no mode of its node.
 NEVER_BY_IDENTIFIER = "identifier-never"
-# How a flag begins that says what an operator's poll wants, of all that was tried; nothing follows if it wants nothing.
-NEEDS = "needs:"
 # How flags begin that name the other operators which an operator's own script calls.
 CALLS = "calls:"
 # How flags begin that name the types of areas in which alone an operator runs (``any``), and the member of the context
@@ -266,6 +265,7 @@ class Symbol:
     new_values: tuple[NewValue, ...] = ()
     subscripts: tuple[str, ...] = ()
     refusals: tuple[Refusal, ...] = ()
+    needs: OperatorNeeds | None = None
 
     @property
     def name(self) -> str:
@@ -489,6 +489,7 @@ _SYMBOL_FIELDS: dict[str, Callable[[Any], Any]] = {
     "deprecation": lambda row: Deprecation(**row),
     "new_values": _new_values,
     "refusals": _refusals,
+    "needs": OperatorNeeds.of,
 }
 
 

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.symbols.needs import Case, OperatorNeeds, Wanted
 from kb_build.symbols.records import (
     Deprecation,
     EnumItem,
@@ -42,6 +43,10 @@ FULL = Symbol(
     trees=("ShaderNodeTree",), reached="bpy.context", lacks="bpy.types.A.b", subscripts=("inputs[1]",),
     new_values=(NewValue([1, 2], ("a", "b")), NewValue(0, when="m='A'")),
     refusals=(Refusal("no", "type", ("A", "B"), ("a",), ("b", "c"), ("length",), "EDIT", "any"), Refusal("")),
+    needs=OperatorNeeds(
+        "any", Wanted(("A",)), Wanted(("B",), True), (Case(("C",)), Case(("D",), Wanted(("E",)))), True, ("F",),
+        ("g()",), True,
+    ),
 )  # fmt: skip
 
 
