@@ -9,13 +9,14 @@ from __future__ import annotations
 import json
 import sqlite3
 import zlib
+from enum import IntFlag, auto
 from typing import TYPE_CHECKING, Any, Literal
 from urllib.parse import quote
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 9
+SCHEMA_VERSION = 12
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -23,6 +24,16 @@ FORM_PATH, FORM_SHORT, FORM_NAME, FORM_LABEL, FORM_TOPIC = range(5)
 
 # What panels ask of a truth value.
 TEST_ON, TEST_OFF = "on", "off"
+
+
+class Mark(IntFlag):
+    """What is known of a symbol without reading its record."""
+
+    READ_ONLY = auto()  # it cannot be assigned
+    DEPRECATED = auto()
+    UNSEEN = auto()  # the default that its line tells is RNA's alone: no new instance was compared
+    GIVEN = auto()  # a pointer that is None on all new things, and that an assignment alone fills
+
 
 # The levels of the documents.
 UNITS, TOPICS = range(2)
@@ -36,7 +47,8 @@ _LITTLE_KEPT = "PRAGMA cache_size = -256"  # KB: the system keeps the file, from
 DDL = """
 CREATE TABLE meta (name TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
 
--- One row an identifier; ``line`` describes it in one line, ``record`` is the whole Symbol, packed (see pack).
+-- One row an identifier; ``marks`` are of Mark, ``line`` describes it in one line, ``record`` is the whole Symbol,
+-- packed (see pack).
 CREATE TABLE symbols (
     id INTEGER PRIMARY KEY,
     path TEXT NOT NULL UNIQUE,
@@ -49,6 +61,7 @@ CREATE TABLE symbols (
     base TEXT NOT NULL,
     grp TEXT NOT NULL,
     label TEXT NOT NULL,
+    marks INTEGER NOT NULL,
     line TEXT NOT NULL,
     record BLOB NOT NULL
 );
@@ -62,6 +75,11 @@ CREATE TABLE names (
 CREATE TABLE enum_items (
     key TEXT NOT NULL, owner TEXT NOT NULL, identifier TEXT NOT NULL, name TEXT NOT NULL,
     PRIMARY KEY (key, owner, identifier)
+) WITHOUT ROWID;
+
+-- The arguments of operators, which are given by the ids of their rows in symbols.
+CREATE TABLE operator_arguments (
+    argument TEXT NOT NULL, operator INTEGER NOT NULL, PRIMARY KEY (argument, operator)
 ) WITHOUT ROWID;
 
 -- One row a page; ``record`` is the whole Page, packed.

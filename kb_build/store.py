@@ -87,9 +87,10 @@ def _insert(
 
 
 def _write_symbols(connection: sqlite3.Connection, tables: SymbolTables) -> None:
-    _insert(connection, "symbols", tables.symbols, 13)
+    _insert(connection, "symbols", tables.symbols, 14)
     _insert(connection, "names", tables.names, 3)
     _insert(connection, "enum_items", tables.enum_items, 4)
+    _insert(connection, "operator_arguments", tables.operator_arguments, 2)
     _insert(connection, "creation", tables.creation, 4)
     _insert(connection, "panel_conditions", tables.conditions, 5)
 

@@ -7,8 +7,9 @@ import re
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from kb_build.symbols.flags import Wanted, operator_active
+from kb_build.symbols.flags import operator_active
 from kb_build.symbols.lines import with_article
+from kb_build.symbols.needs import Wanted
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

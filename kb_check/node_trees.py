@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import re
 from typing import TYPE_CHECKING
 
 from kb_build.flow.types import Collection, Instance
@@ -18,8 +17,6 @@ if TYPE_CHECKING:
     from kb_check.calls import CallSite
     from kb_check.script import Script
 
-# How an item of an enumeration tells the trees whose nodes take it (see kb_build.blender.enum_contexts).
-_IN = re.compile(r"(only|not) in (an? \w+(?: or an? \w+)*)(?:, and there .*)?")
 _NEW_NODE, _TREE = f"{T}Nodes.new", f"{T}NodeTree"
 
 
@@ -52,5 +49,7 @@ def _tree_of_made(script: Script, value: ast.expr | None) -> str:
 
 def is_refused_in(tree: str, item: EnumItem) -> bool:
     """Whether it is known that nodes of a tree do not take an item; never of an empty one."""
-    found = _IN.fullmatch(item.where) if tree else None
-    return found is not None and (tree in found[2].split()) != (found[1] == "only")
+    where = item.where
+    if where is None or not where.places or not tree:
+        return False
+    return (tree in where.places) != (where.how == "only")

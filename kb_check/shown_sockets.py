@@ -79,4 +79,4 @@ def _class_of(script: Script, socket: Symbol, settings: Mapping[str, str]) -> st
 
 def _is_by_tree(setting: Symbol) -> bool:
     """Whether the tree of a node has a say in a setting, so that a new node may begin with another value there."""
-    return any("Tree" in item.where for item in setting.enum_items)
+    return any(item.where is not None and item.where.places for item in setting.enum_items)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import json
-import re
 import sqlite3
 import zlib
 from contextlib import contextmanager
@@ -11,7 +10,7 @@ from dataclasses import dataclass
 from functools import cached_property, lru_cache
 from typing import TYPE_CHECKING, Any, NamedTuple, TypeVar
 
-from kb_build.schema import NoBase, open_read_only, unpack
+from kb_build.schema import Mark, NoBase, open_read_only, unpack
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.object_data import data_class
 from kb_build.symbols.records import Page, PanelCondition, Symbol, page_from_json, symbol_from_json
@@ -27,7 +26,6 @@ _Value = TypeVar("_Value")
 
 EXTEND = "__extend__"  # the identifier of the socket at which a node gets more
 PROPERTIES = "bpy.props."  # whose functions scripts import by name
-_ARGUMENT = re.compile(r"[( ](\w+)=")
 _UNLIMITED = float("inf")
 _REBUILD = "Rebuild it: simworlds kb build --force"
 
@@ -48,6 +46,7 @@ class SymbolEntry(NamedTuple):
     base: str
     group: str
     label: str
+    marks: int
     line: str
 
     @property
@@ -58,12 +57,22 @@ class SymbolEntry(NamedTuple):
     @property
     def is_read_only(self) -> bool:
         """Whether it cannot be assigned."""
-        return " read-only" in self.head
+        return bool(self.marks & Mark.READ_ONLY)
 
     @property
     def is_deprecated(self) -> bool:
         """Whether Blender calls it deprecated."""
-        return " deprecated" in self.head
+        return bool(self.marks & Mark.DEPRECATED)
+
+    @property
+    def is_unseen(self) -> bool:
+        """Whether its default is RNA's alone: no new instance was compared."""
+        return bool(self.marks & Mark.UNSEEN)
+
+    @property
+    def is_given(self) -> bool:
+        """Whether it is a pointer that is None on all new things, and that an assignment alone fills."""
+        return bool(self.marks & Mark.GIVEN)
 
 
 class PageEntry(NamedTuple):
@@ -110,7 +119,7 @@ class Use:
     code: str
 
 
-_ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, line"
+_ENTRY = "path, kind, owner, name, type, target, collection, base, grp, label, marks, line"
 _PAGE = "slug, source, version, title, parent, url, summary, summary_method"
 
 
@@ -503,8 +512,8 @@ class BaseReader:
 
     def operators_taking(self, argument: str) -> list[str]:
         """Paths of the operators with an argument of that name."""
-        sql = "SELECT path FROM symbols WHERE kind = 'operator' AND line GLOB ? ORDER BY path"
-        return [row[0] for row in self.rows(sql, f"*[( ]{argument}=*")]
+        sql = "SELECT path FROM operator_arguments JOIN symbols ON id = operator WHERE argument = ? ORDER BY path"
+        return [row[0] for row in self.rows(sql, argument)]
 
     def is_written(self, name: str) -> bool:
         """Whether a name stands in a call's text, or in what Blender's own scripts write: as an argument, say."""
@@ -515,8 +524,7 @@ class BaseReader:
     @cached_property
     def operator_arguments(self) -> frozenset[str]:
         """The names of all operators' arguments."""
-        lines = self.rows("SELECT line FROM symbols WHERE kind = 'operator'")
-        return frozenset(name for (line,) in lines for name in _ARGUMENT.findall(line))
+        return frozenset(row[0] for row in self.rows("SELECT DISTINCT argument FROM operator_arguments"))
 
     def functions_named(self, prefix: str) -> list[str]:
         """Paths of the functions of data classes whose names begin with a key."""

@@ -12,7 +12,7 @@ from kb_build.base_file import read_meta
 from kb_build.live.values import compare_values, runtime_at_hand
 from kb_build.schema import open_read_only, unpack
 from kb_build.symbols.flags import empty_when_new, fillers
-from kb_build.symbols.records import NOT_TAKEN, symbol_from_json
+from kb_build.symbols.records import symbol_from_json
 from measurements.report import ReportPart, TargetFigure, run_steps
 from measurements.setting import say
 
@@ -76,9 +76,9 @@ def _enums(symbols: Sequence[Symbol]) -> Table:
     items = [item for symbol in asked for item in symbol.enum_items if item.where]
     counts = {
         "enumerations whose items depend on the instance": len(asked),
-        "items taken in some contexts only": sum(item.where != NOT_TAKEN for item in items),
-        "… whose context is a mode": sum(" with " in f" {item.where}" for item in items),
-        "items that RNA lists and no instance took": sum(item.where == NOT_TAKEN for item in items),
+        "items taken in some contexts only": sum(item.is_taken for item in items),
+        "… whose context is a mode": sum(bool(item.where and item.where.is_by_setting) for item in items),
+        "items that RNA lists and no instance took": sum(not item.is_taken for item in items),
     }
     return _table("Enums by context", counts, "Every instance was asked in each of its modes.")
 

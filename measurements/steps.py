@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 
 from bench.markdown_tables import Table
 from kb_serve.answer.topic_overview import Topics
+from kb_serve.answer.topic_steps import numbered
 from kb_serve.reader import BaseReader
 from measurements.report import ReportPart, TargetFigure
 from measurements.setting import say
@@ -23,7 +24,6 @@ if TYPE_CHECKING:
 
 _RUNNER = Path(__file__).parent / "scripts" / "run_steps.py"
 _SECONDS = 900
-_BLOCK = "how it is done"
 _TENTH = 10
 _SHOWN = 20
 
@@ -46,9 +46,8 @@ def steps_of_topics(base: Path, share: int = 1) -> dict[str, list[str]]:
         for slug in sorted(reader.slugs)[::share]:
             page = reader.page_entry(slug)
             if page is not None and topics.find(page.title.lower()) == slug:
-                blocks = (block for block in topics.overview(slug).blocks if block.name == _BLOCK)
-                text = next((block.text for block in blocks if "\n1. " in block.text), "")
-                found |= {slug: text.split("\n")[1:]} if text else {}
+                steps = numbered(topics.steps(slug))
+                found |= {slug: steps} if steps else {}
         return found
     finally:
         reader.close()

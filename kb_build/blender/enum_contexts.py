@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
+from ast import literal_eval
 from collections import defaultdict
 from typing import TYPE_CHECKING, Any
 
-from kb_build.blender.enum_neighbours import TriedNeighbours, setting_text
-from kb_build.symbols.records import NOT_TAKEN
+from kb_build.blender.enum_neighbours import TriedNeighbours
+from kb_build.symbols.taken import NEVER, Setting, Taken
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Mapping, Sequence
-
-_NAMED = 3  # settings
-_NAMED_THINGS = 16  # a condition that is cut off tells nobody whether it holds
 
 # What was made, and the mode that it was put into; "" for that of a new one.
 Context = tuple[str, str]
@@ -48,7 +46,7 @@ def items_in_contexts(
         name, description = texts.get(item, ("", ""))
         rows.setdefault(item, {"identifier": item, "name": name, "description": description})
     for item, row in rows.items():
-        row["where"] = "" if item in taken else NOT_TAKEN
+        row["where"] = None if item in taken else NEVER
         with_item = [each["states"] for each in contexts if item in each["items"]]
         without = [each["states"] for each in contexts if item not in each["items"]]
         if where := beside.where(item, with_item, without):
@@ -60,66 +58,64 @@ def items_in_contexts(
 
 def _deciding(
     with_item: Sequence[Mapping[str, Sequence[str]]], without: Sequence[Mapping[str, Sequence[str]]]
-) -> str:
-    """The one enumeration whose value decides whether an item is taken; empty for none."""
+) -> Taken | None:
+    """The one enumeration whose value decides whether an item is taken; None for none."""
     for name in with_item[0]:
         taken = sorted({value for states in with_item for value in states.get(name, ())})
         refused = sorted({value for states in without for value in states.get(name, ())})
         if taken and refused and not set(taken) & set(refused):
             few_take = len(taken) <= len(refused)
-            return ("only with " if few_take else "not with ") + setting_text(
-                name, taken if few_take else refused
-            )
-    return ""
+            setting = Setting(name, tuple(taken if few_take else refused))
+            return Taken("only" if few_take else "not", (setting,))
+    return None
 
 
-def where_taken(taken: set[Context], refused: set[Context]) -> str:
+def where_taken(taken: set[Context], refused: set[Context]) -> Taken:
     """In which contexts an item is taken: where it is that decides it, a mode, or what was made."""
     if where := _place_taken(taken, refused):
         return where
     new_taken = {label for label, mode in taken if not mode}
     new_refused = {label for label, mode in refused if not mode}
     if not new_taken:
-        return "only with " + _modes(mode for _, mode in taken)
+        return Taken("only", _settings(mode for _, mode in taken))
     if not new_refused:
-        return "not with " + _modes(mode for _, mode in refused)
+        return Taken("not", _settings(mode for _, mode in refused))
     if new_refused <= {label for label, _ in taken}:  # in a mode that they are not in when new
-        modes = _modes(mode for label, mode in taken if label in new_refused)
-        return f"by {_labels(new_refused)} only with {modes}"
+        settings = _settings(mode for label, mode in taken if label in new_refused)
+        return Taken("only", settings, _shortest_first(new_refused))
     fewer_take = len(new_taken) <= len(new_refused)
-    return "only by " + _labels(new_taken) if fewer_take else "not by " + _labels(new_refused)
+    things = _shortest_first(new_taken if fewer_take else new_refused)
+    return Taken("only" if fewer_take else "not", things=things)
 
 
-def _place_taken(taken: set[Context], refused: set[Context]) -> str:
-    """Where alone what takes an item is, and what takes it there if not all does; empty where no place decides."""
+def _place_taken(taken: set[Context], refused: set[Context]) -> Taken | None:
+    """Where alone what takes an item is, and what takes it there if not all does; None where no place decides."""
     present = {_placed(label)[1] for label, _ in taken}
     absent = {_placed(label)[1] for label, _ in refused} - present
     if not absent or "" in present | absent:  # of some it is not told where they are
-        return ""
+        return None
     few_take = len(present) <= len(absent)
-    where = f"{'only' if few_take else 'not'} in {' or '.join(sorted(present if few_take else absent))}"
-    there = {(label, mode) for label, mode in refused if _placed(label)[1] in present}
-    if not there:
+    where = Taken("only" if few_take else "not", places=tuple(sorted(present if few_take else absent)))
+    refused_there = {(label, mode) for label, mode in refused if _placed(label)[1] in present}
+    if not refused_there:
         return where
-    by = where_taken(*({(_placed(label)[0], mode) for label, mode in found} for found in (taken, there)))
-    return f"{where}, and there {by}"
+    there = ({(_placed(label)[0], mode) for label, mode in found} for found in (taken, refused_there))
+    return where._replace(there=where_taken(*there))
 
 
 def _placed(label: str) -> tuple[str, str]:
-    """What was made, and where that is: ``a GeometryNodeTree``; empty for anywhere."""
-    name, _, place = label.partition(" in ")
+    """What was made, and where that is: ``GeometryNodeTree``; empty for anywhere."""
+    name, _, place = label.partition(" in a ")
     return name, place
 
 
-def _modes(modes: Iterable[str]) -> str:
-    """``system='NONE'|'IMPERIAL'``; the modes of several properties are alternatives."""
+def _settings(modes: Iterable[str]) -> tuple[Setting, ...]:
+    """Modes, ``system='NONE'``, as the settings that they are of."""
     values: dict[str, list[str]] = defaultdict(list)
     for name, value in sorted(tuple(mode.split("=", 1)) for mode in set(modes)):
-        values[name].append(value)
-    shown = [f"{name}={'|'.join(found)}" for name, found in values.items()]
-    return " or ".join(shown[:_NAMED]) + (", …" if len(shown) > _NAMED else "")
+        values[name].append(literal_eval(value))
+    return tuple(Setting(name, tuple(found)) for name, found in values.items())
 
 
-def _labels(labels: set[str]) -> str:
-    shown = sorted(labels, key=lambda label: (len(label), label))
-    return ", ".join(shown[:_NAMED_THINGS]) + (", …" if len(shown) > _NAMED_THINGS else "")
+def _shortest_first(labels: set[str]) -> tuple[str, ...]:
+    return tuple(sorted(labels, key=lambda label: (len(label), label)))

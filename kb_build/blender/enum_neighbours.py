@@ -9,30 +9,18 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from itertools import groupby
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
-if TYPE_CHECKING:
-    from collections.abc import Iterator
-
-_NAMED_VALUES = 6
+from kb_build.symbols.taken import Beside, Setting, Taken
 
 States = Mapping[str, Sequence[str]]
-
-
-def setting_text(name: str, values: Sequence[str]) -> str:
-    """``codec='AV1'|'FFV1'``."""
-    return _choice(name, [repr(value) for value in values])
-
-
-def _choice(name: str, values: Sequence[str]) -> str:
-    return f"{name}={'|'.join(values[:_NAMED_VALUES])}" + ("|…" if len(values) > _NAMED_VALUES else "")
 
 
 class _Condition(NamedTuple):
     """What a neighbour's setting must be, in some states of the own struct; ``held``: it was so at the start."""
 
     states: States
-    text: str
+    needed: Setting
     held: bool
 
 
@@ -57,21 +45,21 @@ class TriedNeighbours:
         """All items that were taken with any value of a neighbour's setting."""
         return [*dict.fromkeys(item for row in self.rows for _, items in row["tried"] for item in items)]
 
-    def where(self, item: str, with_item: Sequence[States], without: Sequence[States]) -> str:
-        """Where an item is taken that depends on a neighbour, as what follows the word "taken"; empty for others.
+    def where(self, item: str, with_item: Sequence[States], without: Sequence[States]) -> Taken | None:
+        """Where an item is taken that depends on a neighbour; None for others.
 
         ``with_item`` and ``without`` are the states in which it was taken, and refused, while nothing was tried.
         """
         conditions = [condition for row in self.rows if (condition := _condition(item, row))]
         if not conditions:
-            return ""
+            return None
         mixed = {name: _by_value(name, conditions) for name in conditions[0].states}
         told = (self._told(name, found, with_item, without) for name, found in mixed.items() if found)
-        if decided := next(filter(None, told), ""):
+        if decided := next(filter(None, told), None):
             return decided
-        texts = [*dict.fromkeys(condition.text for condition in conditions)]
+        needed = tuple(dict.fromkeys(condition.needed for condition in conditions))
         is_all = all(found is not None and self._tried(name) <= found.keys() for name, found in mixed.items())
-        return f"only {'' if is_all else 'in some modes, and only '}with {' or '.join(texts)}"
+        return Taken("only", needed, in_some_modes=not is_all)
 
     def _tried(self, name: str) -> set[str]:
         return set((self.states or {}).get(name, ()))
@@ -82,23 +70,21 @@ class TriedNeighbours:
         mixed: Mapping[str, _Condition],
         with_item: Sequence[States],
         without: Sequence[States],
-    ) -> str:
-        """Where it is taken, if a setting of its own struct says in which cases the neighbour decides; else empty."""
+    ) -> Taken | None:
+        """Where it is taken, if a setting of its own struct says in which cases the neighbour decides; else None."""
         taken, refused = _seen(name, with_item), _seen(name, without)
         if any(value in (refused if condition.held else taken) for value, condition in mixed.items()):
-            return ""
+            return None
         known = self._tried(name) - mixed.keys()
         always, never = sorted(taken & known), sorted(refused & known)
-        texts = {condition.text for condition in mixed.values()}
-        if len(texts) > 1 or set(always) & set(never) or not (always or never):
-            return ""
-        mode, text = f"with {setting_text(name, sorted(mixed))}", texts.pop()
-        if not always:
-            return f"only {mode} if {text}"
-        if len(always) <= len(never):
-            return f"only with {setting_text(name, always)}; {mode} only if {text}"
-        refusing = f"not with {setting_text(name, never)}; " if never else ""
-        return f"{refusing}{mode} only if {text}"
+        needed = {condition.needed for condition in mixed.values()}
+        if len(needed) > 1 or set(always) & set(never) or not (always or never):
+            return None
+        beside = Beside(Setting(name, tuple(sorted(mixed))), needed.pop())
+        few_take = len(always) <= len(never)
+        named = always if few_take else never
+        settings = (Setting(name, tuple(named)),) if named else ()
+        return Taken("only" if few_take else "not", settings, beside=beside)
 
 
 def _condition(item: str, row: Mapping[str, Any]) -> _Condition | None:
@@ -107,18 +93,21 @@ def _condition(item: str, row: Mapping[str, Any]) -> _Condition | None:
     if len({taken for _, taken in outcomes}) < 2:
         return None
     held = any(taken and values[0] == row["start"] for values, taken in outcomes)
-    return _Condition(row["states"], _choice(row["setting"], [*_values(outcomes)]), held)
+    return _Condition(row["states"], _needed(row["setting"], outcomes), held)
 
 
-def _values(outcomes: Sequence[tuple[Sequence[str], bool]]) -> Iterator[str]:
+def _needed(name: str, outcomes: Sequence[tuple[Sequence[str], bool]]) -> Setting:
     """The values with which it is taken, with those of the second setting where that matters."""
+    values: list[str] = []
+    also: list[tuple[str, Setting]] = []
     for value, tried in groupby(outcomes, lambda outcome: outcome[0][0]):
         group = list(tried)
-        second = [values for values, taken in group if taken]
-        if len(second) == len(group):
-            yield repr(value)
-        elif second:
-            yield f"{value!r} (with {setting_text(second[0][1], [values[2] for values in second])})"
+        taking = [given for given, taken in group if taken]
+        if taking:
+            values.append(value)
+        if 0 < len(taking) < len(group):
+            also.append((value, Setting(taking[0][1], tuple(given[2] for given in taking))))
+    return Setting(name, tuple(values), tuple(also))
 
 
 def _by_value(name: str, conditions: Sequence[_Condition]) -> dict[str, _Condition] | None:
@@ -126,7 +115,7 @@ def _by_value(name: str, conditions: Sequence[_Condition]) -> dict[str, _Conditi
     found: dict[str, _Condition] = {}
     for condition in conditions:
         for value in condition.states.get(name, ()):
-            if found.setdefault(value, condition).text != condition.text:
+            if found.setdefault(value, condition).needed != condition.needed:
                 return None
     return found
 

@@ -11,7 +11,6 @@ from kb_build.symbols.records import (
     ALSO,
     ANY,
     AREAS,
-    AT_TIMES,
     BARE_DATA,
     CALLS,
     EMPTY,
@@ -27,11 +26,10 @@ from kb_build.symbols.records import (
     LOCKED_ON,
     LOCKED_WITH,
     MUST_HAVE,
-    NEEDS,
-    NOT_TAKEN,
     STOPS,
     UNBOUNDED,
 )
+from kb_build.symbols.taken import AT_TIMES, NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -49,7 +47,7 @@ def add_items(
 def _add_source_items(row: dict[str, Any] | None, found: dict[str, Any]) -> None:
     """Adds the items that others have to those that were taken here: there are no more."""
     if row is not None:
-        taken = [item for item in row.get("enum_items", ()) if item.get("where") != NOT_TAKEN]
+        taken = [item for item in row.get("enum_items", ()) if item.get("where") != NEVER]
         known = {item["identifier"] for item in taken}
         others = ({**item, "where": AT_TIMES} for item in found["items"] if item["identifier"] not in known)
         row["enum_items"] = [*taken, *others]
@@ -60,7 +58,7 @@ def _add_never_reached(row: dict[str, Any] | None, seen: dict[str, Any]) -> None
     """Adds which values nothing that was tried came to have."""
     for item in (row or {}).get("enum_items", ()):
         if item["identifier"] in seen["items"]:
-            item["where"] = NOT_TAKEN
+            item["where"] = NEVER
 
 
 def _add_values(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
@@ -99,7 +97,7 @@ def _add_refused_default(row: dict[str, Any] | None, asked: dict[str, Any]) -> N
             parameter["enum_items"] = others
             continue
         for item in items:
-            item["where"] = NOT_TAKEN
+            item["where"] = NEVER
         if values:
             parameter["values_asked"] = values
 
@@ -120,7 +118,7 @@ def _add_pointer(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
 def _add_needs(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:
     """Adds what an operator's poll wants."""
     if row is not None:
-        row["flags"] = [*row.get("flags", ()), NEEDS + seen.get("needs", "")]
+        row["needs"] = seen.get("needs", {})
 
 
 def _add_areas(row: dict[str, Any] | None, seen: dict[str, Any]) -> None:

@@ -29,8 +29,7 @@ _HOLDERS = {"BlendData": "bpy.data", "Mesh": "mesh", "Material": "mat", "NodeTre
 # Only nodes of a class that a script registers take sockets of their own.
 _SOCKETS = (f"{TYPES}NodeInputs.new", f"{TYPES}NodeOutputs.new")
 _USUAL_TREE = "geometry"  # which most scripts make groups of
-_NOT = "not "
-_KIND_OF_TREE = re.compile(r"(\w+) node tree")  # in where a value is taken
+_KIND_OF_TREE = re.compile(r"(\w+) node tree")  # as it is called that takes a value
 _ARGUMENT = re.compile(r"(?<=, )\w+(?=[,)])")  # one that is no text
 _SIZE = "8"  # pixels
 _NEW_SOCKET = f"{TYPES}NodeTreeInterface.new_socket"
@@ -296,10 +295,11 @@ def _kinds_of(maker: Symbol) -> dict[str, str]:
 
 def _tree_taking(socket: EnumItem) -> str:
     """``tree``, or ``geometry_tree`` where not every kind of tree takes a socket."""
-    kinds = set(_KIND_OF_TREE.findall(socket.where))
-    if not kinds:
+    where = socket.where
+    kinds = {found[1] for found in map(_KIND_OF_TREE.fullmatch, where.things if where else ()) if found}
+    if where is None or not kinds:
         return "tree"
-    takes_usual = (_USUAL_TREE in kinds) != socket.where.startswith(_NOT)
+    takes_usual = (_USUAL_TREE in kinds) != (where.how == "not")
     return f"{_USUAL_TREE if takes_usual else min(kinds)}_tree"
 
 

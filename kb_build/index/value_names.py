@@ -18,7 +18,6 @@ from kb_build.index.analysis import words as words_of
 from kb_build.index.label_names import LabelName
 from kb_build.pages.definitions import term_of
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.records import NOT_TAKEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -60,7 +59,7 @@ class _Choices:
         by_key, by_words = defaultdict[str, set[str]](set), defaultdict[frozenset[str], set[str]](set)
         for symbol in symbols:
             for item in symbol.enum_items:
-                for text in (item.name, item.identifier) if item.where != NOT_TAKEN else ():
+                for text in (item.name, item.identifier) if item.is_taken else ():
                     texts.add(text)
                     by_key[key(text)].add(item.identifier)
                     by_words[frozenset(terms_of(text))].add(item.identifier)
@@ -164,7 +163,7 @@ def _of_page(
 
 
 def _has_item(symbol: Symbol, identifier: str) -> bool:
-    return any(item.identifier == identifier and item.where != NOT_TAKEN for item in symbol.enum_items)
+    return any(item.identifier == identifier and item.is_taken for item in symbol.enum_items)
 
 
 def _is_choice(entry: _Entry, meant: Mapping[_Entry, Sequence[str]]) -> bool:

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import re
-from dataclasses import dataclass
-from functools import cache
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
+from kb_build.symbols.needs import OperatorNeeds
 from kb_build.symbols.records import (
     ALSO,
     ANY,
@@ -16,22 +14,15 @@ from kb_build.symbols.records import (
     FREED_BY,
     GIVEN,
     LOCKED_ON,
-    NEEDS,
-    NOT_TAKEN,
     THEN,
 )
 from kb_build.symbols.unlisted import STAND_INS
 
 if TYPE_CHECKING:
+    from kb_build.symbols.needs import Wanted
     from kb_build.symbols.records import Default, NewValue, Symbol
 
 NODE_FAMILIES = ("ShaderNode", "GeometryNode", "CompositorNode", "FunctionNode", "TextureNode")
-# What operators want of the active object, as ``kb_build/blender/inside/operator_needs.py`` words it.
-_NEEDED = re.compile(
-    r"(?:an active(?: and selected)? object|any active object or none)(?P<types>(?:, not)? of type [^ ,]+)?"
-    r"(?P<modes>(?:, not)? in mode [^ ,]+)?(?:, and only some types in mode [^ ,]+)?(?: with .+)?"
-)
-_QUOTED = re.compile(r"'(\w+)'")
 
 
 def usual_default(symbol: Symbol) -> Default:
@@ -53,7 +44,7 @@ def _is_of_struct(symbol: Symbol) -> bool:
 
 def is_listed(symbol: Symbol) -> bool:
     """Whether the property's items, if it has any, have RNA's default among them."""
-    items = {item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN}
+    items = {item.identifier for item in symbol.enum_items if item.is_taken}
     given = symbol.default if isinstance(symbol.default, list) else [symbol.default]
     return not items or symbol.default is None or items.issuperset(given)
 
@@ -67,6 +58,11 @@ def is_stand_in(symbol: Symbol) -> bool:
 def is_uncompared(symbol: Symbol) -> bool:
     """Whether the default is RNA's alone, of a property whose new value may be another one."""
     return _is_of_struct(symbol) and not {"compared", "readonly"} & set(symbol.flags)
+
+
+def has_unseen_default(symbol: Symbol) -> bool:
+    """Whether it has a default of a property that is RNA's alone."""
+    return symbol.kind == "property" and usual_default(symbol) is not None and is_uncompared(symbol)
 
 
 def fillers(symbol: Symbol) -> list[str]:
@@ -86,36 +82,13 @@ def freed_by(symbol: Symbol) -> str:
 
 def refused_nothing(symbol: Symbol) -> bool:
     """Whether an operator's poll said yes wherever it was asked: with and without objects, in all modes, in no area."""
-    return NEEDS in symbol.flags
-
-
-@dataclass(frozen=True, slots=True)
-class Wanted:
-    """Which types, or modes, of active objects an operator runs with: these ``names``, or all others."""
-
-    names: tuple[str, ...]
-    is_others: bool = False
-
-    def takes(self, name: str) -> bool:
-        """Whether an operator runs with a type, or in a mode."""
-        return (name in self.names) != self.is_others
+    return symbol.needs == OperatorNeeds()
 
 
 def operator_active(symbol: Symbol) -> tuple[Wanted | None, Wanted | None]:
     """With which types of active objects, and in which modes, an operator runs; None where any will do."""
-    return _active("".join(symbol.flagged(NEEDS)))
-
-
-@cache
-def _active(needs: str) -> tuple[Wanted | None, Wanted | None]:
-    found = _NEEDED.fullmatch(needs)
-    return (_wanted(found["types"]), _wanted(found["modes"])) if found else (None, None)
-
-
-def _wanted(text: str | None) -> Wanted | None:
-    if not text or "…" in text:
-        return None
-    return Wanted(tuple(_QUOTED.findall(text)), text.startswith(", not"))
+    needs = symbol.needs
+    return (needs.types, needs.modes) if needs else (None, None)
 
 
 def operator_areas(symbol: Symbol) -> tuple[str, ...]:

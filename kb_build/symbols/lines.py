@@ -12,6 +12,7 @@ from kb_build.symbols.flags import (
     empty_when_new,
     fillers,
     freed_by,
+    has_unseen_default,
     is_listed,
     is_locked,
     is_stand_in,
@@ -31,9 +32,7 @@ from kb_build.symbols.records import (
     GIVEN,
     LOCKED_ON,
     LOCKED_WITH,
-    NEEDS,
     NEVER_BY_IDENTIFIER,
-    NOT_TAKEN,
     SHOWN_WHEN,
     STARTUP,
     last_name,
@@ -43,6 +42,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.symbols.records import NewValue, PanelCondition, Refusal, Symbol
+    from kb_build.symbols.taken import Taken
 
 _ACTIVE = "bpy.context.object"
 _REGISTERED = "nodes of a class that a script registers: built-in ones refuse it"
@@ -125,7 +125,7 @@ def operator_needs(symbol: Symbol) -> str:
     given = [f"`{member}` in the context (`temp_override({member}=…)`)" for member in symbol.flagged(GIVEN)]
     also = "".join(f", with `{call}`" for call in operator_also(symbol))
     areas = [area_text(operator_areas(symbol)) + also] if operator_areas(symbol) else []
-    return "".join(symbol.flagged(NEEDS)) or ", or ".join(given + areas)
+    return (symbol.needs.text if symbol.needs else "") or ", or ".join(given + areas)
 
 
 def area_text(types: Sequence[str]) -> str:
@@ -162,15 +162,9 @@ def taken_where(symbol: Symbol, argument: str) -> dict[str, str]:
     }  # fmt: skip
 
 
-def taken_text(where: str) -> str:
+def taken_text(where: Taken) -> str:
     """Where a value is taken, as it is said of it: ``taken only by a shader or geometry node tree``."""
-    kind, _, labels = where.partition(" by ")
-    if kind in {"only", "not"} or kind.endswith((" there only", " there not")):
-        *names, last = labels.split(", ")
-        more = "" if last != "…" else f", {last}"
-        names = names if more else [*names, last]
-        where = f"{kind} by {_things(names, len(names))}{more}"
-    return said_taken(where)
+    return where.said(lambda things: _things(things, len(things)))
 
 
 def said_taken(where: str) -> str:
@@ -383,14 +377,16 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
     notes = [type_text(symbol)] if symbol.type else []
     default = usual_default(symbol)
     if default is not None and symbol.kind in {"property", "socket"}:
-        notes.append(f"= {literal(default, symbol.type)}" + (" (RNA's)" if is_uncompared(symbol) else ""))
+        notes.append(
+            f"= {literal(default, symbol.type)}" + (" (RNA's)" if has_unseen_default(symbol) else "")
+        )
         modal = _by_setting(new for new in symbol.new_values if new.when and not new.made)
         notes += [f"({literal(new.value, symbol.type)} with {new.when})" for new in modal[:_SHOWN_LABELS]]
     if (empty := empty_when_new(symbol)) and not empty.made:
         notes += ["= None", *([f"({made})"] if (made := _made_by(symbol)) else [])]
     if EMPTY in symbol.flags:
         notes.append("= []")
-    values = [item.identifier for item in symbol.enum_items if item.where != NOT_TAKEN]
+    values = [item.identifier for item in symbol.enum_items if item.is_taken]
     if values and not is_stand_in(symbol):
         # In brackets: a default stands before them.
         notes.append(f"({'|'.join(values[:_SHOWN_VALUES])}{'|…' if len(values) > _SHOWN_VALUES else ''})")

@@ -1,7 +1,7 @@
 """The records that a knowledge base is made of.
 
 Everything the extractor and the page readers produce, and everything the server answers from, is one of
-these. A leaf module: it imports nothing of the project.
+these. It imports nothing of the project but leaves.
 """
 
 from __future__ import annotations
@@ -11,7 +11,9 @@ from dataclasses import dataclass, fields, is_dataclass
 from functools import cache
 from typing import TYPE_CHECKING, Any, Literal, NamedTuple, cast, get_args
 
+from kb_build.symbols.needs import OperatorNeeds
 from kb_build.symbols.paths import last_name, socket_name, socket_side
+from kb_build.symbols.taken import NEVER, Taken
 
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
@@ -27,10 +29,6 @@ PAGE_SOURCES: tuple[PageSource, ...] = get_args(PageSource)
 LinkKind = Literal["manual", "base", "pointer", "collection", "socket-of"]
 
 
-# Where an enum item is taken that RNA lists and every instance refused.
-NOT_TAKEN = "by none that was tried"
-# Where one is taken that the machine which was asked did not have, and others do.
-AT_TIMES = "where the machine or a setting allows it"
 # How the types of parameters end that are texts for which None can be given, too.
 OR_NONE = " or None"
 # How flags begin that say what fills a pointer that is None on a new thing, and on which new things it is not None.
@@ -41,8 +39,6 @@ WITHOUT_ACTIVE = "none-without-active-object"
 WITHOUT_AREA = "none-without-area"
 # The flag of a socket that its identifier gives in no mode of its node.
 NEVER_BY_IDENTIFIER = "identifier-never"
-# How a flag begins that says what an operator's poll wants, of all that was tried; nothing follows if it wants nothing.
-NEEDS = "needs:"
 # How flags begin that name the other operators which an operator's own script calls.
 CALLS = "calls:"
 # How flags begin that name the types of areas in which alone an operator runs (``any``), and the member of the context
@@ -97,13 +93,18 @@ FACTORY = "factory "
 class EnumItem:
     """One value of an enumeration.
 
-    ``where`` it is taken, as what follows the word "taken"; empty for everywhere: ``only with domain_type='LIQUID'``.
+    ``where`` it is taken; None for everywhere.
     """
 
     identifier: str
     name: str = ""
     description: str = ""
-    where: str = ""
+    where: Taken | None = None
+
+    @property
+    def is_taken(self) -> bool:
+        """Whether anything takes it: RNA lists some that everything refused which was tried."""
+        return self.where != NEVER
 
 
 @dataclass(frozen=True, slots=True)
@@ -169,7 +170,7 @@ class Parameter:
     @property
     def has_stand_in(self) -> bool:
         """Whether RNA lists nothing but what is refused, since the values are put together while Blender runs."""
-        return bool(self.enum_items) and all(item.where == NOT_TAKEN for item in self.enum_items)
+        return bool(self.enum_items) and not any(item.is_taken for item in self.enum_items)
 
 
 @dataclass(frozen=True, slots=True)
@@ -264,6 +265,7 @@ class Symbol:
     new_values: tuple[NewValue, ...] = ()
     subscripts: tuple[str, ...] = ()
     refusals: tuple[Refusal, ...] = ()
+    needs: OperatorNeeds | None = None
 
     @property
     def name(self) -> str:
@@ -438,8 +440,15 @@ def _fields(of: type) -> tuple[tuple[str, Any], ...]:
     return tuple((field.name, field.default) for field in fields(of)) if is_dataclass(of) else ()
 
 
+def _enum_item(row: dict[str, Any]) -> EnumItem:
+    if row.get("where") is None:
+        return EnumItem(**row)
+    values: dict[str, Any] = {**row, "where": Taken.of(row["where"])}
+    return EnumItem(**values)
+
+
 def _enum_items(rows: list[dict[str, Any]]) -> tuple[EnumItem, ...]:
-    return tuple(EnumItem(**row) for row in rows)
+    return tuple(map(_enum_item, rows))
 
 
 def _parameters(rows: list[dict[str, Any]]) -> tuple[Parameter, ...]:
@@ -480,6 +489,7 @@ _SYMBOL_FIELDS: dict[str, Callable[[Any], Any]] = {
     "deprecation": lambda row: Deprecation(**row),
     "new_values": _new_values,
     "refusals": _refusals,
+    "needs": OperatorNeeds.of,
 }
 
 

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import dataclass, field, replace
+from functools import reduce
 from itertools import groupby
-from operator import attrgetter, itemgetter
+from operator import attrgetter, itemgetter, or_
 from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, short_path, topic_key
 from kb_build.index.creation import creation_calls
 from kb_build.index.empty_ways import EmptyWays
-from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, pack
+from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, Mark, pack
+from kb_build.symbols.flags import empty_when_new, fillers, has_unseen_default, is_locked
 from kb_build.symbols.lines import member_line, switches
 from kb_build.symbols.records import to_json
 from kb_build.usage.examples import SymbolUsage
@@ -29,13 +31,14 @@ _TWO_ACTIONS = re.compile(r"(?P<first>\w+ing) (?:&|and) (?P<second>\w+ing)(?: (?
 
 @dataclass(frozen=True, slots=True)
 class SymbolTables:
-    """Rows of the tables symbols, names, enum_items, creation and panel_conditions (see schema.DDL), and where scripts
-    use symbols.
+    """Rows of the tables symbols, names, enum_items, operator_arguments, creation and panel_conditions, as schema.DDL
+    has them, and where scripts use symbols.
     """
 
     symbols: Sequence[Row]
     names: Sequence[Row]
     enum_items: Sequence[Row]
+    operator_arguments: Sequence[Row]
     creation: Sequence[Row]
     conditions: Sequence[PanelCondition] = ()
     uses: Mapping[str, Uses] = field(default_factory=dict[str, "Uses"])
@@ -63,7 +66,7 @@ def symbol_tables(
         symbols=[
             (
                 number, symbol.path, symbol.kind, symbol.owner, symbol.name, symbol.type, symbol.target,
-                symbol.collection, symbol.base, symbol.group, symbol.label,
+                symbol.collection, symbol.base, symbol.group, symbol.label, int(marks_of(symbol)),
                 member_line(symbol, on.get(symbol.path, "")),
                 record or pack(to_json(_with_way(symbol, usage.reached, ways))),
             )
@@ -71,10 +74,27 @@ def symbol_tables(
         ],
         names=names,
         enum_items=items,
+        operator_arguments=sorted(
+            (parameter.name, number)
+            for number, symbol in enumerate(symbols) if symbol.kind == "operator"
+            for parameter in symbol.parameters
+        ),
         creation=[(path, *creation) for path, creation in calls.items()],
         conditions=usage.conditions,
         uses=usage.uses,
     )  # fmt: skip
+
+
+def marks_of(symbol: Symbol) -> Mark:
+    """What is known of a symbol without its record."""
+    empty = empty_when_new(symbol)
+    known = {
+        Mark.READ_ONLY: is_locked(symbol),
+        Mark.DEPRECATED: symbol.deprecation is not None,
+        Mark.UNSEEN: has_unseen_default(symbol),
+        Mark.GIVEN: empty is not None and not empty.made and not fillers(symbol),
+    }
+    return reduce(or_, (mark for mark, holds in known.items() if holds), Mark(0))
 
 
 def symbol_names(symbol: Symbol) -> Iterator[tuple[str, int, str]]:

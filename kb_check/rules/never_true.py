@@ -27,7 +27,6 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.paths import item_of
-from kb_build.symbols.records import NOT_TAKEN
 from kb_check.findings import Finding, Fix
 from kb_check.rule import Rule
 from kb_check.rules.lacking import lacking_finding
@@ -87,7 +86,7 @@ def _never_reached(script: Script) -> Iterator[Finding]:
         ]
         if not never or len(never) < len(symbols) or (symbol := symbols[0]) is None:
             continue
-        had = [item for item in symbol.enum_items if item.where != NOT_TAKEN]
+        had = [item for item in symbol.enum_items if item.is_taken]
         meant = [item.identifier for item in had if item.name == never[0].name]
         if not _beside(script).get(row.node, frozenset()).isdisjoint(meant):
             continue
@@ -105,7 +104,7 @@ def _never_reached(script: Script) -> Iterator[Finding]:
 def _never_had(symbol: Symbol) -> list[EnumItem]:
     """The items that a property is never read as; none of one that scripts may set."""
     items = symbol.enum_items if "readonly" in symbol.flags else ()
-    return [item for item in items if item.where == NOT_TAKEN]
+    return [item for item in items if not item.is_taken]
 
 
 @once_per_script

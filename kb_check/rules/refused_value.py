@@ -37,7 +37,7 @@ from kb_build.symbols.api_names import ID, NODE, OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import usual_default
 from kb_build.symbols.paths import last_name
-from kb_build.symbols.records import NOT_TAKEN
+from kb_build.symbols.taken import NEVER, Setting
 from kb_check.calls import calls_not_ready_for
 from kb_check.findings import Finding
 from kb_check.made_here import (
@@ -66,14 +66,7 @@ if TYPE_CHECKING:
     from kb_build.symbols.records import EnumItem, NewValue, Parameter, Symbol
     from kb_check.script import Script
 
-_VALUES = r"(\w+)=('[^'|]*'(?:\|'[^'|]*')*)"
-_WITH = re.compile(rf"(only|not) with {_VALUES}")
-# What another struct's setting decides as well: with some values of the first, or with some of those alone.
-_OR_IF = re.compile(rf"; with {_VALUES} only if .*")
-_ONLY_IF = re.compile(rf"with {_VALUES} only if (\w+)\.(\w+)=(.*)")
-_TEXT = re.compile(r"'([^']*)'")
 _OF = re.compile(r"(.+) of an? (\w+)")
-_BY = re.compile(r"(only|not) by ([^…]+)")
 _SCENE = f"{T}Scene"
 _TOLD = 4
 _RESETTING = "bpy.ops.wm.read_factory_settings"
@@ -105,9 +98,9 @@ def _check(script: Script) -> Iterator[Finding]:
             continue
         if setting := _setting(script, symbol, item):
             yield from _refused_by_setting(script, statement, node, setting, item)
-        elif " only if " in item.where:
+        elif item.where and item.where.beside:
             yield from _refused_beside(script, statement, node, symbol.owner, item)
-        elif item.where == NOT_TAKEN and script.api.descends(symbol.owner, NODE):
+        elif not item.is_taken and script.api.descends(symbol.owner, NODE):
             yield _never_taken(script, statement.value, item, symbol)
         elif is_refused_in(tree := tree_of(script, node.value), item):
             yield _finding(script, statement.value, item, symbol.path, f"this node is in a {tree}")
@@ -148,14 +141,15 @@ def _item(items: Iterable[EnumItem], value: ast.expr) -> EnumItem | None:
 
 
 def _finding(script: Script, node: ast.expr, item: EnumItem, path: str, why: str) -> Finding:
-    where = item.where.partition(", and there ")[0].replace("only by", "only by a").replace(", ", " or a ")
-    taken = f"is not taken {where[4:]}" if where.startswith("not ") else f"is taken {where}"
-    return Finding(RULE.id, "error", script.span(node), f"{item.identifier!r} {taken}, and {why}.", path)
+    where = item.where._replace(there=None) if item.where else NEVER
+    article = "a " if where.how == "only" else ""
+    taken = where.said(lambda things: article + " or a ".join(things))
+    return Finding(RULE.id, "error", script.span(node), f"{item.identifier!r} is {taken}, and {why}.", path)
 
 
 def _never_taken(script: Script, node: ast.expr, item: EnumItem, symbol: Symbol) -> Finding:
     """What RNA lists for nodes of several classes, and those of this one refuse in every tree."""
-    taken = ", ".join(f"`{one.identifier}`" for one in symbol.enum_items if one.where != NOT_TAKEN)
+    taken = ", ".join(f"`{one.identifier}`" for one in symbol.enum_items if one.is_taken)
     return Finding(
         RULE.id, "error", script.span(node),
         f"{item.identifier!r} is refused by every `{symbol.owner}`. It takes {taken}.", symbol.path,
@@ -183,25 +177,22 @@ def _stand_in(script: Script, node: ast.expr, operator: str, parameter: Paramete
 
 def _setting(script: Script, symbol: Symbol, item: EnumItem) -> _Setting | None:
     """The setting of the same thing that decides whether it takes an item."""
-    rest = _OR_IF.search(item.where)
-    if found := _WITH.fullmatch(item.where[: rest.start()] if rest else item.where):
-        other = script.api.symbols.symbol(f"{symbol.owner}.{found[2]}")
-        values = frozenset(_TEXT.findall(found[3]))
-        if rest and (rest[1] != found[2] or found[1] != "only"):
+    where = item.where
+    if where is None:
+        return None
+    if setting := where.deciding_setting:
+        other = script.api.symbols.symbol(f"{symbol.owner}.{setting.name}")
+        more = where.beside.mode if where.beside else Setting(setting.name, ())
+        if other is None or (where.beside and (more.name != setting.name or where.how == "not")):
             return None
-        return (
-            _Setting(other, values.union(_TEXT.findall(rest[2]) if rest else ()), found[1] == "only")
-            if other
-            else None
-        )
-    found = _BY.fullmatch(item.where)
+        return _Setting(other, frozenset(setting.values + more.values), where.how == "only")
     other = script.api.symbols.symbol(f"{symbol.owner}.type")
-    if found is None or other is None or "readonly" in other.flags:
+    if not where.deciding_things or other is None or "readonly" in other.flags:
         return None
     owner = script.api.symbols.symbol(symbol.owner)
     what = owner.label.lower().split() if owner else []
-    values = [_value_of_kind(other, kind, what) for kind in found[2].split(", ")]
-    return _Setting(other, frozenset(values), found[1] == "only") if all(values) else None
+    values = [_value_of_kind(other, kind, what) for kind in where.deciding_things]
+    return _Setting(other, frozenset(values), where.how == "only") if all(values) else None
 
 
 def _value_of_kind(kinds: Symbol, label: str, what: list[str]) -> str:
@@ -257,23 +248,26 @@ def _refused_beside(
     script: Script, statement: ast.Assign, target: ast.Attribute, owner: str, item: EnumItem
 ) -> Iterator[Finding]:
     """A value that goes with what the script has set only if a struct beside has another setting than a new one has."""
-    found = _ONLY_IF.fullmatch(item.where)
-    if found is None:
+    condition = item.where.beside if item.where else None
+    if condition is None:
         return
+    mode, needed = condition
     setting, beside = (
-        script.api.symbols.symbol(path) for path in (f"{owner}.{found[1]}", f"{T}{found[3]}.{found[4]}")
+        script.api.symbols.symbol(path) for path in (f"{owner}.{mode.name}", f"{T}{needed.name}")
     )
     before = set_before(script, statement, target.value, setting) if setting else None
     if (
         beside
         and isinstance(before, ast.Constant)
-        and before.value in _TEXT.findall(found[2])
+        and before.value in mode.values
         and beside.name not in named_words(script)
-        and not set(_values_of_scene(script, beside)) & set(_TEXT.findall(found[5]))
+        and not set(_values_of_scene(script, beside)) & set(needed.values)
         and _works_on_a_scene(script, target.value)
     ):
-        why = f"`{found[1]}` is {before.value!r} here, and in a new scene `{beside.name}` is {usual_default(beside)!r}"
-        yield replace(_finding(script, statement.value, item, f"{owner}.{found[1]}", why), severity="warning")
+        why = f"`{mode.name}` is {before.value!r} here, and in a new scene `{beside.name}` is {usual_default(beside)!r}"
+        yield replace(
+            _finding(script, statement.value, item, f"{owner}.{mode.name}", why), severity="warning"
+        )
 
 
 def _own_value(script: Script, statement: ast.stmt, node: ast.expr, setting: Symbol) -> object:
@@ -380,19 +374,19 @@ def _takes_template(script: Script) -> bool:
 
 def _other_kind(script: Script, node: ast.expr, item: EnumItem) -> str:
     """The kind of something, or of what it belongs to, that does not take an item; empty where none is known."""
-    found = _BY.fullmatch(item.where)
-    kinds = set(found[2].split(", ")) if found else set[str]()
-    if found and found[1] == "only" and (other := _of_another(script, node, kinds)):
+    kinds = set(item.where.deciding_things) if item.where else set[str]()
+    is_only = item.where is not None and item.where.how == "only"
+    if is_only and (other := _of_another(script, node, kinds)):
         return other
     while kinds:
         node = alias(script, node)
         cls = _class_of(script, node)
         symbol = script.api.symbols.symbol(cls) if cls else None
-        if found and found[1] == "not" and any(script.api.descends(cls, f"{T}{kind}") for kind in kinds):
+        if not is_only and any(script.api.descends(cls, f"{T}{kind}") for kind in kinds):
             return last_name(cls)
         if symbol and symbol.base and kinds <= _labels_below(script, symbol.base):
             label = symbol.label.lower()
-            is_refused = (label in kinds) != (found is not None and found[1] == "only")
+            is_refused = (label in kinds) != is_only
             # It may be one of those kinds: a node tree may be that of a geometry.
             is_open = is_refused and not kinds.isdisjoint(_labels_below(script, cls))
             return label if is_refused and not is_open else ""

@@ -26,7 +26,6 @@ from kb_build.flow.types import UNKNOWN, Resolution
 from kb_build.symbols.api_names import TYPES as T
 from kb_build.symbols.flags import NODE_FAMILIES, never_taken
 from kb_build.symbols.paths import argument_of, last_name, plain_path, split_path
-from kb_build.symbols.records import NOT_TAKEN
 from kb_check.calls import calls_not_ready_for
 from kb_check.findings import Finding
 from kb_check.given import assigned, class_values
@@ -132,9 +131,7 @@ def _taken(script: Script, owner: str, tree: str) -> list[str]:
     refused = never_taken(symbol, argument) if symbol and argument else frozenset[str]()
     if symbol and not argument:
         refused = frozenset(
-            item.identifier
-            for item in symbol.enum_items
-            if item.where == NOT_TAKEN or is_refused_in(tree, item)
+            item.identifier for item in symbol.enum_items if not item.is_taken or is_refused_in(tree, item)
         )
     return [value for value in script.api.values_of(owner) if value not in refused]
 

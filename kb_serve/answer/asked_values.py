@@ -7,7 +7,6 @@ from types import MappingProxyType
 from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.index.analysis import terms
-from kb_build.symbols.records import NOT_TAKEN
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Mapping, Sequence
@@ -107,7 +106,7 @@ class _Told:
 
     def values(self, items: tuple[EnumItem, ...], argument: str) -> Iterator[AskedValue]:
         for item in items:
-            if item.where != NOT_TAKEN:
+            if item.is_taken:
                 value = repr(item.identifier)
                 text = f"{argument}={value}" if argument else value
                 yield from self._asked(text, argument, item.name, item.identifier)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.lines import said_taken, taken_text
-from kb_build.symbols.records import NOT_TAKEN
+from kb_build.symbols.taken import NEVER
 
 if TYPE_CHECKING:
     from collections.abc import Collection, Mapping, Sequence
@@ -23,7 +23,7 @@ def item_lines(
     lines: list[str] = []
     others: list[str] = []
     for item in items:
-        if item.where == NOT_TAKEN:
+        if not item.is_taken:
             continue
         if asked and repr(item.identifier) not in asked:
             others.append(f"`{item.identifier!r}`")
@@ -36,6 +36,6 @@ def item_lines(
         lines.append(f"- `{item.identifier!r}`" + (f" {text}" if text else "") + where)
     if others:
         lines.append(f"- others: {', '.join(others)}")
-    if refused := [f"`{item.identifier!r}`" for item in items if item.where == NOT_TAKEN]:
-        lines.append(f"- listed by RNA, taken {NOT_TAKEN}: {', '.join(refused)}")
+    if refused := [f"`{item.identifier!r}`" for item in items if not item.is_taken]:
+        lines.append(f"- listed by RNA, taken {NEVER.text}: {', '.join(refused)}")
     return "\n".join(lines)

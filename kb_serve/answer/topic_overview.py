@@ -12,7 +12,7 @@ from kb_serve.answer.pages import own_summary, said_of
 from kb_serve.answer.topic_members import TopicMembers
 from kb_serve.answer.topic_pages import TopicPages, plain_title, subtree
 from kb_serve.answer.topic_settings import TopicSettings
-from kb_serve.answer.topic_steps import Steps
+from kb_serve.answer.topic_steps import Steps, numbered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
@@ -23,6 +23,7 @@ if TYPE_CHECKING:
 _EDITOR = f"{TYPES}Space"
 _MOST_SETTINGS = 10
 _LATEST_MAKER = 5  # among the first steps
+_HOW = "**How it is done**"
 _DONE = ("set on `", "` → `", "` makes `", "`obj.")  # in steps that make, set or call something
 _OVERVIEW_TOKENS = 1_200
 _FIRST = (10, 8, 6, 5, 4, 3)  # entries of each list, as many as fit; the others follow all lists
@@ -95,16 +96,16 @@ class Topics:
         self, page: PageEntry, names: TopicNames, settings: Sequence[SymbolEntry]
     ) -> Iterator[AnswerBlock]:
         """The steps, or else where the topic is a value; and what is set on the page without being told in them."""
-        steps = [*Steps(self._reader, names).blocks()]
-        yield from steps
-        if not steps and (values := [*self._settings.as_value(plain_title(page), page.slug)]):
-            lines = "\n".join(f"- {line}" for line in values)
-            yield AnswerBlock(f"**How it is done**\n{lines}", "as a value")
-        if not any(said in block.text for block in steps for said in _DONE):
+        steps = Steps(self._reader, names).told()
+        if steps:
+            yield AnswerBlock("\n".join((_HOW, *numbered(steps))), "how it is done")
+        elif values := [*self._settings.as_value(plain_title(page), page.slug)]:
+            yield AnswerBlock("\n".join((_HOW, *(f"- {value}" for value in values))), "as a value")
+        if not any(said in step for step in steps for said in _DONE):
             settings = settings or self._of_chapter(page.slug)
         if steps:  # on a page about an editor how it looks is set, too
             settings = [entry for entry in settings if not self._reader.descends(entry.owner, _EDITOR)]
-        told = "".join(block.text for block in steps)
+        told = "".join(steps)
         left = [entry for entry in settings if f"`{entry.name}`" not in told]
         yield from _list_of("Settings", [*self._settings.lines(left[:_MOST_SETTINGS])])
 
@@ -119,13 +120,20 @@ class Topics:
         none for what is no topic.
         """
         slug = self.find(text)
-        page = self._reader.page_entry(slug)
-        names = self._members.names(slug, page.title) if page else None
-        steps = [*Steps(self._reader, names).blocks()] if names else []
-        lines = steps[0].text.split("\n")[1:] if steps else []
+        names = self._names(slug)
+        lines = numbered(Steps(self._reader, names).told()) if names else []
         made = {f"→ `{path.removeprefix(TYPES)}`" for path in names.explained} if names else set[str]()
         first = next((number for number, line in enumerate(lines, 1) if any(one in line for one in made)), 0)
         return lines[: max(most, first if first <= _LATEST_MAKER else 0)]
+
+    def steps(self, slug: str) -> list[str]:
+        """The steps of a page's topic; none for what is no page, and where nothing is made, set or run."""
+        names = self._names(slug)
+        return Steps(self._reader, names).told() if names else []
+
+    def _names(self, slug: str) -> TopicNames | None:
+        page = self._reader.page_entry(slug)
+        return self._members.names(slug, page.title) if page else None
 
     def members(self, slug: str) -> frozenset[str]:
         """All classes and operators that belong to a topic."""

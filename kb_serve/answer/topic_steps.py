@@ -14,7 +14,7 @@ from kb_build.index.analysis import terms
 from kb_build.symbols.api_names import NODE, OBJECT, OPERATORS, STRUCT, TYPES
 from kb_build.symbols.flags import operator_areas, refused_nothing
 from kb_build.symbols.lines import operator_needs
-from kb_serve.answer.budget import AnswerBlock, tokens
+from kb_serve.answer.budget import tokens
 from kb_serve.answer.steps.creation_calls import CreationCalls
 from kb_serve.answer.steps.instances import Instances
 from kb_serve.answer.steps.members import call_of
@@ -29,7 +29,7 @@ from kb_serve.answer.steps.trees import EMBEDDED_TREES, TreeSteps
 from kb_serve.interface import is_of_interface
 
 if TYPE_CHECKING:
-    from collections.abc import Iterator, Mapping
+    from collections.abc import Iterable, Iterator, Mapping
 
     from kb_build.symbols.records import Symbol
     from kb_serve.answer.steps.topic_names import TopicNames
@@ -43,9 +43,12 @@ _MODIFIER = f"{TYPES}Modifier"  # of objects
 _IN_A_NODE = ".nodes["  # in a call that makes what a node holds
 _NOT_MADE = frozenset({NODE, *EMBEDDED_TREES})  # for themselves
 _LEGACY = "(Legacy)"  # at the end of labels
-_PREPARES = re.compile(
-    r"\d+\. (?:instead: )?`[^`]* = [^`]*`"
-)  # a step that only sets something, for the next
+_PREPARES = re.compile(r"(?:instead: )?`[^`]* = [^`]*`")  # a step that only sets something, for the next
+
+
+def numbered(steps: Iterable[str]) -> list[str]:
+    """Steps as the lines of a numbered list."""
+    return [f"{number}. {step}" for number, step in enumerate(steps, 1)]
 
 
 class Steps:
@@ -70,16 +73,15 @@ class Steps:
         self._settings = SettingSteps(names, self._scene)
         self._reached = ReachedSettings(self._scene)
 
-    def blocks(self) -> Iterator[AnswerBlock]:
-        """One block, a numbered list; none where nothing is made, set or run."""
-        lines = [f"{number}. {step}" for number, step in enumerate(self._steps(), 1)]
-        whole = len(lines)
-        while sum(tokens(line) + 1 for line in lines) > _MOST_TOKENS:
-            lines.pop()
-        while lines and len(lines) < whole and _PREPARES.fullmatch(lines[-1]):
-            lines.pop()
-        if lines:
-            yield AnswerBlock("**How it is done**\n" + "\n".join(lines), "how it is done")
+    def told(self) -> list[str]:
+        """As many steps as are told, in their order; none where nothing is made, set or run."""
+        steps = [*self._steps()]
+        told = list(steps)
+        while sum(tokens(line) + 1 for line in numbered(told)) > _MOST_TOKENS:
+            told.pop()
+        while told and len(told) < len(steps) and _PREPARES.fullmatch(told[-1]):
+            told.pop()
+        return told
 
     def _steps(self) -> Iterator[str]:
         """All steps in their order; what is told depends on what has been told before."""

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from typing import TYPE_CHECKING
 
 from kb_serve.answer.budget import tokens
 from kb_serve.answer.topic_overview import Topics
+from kb_serve.answer.topic_steps import numbered
 from kb_serve.packs.section import fitting
 
 if TYPE_CHECKING:
-    from kb_serve.answer.budget import AnswerBlock
+    from collections.abc import Sequence
+
     from kb_serve.reader import BaseReader
 
 # What scenes are made of, by the names of the manual's chapters. Their order is that of most use; those that a
@@ -21,9 +22,7 @@ USUAL_TOPICS = (
     "force fields", "compositing", "world", "drivers", "text", "grease pencil", "dynamic paint", "video editing",
     "sculpting", "hair", "motion tracking", "freestyle",
 )  # fmt: skip
-_STEPS = "how it is done"
 _ROOM = 1_500  # tokens, for a few topics with all their settings
-_NUMBER = re.compile(r"^\d+\. ", re.MULTILINE)
 _CALLS = 4
 
 
@@ -47,35 +46,33 @@ class TopicLines:
             if not slug or slug in shown:
                 continue
             shown.add(slug)
-            for text in (block.text for block in self._blocks(slug) if block.name == _STEPS):
-                entry = _brief(topic, text) if is_brief else _whole(topic, text)
-                if entry and tokens(entry) <= budget:
-                    budget -= tokens(entry + "\n")
-                    told.append(entry)
+            steps = self._topics.steps(slug)
+            entry = _brief(topic, steps) if is_brief else _whole(topic, steps)
+            if entry and tokens(entry) <= budget:
+                budget -= tokens(entry + "\n")
+                told.append(entry)
         return told
 
     def overview(self, slug: str, budget: int) -> list[str]:
         """The whole overview of one topic, as far as it fits."""
-        lines = [line for block in self._blocks(slug) for line in (*block.text.split("\n"), "")]
+        blocks = self._topics.overview(slug).blocks
+        lines = [line for block in blocks for line in (*block.text.split("\n"), "")]
         return fitting(lines[1:], budget)
 
     def names(self, slug: str) -> frozenset[str]:
         """The classes and operators of a topic."""
         return self._topics.members(slug)
 
-    def _blocks(self, slug: str) -> tuple[AnswerBlock, ...]:
-        return self._topics.overview(slug).blocks
+
+def _whole(topic: str, steps: Sequence[str]) -> str:
+    """All steps below the topic; empty for none."""
+    lines = "\n".join(numbered(steps))
+    return f"### {topic.capitalize()}\n\n{lines}\n" if steps else ""
 
 
-def _whole(topic: str, steps: str) -> str:
-    _, _, lines = steps.partition("\n")
-    return f"### {topic.capitalize()}\n\n{lines}\n"
-
-
-def _brief(topic: str, steps: str) -> str:
-    """The first calls, without what is set, on one line."""
-    _, _, lines = steps.partition("\n")
-    calls = [line for line in _NUMBER.sub("", lines).split("\n") if line.startswith("`")]
+def _brief(topic: str, steps: Sequence[str]) -> str:
+    """The first calls, without what is set, on one line; empty for none."""
+    calls = [step for step in steps if step.startswith("`")]
     return f"- {topic}: " + "; ".join(map(_plain, calls[:_CALLS])) if calls else ""
 
 

@@ -21,7 +21,6 @@ SIMILAR: Final = "similar name"  # one of the names closest to a missing one
 _CLOSE = 0.6  # similar names with at least this share of the best one's score are named
 _MOST_NAMED = 3
 _MOST_ALIKE = 4
-_WITH = "only with "  # … what tells the setting that an item wants begins with
 _TELLS_WHAT = "Write "  # how what names something that is no Blender's begins
 _NOTHING = "Nothing takes its place."
 # The owners that get more while Blender runs → what gives it to them.
@@ -126,8 +125,8 @@ class Notes:
     def setting_of(self, path: str) -> str:
         """A sentence on the setting without which an item of an enumeration is not taken; "" for other paths."""
         owner, mark, item = split_path(path)
-        where = self._enum_values.where(owner, item) if mark == ":" else ""
-        return self._enum_values.condition(owner, item) if where.startswith(_WITH) else ""
+        where = self._enum_values.where(owner, item) if mark == ":" else None
+        return self._enum_values.condition(owner, item) if where and where.wants_a_setting else ""
 
     def _missing(self, recognition: Recognition) -> Iterator[str]:
         removed_names = {removed.path.rpartition(".")[2] for removed in recognition.removed}

@@ -11,7 +11,7 @@ from whole import examples
 
 from kb_build.index.analysis import key
 from kb_serve.answer.steps.topic_names import TopicNames
-from kb_serve.answer.topic_steps import Steps
+from kb_serve.answer.topic_steps import Steps, numbered
 
 if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator
@@ -100,4 +100,4 @@ def steps(reader: BaseReader, topic: str, *classes: str) -> list[str]:
     """The steps of a topic with some classes, the heaviest first."""
     weights = {f"{TYPES}{name}": 10.0 - place for place, name in enumerate(classes)}
     names = TopicNames(frozenset({key(topic)}), (frozenset(topic.split()),), classes=weights)
-    return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+    return numbered(Steps(reader, names).told())

@@ -92,6 +92,28 @@ def test_unknown_symbols_and_pages_are_none(reader: BaseReader, text: str) -> No
     assert reader.since(text) == ""
 
 
+def test_what_is_marked_stands_in_the_line(reader: BaseReader) -> None:
+    entries = [entry for path in of_data(reader, "property", count=500) if (entry := reader.entry(path))]
+    for entry in entries:
+        words = entry.head.split()
+        assert entry.is_read_only == ("read-only" in words), entry.line
+        assert entry.is_deprecated == ("deprecated" in words), entry.line
+        assert entry.is_unseen == ("(RNA's)" in words), entry.line
+        assert " = None" in entry.head or not entry.is_given, entry.line
+    assert any(entry.is_read_only for entry in entries)
+    assert any(entry.is_unseen for entry in entries)
+
+
+def test_operators_are_found_by_what_they_take(reader: BaseReader) -> None:
+    assert "bpy.ops.mesh.primitive_cube_add" in reader.operators_taking("enter_editmode")
+    assert reader.operators_taking("enter_edit") == []
+    for path in paths(reader, "operator", count=100):
+        symbol = reader.symbol(path)
+        for parameter in symbol.parameters if symbol else ():
+            assert path in reader.operators_taking(parameter.name)
+            assert parameter.name in reader.operator_arguments
+
+
 def test_no_look_up_reads_a_whole_table(base: Path) -> None:
     """SQLite says how it would answer each query that the reader makes: by an index, never by a scan."""
     calls: list[Callable[[BaseReader], object]] = [
@@ -100,7 +122,7 @@ def test_no_look_up_reads_a_whole_table(base: Path) -> None:
         lambda r: r.by_name("quality"), lambda r: r.by_key("quality"), lambda r: r.enum_owners("emitter"),
         lambda r: r.removed("x"), lambda r: r.removed_by_key("x"), lambda r: r.successors("x"),
         lambda r: r.similar_names("x"), lambda r: r.since("x"),
-        lambda r: r.manual_links("bpy.types.Object"),
+        lambda r: r.manual_links("bpy.types.Object"), lambda r: r.operators_taking("type"),
         lambda r: r.page_entry("physics/index"), lambda r: r.page_children("physics/index"),
         lambda r: r.symbols_of_page("physics/index"), lambda r: r.page("physics/cloth/introduction"),
     ]  # fmt: skip

@@ -25,13 +25,11 @@ from .instances.making import (
 )
 from .operator_defaults import Defaults
 
-MOST_TYPES = 6
 MOST_CASES = 3
 # More modifiers than these are any modifier.
 MOST_MODIFIERS = 6
 MODIFIER = 'obj.modifiers.new("name", '
 THEN = " then "
-ANY_OR_NONE = "any active object or none"
 NOT_ASKED = frozenset(
     {
         # It crashes Blender 5.0 where no object is active.
@@ -125,17 +123,12 @@ def modes(obj):
         bpy.ops.object.mode_set(mode="OBJECT")
 
 
-def listed(values):
-    """``'MESH'|'CURVE'``."""
-    return "|".join(map(repr, values[:MOST_TYPES])) + ("|…" if len(values) > MOST_TYPES else "")
-
-
-def in_modes(passed, refused):
-    """In which modes, if it is these of all that were tried."""
+def wanted(passed, refused):
+    """Which names passed, of all that were tried: these, or the others; None where all did."""
     if not refused:
-        return ""
-    is_few = len(passed) <= len(refused)
-    return f" in mode {listed(passed)}" if is_few else f", not in mode {listed(refused)}"
+        return None
+    is_others = len(passed) > len(refused)
+    return {"names": refused if is_others else passed, "is_others": is_others}
 
 
 class Objects:
@@ -192,7 +185,7 @@ class Objects:
         return passed
 
     def free_needs(self, path):
-        """What an operator wants that can run in an empty scene, in words; empty where it refused nothing."""
+        """What an operator wants that can run in an empty scene; empty where it refused nothing."""
         found = self.passed[path]
         refusing = {
             mode: [
@@ -203,45 +196,41 @@ class Objects:
         }
         refused = [mode for mode, kinds in refusing.items() if kinds]
         if not refused:
-            return ""
+            return {}
         passed = [mode for mode in refusing if mode not in refused]
         always = [mode for mode in refused if not any(mode in modes for modes in found.values())]
         if always == refused:
-            return f"{ANY_OR_NONE}{in_modes(passed, refused)}"
-        told = f", not in mode {listed(always)}" if always else ""
+            return {"active": "any", "modes": wanted(passed, refused)}
         some = [mode for mode in refused if mode not in always]
-        return f"{ANY_OR_NONE}{told}, and only some types in mode {listed(some)}"
+        modes = {"names": always, "is_others": True} if always else None
+        return {"active": "any", "modes": modes, "modes_of_some": some}
 
     def needs(self, path):
-        """What an operator wants that refuses in an empty scene, in words."""
+        """What an operator wants that refuses in an empty scene."""
         found = self.passed[path]
         is_selected = "OBJECT" in found.get("MESH", ()) and path not in self.unselected
-        active = "an active and selected object" if is_selected else "an active object"
-        return self.cases(active, found)
+        return {"active": "selected" if is_selected else "active", **self.cases(found)}
 
-    def cases(self, active, found):
+    def cases(self, found):
         """The types of objects, each with its modes."""
         passed = {mode: None for modes_passed in found.values() for mode in modes_passed}
         refused = {mode: None for kind in found for mode in self.tried[kind] if mode not in found[kind]}
         if not passed.keys() & refused.keys():
-            return active + self.types(list(found)) + in_modes(list(passed), list(refused))
+            return {"types": self.types(list(found)), "modes": wanted(list(passed), list(refused))}
         by_modes = {}
         for kind, modes_passed in found.items():
             by_modes.setdefault(tuple(modes_passed), []).append(kind)
         if len(by_modes) > MOST_CASES:
-            return f"{active}{self.types(list(found))} in some modes"
+            return {"types": self.types(list(found)), "in_some_modes": True}
         cases = []
         for has, kinds in by_modes.items():
-            told = in_modes(list(has), [mode for mode in self.tried[kinds[0]] if mode not in has])
-            cases.append(listed(kinds) + (f" ({told.strip(', ')})" if told else ""))
-        return f"{active} of type {' or '.join(cases)}"
+            refused = [mode for mode in self.tried[kinds[0]] if mode not in has]
+            cases.append({"types": kinds, "modes": wanted(list(has), refused)})
+        return {"cases": cases}
 
     def types(self, kinds):
         """Of which types, unless it is all."""
-        others = [kind for kind in self.tried if kind not in kinds]
-        if not others:
-            return ""
-        return f" of type {listed(kinds)}" if len(kinds) <= len(others) else f", not of type {listed(others)}"
+        return wanted(kinds, [kind for kind in self.tried if kind not in kinds])
 
 
 def arguments(function):
@@ -344,14 +333,17 @@ def parts_needed(known, observer, defaults):
 
 
 def added(path, mode, calls):
-    """What an operator wants that these calls add, in words: the one that says most of the operator's own."""
-    active = "an active object" + ("" if mode == "OBJECT" else f" in mode {mode!r}")
+    """What an operator wants that these calls add: the one whose name says most of the operator's own."""
+    active = {
+        "active": "active",
+        "modes": {"names": [mode], "is_others": False} if mode != "OBJECT" else None,
+    }
     if sum(call.startswith(MODIFIER) for call in calls) > MOST_MODIFIERS:
-        return f"{active} with a modifier"
+        return {**active, "with_modifier": True}
     words = path.rpartition(".")[2].split("_")
     best = max(calls, key=lambda call: sum(word in call.lower() for word in words))
-    owner = "" if best.startswith("scene.") and mode == "OBJECT" else f"{active} with "
-    return f"{owner}what `{'`, then `'.join(best.split(THEN))}` adds"
+    is_of_scene = best.startswith("scene.") and mode == "OBJECT"
+    return {**({} if is_of_scene else active), "calls": best.split(THEN)}
 
 
 def with_objects(write, known, _observer):

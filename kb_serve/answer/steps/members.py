@@ -10,7 +10,6 @@ from kb_build.symbols.lines import SET
 if TYPE_CHECKING:
     from kb_serve.reader import BaseReader, SymbolEntry
 
-UNSEEN = "(RNA's)"  # in the line of a setting of which no instance could be made
 _MOST_SETTINGS = 10
 _NONE = " = None"
 _PLAIN = ("name", "index")  # every thing has them
@@ -21,6 +20,23 @@ def settings_of(cls: str, reader: BaseReader) -> str:
 
     What is given to it, a data-block where a new one has none, counts as a setting.
     """
+    entries, parts = _heaviest_settings(cls, reader)
+    told: list[str] = []
+    for entry in entries:
+        told.append(_short(entry))
+        if part := parts.get(entry.name):
+            told.append(f"`{part.name}` (after `{entry.name}`){_NONE} ({part.target})")
+    return ", ".join(told)
+
+
+def are_settings_seen(cls: str, reader: BaseReader) -> bool:
+    """Whether the defaults of a class's heaviest settings are those of instances that could be made."""
+    entries, _ = _heaviest_settings(cls, reader)
+    return not any(entry.is_unseen for entry in entries)
+
+
+def _heaviest_settings(cls: str, reader: BaseReader) -> tuple[list[SymbolEntry], dict[str, SymbolEntry]]:
+    """The heaviest settings of a class, and by their names the parts that must be set along with them."""
     entries = [
         entry
         for entry in reader.members(cls).values()
@@ -37,12 +53,7 @@ def settings_of(cls: str, reader: BaseReader) -> str:
     # What only stores which part it is counts for nothing beside that.
     stored = tuple(f"{part.name}_" for part in parts.values())
     entries = [entry for entry in entries if not (stored and entry.name.startswith(stored))]
-    told: list[str] = []
-    for entry in reader.heaviest(entries)[:_MOST_SETTINGS]:
-        told.append(_short(entry))
-        if part := parts.get(entry.name):
-            told.append(f"`{part.name}` (after `{entry.name}`){_NONE} ({part.target})")
-    return ", ".join(told)
+    return reader.heaviest(entries)[:_MOST_SETTINGS], parts
 
 
 def part_given_with(pointer: SymbolEntry, reader: BaseReader) -> SymbolEntry | None:
@@ -68,8 +79,7 @@ def part_given_with(pointer: SymbolEntry, reader: BaseReader) -> SymbolEntry | N
 
 def _is_given(entry: SymbolEntry, reader: BaseReader) -> bool:
     """Whether a property takes a data-block, and has none on a new instance."""
-    is_empty = entry.type == "pointer" and entry.head.endswith(_NONE)
-    return is_empty and reader.descends(f"{TYPES}{entry.target}", ID)
+    return entry.is_given and reader.descends(f"{TYPES}{entry.target}", ID)
 
 
 def call_of(function: SymbolEntry) -> str:

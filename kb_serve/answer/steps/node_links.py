@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from kb_build.symbols.api_names import SIDES, TYPES
 from kb_build.symbols.lines import written
-from kb_build.symbols.records import NOT_TAKEN, PAIRS
+from kb_build.symbols.records import PAIRS
 from kb_serve.reader import EXTEND
 
 if TYPE_CHECKING:
@@ -200,7 +200,7 @@ class NodeLinks:
         for name, entry in self._reader.members(node).items():
             symbol = self._reader.symbol(entry.path) if entry.type == "enum" else None
             items = symbol.enum_items if symbol else ()
-            types = {item.identifier for item in items if item.where != NOT_TAKEN}
+            types = {item.identifier for item in items if item.is_taken}
             is_taken = group.kind.upper() in types
             if is_taken and all(self._typed(node, side, name) for side in SIDES):
                 return name

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from collections import defaultdict
 from typing import TYPE_CHECKING
 
@@ -31,7 +30,6 @@ _USED_ELSEWHERE = 3  # weight of an operator that has not the topic's module
 _PATH = "data_path"
 _FILE = "filepath"
 _ASKS = "check_existing"  # before a file is written, in a window
-_ADDED = re.compile(r"what (`.*`) adds")  # what must have been called before an operator runs
 _BAKE = "bake"  # what runs what has been set, wherever it is
 # What operators must find set or made, though they run without it, and an argument without which nothing is kept.
 _WORKS_WITH = {
@@ -130,11 +128,11 @@ def _of_modifiers(names: TopicNames, scene: NewScene) -> dict[str, str]:
 
 def before(operator: Symbol, scene: NewScene) -> Iterator[str]:
     """The steps after which an operator runs, as far as they are known and have not been told."""
-    for calls in _needed(operator):
-        if all(_is_taken(call, scene) for call in calls):
-            yield from scene.pointers.calls(
-                call for call in calls if scene.reader.made_by_call(call) not in scene.shown
-            )
+    calls = calls_needed(operator)
+    if all(_is_taken(call, scene) for call in calls):
+        yield from scene.pointers.calls(
+            call for call in calls if scene.reader.made_by_call(call) not in scene.shown
+        )
     mode = _mode_of_heading(operator, scene.reader)
     if ready := scene.obj.to_mode(mode) if mode else scene.obj.ready_for(operator):
         yield "; ".join(f"`{code}`" for code in ready)
@@ -159,13 +157,9 @@ def _mode_of_heading(operator: Symbol, reader: BaseReader) -> str:
     return next((item.identifier for item in modes.enum_items if item.name == heading), "")
 
 
-def calls_needed(operator: Symbol) -> list[str]:
+def calls_needed(operator: Symbol) -> tuple[str, ...]:
     """The calls that must have been made before an operator runs."""
-    return [call for calls in _needed(operator) for call in calls]
-
-
-def _needed(operator: Symbol) -> list[list[str]]:
-    return [re.findall(r"`([^`]*)`", added) for added in _ADDED.findall(operator_needs(operator))]
+    return operator.needs.calls if operator.needs else ()
 
 
 def _is_taken(call: str, scene: NewScene) -> bool:

@@ -10,6 +10,7 @@ from kb_serve.answer.steps.members import call_of
 if TYPE_CHECKING:
     from collections.abc import Iterator
 
+    from kb_build.symbols.records import EnumItem
     from kb_serve.answer.steps.topic_names import TopicNames
     from kb_serve.reader import BaseReader, SymbolEntry
 
@@ -35,16 +36,16 @@ def _choices(function: SymbolEntry, cls: str, reader: BaseReader) -> str:
     label = made.label.lower() if made else ""
     told: list[str] = []
     for parameter in symbol.parameters if symbol else ():
-        taken = [item.identifier for item in parameter.enum_items if _is_taken(item.where, label)]
+        taken = [item.identifier for item in parameter.enum_items if _is_taken(item, label)]
         if len(taken) > 1:
             values = "|".join(map(repr, taken[:_VALUES])) + ("|…" if len(taken) > _VALUES else "")
             told.append(f"`{parameter.name}={values}`")
     return f" ({', '.join(told)})" if told else ""
 
 
-def _is_taken(where: str, label: str) -> bool:
+def _is_taken(item: EnumItem, label: str) -> bool:
     """Whether an item is taken by a new thing of this label."""
-    kind, _, labels = where.partition(" by ")
-    if not labels or labels.endswith("…"):
-        return True
-    return (label in labels.split(", ")) == (kind == "only")
+    things = item.where.deciding_things if item.where else ()
+    if item.where is None or not things:
+        return item.is_taken
+    return (label in things) == (item.where.how == "only")

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.lines import held
-from kb_serve.answer.steps.members import UNSEEN, settings_of
+from kb_serve.answer.steps.members import are_settings_seen, settings_of
 from kb_serve.interface import is_of_interface
 
 if TYPE_CHECKING:
@@ -44,7 +44,7 @@ class ReachedSettings:
             ready = self._scene.pointers.reach(held(expression))
             if ready is None:
                 # An element of a collection is there only if somebody has made it.
-                if "[" not in expression and (not is_made or UNSEEN not in settings):
+                if "[" not in expression and (not is_made or are_settings_seen(cls, self._reader)):
                     self.waiting.append(f"set, once it is not None, on `{expression}` {told}")
                     left -= 1
                     self._scene.shown.add(cls)

@@ -9,7 +9,7 @@ from kb_build.symbols.api_names import ID, OPERATORS, TYPES
 from kb_build.symbols.flags import empty_when_new
 from kb_build.symbols.lines import mode_needed
 from kb_build.symbols.records import EMPTY
-from kb_serve.answer.steps.members import UNSEEN, call_of, settings_of
+from kb_serve.answer.steps.members import are_settings_seen, call_of, settings_of
 from kb_serve.answer.steps.operators import POINT_CACHE, UNDO
 from kb_serve.answer.steps.parts import parts
 from kb_serve.answer.steps.pointer_fills import stays_empty
@@ -92,7 +92,7 @@ class SettingSteps:
             if not (has_some and self._belongs(element)) or self._added_by(entry):
                 continue
             settings = "" if self._reader.creations([element]) else settings_of(element, self._reader)
-            if settings and UNSEEN not in settings:
+            if settings and are_settings_seen(element, self._reader):
                 self._scene.shown.add(element)
                 yield f"set on `{variable}.{entry.name}[0]` (`{entry.target}`): {settings}"
 

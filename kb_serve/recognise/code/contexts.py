@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import ast
-import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import operator_also, operator_areas, operator_given, refused_nothing
@@ -21,7 +20,6 @@ NO_OVERRIDE = (
 _WITH = "with bpy.context.temp_override"
 _ACTIVE = "bpy.context.view_layer.objects.active = ob"
 _SELECTED = "ob.select_set(True)"
-_MODE = re.compile(r"(?P<refused>not )?in mode '(?P<mode>\w+)'")
 # A name for what a member of the context is taken from.
 _THINGS = {"id": "ob", "point_cache": "modifier.point_cache", "edit_image": "image", "edit_text": "text"}
 # Without it, it bakes nothing and says that it did.
@@ -38,7 +36,7 @@ def context_for(operator: Symbol, like: str = "") -> str:
     path = operator.path
     failed = f"`{path}.poll()` failed: "
     if needs := operator_needs(operator):
-        return f"{failed}of all that was tried, it takes {needs}. {_giving(operator, needs)}".rstrip()
+        return f"{failed}of all that was tried, it takes {needs}. {_giving(operator)}".rstrip()
     if refused_nothing(operator):
         return (
             f"{failed}it refused nothing that was tried: no object, objects of all types in all modes, no area. "
@@ -65,7 +63,7 @@ def _in_area(path: str, area: str) -> str:
     )
 
 
-def _giving(operator: Symbol, needs: str) -> str:
+def _giving(operator: Symbol) -> str:
     """Lines that give an operator what it wants; empty where its needs say how."""
     path = operator.path
     if member := operator_given(operator):
@@ -73,19 +71,14 @@ def _giving(operator: Symbol, needs: str) -> str:
         return f"{given} {_INSTEAD.get(path, '')}".rstrip()
     if areas := operator_areas(operator):
         return "".join(f"`{call}`; " for call in operator_also(operator)) + _in_area(path, areas[0])
-    mode = _MODE.search(needs)
-    entered = f"`bpy.ops.object.mode_set(mode='{_entered(mode)}')`" if mode else ""
-    if needs.startswith("any active object or none"):
-        return f"{entered} comes before." if entered else ""
-    if not needs.startswith("an active"):
+    needs = operator.needs
+    if needs is None or not needs.active:
         return ""
-    given = f"`{_ACTIVE}`" + (f", `{_SELECTED}`" if "selected" in needs else "")
+    entered = f"`bpy.ops.object.mode_set(mode='{needs.mode_to_enter}')`" if needs.mode_to_enter else ""
+    if needs.active == "any":
+        return f"{entered} comes before." if entered else ""
+    given = f"`{_ACTIVE}`" + (f", `{_SELECTED}`" if needs.active == "selected" else "")
     return f"{given}, then {entered}." if entered else f"{given} comes before."
-
-
-def _entered(mode: re.Match[str]) -> str:
-    """The mode to enter for one that is wanted, or refused."""
-    return "OBJECT" if mode["refused"] else mode["mode"]
 
 
 def with_context(chain: Chain) -> str:

@@ -6,7 +6,6 @@ from typing import TYPE_CHECKING
 
 from kb_build.symbols.api_names import TYPES
 from kb_build.symbols.flags import never_taken
-from kb_build.symbols.records import NOT_TAKEN
 from kb_build.symbols.unlisted import FEWEST_VALUES, MORE_VALUES
 from kb_serve.recognise.code.wrong_arguments import places_of
 from kb_serve.recognise.names.likely_values import likely_items
@@ -70,13 +69,15 @@ def _wrong(
         return
     if all(reader.entry(TYPES + name) for name in names):  # classes, of which add-ons have some as well
         return
-    taken = [item for item in items if item.identifier not in refused and item.where != NOT_TAKEN]
+    taken = [item for item in items if item.identifier not in refused and item.is_taken]
     if closest := likely_items(value, taken, reader):
         told = f"Closest: {_listed(closest)}."
     else:
         # What is taken somewhere only stands behind what is taken everywhere.
         taken.sort(key=lambda item: bool(item.where))
-        named = [f"`'{item.identifier}'`{f' ({item.where})' if item.where else ''}" for item in taken[:_MOST]]
+        named = [
+            f"`'{item.identifier}'`{f' ({item.where.text})' if item.where else ''}" for item in taken[:_MOST]
+        ]
         told = f"It takes {', '.join(named)}{' …' if len(taken) > _MOST else ''}."
     yield f"`'{value}'` is not a value of `{owner}`. {told}"
 

@@ -9,9 +9,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.index.analysis import key, terms
 from kb_build.symbols.api_names import TYPES
-from kb_build.symbols.lines import said_taken
 from kb_build.symbols.paths import argument_of, plain_path
-from kb_build.symbols.records import NOT_TAKEN
 from kb_serve.recognise.names.likely_values import explaining
 from kb_serve.recognise.recognition import WHOLE_LABEL
 
@@ -19,6 +17,7 @@ if TYPE_CHECKING:
     from collections.abc import Iterable, Iterator, Sequence
 
     from kb_build.symbols.records import EnumItem
+    from kb_build.symbols.taken import Taken
     from kb_serve.reader import BaseReader
     from kb_serve.recognise.recognition import Recognition
 
@@ -37,7 +36,6 @@ _MOST_COMPARED = 20  # enumerations of which as many items are listed
 _FITTING = 0.5  # how well the words around a bare value must fit its property
 _FITTING_WORD = 1.0  # the same for one that people write in capitals, too: EEVEE, PNG
 _SHARE = 0.6  # … in a question of many words, of which one fits some property by chance
-_ONLY, _NOT = "only ", "not "  # … what tells where an item is taken begins with
 
 
 def is_value(text: str, reader: BaseReader) -> bool:
@@ -51,11 +49,10 @@ def is_quoted_value(query: str, reader: BaseReader) -> bool:
     return quoted is not None and is_value(quoted[2], reader)
 
 
-def _is_taken(item: EnumItem, mode: str) -> bool:
-    """Whether an item is taken in a mode: ``with media_type='VIDEO'``, or "" for none of those named."""
-    if item.where.startswith(_NOT):
-        return item.where.removeprefix(_NOT) != mode
-    return item.where.removeprefix(_ONLY) in {"", mode}
+def _is_taken(item: EnumItem, mode: Taken | None) -> bool:
+    """Whether an item is taken in a mode, ``with media_type='VIDEO'``; None for none of those named."""
+    where = item.where
+    return where is None or (where.condition == mode) != (where.how == "not")
 
 
 def _is_of_icons(owner: str) -> bool:
@@ -164,9 +161,9 @@ class EnumValues:
         """Whether an enumeration takes a value, somewhere."""
         return any(item.identifier == value for item in self._items(owner))
 
-    def where(self, owner: str, value: str) -> str:
-        """Where an enumeration takes a value, ``only with media_type='VIDEO'``; "" for everywhere, or nowhere."""
-        return next((item.where for item in self._items(owner) if item.identifier == value), "")
+    def where(self, owner: str, value: str) -> Taken | None:
+        """Where an enumeration takes a value; None for everywhere, or nowhere."""
+        return next((item.where for item in self._items(owner) if item.identifier == value), None)
 
     def labelled(self, owner: str, value: str) -> list[str]:
         """The items whose labels have all words of a value, those with the fewest others first: SUBSURF, which is
@@ -184,16 +181,14 @@ class EnumValues:
     def condition(self, owner: str, value: str) -> str:
         """A sentence on where an enumeration takes a value; "" if everywhere, or nowhere."""
         where = self.where(owner, value)
-        if not where:
-            return ""
-        return f"`{owner}` = '{value}' is {said_taken(where)}."
+        return f"`{owner}` = '{value}' is {where.said()}." if where else ""
 
     def _difference(self, owner: str, values: set[str]) -> int:
         """How many items an enumeration has more or less than some, in that of its modes in which that is fewest; older
         versions may have had no modes, and all items at once.
         """
         items = self._items(owner)
-        modes = {item.where.removeprefix(_ONLY).removeprefix(_NOT) for item in items}
+        modes = {item.where and item.where.condition for item in items}
         taken = [{item.identifier for item in items if _is_taken(item, mode)} for mode in modes]
         taken.append({item.identifier for item in items})
         return min(len(values ^ identifiers) for identifiers in taken)
@@ -205,7 +200,7 @@ class EnumValues:
             return ()
         named = (given.enum_items for given in symbol.parameters if given.name == parameter)
         items = next(named, ()) if parameter else symbol.enum_items
-        return tuple(item for item in items if item.where != NOT_TAKEN)
+        return tuple(item for item in items if item.is_taken)
 
     def _is_word(self, owner: str, values: Iterable[str]) -> bool:
         """Whether the values that an enumeration has are those that it shows to people."""

@@ -7,7 +7,7 @@ from typing import Any
 import pytest
 
 from kb_build.blender.enum_contexts import items_in_contexts
-from kb_build.symbols.records import NOT_TAKEN
+from kb_build.symbols.taken import NEVER
 
 
 def context(items: str, *made: tuple[str, str], **states: str) -> dict[str, Any]:
@@ -16,9 +16,13 @@ def context(items: str, *made: tuple[str, str], **states: str) -> dict[str, Any]
     return {"items": list(items), "made": list(made), "states": found}
 
 
+def texts(rows: list[dict[str, Any]]) -> dict[str, str]:
+    return {row["identifier"]: row["where"].text if row["where"] else "" for row in rows}
+
+
 def where(listed: str, *contexts: dict[str, Any]) -> dict[str, str]:
     rows = items_in_contexts([{"identifier": item} for item in listed], contexts, {})
-    return {row["identifier"]: row["where"] for row in rows}
+    return texts(rows)
 
 
 def test_what_is_taken_everywhere_needs_no_words() -> None:
@@ -77,7 +81,7 @@ def test_else_what_was_made_or_its_mode(contexts: tuple[dict[str, Any], ...], ex
 
 
 def test_what_every_instance_refuses_is_kept_but_said() -> None:
-    assert where("AB", context("A", ("lamp", ""))) == {"A": "", "B": NOT_TAKEN}
+    assert where("AB", context("A", ("lamp", ""))) == {"A": "", "B": NEVER.text}
 
 
 def test_a_lone_placeholder_goes() -> None:
@@ -87,7 +91,7 @@ def test_a_lone_placeholder_goes() -> None:
 
 def test_items_of_instances_bring_their_texts() -> None:
     rows = items_in_contexts([], [context("A", ("lamp", ""))], {"A": ("Name", "Words")})
-    assert rows == [{"identifier": "A", "name": "Name", "description": "Words", "where": ""}]
+    assert rows == [{"identifier": "A", "name": "Name", "description": "Words", "where": None}]
 
 
 def beside(tried: dict[str, str], start: str, **states: str) -> dict[str, Any]:
@@ -101,7 +105,7 @@ def where_beside(contexts: list[dict[str, Any]], tried: str, *rows: dict[str, An
     """Where items are taken; ``tried`` are the formats in which the neighbour was tried."""
     neighbours = {"rows": rows, "states": {"format": list(tried)}}
     listed = [{"identifier": item} for item in "AB"]
-    return {row["identifier"]: row["where"] for row in items_in_contexts(listed, contexts, {}, neighbours)}
+    return texts(items_in_contexts(listed, contexts, {}, neighbours))
 
 
 def test_a_neighbour_decides_in_one_mode_and_the_own_setting_in_the_others() -> None:

@@ -16,6 +16,7 @@ from kb_build.blender.extract_reader import read_extract
 from kb_build.blender.manual_links import manual_links
 from kb_build.errors import ExtractError
 from kb_build.symbols.records import EnumItem, NewValue, Parameter, Symbol
+from kb_build.symbols.taken import NEVER
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -274,7 +275,7 @@ def test_a_call_shows_required_arguments_bare_and_the_others_with_defaults() -> 
         Parameter("c", "enum", default=["P"]),
         Parameter("d", "enum", default=[]),
         Parameter("e", "float[2]", default=[0, 1]),
-        Parameter("g", "enum", enum_items=(EnumItem("X", where="of a kind"),)),
+        Parameter("g", "enum", enum_items=(EnumItem("X", where=NEVER),)),
         Parameter("h", "string"),
         Parameter("i", "list of Mesh"),
         Parameter("j", "int[1]"),

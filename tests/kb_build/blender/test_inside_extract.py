@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from kb_build.blender.extract_reader import Extract
-    from kb_build.symbols.records import Symbol
+    from kb_build.symbols.records import EnumItem, Symbol
 
 pytestmark = pytest.mark.blender
 
@@ -558,6 +558,10 @@ def test_pointers_that_lead_to_something_are_not_called_none(symbols: dict[str, 
     assert (data.value, "empty object" in data.made, "mesh object" in data.made) == (None, True, False)
 
 
+def where_taken(items: Iterable[EnumItem]) -> dict[str, str]:
+    return {item.identifier: item.where.text if item.where else "" for item in items}
+
+
 @pytest.mark.parametrize(
     ("path", "where"),
     [
@@ -576,7 +580,7 @@ def test_pointers_that_lead_to_something_are_not_called_none(symbols: dict[str, 
     ],
 )
 def test_items_say_where_they_are_taken(symbols: dict[str, Symbol], path: str, where: dict[str, str]) -> None:
-    items = {item.identifier: item.where for item in symbols[f"bpy.types.{path}"].enum_items}
+    items = where_taken(symbols[f"bpy.types.{path}"].enum_items)
     assert {name: items.get(name) for name in where} == where
 
 
@@ -617,7 +621,9 @@ def test_items_that_depend_on_a_neighbour_name_the_values_that_blender_takes_the
     symbols: dict[str, Symbol], tmp_path: Path, path: str, item: str, setting: str, states: list[list[str]]
 ) -> None:
     where = next(row.where for row in symbols[f"bpy.types.{path}"].enum_items if row.identifier == item)
-    told = re.findall(r"'([^']*)'", where.partition(f"{setting}=")[2])
+    assert where
+    named = [*where.settings, *([where.beside.needed] if where.beside else ())]
+    told = [value for each in named if each.name == setting for value in each.values]
     values = [row.identifier for row in symbols[f"bpy.types.{setting}"].enum_items]
     claims = [(path, item, [*states, [setting, value]]) for value in values]
     answers = zip(values, ask_blender(ASK_ITEMS, tmp_path, claims), strict=True)
@@ -626,9 +632,7 @@ def test_items_that_depend_on_a_neighbour_name_the_values_that_blender_takes_the
 
 
 def test_a_second_setting_of_a_neighbour_is_told_where_it_matters(symbols: dict[str, Symbol]) -> None:
-    items = {
-        row.identifier: row.where for row in symbols["bpy.types.ImageFormatSettings.color_mode"].enum_items
-    }
+    items = where_taken(symbols["bpy.types.ImageFormatSettings.color_mode"].enum_items)
     assert "'PRORES' (with ffmpeg_prores_profile='4444'|'4444_XQ')" in items["RGBA"]
     assert items["RGB"] == ""
 
@@ -796,7 +800,7 @@ def test_a_choice_that_depends_on_the_instance_is_asked_of_instances(symbols: di
     )
     (kind,) = [parameter for parameter in new_socket.parameters if parameter.name == "socket_type"]
     assert (kind.required, kind.default, kind.is_open) == (False, None, True)
-    items = {item.identifier: item.where for item in kind.enum_items}
+    items = where_taken(kind.enum_items)
     assert items["NodeSocketColor"] == ""
     assert items["NodeSocketShader"] == "only by shader node tree"
     assert items["NodeSocketMenu"] == "not by texture node tree"

@@ -9,7 +9,8 @@ import pytest
 from statements_in_blender import run_statements
 
 from kb_build.symbols.lines import default_text, shown_when, type_text
-from kb_build.symbols.records import AT_TIMES, BARE_DATA, INVERTED, NOT_TAKEN
+from kb_build.symbols.records import BARE_DATA, INVERTED
+from kb_build.symbols.taken import AT_TIMES
 
 if TYPE_CHECKING:
     from collections.abc import Mapping
@@ -107,13 +108,13 @@ def test_items_of_other_machines_are_listed_where_a_source_has_them(symbols: Map
     assert not denoiser.enum_computed
     where = {item.identifier: item.where for item in denoiser.enum_items}
     assert where.keys() == {"OPENIMAGEDENOISE", "OPTIX"}
-    assert (where["OPENIMAGEDENOISE"], where["OPTIX"] in {"", AT_TIMES}) == ("", True)
+    assert (where["OPENIMAGEDENOISE"], where["OPTIX"] in {None, AT_TIMES}) == (None, True)
     assert {item.name for item in denoiser.enum_items} == {"OpenImageDenoise", "OptiX"}
 
 
 def test_modes_that_nothing_enters_are_told(symbols: Mapping[str, Symbol]) -> None:
     def never(path: str) -> set[str]:
-        return {item.identifier for item in symbols[path].enum_items if item.where == NOT_TAKEN}
+        return {item.identifier for item in symbols[path].enum_items if not item.is_taken}
 
     former = {f"{mode}_GPENCIL" for mode in ("EDIT", "PAINT", "SCULPT", "VERTEX", "WEIGHT")}
     assert never("bpy.types.Context.mode") == never("bpy.context.mode") == former

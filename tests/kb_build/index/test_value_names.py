@@ -11,6 +11,7 @@ from kb_build.index.passages import Passage, find_passages
 from kb_build.index.value_names import find_value_names
 from kb_build.pages.readers.rst import read_rst
 from kb_build.symbols.records import EnumItem, Page, Section, Symbol
+from kb_build.symbols.taken import Setting, Taken
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -106,7 +107,7 @@ def test_what_need_not_be_a_choice_is_passed_over(more: str) -> None:
     "symbol",
     [
         Symbol(f"{CLASS}.t", "property", CLASS, type="enum", enum_items=ITEMS, enum_computed=True),
-        enumeration(items=(*ITEMS[:2], EnumItem("ALL", "All", where="only with x='Y'"))),
+        enumeration(items=(*ITEMS[:2], EnumItem("ALL", "All", where=Taken("only", (Setting("x", ("Y",)),))))),
     ],
 )
 def test_of_items_that_depend_on_the_context_none_is_denied(symbol: Symbol) -> None:

@@ -13,11 +13,11 @@ from kb_build.symbols.lines import (
     first_sentence,
     literal,
     member_line,
-    taken_text,
     type_text,
     written,
 )
-from kb_build.symbols.records import NOT_TAKEN, Deprecation, EnumItem, NewValue, Symbol
+from kb_build.symbols.records import Deprecation, EnumItem, NewValue, Symbol
+from kb_build.symbols.taken import NEVER, Setting, Taken
 
 if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract
@@ -124,7 +124,11 @@ def test_a_line_says_which_pointers_are_none_and_what_makes_them() -> None:
 
 
 def test_items_that_no_instance_takes_are_not_listed() -> None:
-    items = (EnumItem("A"), EnumItem("B", where=NOT_TAKEN), EnumItem("C", where="only with m='X'"))
+    items = (
+        EnumItem("A"),
+        EnumItem("B", where=NEVER),
+        EnumItem("C", where=Taken("only", (Setting("m", ("X",)),))),
+    )
     assert line(type="enum", enum_items=items) == "`x` enum (A|C)"
 
 
@@ -135,7 +139,7 @@ def test_items_that_no_instance_takes_are_not_listed() -> None:
         ({"default": 5, "flags": ("readonly",)}, ""),
         ({"default": 5, "flags": ("readonly", "compared")}, "`5`"),
         ({"default": [0, 0], "subtype": "MATRIX"}, ""),
-        ({"default": "A", "enum_items": (EnumItem("A", where=NOT_TAKEN), EnumItem("B"))}, ""),
+        ({"default": "A", "enum_items": (EnumItem("A", where=NEVER), EnumItem("B"))}, ""),
         ({"default": ["A"], "enum_items": (EnumItem("B"),)}, ""),
         ({"default": 5, "flags": ("compared",)}, "`5`"),
         ({"default": 1, "new_values": (NewValue(0, ("cloth modifier",)),)},
@@ -208,31 +212,6 @@ def test_every_symbol_of_blender_has_a_line_of_its_own(extract: Extract) -> None
         assert type_text(symbol) in text or not symbol.type
         if symbol.kind == "property":
             assert f"`{symbol.name}`" in text
-
-
-@pytest.mark.parametrize(
-    ("where", "expected"),
-    [
-        ("not by texture node tree", "not taken by a texture node tree"),
-        ("only by shader node tree, geometry node tree", "taken only by a shader or geometry node tree"),
-        ("only by mesh object, child of mesh object, …", "taken only by a mesh or child of mesh object, …"),
-        (
-            "only by a b, c b, d b, e b, f b, g b, h b, i b, j b, k b",
-            "taken only by an a, c, d, e, f, g, h, i, j or k b",  # a condition is not cut off
-        ),
-        ("only with domain_type='LIQUID'", "taken only with domain_type='LIQUID'"),
-        ("only in a GeometryNodeTree", "taken only in a GeometryNodeTree"),
-        (
-            "only in a GeometryNodeTree, and there only by float socket, integer socket",
-            "taken only in a GeometryNodeTree, and there only by a float or integer socket",
-        ),
-        ("not with type='EMPTY'", "not taken with type='EMPTY'"),
-        ("by FileOutput only with media_type='IMAGE'", "taken by FileOutput only with media_type='IMAGE'"),
-        (NOT_TAKEN, f"taken {NOT_TAKEN}"),
-    ],
-)
-def test_where_a_value_is_taken_is_plain_english(where: str, expected: str) -> None:
-    assert taken_text(where) == expected
 
 
 def test_a_socket_that_its_identifier_never_gives_is_written_by_its_place() -> None:

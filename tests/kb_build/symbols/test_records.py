@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from kb_build.symbols.needs import Case, OperatorNeeds, Wanted
 from kb_build.symbols.records import (
     Deprecation,
     EnumItem,
@@ -22,21 +23,30 @@ from kb_build.symbols.records import (
     symbol_from_json,
     to_json,
 )
+from kb_build.symbols.taken import Beside, Setting, Taken
 
 if TYPE_CHECKING:
     from kb_build.blender.extract_reader import Extract
 
+WHERE = Taken(
+    "not", (Setting("m", ("A",), (("A", Setting("n", ("B",))),)),), ("lamp",), ("Tree",), Taken("never"),
+    Beside(Setting("m", ("C",)), Setting("Other.o", ("D",))), True,
+)  # fmt: skip
 FULL = Symbol(
     path='bpy.types.A.inputs["B.c"]', kind="socket", owner="bpy.types.A", label="B", description="d", type="float",
     subtype="FACTOR", unit="LENGTH", target="T", array=(4, 4), default=[1, [2.5, "x"], None, True], hard_min=-1.0,
     hard_max=2, soft_min=0.0, soft_max=1.5, flags=("readonly",),
-    enum_items=(EnumItem("ONE", "One", "1", "w"), EnumItem("")),
+    enum_items=(EnumItem("ONE", "One", "1", WHERE), EnumItem("")),
     enum_computed=True, base="bpy.types.B", group="data", signature="f(a)",
     parameters=(Parameter("a", "enum", "d", ["X"], True, (EnumItem("X"),), "L", 0.0, 1.0, "MASS"),),
     returns=(Parameter(""),), deprecation=Deprecation("gone", "5.0", "6.0"), modes=("m=A|B",), collection="C",
     trees=("ShaderNodeTree",), reached="bpy.context", lacks="bpy.types.A.b", subscripts=("inputs[1]",),
     new_values=(NewValue([1, 2], ("a", "b")), NewValue(0, when="m='A'")),
     refusals=(Refusal("no", "type", ("A", "B"), ("a",), ("b", "c"), ("length",), "EDIT", "any"), Refusal("")),
+    needs=OperatorNeeds(
+        "any", Wanted(("A",)), Wanted(("B",), True), (Case(("C",)), Case(("D",), Wanted(("E",)))), True, ("F",),
+        ("g()",), True,
+    ),
 )  # fmt: skip
 
 

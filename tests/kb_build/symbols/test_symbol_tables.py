@@ -1,10 +1,15 @@
-"""The names under which pages are found."""
+"""The names under which pages are found, and what is known of symbols without their records."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+import pytest
+
 from kb_build.index.analysis import topic_key
-from kb_build.symbols.records import Page
-from kb_build.symbols.tables import action_names
+from kb_build.schema import Mark
+from kb_build.symbols.records import Deprecation, NewValue, Page, Symbol
+from kb_build.symbols.tables import action_names, marks_of
 
 
 def page(slug: str, title: str) -> Page:
@@ -24,3 +29,28 @@ def test_a_page_on_two_actions_is_found_by_either_of_them() -> None:
 def test_a_word_that_is_the_title_of_another_page_stays_its_own() -> None:
     pages = [page("sculpt_paint/index", "Sculpting & Painting")]
     assert [name for name, *_ in action_names(pages, {topic_key("Sculpting")})] == [topic_key("painting")]
+
+
+POINTER = Symbol("bpy.types.A.x", "property", "bpy.types.A", type="pointer", target="T")
+NUMBER = Symbol("bpy.types.A.n", "property", "bpy.types.A", type="int", default=5, flags=("compared",))
+
+
+@pytest.mark.parametrize(
+    ("symbol", "marks"),
+    [
+        (NUMBER, Mark(0)),
+        (replace(NUMBER, flags=()), Mark.UNSEEN),
+        (replace(NUMBER, flags=(), default=None), Mark(0)),
+        (replace(NUMBER, flags=("readonly", "compared")), Mark.READ_ONLY),
+        (replace(NUMBER, flags=("locked-on:any", "compared")), Mark.READ_ONLY),
+        (replace(NUMBER, flags=("locked-on:mesh", "compared")), Mark(0)),
+        (replace(NUMBER, deprecation=Deprecation("gone")), Mark.DEPRECATED),
+        (POINTER, Mark(0)),
+        (replace(POINTER, new_values=(NewValue(None),)), Mark.GIVEN),
+        (replace(POINTER, new_values=(NewValue(None),), flags=("filled-by:a.b()",)), Mark(0)),
+        (replace(POINTER, new_values=(NewValue(None, ("empty object",)),)), Mark(0)),
+        (replace(POINTER, new_values=(NewValue(None),), flags=("readonly",)), Mark.GIVEN | Mark.READ_ONLY),
+    ],
+)
+def test_marks_say_what_lists_of_members_ask_of_a_symbol(symbol: Symbol, marks: Mark) -> None:
+    assert marks_of(symbol) == marks

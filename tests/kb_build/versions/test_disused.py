@@ -64,12 +64,12 @@ def test_what_blender_says_itself_stays() -> None:
 
 
 def test_an_operator_that_makes_what_is_to_come_names_the_one_of_today() -> None:
-    row: dict[str, object] = {"flags": ["needs:"]}
+    row: dict[str, object] = {"flags": ["compared"]}
     ADDED["bare_data"](row, {"path": "bpy.ops.object.grease_pencil_add"})
-    assert row["flags"] == ["needs:", BARE_DATA]
-    bare = Symbol("bpy.ops.object.grease_pencil_add", "operator", flags=("needs:", BARE_DATA))
+    assert row["flags"] == ["compared", BARE_DATA]
+    bare = Symbol("bpy.ops.object.grease_pencil_add", "operator", flags=("compared", BARE_DATA))
     today = Symbol("bpy.ops.object.gpencil_add", "operator")
     table = load_successors()
-    assert with_present_ways([bare, today], table, "4.2")[0].flags == ("needs:", f"{BARE_DATA}{today.path}")
+    assert with_present_ways([bare, today], table, "4.2")[0].flags == ("compared", f"{BARE_DATA}{today.path}")
     assert with_present_ways([bare], table, "4.2") == [bare]
     assert with_present_ways([bare, today], table, "4.3") == [bare, today]

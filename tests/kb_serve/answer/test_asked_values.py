@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from kb_build.symbols.records import NOT_TAKEN, EnumItem, Parameter, Symbol
+from kb_build.symbols.records import EnumItem, Parameter, Symbol
+from kb_build.symbols.taken import NEVER
 from kb_serve.answer.asked_values import asked_values, asked_words, may_have_more
 
 _EFFECT = Symbol(
@@ -11,7 +12,7 @@ _EFFECT = Symbol(
         Parameter("name", "string"),
         Parameter("type", "enum", enum_items=(
             EnumItem("CROSS", "Crossfade"), EnumItem("GAMMA_CROSS", "Gamma Crossfade"), EnumItem("TEXT", "Text"),
-            EnumItem("OLD", "Speed", where=NOT_TAKEN),
+            EnumItem("OLD", "Speed", where=NEVER),
         )),
         Parameter("use_selection", "boolean", label="Selected Objects"),
     ),

@@ -9,7 +9,7 @@ from asking import classes, of_data, paths
 
 from kb_build.symbols.flags import is_stand_in, usual_default
 from kb_build.symbols.lines import written
-from kb_build.symbols.records import BARE_DATA, NOT_TAKEN, Deprecation, EnumItem, Parameter, Symbol
+from kb_build.symbols.records import BARE_DATA, Deprecation, EnumItem, Parameter, Symbol
 from kb_serve.answer.property_facts import facts
 from kb_serve.answer.render import MarkdownRenderer
 
@@ -79,7 +79,7 @@ def test_every_fact_of_every_property_is_shown(renderer: MarkdownRenderer, reade
         assert "readonly" not in symbol.flags or "readonly" in text
         for item in symbol.enum_items if not is_stand_in(symbol) else ():
             assert f"`{item.identifier!r}`" in text
-            assert item.where == NOT_TAKEN or item.description in text
+            assert not item.is_taken or item.description in text
 
 
 def test_an_operator_shows_its_call_with_defaults_and_every_argument(

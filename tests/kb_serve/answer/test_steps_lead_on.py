@@ -11,7 +11,7 @@ from asking import TYPES, steps
 from kb_build.store import Contents, write_base
 from kb_build.symbols.records import Link, Page, Section
 from kb_serve.answer.steps.topic_names import TopicNames
-from kb_serve.answer.topic_steps import Steps
+from kb_serve.answer.topic_steps import Steps, numbered
 from kb_serve.reader import BaseReader
 from measurements.steps import do_steps
 
@@ -31,7 +31,7 @@ def told_of(
         operators={f"bpy.ops.{name}": 10.0 - place for place, name in enumerate(operators)},
         title=topic.replace(" ", ""),
     )
-    return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+    return numbered(Steps(reader, names).told())
 
 
 def are_done(told: list[str]) -> bool:

@@ -124,10 +124,10 @@ def test_steps_make_what_is_called_as_the_topic_wherever_it_is_explained(
     explained = {"Lattice": slug, "LatticeModifier": MANY["LatticeModifier"], "LatticePoint": slug}
     names = names_of(tmp_path, reader, slug, "Lattice", explained)
     assert f"{TYPES}LatticeModifier" in names.elsewhere
-    told = "".join(block.text for block in Steps(reader, names).blocks())
+    told = "".join(Steps(reader, names).told())
     assert "'LATTICE'" in told
     names = names_of(tmp_path, reader, MOTION, "Motion Tracking", MANY)
-    told = "".join(block.text for block in Steps(reader, names).blocks())
+    told = "".join(Steps(reader, names).told())
     assert "tracks" in told or "tracking" in told
     assert "TRACK_TO" not in told
 
@@ -209,7 +209,7 @@ def test_a_chapter_works_on_what_its_operators_need_made(tmp_path: Path, reader:
     write_base(tmp_path / "base.sqlite", Contents(symbols, pages, links, {}))
     with closing(BaseReader(tmp_path / "base.sqlite")) as own:
         chapter, single = (TopicMembers(own).names(slug, "Rows") for slug in slugs)
-        told = "".join(block.text for block in Steps(own, chapter).blocks())
+        told = "".join(Steps(own, chapter).told())
     assert {f"{TYPES}SoundStrip", f"{TYPES}MovieStrip"} <= chapter.classes.keys()
     assert "scene.sequence_editor.strips.new_" in told
     assert f"{TYPES}SoundStrip" not in single.classes

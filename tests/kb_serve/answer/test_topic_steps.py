@@ -9,7 +9,7 @@ from asking import TYPES, steps
 
 from kb_build.symbols.api_names import STRUCT
 from kb_serve.answer.steps.topic_names import TopicNames
-from kb_serve.answer.topic_steps import Steps
+from kb_serve.answer.topic_steps import Steps, numbered
 from measurements.steps import do_steps
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def test_a_brush_that_paints_is_toggled_before_it_is_set(reader: BaseReader) -> 
 
 def test_an_operator_says_what_it_takes_and_what_must_be_set(reader: BaseReader) -> None:
     names = TopicNames(frozenset({"fluid"}), (), operators={"bpy.ops.fluid.bake_all": 1.0})
-    *made, run = [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+    *made, run = numbered(Steps(reader, names).told())
     assert "`modifier.fluid_type = 'DOMAIN'` makes `modifier.domain_settings`" in made[1]
     assert made[2:] == ["3. `modifier.domain_settings.cache_type = 'ALL'`"]
     assert "Bake Entire Fluid Simulation (takes an active object; offered by Blender's panels only if" in run
@@ -183,7 +183,7 @@ def test_custom_properties_are_made_by_subscript(reader: BaseReader) -> None:
     names = TopicNames(frozenset({"customproperties"}), (frozenset({"custom"}),), frozenset({STRUCT}))
     names.classes[STRUCT] = 1.0
     names.operators |= {"bpy.ops.wm.properties_edit": 9.0, "bpy.ops.wm.properties_edit_value": 8.0}
-    told = [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+    told = numbered(Steps(reader, names).told())
     assert told[0].startswith('1. `obj["strength"] = 1.0`')
     assert not any(
         "properties_edit" in line for line in told
@@ -193,7 +193,7 @@ def test_custom_properties_are_made_by_subscript(reader: BaseReader) -> None:
 
 
 def _told(reader: BaseReader, names: TopicNames) -> list[str]:
-    return [line for block in Steps(reader, names).blocks() for line in block.text.split("\n")[1:]]
+    return numbered(Steps(reader, names).told())
 
 
 def _done_in_blender(told: list[str]) -> bool:
