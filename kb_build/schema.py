@@ -16,7 +16,7 @@ from urllib.parse import quote
 if TYPE_CHECKING:
     from pathlib import Path
 
-SCHEMA_VERSION = 12
+SCHEMA_VERSION = 13
 APPLICATION_ID = 0x534D574B  # "SMWK", SQLite's field for the application a file belongs to
 
 # How a key came about, in the order in which an answer prefers them.
@@ -33,6 +33,7 @@ class Mark(IntFlag):
     DEPRECATED = auto()
     UNSEEN = auto()  # the default that its line tells is RNA's alone: no new instance was compared
     GIVEN = auto()  # a pointer that is None on all new things, and that an assignment alone fills
+    CUT = auto()  # its line does not tell all values that can be given to it
 
 
 # The levels of the documents.

@@ -74,6 +74,11 @@ class SymbolEntry(NamedTuple):
         """Whether it is a pointer that is None on all new things, and that an assignment alone fills."""
         return bool(self.marks & Mark.GIVEN)
 
+    @property
+    def may_have_more(self) -> bool:
+        """Whether its line does not tell all values that can be given to it."""
+        return bool(self.marks & Mark.CUT)
+
 
 class PageEntry(NamedTuple):
     """A page without its text; ``parent`` is a slug."""

@@ -369,6 +369,17 @@ def _head(symbol: Symbol) -> str:
     return f"`{name}`"
 
 
+def _values(symbol: Symbol) -> list[str]:
+    return [] if is_stand_in(symbol) else [item.identifier for item in symbol.enum_items if item.is_taken]
+
+
+def leaves_out_values(symbol: Symbol) -> bool:
+    """Whether a symbol's line does not tell all values that can be given to it."""
+    if symbol.kind == "property":
+        return len(_values(symbol)) > _SHOWN_VALUES and not is_locked(symbol)
+    return symbol.kind in {"function", "operator"} and bool(symbol.parameters)
+
+
 def member_line(symbol: Symbol, switch: str = "") -> str:
     """Name, type, default, first values and first sentence of a member, as its owner lists it.
 
@@ -386,8 +397,7 @@ def member_line(symbol: Symbol, switch: str = "") -> str:
         notes += ["= None", *([f"({made})"] if (made := _made_by(symbol)) else [])]
     if EMPTY in symbol.flags:
         notes.append("= []")
-    values = [item.identifier for item in symbol.enum_items if item.is_taken]
-    if values and not is_stand_in(symbol):
+    if values := _values(symbol):
         # In brackets: a default stands before them.
         notes.append(f"({'|'.join(values[:_SHOWN_VALUES])}{'|…' if len(values) > _SHOWN_VALUES else ''})")
     if is_locked(symbol):

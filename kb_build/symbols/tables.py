@@ -14,7 +14,7 @@ from kb_build.index.creation import creation_calls
 from kb_build.index.empty_ways import EmptyWays
 from kb_build.schema import FORM_LABEL, FORM_NAME, FORM_PATH, FORM_SHORT, FORM_TOPIC, Mark, pack
 from kb_build.symbols.flags import empty_when_new, fillers, has_unseen_default, is_locked
-from kb_build.symbols.lines import member_line, switches
+from kb_build.symbols.lines import leaves_out_values, member_line, switches
 from kb_build.symbols.records import to_json
 from kb_build.usage.examples import SymbolUsage
 
@@ -93,6 +93,7 @@ def marks_of(symbol: Symbol) -> Mark:
         Mark.DEPRECATED: symbol.deprecation is not None,
         Mark.UNSEEN: has_unseen_default(symbol),
         Mark.GIVEN: empty is not None and not empty.made and not fillers(symbol),
+        Mark.CUT: leaves_out_values(symbol),
     }
     return reduce(or_, (mark for mark, holds in known.items() if holds), Mark(0))
 

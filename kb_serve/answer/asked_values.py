@@ -22,8 +22,6 @@ _COMMON = frozenset(
 # Of arguments of those that have very many, what is hardly said with the rest: ``use_selection``, ``bake_anim``.
 _UNSAID = frozenset({"bake", "export", "import", "object", "only", "use"})
 _VERY_MANY = 20
-_CALLED = {"operator", "function"}
-_CUT = "|…"
 _OF_DIALOGS = "ui_"
 # What follows these is not wanted, up to the next of the words that go on.
 _NOT_WANTED = re.compile(
@@ -47,13 +45,6 @@ class AskedValue(NamedTuple):
 def asked_words(question: str) -> tuple[str, ...]:
     """The stems of the words by which a question asks for something, in their order."""
     return tuple(terms(_NOT_WANTED.sub(" ", question)))
-
-
-def may_have_more(kind: str, line: str) -> bool:
-    """Whether a symbol's line leaves out arguments or values that can be given."""
-    head = line.partition(" — ")[0]
-    is_called = kind in _CALLED and "()" not in head
-    return is_called or (kind == "property" and _CUT in head and "read-only" not in head)
 
 
 def asked_values(symbol: Symbol, asked: Sequence[str]) -> list[AskedValue]:

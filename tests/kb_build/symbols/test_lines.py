@@ -11,12 +11,13 @@ from kb_build.symbols.flags import new_subscript
 from kb_build.symbols.lines import (
     default_text,
     first_sentence,
+    leaves_out_values,
     literal,
     member_line,
     type_text,
     written,
 )
-from kb_build.symbols.records import Deprecation, EnumItem, NewValue, Symbol
+from kb_build.symbols.records import Deprecation, EnumItem, NewValue, Parameter, Symbol
 from kb_build.symbols.taken import NEVER, Setting, Taken
 
 if TYPE_CHECKING:
@@ -222,3 +223,21 @@ def test_a_socket_that_its_identifier_never_gives_is_written_by_its_place() -> N
     )
     assert written(Symbol(path, "socket", OWNER, flags=flags[:1], subscripts=("inputs[6]",))) == path
     assert written(Symbol(f"{OWNER}.x", "property", OWNER)) == f"{OWNER}.x"
+
+
+@pytest.mark.parametrize(
+    ("kind", "fields", "left_out"),
+    [
+        ("function", {"parameters": (Parameter("name", default=()),)}, True),
+        ("function", {}, False),
+        ("property", {"enum_items": tuple(EnumItem(name) for name in "ABCDEFGHIJ")}, True),
+        ("property", {"enum_items": (EnumItem("A"), EnumItem("B"))}, False),
+        ("property", {"enum_items": tuple(map(EnumItem, "ABCDEFGHIJ")), "flags": ("readonly",)}, False),
+        ("class", {}, False),
+    ],
+)
+def test_a_line_tells_few_values_and_no_arguments(
+    kind: str, fields: dict[str, object], left_out: bool
+) -> None:
+    symbol = Symbol(f"{OWNER}.x", kind, OWNER, **fields)  # type: ignore[arg-type]
+    assert leaves_out_values(symbol) is left_out

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from kb_build.symbols.records import EnumItem, Parameter, Symbol
 from kb_build.symbols.taken import NEVER
-from kb_serve.answer.asked_values import asked_values, asked_words, may_have_more
+from kb_serve.answer.asked_values import asked_values, asked_words
 
 _EFFECT = Symbol(
     "bpy.types.StripsTopLevel.new_effect", "function", label="New Effect",
@@ -56,12 +56,3 @@ def test_of_two_with_the_same_words_the_one_in_the_order_of_the_question_comes_f
     )
     found = [value.text for value in asked_values(operator, asked_words("set the origin to the geometry"))]
     assert found == ["type='ORIGIN_GEOMETRY'", "type='GEOMETRY_ORIGIN'"]
-
-
-def test_a_line_that_says_all_needs_no_look() -> None:
-    assert may_have_more("function", "`new_effect(name, type)` — Add")
-    assert not may_have_more("function", "`clear()` — Remove all")
-    assert may_have_more("property", "`type` enum (A|B|…)")
-    assert not may_have_more("property", "`type` enum (A|B)")
-    assert not may_have_more("property", "`type` enum (A|B|…) read-only — A kind")
-    assert not may_have_more("class", "`Strip` — A strip")
