@@ -8,7 +8,7 @@ import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS, VERSION
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS
 from kb_build.flow.members import Members
 from kb_build.flow.scopes import chain_text, name_doubt
 from kb_build.flow.trees import children
@@ -16,12 +16,15 @@ from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
+    FROM_VERSION,
     INT,
     NONE,
+    PASSED,
     STR,
     UNKNOWN,
     Builtin,
     ClassObject,
+    FromProperty,
     Instance,
     LocalFunction,
     Mapping,
@@ -258,7 +261,7 @@ class Expressions(Members):
         operand = self.evaluate(node.operand)
         if isinstance(node.op, ast.Not):
             value = literal(operand) if isinstance(operand, Plain) and operand.kind == "bool" else None
-            source = operand.source if isinstance(operand, Plain) else ""
+            source = operand.source if isinstance(operand, Plain) else None
             return Plain("bool", not value, source) if isinstance(value, bool) else BOOL
         if isinstance(operand, Plain) and isinstance(node.op, ast.USub):
             value = operand.value
@@ -286,13 +289,17 @@ class Expressions(Members):
         """The value of a comparison, where this Blender's version or what it has decides it."""
         if isinstance(left, Tuple) and isinstance(right, Tuple):
             return _compared(left.items, right.items, operator)
-        if isinstance(left, Plain) and isinstance(right, Plain) and VERSION in {left.source, right.source}:
+        if (
+            isinstance(left, Plain)
+            and isinstance(right, Plain)
+            and FROM_VERSION in (left.source, right.source)
+        ):
             return _compared((left,), (right,), operator)
         text = literal_text(left)
         if text is None or not isinstance(operator, (ast.In, ast.NotIn)):
             return BOOL
         there = self._is_listed(text, right_node)
-        return BOOL if there is None else Plain("bool", there == isinstance(operator, ast.In), VERSION)
+        return BOOL if there is None else Plain("bool", there == isinstance(operator, ast.In), FROM_VERSION)
 
     def _is_listed(self, name: str, node: ast.expr) -> bool | None:
         """Whether ``bpy.types.Scene.bl_rna.properties`` or ``dir(bpy.types)`` lists a name; None for what is not sure.
@@ -323,7 +330,7 @@ class Expressions(Members):
         before = self.scope.state
         kinds: list[Type] = []
         holds = isinstance(node.op, ast.And)
-        settles = Plain("bool", not holds, VERSION)  # what follows it is for other versions
+        settles = Plain("bool", not holds, FROM_VERSION)  # what follows it is for other versions
         for place, value in enumerate(node.values):
             kinds.append(self._behind(value))
             if kinds[-1] == settles:
@@ -352,7 +359,7 @@ class Expressions(Members):
             body, other = (node.body, node.orelse) if test.value else (node.orelse, node.body)
             self.file.left_out.add(other)  # it is for other versions
             chosen = self.evaluate(body)
-            return telling(chosen, VERSION, value=True) if is_decided(test) else chosen
+            return telling(chosen, FROM_VERSION, value=True) if is_decided(test) else chosen
         before = self.scope.state
         self.scope.state = self.copied(before)
         self.narrow(node.test, holds=True)
@@ -446,7 +453,9 @@ class Expressions(Members):
     def carried_text(self, node: ast.expr) -> str | None:
         """The text that a name or an item surely holds, though it is written elsewhere."""
         kind = self.types.get(node)
-        text = literal_text(kind) if isinstance(kind, Plain) and kind.source in {"", VERSION} else None
+        if not isinstance(kind, Plain) or not (kind.source is None or kind.source is FROM_VERSION):
+            return None
+        text = literal_text(kind)
         return text if text is not None and self.comes_surely(text) else None
 
     def check_possible(self, owner: Type, name: str, paths: list[str], node: ast.expr) -> None:
@@ -472,9 +481,10 @@ class Expressions(Members):
         found: list[str] = []
         for member in members(kind):
             plain = member.element if isinstance(member, Sequence) else member
-            if isinstance(plain, Plain) and plain.source and not tells(plain):
-                found.append(plain.source)
-            elif plain is not NONE:
+            source = plain.source if isinstance(plain, Plain) else None
+            if isinstance(source, FromProperty):
+                found.append(source.path)
+            elif source is not PASSED and plain is not NONE:
                 return ()
         return tuple(found)
 
@@ -567,7 +577,7 @@ def constants(node: ast.expr) -> list[ast.Constant]:
 
 def is_decided(kind: Type) -> bool:
     """Whether a truth value is decided by the Blender that the script is read for."""
-    return isinstance(kind, Plain) and kind.source == VERSION and isinstance(kind.value, bool)
+    return isinstance(kind, Plain) and kind.source is FROM_VERSION and isinstance(kind.value, bool)
 
 
 def _compared(left: Rows[Type], right: Rows[Type], operator: ast.cmpop) -> Type:
@@ -580,7 +590,7 @@ def _compared(left: Rows[Type], right: Rows[Type], operator: ast.cmpop) -> Type:
     compare = _COMPARISONS.get(type(operator))
     if compare is None or (isinstance(operator, (ast.Eq, ast.NotEq)) and len(ours) > _MINOR):
         return BOOL
-    return Plain("bool", compare(ours, theirs), VERSION)
+    return Plain("bool", compare(ours, theirs), FROM_VERSION)
 
 
 def is_math(kind: Type) -> bool:

@@ -10,16 +10,19 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.expressions import Expressions, is_decided
-from kb_build.flow.facts import VERSION
 from kb_build.flow.scopes import CHOSEN, EVERYTHING, name_doubt
 from kb_build.flow.trees import children, walk
 from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
+    FROM_VERSION,
     UNKNOWN,
+    FromNames,
+    FromVersion,
     LocalFunction,
     Mapping,
     Plain,
     Sequence,
+    Telling,
     Tuple,
     Type,
     Union,
@@ -92,7 +95,7 @@ class Guards(Expressions):
         """Names hold what they do because of what Blender told: flags that are set behind a condition."""
         source = _as_source(doubts)
         held = self.scope.state.names
-        for name in names if source else ():
+        for name in names if source is not None else ():
             kind = held.get(name, UNKNOWN)
             if _may_tell(kind):
                 self.bind(name, telling(kind, source, value=decided))
@@ -100,7 +103,8 @@ class Guards(Expressions):
     def lacked(self, statements: Iterable[ast.stmt]) -> frozenset[str]:
         """The names in statements, which were read, that this Blender lacks, as doubts."""
         rows = (self.resolutions.get(node) for statement in statements for node in walk(statement))
-        return frozenset(name_doubt(row.value) for row in rows if row is not None and row.missing)
+        lacked = (row.value for row in rows if row is not None and row.missing)
+        return frozenset(name_doubt(name) for value in lacked for name in value.split("."))
 
     def _texts(self, nodes: Iterable[ast.expr]) -> Iterator[str]:
         """The texts among expressions that may be names; of an operator's class, its module's and its own as well."""
@@ -132,15 +136,15 @@ def assigned_names(statements: Iterable[ast.stmt]) -> list[str]:
     return found
 
 
-def _doubts(source: str) -> frozenset[str]:
-    """What a value makes doubted that tells of this Blender by a source (see types.Plain)."""
-    names = source.split(".")[1:] if source.startswith(".") else []
-    return frozenset({EVERYTHING} if source == VERSION else map(name_doubt, names))
+def _doubts(source: Telling) -> frozenset[str]:
+    """What a value makes doubted that tells of this Blender."""
+    return frozenset({EVERYTHING} if isinstance(source, FromVersion) else map(name_doubt, source.names))
 
 
-def _as_source(doubts: frozenset[str]) -> str:
+def _as_source(doubts: frozenset[str]) -> Telling | None:
     """The same as a source."""
-    return VERSION if EVERYTHING in doubts else "".join(sorted(doubts))
+    names = frozenset(doubt[1:] for doubt in doubts)
+    return FROM_VERSION if EVERYTHING in doubts else FromNames(names) if names else None
 
 
 def _may_tell(kind: Type) -> bool:

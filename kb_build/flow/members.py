@@ -20,6 +20,7 @@ from kb_build.flow.facts import (
 from kb_build.flow.type_parts import unsure
 from kb_build.flow.types import (
     FLOAT,
+    FROM_VERSION,
     MOST_MEMBERS,
     STR,
     UNKNOWN,
@@ -240,8 +241,8 @@ class Members(Core):
         if not self.version or not path.startswith(VERSION):
             return None
         if path != VERSION:
-            return Plain("str", None, VERSION)
-        return Tuple(tuple(Plain("int", part, VERSION) for part in self.version))
+            return Plain("str", None, FROM_VERSION)
+        return Tuple(tuple(Plain("int", part, FROM_VERSION) for part in self.version))
 
     def local_module(self, name: str) -> Type:
         """A module of the files that are analysed together, which is read first; UNKNOWN for no such module."""

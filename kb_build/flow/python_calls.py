@@ -6,11 +6,11 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import ANY
-from kb_build.flow.facts import VERSION
 from kb_build.flow.script_calls import ScriptCalls
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
+    FROM_VERSION,
     INT,
     NONE,
     STR,
@@ -115,7 +115,7 @@ class PythonCalls(ScriptCalls):
                 return NONE
             case "hasattr":
                 text = literal_text(arguments[1]) if len(arguments) == 2 else None
-                return Plain("bool", True, VERSION) if text and self.has(first, text) else BOOL
+                return Plain("bool", True, FROM_VERSION) if text and self.has(first, text) else BOOL
             case "getattr" | "delattr":
                 return self._named_attribute(call)
             case "dict":
