@@ -179,7 +179,7 @@ class Assignments(Guards, Annotations):
             missing = () if is_expected else found.missing
             self.resolve(
                 target, "store", target.attr, found.symbols, missing, found.possible,
-                sure=found.sure, guarded=self.scope.state.doubts(chain_text(target.value)),
+                sure=found.sure, guarded=self.scope.state.doubts_members_of(target.value),
             )  # fmt: skip
         if target.attr in DISCRIMINANTS:
             self._forget_kinds(owner)

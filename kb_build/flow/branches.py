@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import ast
+from typing import TYPE_CHECKING
 
+from kb_build.flow.doubts import CHOSEN, EVERYTHING, as_source
 from kb_build.flow.expressions import is_decided
 from kb_build.flow.guards import Guards, assigned_names
-from kb_build.flow.scopes import CHOSEN, EVERYTHING, State
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Type, literal
 from kb_build.flow.ways import Ways
+
+if TYPE_CHECKING:
+    from kb_build.flow.scopes import State
 
 
 class Branches(Guards, Ways):
@@ -20,7 +24,7 @@ class Branches(Guards, Ways):
         test = self.evaluate(node.test)
         # Only another version's code is left out: a switch may be set by whoever reads the script.
         truth = literal(test) if is_decided(test) else None
-        asked = self.asked(node.test, chooses=True) if truth is None else frozenset({EVERYTHING})
+        asked = self.asked(node.test, chooses=True) if truth is None else EVERYTHING
         before = self.scope.state
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
@@ -34,7 +38,7 @@ class Branches(Guards, Ways):
         if None not in ways:
             self.scope.state.doubted = before.doubted
         if flags := assigned_names([*node.body, *node.orelse]):
-            self.tell(flags, asked - {CHOSEN}, decided=truth is not None)
+            self.tell(flags, as_source(asked), decided=truth is not None)
         return reached
 
     def read_match(self, node: ast.Match) -> bool:
@@ -42,7 +46,7 @@ class Branches(Guards, Ways):
         subject = self.evaluate(node.subject)
         before = self.scope.state
         otherwise = self.copied(before)
-        otherwise.doubted |= self.asked(node.subject) | {CHOSEN}
+        otherwise.doubted |= self.asked(node.subject) | CHOSEN
         ways: list[State | None] = []
         whole = False
         for case in node.cases:
@@ -60,7 +64,8 @@ class Branches(Guards, Ways):
         reached = self.meet(ways, before)
         if None not in ways:
             self.scope.state.doubted = before.doubted
-        self.tell(assigned_names(part for case in node.cases for part in case.body), self.asked(node.subject))
+        flags = assigned_names(part for case in node.cases for part in case.body)
+        self.tell(flags, as_source(self.asked(node.subject)))
         return reached
 
     def _bind_pattern(self, pattern: ast.pattern, subject: Type, node: ast.expr) -> None:

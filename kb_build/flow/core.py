@@ -7,7 +7,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
-from kb_build.flow.scopes import CHOSEN, State, name_doubt
+from kb_build.flow.doubts import NO_DOUBTS, Doubts
 from kb_build.flow.source_files import SourceFile
 from kb_build.flow.types import (
     UNKNOWN,
@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Iterator, Sequence
 
     from kb_build.flow.api import Api
-    from kb_build.flow.scopes import Loop, Scope
+    from kb_build.flow.scopes import Loop, Scope, State
     from kb_build.flow.types import Given, ResolutionKind
 
 DEEPEST_RUN = 60  # a function that is called further inside is read later
@@ -95,9 +95,9 @@ class Core:
 
     def copied(self, state: State) -> State:
         """The same state, to be changed on its own; this pays for joining it with others too."""
-        things = len(state.names)
-        if state.chains or state.doubted:
-            things += len(state.chains) + len(state.doubted)
+        things, doubted = len(state.names), state.doubted
+        if state.chains or doubted is not NO_DOUBTS:
+            things += len(state.chains) + len(doubted.members) + len(doubted.chains)
         if things >= _IN_ONE_STEP:
             self.spend(things)
         return state.copy()
@@ -108,11 +108,11 @@ class Core:
             self.spend(len(self.scope.state.chains))
         self.scope.bind(name, kind)
 
-    def doubt_here(self, doubts: frozenset[str]) -> None:
-        """Adds to what is doubted from here on (see :class:`scopes.State`)."""
+    def doubt_here(self, doubts: Doubts) -> None:
+        """Adds to what is doubted from here on."""
         state = self.scope.state
-        if state.doubted:
-            self.spend(len(state.doubted))
+        if state.doubted is not NO_DOUBTS:
+            self.spend(len(state.doubted.members) + len(state.doubted.chains))
         state.doubted |= doubts
 
     # What the parts give each other.
@@ -182,7 +182,7 @@ class Core:
         """Assigns to a name, an attribute, an item, or several of them."""
         raise NotImplementedError
 
-    def narrow(self, test: ast.expr, *, holds: bool, asked: frozenset[str] | None = None) -> None:
+    def narrow(self, test: ast.expr, *, holds: bool, asked: Doubts | None = None) -> None:
         """Applies what is known once a condition holds or does not; ``asked``: see :meth:`guards.Guards.doubt`."""
         raise NotImplementedError
 
@@ -201,8 +201,8 @@ class Core:
         guarded: bool = False,
     ) -> None:
         """Records what a part of the script stands for; a later reading of the same part replaces it."""
-        state = self.scope.state
-        doubted = guarded or state.doubts(name_doubt(value)) or (self.tries and CHOSEN in state.doubted)
+        here = self.scope.state.doubted
+        doubted = guarded or here.has_member(value) or (self.tries and here.chosen)
         self.resolutions[node] = Resolution(
             node, kind, value, _once(symbols), _once(missing), _once(possible), sure and not self.guessing,
             doubted or bool(self.caught), self.statement, frozenset() if doubted else self.caught,
@@ -238,9 +238,8 @@ class Core:
 
     def comes_surely(self, text: str) -> bool:
         """Whether a text that a name holds surely is what is used here: nothing asks for it, or chooses by it."""
-        state = self.scope.state
-        is_chosen = CHOSEN in state.doubted or state.doubts(name_doubt(text))
-        return not (self.caught or self.guessing or is_chosen)
+        doubted = self.scope.state.doubted
+        return not (self.caught or self.guessing or doubted.chosen or doubted.has_member(text))
 
     def _known(self, number: int, name: str) -> Type | None:
         if not name:
@@ -273,9 +272,11 @@ class Core:
         number = self.numbers.get(node)
         if number is None:
             number = self.numbers[node] = len(self.functions)
-            self.spend(len(self.scope.state.doubted))
-            doubted = self.scope.state.doubted_names
-            self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file, doubted=doubted))
+            doubted = self.scope.state.doubted
+            self.spend(len(doubted.members))
+            self.functions.append(
+                FunctionDefinition(node, self.scope, cls, file=self.file, doubted=doubted.anywhere)
+            )
         elif not self.tries:
             self.functions[number].scope = self.scope  # what is around it may know more by now
         return number

@@ -8,9 +8,10 @@ import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
+from kb_build.flow.doubts import NO_DOUBTS
 from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS
 from kb_build.flow.members import Members
-from kb_build.flow.scopes import chain_text, name_doubt
+from kb_build.flow.scopes import chain_text
 from kb_build.flow.trees import children
 from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
@@ -103,7 +104,7 @@ class Expressions(Members):
 
     def _behind(self, node: ast.expr) -> Type:
         """Evaluates what stands behind a condition."""
-        if self.scope.state.doubts():
+        if self.scope.state.doubted.everything:
             self.file.doubted.add(node)
         return self.evaluate(node)
 
@@ -130,10 +131,9 @@ class Expressions(Members):
         found = self.attribute(owner, node.attr)
         if found.symbols or found.possible or (found.missing and known is None):
             missing = found.missing if known is None else ()
-            doubted = bool(self.scope.state.doubted) and self.scope.state.doubts(chain_text(node.value))
             self.resolve(
                 node, "attribute", node.attr, found.symbols, missing, found.possible,
-                sure=found.sure, guarded=doubted,
+                sure=found.sure, guarded=self.scope.state.doubts_members_of(node.value),
             )  # fmt: skip
         if known is not None:
             return known
@@ -173,7 +173,8 @@ class Expressions(Members):
         if kind is None:
             return UNKNOWN
         # A text that the script has asked for may be one of another Blender: a class that ``nodes.new`` makes.
-        if self.scope.state.doubted and isinstance(value, str) and self.scope.state.doubts(name_doubt(value)):
+        doubted = self.scope.state.doubted
+        if doubted is not NO_DOUBTS and isinstance(value, str) and doubted.has_member(value):
             self.file.doubted.add(node)
         if isinstance(value, (bytes, complex)) or (isinstance(value, str) and len(value) > _LONGEST_LITERAL):
             return Plain(kind)

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.core import DEEPEST_RUN
 from kb_build.flow.parameters import Parameters
-from kb_build.flow.scopes import CHOSEN, Scope, State, kept, name_doubt
+from kb_build.flow.scopes import Scope, State, kept
 from kb_build.flow.texts import for_one_call, has_passed, has_texts, texts_in, without_texts
 from kb_build.flow.trees import default_values
 from kb_build.flow.trials import Trials
@@ -129,11 +129,11 @@ class Functions(Parameters, Trials):
 
     def _comes_surely(self, whole: dict[str, Type]) -> bool:
         """Whether a call surely happens where it is read, with texts that are those of this call."""
-        state = self.scope.state
-        if self.caught or state.doubts() or CHOSEN in state.doubted or any(map(has_passed, whole.values())):
+        doubted = self.scope.state.doubted
+        if self.caught or doubted.everything or doubted.chosen or any(map(has_passed, whole.values())):
             return False
         texts = (str(text.value) for kind in whole.values() for text in texts_in(kind))
-        return not state.doubted or state.doubted.isdisjoint(map(name_doubt, texts))
+        return not doubted.members or doubted.members.isdisjoint(texts)
 
     def _is_one(self, kind: Type | None, *, with_texts: bool) -> bool:
         """Whether a type is one thing, or none that has members, and no text may decide more of it: no call is known to

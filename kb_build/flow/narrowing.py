@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from dataclasses import replace
 
+from kb_build.flow.doubts import Doubts
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.guards import Guards
 from kb_build.flow.scopes import chain_text
@@ -32,7 +33,7 @@ from kb_build.symbols.api_names import OBJECT
 class Narrowing(Guards):
     """Applies conditions to what names and chains hold."""
 
-    def narrow(self, test: ast.expr, *, holds: bool, asked: frozenset[str] | None = None) -> None:
+    def narrow(self, test: ast.expr, *, holds: bool, asked: Doubts | None = None) -> None:
         """See :class:`core.Core`."""
         self.doubt(test, holds=holds, asked=asked)
         self._narrow(test, holds=holds)
@@ -75,7 +76,7 @@ class Narrowing(Guards):
 
     def _doubt_chain(self, text: str) -> None:
         if text:
-            self.doubt_here(frozenset({text}))
+            self.doubt_here(Doubts(chains=frozenset({text})))
 
     def _type_of(self, node: ast.expr) -> Type:
         return self.types.get(node, UNKNOWN)

@@ -30,7 +30,7 @@ class Statements(Assignments, Branches, Loops, Handlers, Imports, Defining):
         """Reads statements one after the other; whether what follows them can be reached."""
         for place, statement in enumerate(body):
             self.statement = statement
-            if self.scope.state.doubted and self.scope.state.doubts():
+            if self.scope.state.doubted.everything:
                 self.file.doubted.add(statement)
             reader = self._statement_readers.get(type(statement))
             if reader is not None and not reader(self, statement):
