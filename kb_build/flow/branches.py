@@ -25,18 +25,18 @@ class Branches(Guards, Ways):
         # Only another version's code is left out: a switch may be set by whoever reads the script.
         truth = literal(test) if is_decided(test) else None
         asked = self.asked(node.test, chooses=True) if truth is None else EVERYTHING
-        before = self.scope.state
+        before = self.here.scope.state
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
             if isinstance(truth, bool) and truth is not holds:
-                self.file.left_out.update(body)
+                self.here.file.left_out.update(body)
                 continue
-            self.scope.state = self.copied(before)
+            self.here.scope.state = self.copied(before)
             self.narrow(node.test, holds=holds, asked=asked)
-            ways.append(self.way(self.scope.state, body))
+            ways.append(self.way(self.here.scope.state, body))
         reached = self.meet(ways, before)
         if None not in ways:
-            self.scope.state.doubted = before.doubted
+            self.here.scope.state.doubted = before.doubted
         if flags := assigned_names([*node.body, *node.orelse]):
             self.tell(flags, as_source(asked), decided=truth is not None)
         return reached
@@ -44,13 +44,13 @@ class Branches(Guards, Ways):
     def read_match(self, node: ast.Match) -> bool:
         """Reads ``match``: each case with what it tells of the subject."""
         subject = self.evaluate(node.subject)
-        before = self.scope.state
+        before = self.here.scope.state
         otherwise = self.copied(before)
         otherwise.doubted |= self.asked(node.subject) | CHOSEN
         ways: list[State | None] = []
         whole = False
         for case in node.cases:
-            self.scope.state = self.copied(otherwise)
+            self.here.scope.state = self.copied(otherwise)
             self._bind_pattern(case.pattern, subject, node.subject)
             if case.guard is not None:
                 self.evaluate(case.guard)
@@ -58,12 +58,12 @@ class Branches(Guards, Ways):
             whole = whole or (
                 isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None and not case.guard
             )
-            ways.append(self.way(self.scope.state, case.body))
+            ways.append(self.way(self.here.scope.state, case.body))
         if not whole:
             ways.append(otherwise)
         reached = self.meet(ways, before)
         if None not in ways:
-            self.scope.state.doubted = before.doubted
+            self.here.scope.state.doubted = before.doubted
         flags = assigned_names(part for case in node.cases for part in case.body)
         self.tell(flags, as_source(self.asked(node.subject)))
         return reached

@@ -40,7 +40,7 @@ class Guards(Expressions):
         """Doubts what is read from here on, where a condition, which was read, holds or does not; ``asked`` is what it
         asks, where that is known.
         """
-        kind = self.types.get(test, UNKNOWN)
+        kind = self.here.types.get(test, UNKNOWN)
         if not is_decided(kind):
             self.doubt_here(self.asked(test, chooses=True) if asked is None else asked)
         elif literal(kind) is not holds:
@@ -56,9 +56,11 @@ class Guards(Expressions):
         waiting: list[ast.AST] = [node]
         for part in waiting:
             if isinstance(part, ast.BoolOp):  # the sides that are decided leave the answer to the others
-                waiting += (side for side in part.values if not is_decided(self.types.get(side, UNKNOWN)))
+                waiting += (
+                    side for side in part.values if not is_decided(self.here.types.get(side, UNKNOWN))
+                )
                 continue
-            if isinstance(part, ast.expr) and (source := tells(self.types.get(part, UNKNOWN))):
+            if isinstance(part, ast.expr) and (source := tells(self.here.types.get(part, UNKNOWN))):
                 found |= as_doubts(source)
             match part:
                 case ast.Name(id="TYPE_CHECKING") | ast.Attribute(attr="TYPE_CHECKING"):
@@ -78,7 +80,7 @@ class Guards(Expressions):
 
     def _may_choose(self, name: ast.Name) -> bool:
         """Whether a name holds a plain value, or what is not known."""
-        kind = self.types.get(name, UNKNOWN)
+        kind = self.here.types.get(name, UNKNOWN)
         return any(
             one is UNKNOWN or isinstance(one, (Plain, Sequence, Tuple, Mapping)) for one in members(kind)
         )
@@ -91,7 +93,7 @@ class Guards(Expressions):
 
     def tell(self, names: Iterable[str], source: Telling | None, *, decided: bool = False) -> None:
         """Names hold what they do because of what Blender told: flags that are set behind a condition."""
-        held = self.scope.state.names
+        held = self.here.scope.state.names
         for name in names if source is not None else ():
             kind = held.get(name, UNKNOWN)
             if _may_tell(kind):
@@ -99,7 +101,7 @@ class Guards(Expressions):
 
     def lacked(self, statements: Iterable[ast.stmt]) -> FromNames | None:
         """How a value tells of this Blender that depends on the names in statements, which were read, that it lacks."""
-        rows = (self.resolutions.get(node) for statement in statements for node in walk(statement))
+        rows = (self.here.resolutions.get(node) for statement in statements for node in walk(statement))
         lacked = (row.value for row in rows if row is not None and row.missing)
         names = frozenset(name for value in lacked for name in value.split("."))
         return FromNames(names) if names else None
@@ -107,7 +109,7 @@ class Guards(Expressions):
     def _texts(self, nodes: Iterable[ast.expr]) -> Iterator[str]:
         """The texts among expressions that may be names; of an operator's class, its module's and its own as well."""
         for node in nodes:
-            text = literal_text(self.types.get(node, UNKNOWN))
+            text = literal_text(self.here.types.get(node, UNKNOWN))
             if text is not None and text.isidentifier():
                 yield text
                 module, of_class, operator = text.partition("_OT_")
@@ -116,7 +118,7 @@ class Guards(Expressions):
 
     def _calls_for_version(self, call: ast.Call) -> bool:
         """Whether a function of the script is called that looks at Blender's version."""
-        kind = self.types.get(call.func)
+        kind = self.here.types.get(call.func)
         if not isinstance(kind, LocalFunction):
             return False
         function = self.functions[kind.number]

@@ -135,9 +135,9 @@ class PythonCalls(ScriptCalls):
         return LocalClass(kind.number) if isinstance(kind, LocalInstance) else UNKNOWN
 
     def _super(self) -> Type:
-        if self.function is None or self.function.cls is None:
+        if self.here.function is None or self.here.function.cls is None:
             return UNKNOWN
-        bases = self.classes[self.function.cls].bases
+        bases = self.classes[self.here.function.cls].bases
         found: list[Type] = []
         for base in bases:
             if isinstance(base, LocalClass):
@@ -218,7 +218,7 @@ class PythonCalls(ScriptCalls):
                 grown = Mapping(UNKNOWN, kind if is_empty else join(receiver.value, kind))
             case _:
                 return
-        held = self.scope.state.names
+        held = self.here.scope.state.names
         self.spend(len(held))
         for name in [name for name, one in held.items() if one is receiver]:
             self.bind(name, grown)
