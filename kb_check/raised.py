@@ -10,7 +10,7 @@ from kb_build.symbols.api_names import OPERATORS
 from kb_build.symbols.api_names import TYPES as T
 
 if TYPE_CHECKING:
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.types import Resolution, ResolutionKind
 
 _MODULE = "bpy.ops"
 LACKS = ("AttributeError",)
@@ -18,7 +18,7 @@ LACKS_KEY = ("KeyError",)
 # A value that is refused; a sequence of the wrong length is a ValueError.
 REFUSES = ("TypeError", "ValueError")
 REFUSES_ENUM = ("TypeError",)
-_BY_KIND = {
+_BY_KIND: dict[ResolutionKind, tuple[str, ...]] = {
     "attribute": LACKS,
     "store": LACKS,
     "name": ("ImportError", "ModuleNotFoundError"),

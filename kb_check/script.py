@@ -24,7 +24,7 @@ if TYPE_CHECKING:
     from kb_check.package import Package
 
 # The kinds of parts of a script that may stand for what an add-on registers.
-REGISTERED = frozenset({"attribute", "store", "text", "button", "name"})
+REGISTERED: frozenset[ResolutionKind] = frozenset({"attribute", "store", "text", "button", "name"})
 _T = TypeVar("_T")
 _Key = TypeVar("_Key", bound="Hashable")
 _Node = TypeVar("_Node", bound=ast.AST)

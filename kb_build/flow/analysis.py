@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import ast
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.calls import Calls
@@ -73,7 +73,7 @@ class Analyzer(Statements, Functions, Calls):
         for _ in range(_MOST_ROUNDS):
             if not self._read_functions():
                 break
-        self.settled, self.depth = True, 0
+        self.settled = True
         self.doubt_denials()
         doubt_what_others_use(self.sources, self.numbers, self._is_called_by_blender)
         self._follow_calls()
@@ -120,32 +120,26 @@ class Analyzer(Statements, Functions, Calls):
         file.started = True
         file.module.shared = file.shared_names[file.tree]
         self.importing += 1
-        steps_left, depth, self.steps_left = self.steps_left, self.depth, file.steps_left
-        tries, self.tries = self.tries, False
+        steps_left, self.steps_left = self.steps_left, file.steps_left
         try:
-            with self.inside(file, file.module, None):
+            with self.at(replace(self.here.further(file, file.module, None), tries=False)):
                 self._guarded_read(file)
         except StepsExhausted:
             file.complete = False
         finally:
-            file.steps_left, self.steps_left, self.depth, self.tries = (
-                self.steps_left,
-                steps_left,
-                depth,
-                tries,
-            )
+            file.steps_left, self.steps_left = self.steps_left, steps_left
             self.importing -= 1
 
     def _guarded_read(self, file: SourceFile) -> None:
         assert file.tree is not None
         for statement in file.tree.body:
-            depth, doubted = self.depth, file.module.state.doubted
+            doubted = file.module.state.doubted
             try:
-                with self.inside(file, file.module, None):
+                with self.at(self.here.further(file, file.module, None)):
                     if not self.read_body([statement]):
                         break
             except RecursionError:
-                self.depth, file.module.state.doubted = depth, doubted
+                file.module.state.doubted = doubted
                 file.unread.add(statement)
 
     def _read_functions(self) -> bool:
@@ -160,7 +154,7 @@ class Analyzer(Statements, Functions, Calls):
             if settled and not function.stale and self.is_current(function):
                 continue
             found = True
-            self.depth, self.steps_left = 0, file.steps_left
+            self.steps_left = file.steps_left
             try:
                 self.run(number)
             except RecursionError:

@@ -40,22 +40,22 @@ class Annotations(Core):
 
     def annotated(self, node: ast.expr) -> Type:
         """The type of a value with this annotation; a wrong name in it is no error where Python does not read it."""
-        if not self.file.keeps_annotations:
+        if not self.here.file.keeps_annotations:
             return self._meant(node)
         with self.ready_for():
             return self._meant(node)
 
     def _quoted(self, node: ast.Constant) -> Type:
         """What a quoted annotation means, which Python does not read."""
-        if node not in self.file.quoted:
-            self.file.quoted[node] = _unquoted(node)
-        inner = self.file.quoted[node]
-        if inner is None or self.depth > DEEPEST:
+        if node not in self.here.file.quoted:
+            self.here.file.quoted[node] = _unquoted(node)
+        inner = self.here.file.quoted[node]
+        if inner is None or self.here.depth > DEEPEST:
             return UNKNOWN
         with self.ready_for():
-            self.depth += 1
+            self.here.depth += 1
             kind = self._meant(inner)
-            self.depth -= 1
+            self.here.depth -= 1
         return kind
 
     def _meant(self, node: ast.expr, depth: int = 0) -> Type:  # noqa: PLR0911 - one return a form

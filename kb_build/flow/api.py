@@ -27,6 +27,7 @@ from kb_build.flow.types import (
     UNKNOWN,
     ClassObject,
     Collection,
+    FromProperty,
     Function,
     Instance,
     Module,
@@ -261,7 +262,7 @@ class Api:
 
     def _value_type(self, symbol: Symbol) -> Type:
         if symbol.type == "enum":
-            value = Plain("str", None, symbol.path)
+            value = Plain("str", None, FromProperty(symbol.path))
             return Sequence("set", value) if "enum-flag" in symbol.flags else value
         scalar = _SCALARS.get(symbol.type)
         if scalar is None:
@@ -445,7 +446,7 @@ class Api:
         if symbol.type_settings:
             return UNKNOWN
         if fixed and symbol.type == "menu" and symbol.enum_items and self.is_class(MENU_SOCKET):
-            return Instance(MENU_SOCKET, (("default_value", Plain("str", None, symbol.path)),))
+            return Instance(MENU_SOCKET, (("default_value", Plain("str", None, FromProperty(symbol.path))),))
         target = f"{T}{symbol.target}"
         if not self.descends(target, f"{T}NodeSocket"):
             target = f"{T}NodeSocket{symbol.type.title()}"

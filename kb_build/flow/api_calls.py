@@ -81,7 +81,7 @@ class ApiCalls(ScriptCalls):
 
     def _forget_data(self) -> None:
         """Objects have got data of another kind: a mesh has become a curve."""
-        state = self.scope.state
+        state = self.here.scope.state
         self.spend(len(state.names) + len(state.chains))
         for name, kind in state.names.items():
             if isinstance(kind, Instance) and kind.cls == OBJECT and kind.traits:
@@ -126,7 +126,7 @@ class ApiCalls(ScriptCalls):
         """One curve, or a list of them where the property has several values and no index is given."""
         curve = self.api.instance(f"{T}FCurve")
         is_path_alone = len(call.arguments) == 1 and not call.keywords
-        named = self.resolutions.get(call.node.args[0]) if is_path_alone else None
+        named = self.here.resolutions.get(call.node.args[0]) if is_path_alone else None
         paths = named.symbols if named else ()
         symbols = [symbol for path in paths if (symbol := self.api.symbols.symbol(path))]
         if symbols and all(symbol.array for symbol in symbols):
@@ -160,12 +160,12 @@ class ApiCalls(ScriptCalls):
             nodes = node.elts if isinstance(node, ast.Set) else [node]
             for item in nodes:
                 for constant in constants(item) if isinstance(item, (ast.Constant, ast.IfExp)) else ():
-                    if constant in self.types:  # else it is of a branch for other versions
+                    if constant in self.here.types:  # else it is of a branch for other versions
                         self.resolve_value(constant, constant.value, (symbol.path,), parameter.name)
                 if isinstance(item, ast.Name):
                     self.check_carried(item, (symbol.path,), parameter.name)
         elif isinstance(node, ast.Name) and CLASS_NAMES.get(symbol.path) == parameter.name:
-            self.resolutions.pop(node, None)
+            self.here.resolutions.pop(node, None)
             text = self.carried_text(node)
             if text and not self.api.is_class(T + text):
                 self.resolve(node, "class", text, missing=(f"{symbol.path}({parameter.name})",))

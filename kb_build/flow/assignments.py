@@ -46,13 +46,13 @@ class Assignments(Guards, Annotations):
 
     def _note_asked(self, name: str, value: ast.expr) -> None:
         """Notes ``name = hasattr(owner, "member")`` and ``name = getattr(owner, "member", default)``."""
-        self.scope.asked.pop(name, None)
+        self.here.scope.asked.pop(name, None)
         match value:
             case (
                 ast.Call(func=ast.Name(id="hasattr"), args=[_, _])
                 | ast.Call(func=ast.Name(id="getattr"), args=[_, _, _])
             ):
-                self.scope.asked[name] = value
+                self.here.scope.asked[name] = value
             case _:
                 pass
 
@@ -61,7 +61,7 @@ class Assignments(Guards, Annotations):
         kind = self.evaluate(node.value) if node.value is not None else UNKNOWN
         if isinstance(node.annotation, ast.Call):  # ``size: FloatProperty(...)``
             declared = self.evaluate(node.annotation)
-        elif self.function is not None and not self.scope.is_class:
+        elif self.here.function is not None and not self.here.scope.is_class:
             with self.ready_for():  # Python does not evaluate those of a function's own names
                 declared = self.annotated(node.annotation)
         else:
@@ -92,7 +92,7 @@ class Assignments(Guards, Annotations):
         match target:
             case ast.Name():
                 self.bind(target.id, kind)
-                self.types[target] = kind
+                self.here.types[target] = kind
             case ast.Attribute():
                 self._store(target, kind, value)
             case ast.Tuple() | ast.List():
@@ -135,12 +135,12 @@ class Assignments(Guards, Annotations):
             case _:
                 return
         match target.value:
-            case ast.Name(id=name) if name in self.scope.state.names:
+            case ast.Name(id=name) if name in self.here.scope.state.names:
                 self.bind(name, filled)
             case ast.Name(id=name):
-                self.scope.fill_outside(name, filled)
+                self.here.scope.fill_outside(name, filled)
             case ast.Attribute(value=value, attr=name):
-                of = self.types.get(value, UNKNOWN)
+                of = self.here.types.get(value, UNKNOWN)
                 if isinstance(of, (LocalInstance, LocalClass)):
                     self.classes[of.number].bind(name, filled)
             case _:
@@ -151,7 +151,7 @@ class Assignments(Guards, Annotations):
     ) -> None:
         owner = self.evaluate(target.value)
         if target.attr in _CHOOSING:
-            self.scope.state.active = None
+            self.here.scope.state.active = None
         text = chain_text(target)
         if isinstance(owner, LocalInstance):
             self._store_on_instance(owner, target.attr, kind)
@@ -160,18 +160,18 @@ class Assignments(Guards, Annotations):
         elif owner == _TYPES:
             # Whatever is assigned to the module is there, as the server that an add-on keeps.
             self.own_types[target.attr] = join(self.own_types.get(target.attr, kind), kind)
-            self.resolutions.pop(target, None)
+            self.here.resolutions.pop(target, None)
             return
         else:
             self.register(owner, target.attr, kind, declared=self.is_declared(value))
             if all(isinstance(member, ClassObject) for member in members(owner)):
-                self.resolutions.pop(target, None)
+                self.here.resolutions.pop(target, None)
                 return
-        is_expected = text in self.scope.state.chains
-        if text and self.scope.state.chains:
-            self.spend(len(self.scope.state.chains))
-            self.scope.forget(text)
-        self.resolutions.pop(target, None)
+        is_expected = text in self.here.scope.state.chains
+        if text and self.here.scope.state.chains:
+            self.spend(len(self.here.scope.state.chains))
+            self.here.scope.forget(text)
+        self.here.resolutions.pop(target, None)
         if owner is UNKNOWN:
             return
         found = self.attribute(owner, target.attr)
@@ -179,7 +179,7 @@ class Assignments(Guards, Annotations):
             missing = () if is_expected else found.missing
             self.resolve(
                 target, "store", target.attr, found.symbols, missing, found.possible,
-                sure=found.sure, guarded=self.scope.state.doubts(chain_text(target.value)),
+                sure=found.sure, guarded=self.here.scope.state.doubts_members_of(target.value),
             )  # fmt: skip
         if target.attr in DISCRIMINANTS:
             self._forget_kinds(owner)
@@ -192,14 +192,14 @@ class Assignments(Guards, Annotations):
             isinstance(kind, (Instance, LocalInstance)) and isinstance(found.type, Instance) and not converts
         )
         if text and holds:
-            self.scope.state.chains[text] = kind
+            self.here.scope.state.chains[text] = kind
 
     def _forget_kinds(self, owner: Type) -> None:
         """Something becomes of another class: what is read anew from a chain may be that."""
         bases = {
             self.api.settable_kind(kind.cls) for kind in members(owner) if isinstance(kind, Instance)
         } - {""}
-        chains = self.scope.state.chains
+        chains = self.here.scope.state.chains
         self.spend(len(chains))
         for text, kind in [*chains.items()] if bases else ():
             if any(self.api.descends(one.cls, base) for one in members(kind) for base in bases

@@ -3,13 +3,17 @@
 from __future__ import annotations
 
 import ast
+from typing import TYPE_CHECKING
 
+from kb_build.flow.doubts import CHOSEN, EVERYTHING, as_source
 from kb_build.flow.expressions import is_decided
 from kb_build.flow.guards import Guards, assigned_names
-from kb_build.flow.scopes import CHOSEN, EVERYTHING, State
 from kb_build.flow.trees import walk
 from kb_build.flow.types import UNKNOWN, Type, literal
 from kb_build.flow.ways import Ways
+
+if TYPE_CHECKING:
+    from kb_build.flow.scopes import State
 
 
 class Branches(Guards, Ways):
@@ -20,33 +24,33 @@ class Branches(Guards, Ways):
         test = self.evaluate(node.test)
         # Only another version's code is left out: a switch may be set by whoever reads the script.
         truth = literal(test) if is_decided(test) else None
-        asked = self.asked(node.test, chooses=True) if truth is None else frozenset({EVERYTHING})
-        before = self.scope.state
+        asked = self.asked(node.test, chooses=True) if truth is None else EVERYTHING
+        before = self.here.scope.state
         ways: list[State | None] = []
         for holds, body in ((True, node.body), (False, node.orelse)):
             if isinstance(truth, bool) and truth is not holds:
-                self.file.left_out.update(body)
+                self.here.file.left_out.update(body)
                 continue
-            self.scope.state = self.copied(before)
+            self.here.scope.state = self.copied(before)
             self.narrow(node.test, holds=holds, asked=asked)
-            ways.append(self.way(self.scope.state, body))
+            ways.append(self.way(self.here.scope.state, body))
         reached = self.meet(ways, before)
         if None not in ways:
-            self.scope.state.doubted = before.doubted
+            self.here.scope.state.doubted = before.doubted
         if flags := assigned_names([*node.body, *node.orelse]):
-            self.tell(flags, asked - {CHOSEN}, decided=truth is not None)
+            self.tell(flags, as_source(asked), decided=truth is not None)
         return reached
 
     def read_match(self, node: ast.Match) -> bool:
         """Reads ``match``: each case with what it tells of the subject."""
         subject = self.evaluate(node.subject)
-        before = self.scope.state
+        before = self.here.scope.state
         otherwise = self.copied(before)
-        otherwise.doubted |= self.asked(node.subject) | {CHOSEN}
+        otherwise.doubted |= self.asked(node.subject) | CHOSEN
         ways: list[State | None] = []
         whole = False
         for case in node.cases:
-            self.scope.state = self.copied(otherwise)
+            self.here.scope.state = self.copied(otherwise)
             self._bind_pattern(case.pattern, subject, node.subject)
             if case.guard is not None:
                 self.evaluate(case.guard)
@@ -54,13 +58,14 @@ class Branches(Guards, Ways):
             whole = whole or (
                 isinstance(case.pattern, ast.MatchAs) and case.pattern.pattern is None and not case.guard
             )
-            ways.append(self.way(self.scope.state, case.body))
+            ways.append(self.way(self.here.scope.state, case.body))
         if not whole:
             ways.append(otherwise)
         reached = self.meet(ways, before)
         if None not in ways:
-            self.scope.state.doubted = before.doubted
-        self.tell(assigned_names(part for case in node.cases for part in case.body), self.asked(node.subject))
+            self.here.scope.state.doubted = before.doubted
+        flags = assigned_names(part for case in node.cases for part in case.body)
+        self.tell(flags, as_source(self.asked(node.subject)))
         return reached
 
     def _bind_pattern(self, pattern: ast.pattern, subject: Type, node: ast.expr) -> None:

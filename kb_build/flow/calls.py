@@ -50,7 +50,7 @@ class Calls(ApiCalls, PythonCalls):
             result = self._one_of_several(callee, call)
         else:
             result = self._one_call(callee, call)
-        self.scope.state.active = self._active_after(callee)
+        self.here.scope.state.active = self._active_after(callee)
         return result
 
     def _active_after(self, callee: Type) -> Type | None:
@@ -64,7 +64,7 @@ class Calls(ApiCalls, PythonCalls):
             case Function(path=path) if path.endswith((".temp_override", ".remove", ".link", ".unlink")):
                 return None
             case Operator() | Function() | ClassObject() | Builtin():
-                return self.scope.state.active
+                return self.here.scope.state.active
             case _:
                 return None
 
@@ -80,17 +80,17 @@ class Calls(ApiCalls, PythonCalls):
         rows: dict[ast.AST, list[Resolution]] = defaultdict(list)
         for member in called:
             for part in parts:
-                self.resolutions.pop(part, None)
+                self.here.resolutions.pop(part, None)
             results.append(self._one_call(member, call))
             for part in parts:
-                if row := self.resolutions.get(part):
+                if row := self.here.resolutions.get(part):
                     rows[part].append(row)
         for part, found in rows.items():
             symbols = _in_order(path for row in found for path in row.symbols)
             missing = _in_order(path for row in found for path in row.missing)
             # What tells nothing of an argument may take it.
             is_sure = len(found) == len(called) and all(row.sure for row in found)
-            self.resolutions[part] = replace(found[-1], symbols=symbols, missing=missing, sure=is_sure)
+            self.here.resolutions[part] = replace(found[-1], symbols=symbols, missing=missing, sure=is_sure)
         return union(results)
 
     def _made_by_class_name(self, call: ReadCall) -> Type:

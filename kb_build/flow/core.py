@@ -7,7 +7,8 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from kb_build.flow.definitions import ClassDefinition, FunctionDefinition
-from kb_build.flow.scopes import CHOSEN, State, name_doubt
+from kb_build.flow.doubts import NO_DOUBTS, Doubts
+from kb_build.flow.place import Place
 from kb_build.flow.source_files import SourceFile
 from kb_build.flow.types import (
     UNKNOWN,
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
     from collections.abc import Generator, Iterable, Iterator, Sequence
 
     from kb_build.flow.api import Api
-    from kb_build.flow.scopes import Loop, Scope
+    from kb_build.flow.scopes import State
     from kb_build.flow.types import Given, ResolutionKind
 
 DEEPEST_RUN = 60  # a function that is called further inside is read later
@@ -56,8 +57,7 @@ class Core:
             for parts in [name.split(".")]
             for length in range(1, len(parts))
         }
-        self.file = files[0]
-        self.scope = self.file.module
+        self.here = Place.module(files[0])
         for file in files:
             # Blender's console, and what runs code for others, bring it: their scripts do not import it.
             file.module.bind("bpy", Module("bpy"))
@@ -68,20 +68,9 @@ class Core:
         self.own_operators: set[str] = set()
         self.own_types: dict[str, Type] = {}
         self.registered: dict[tuple[str, str], Type] = {}
-        self.resolutions = self.file.resolutions
-        self.types = self.file.types
-        self.loops: list[Loop] = []
-        self.caught: frozenset[str] = frozenset()  # the errors that what is read may raise with no harm
-        self.guessing = False
-        self.tries = False  # reads again, for one call or one turn of a loop alone
         self.rounds = False  # all modules were read, their functions are
         self.settled = False  # and no function will be read again for all its calls
-        self.turning = False  # it is one turn of a loop
-        self.dictionaries = 0  # around what is being read
-        self.depth = 0
-        self.steps_left = self.file.steps_left
-        self.function: FunctionDefinition | None = None
-        self.statement: ast.stmt | None = None
+        self.steps_left = files[0].steps_left
         self._bases: dict[int, tuple[tuple[str, ...], bool]] = {}
         self._denials: list[tuple[dict[ast.AST, Resolution], ast.AST, Reader]] = []
 
@@ -95,24 +84,24 @@ class Core:
 
     def copied(self, state: State) -> State:
         """The same state, to be changed on its own; this pays for joining it with others too."""
-        things = len(state.names)
-        if state.chains or state.doubted:
-            things += len(state.chains) + len(state.doubted)
+        things, doubted = len(state.names), state.doubted
+        if state.chains or doubted is not NO_DOUBTS:
+            things += len(state.chains) + len(doubted.members) + len(doubted.chains)
         if things >= _IN_ONE_STEP:
             self.spend(things)
         return state.copy()
 
     def bind(self, name: str, kind: Type) -> None:
         """Binds a name here; the chains that begin with it are sought for."""
-        if self.scope.state.chains:
-            self.spend(len(self.scope.state.chains))
-        self.scope.bind(name, kind)
+        if self.here.scope.state.chains:
+            self.spend(len(self.here.scope.state.chains))
+        self.here.scope.bind(name, kind)
 
-    def doubt_here(self, doubts: frozenset[str]) -> None:
-        """Adds to what is doubted from here on (see :class:`scopes.State`)."""
-        state = self.scope.state
-        if state.doubted:
-            self.spend(len(state.doubted))
+    def doubt_here(self, doubts: Doubts) -> None:
+        """Adds to what is doubted from here on."""
+        state = self.here.scope.state
+        if state.doubted is not NO_DOUBTS:
+            self.spend(len(state.doubted.members) + len(state.doubted.chains))
         state.doubted |= doubts
 
     # What the parts give each other.
@@ -146,43 +135,29 @@ class Core:
         raise NotImplementedError
 
     @contextmanager
-    def inside(self, file: SourceFile, scope: Scope, function: FunctionDefinition | None) -> Generator[None]:
-        """Reads at another place, and comes back."""
-        outer = self.scope, self.function, self.loops, self.caught, self.statement, self.guessing
-        outer_file, dictionaries, types, resolutions = (
-            self.file,
-            self.dictionaries,
-            self.types,
-            self.resolutions,
-        )
-        self._enter(file)
-        self.scope, self.function, self.loops = scope, function, []
-        self.caught, self.statement, self.guessing, self.dictionaries = frozenset(), None, False, 0
+    def at(self, place: Place) -> Generator[None]:
+        """Reads at another place, and comes back; also where the time or Python's stack is spent there."""
+        outer, self.here = self.here, place
         try:
             yield
         finally:
-            self.file, self.types, self.resolutions = outer_file, types, resolutions
-            self.dictionaries = dictionaries
-            self.scope, self.function, self.loops, self.caught, self.statement, self.guessing = outer
-
-    def _enter(self, file: SourceFile) -> None:
-        self.file, self.types, self.resolutions = file, file.types, file.resolutions
+            self.here = outer
 
     @contextmanager
     def ready_for(self, errors: Iterable[str] = (EVERY_ERROR,)) -> Generator[None]:
-        """Reads what may raise some errors, by the names of their classes, with no harm."""
-        outer = self.caught
-        self.caught = outer.union(errors)
+        """Reads here what may raise some errors, by the names of their classes, with no harm."""
+        here, outer = self.here, self.here.caught
+        here.caught = outer.union(errors)
         try:
             yield
         finally:
-            self.caught = outer
+            here.caught = outer
 
     def bind_target(self, target: ast.expr, kind: Type, value: ast.expr | None = None) -> None:
         """Assigns to a name, an attribute, an item, or several of them."""
         raise NotImplementedError
 
-    def narrow(self, test: ast.expr, *, holds: bool, asked: frozenset[str] | None = None) -> None:
+    def narrow(self, test: ast.expr, *, holds: bool, asked: Doubts | None = None) -> None:
         """Applies what is known once a condition holds or does not; ``asked``: see :meth:`guards.Guards.doubt`."""
         raise NotImplementedError
 
@@ -201,14 +176,14 @@ class Core:
         guarded: bool = False,
     ) -> None:
         """Records what a part of the script stands for; a later reading of the same part replaces it."""
-        state = self.scope.state
-        doubted = guarded or state.doubts(name_doubt(value)) or (self.tries and CHOSEN in state.doubted)
-        self.resolutions[node] = Resolution(
-            node, kind, value, _once(symbols), _once(missing), _once(possible), sure and not self.guessing,
-            doubted or bool(self.caught), self.statement, frozenset() if doubted else self.caught,
+        here, doubts = self.here, self.here.scope.state.doubted
+        doubted = guarded or doubts.has_member(value) or (here.tries and doubts.chosen)
+        here.resolutions[node] = Resolution(
+            node, kind, value, _once(symbols), _once(missing), _once(possible), sure and not here.guessing,
+            doubted or bool(here.caught), here.statement, frozenset() if doubted else here.caught,
         )  # fmt: skip
-        if missing and not self.tries:
-            self._denials.append((self.resolutions, node, self.reader))
+        if missing and not here.tries:
+            self._denials.append((here.resolutions, node, self.reader))
 
     def is_current(self, reader: Reader) -> bool:
         """Whether what a function or a module took from other definitions is still all that is known of them."""
@@ -234,13 +209,12 @@ class Core:
     @property
     def reader(self) -> Reader:
         """What is being read: a function, or a file's module."""
-        return self.function or self.file
+        return self.here.function or self.here.file
 
     def comes_surely(self, text: str) -> bool:
         """Whether a text that a name holds surely is what is used here: nothing asks for it, or chooses by it."""
-        state = self.scope.state
-        is_chosen = CHOSEN in state.doubted or state.doubts(name_doubt(text))
-        return not (self.caught or self.guessing or is_chosen)
+        doubted = self.here.scope.state.doubted
+        return not (self.here.caught or self.here.guessing or doubted.chosen or doubted.has_member(text))
 
     def _known(self, number: int, name: str) -> Type | None:
         if not name:
@@ -261,7 +235,7 @@ class Core:
 
     def is_declared(self, node: ast.expr | None) -> bool:
         """Whether an expression, which was read, calls one of bpy.props."""
-        found = self.resolutions.get(node) if node is not None else None
+        found = self.here.resolutions.get(node) if node is not None else None
         return found is not None and any(path.startswith("bpy.props.") for path in found.symbols)
 
     # Definitions.
@@ -273,11 +247,13 @@ class Core:
         number = self.numbers.get(node)
         if number is None:
             number = self.numbers[node] = len(self.functions)
-            self.spend(len(self.scope.state.doubted))
-            doubted = self.scope.state.doubted_names
-            self.functions.append(FunctionDefinition(node, self.scope, cls, file=self.file, doubted=doubted))
-        elif not self.tries:
-            self.functions[number].scope = self.scope  # what is around it may know more by now
+            doubted = self.here.scope.state.doubted
+            self.spend(len(doubted.members))
+            self.functions.append(
+                FunctionDefinition(node, self.here.scope, cls, file=self.here.file, doubted=doubted.anywhere)
+            )
+        elif not self.here.tries:
+            self.functions[number].scope = self.here.scope  # what is around it may know more by now
         return number
 
     def ancestors(self, number: int) -> Iterator[Type]:
@@ -351,8 +327,8 @@ class Core:
         if function.is_static:
             return kind
         if function.is_property:
-            is_open = function.returned is None and not function.running and not self.tries
-            if is_open and self.depth < DEEPEST_RUN:
+            is_open = function.returned is None and not function.running and not self.here.tries
+            if is_open and self.here.depth < DEEPEST_RUN:
                 self.run(kind.number)
             return self.returned(kind.number) or UNKNOWN
         return LocalFunction(kind.number, receiver)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import ast
+from dataclasses import replace
 
 from kb_build.flow.core import ANY
 from kb_build.flow.definitions import ClassDefinition
@@ -20,7 +21,7 @@ class Defining(Expressions):
 
     def read_function_definition(self, node: ast.FunctionDef | ast.AsyncFunctionDef) -> bool:
         """Binds a function's name; what it does is read when it is called, or at the end."""
-        cls = self.scope.cls if self.scope.is_class else None
+        cls = self.here.scope.cls if self.here.scope.is_class else None
         number = self.define_function(node, cls)
         function = self.functions[number]
         kind: Type = LocalFunction(number)
@@ -63,14 +64,11 @@ class Defining(Expressions):
             for kind in self.ancestors(number):
                 if isinstance(kind, LocalClass) and kind.number != number and number < _MOST_CLASSES:
                     self.derived.setdefault(kind.number, []).append(number)
-        scope = Scope(self.scope, is_class=True, cls=number)
-        scope.state.chains = dict(self.scope.state.chains)
-        scope.state.doubted = self.scope.state.doubted
-        outer, self.scope = self.scope, scope
-        try:
+        scope = Scope(self.here.scope, is_class=True, cls=number)
+        scope.state.chains = dict(self.here.scope.state.chains)
+        scope.state.doubted = self.here.scope.state.doubted
+        with self.at(replace(self.here, scope=scope)):
             self.read_body(node.body)
-        finally:
-            self.scope = outer
         definition = self.classes[number]
         self._add_to_api(node.name, number, scope.state.names.get("bl_idname"))
         for name, kind in scope.ever.items():

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from kb_build.flow.doubts import NO_DOUBTS, Doubts
 from kb_build.flow.scopes import kept
 from kb_build.flow.types import UNKNOWN, Carried, Given, Readings, Type, Uses, join
 
@@ -46,7 +47,7 @@ class FunctionDefinition:
     used: dict[str, set[str]] | None = None
     asks_version: bool | None = None
     file: SourceFile | None = None
-    doubted: frozenset[str] = frozenset()
+    doubted: Doubts = NO_DOUBTS
     readings: Readings = field(default_factory=Readings)
     uses: Uses = field(default_factory=Uses)
     carried: Carried = field(default_factory=Carried)

@@ -8,20 +8,24 @@ import operator as op
 from typing import TYPE_CHECKING, ClassVar
 
 from kb_build.flow.core import ANY, DEEPEST, StepsExhausted
-from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS, VERSION
+from kb_build.flow.doubts import NO_DOUBTS
+from kb_build.flow.facts import DERIVED_BY_SCRIPTS, PRODUCTS, READ_ACTIVE, SUMS
 from kb_build.flow.members import Members
-from kb_build.flow.scopes import chain_text, name_doubt
+from kb_build.flow.scopes import chain_text
 from kb_build.flow.trees import children
 from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
+    FROM_VERSION,
     INT,
     NONE,
+    PASSED,
     STR,
     UNKNOWN,
     Builtin,
     ClassObject,
+    FromProperty,
     Instance,
     LocalFunction,
     Mapping,
@@ -81,14 +85,15 @@ class Expressions(Members):
         self.steps_left -= 1
         if self.steps_left < 0:
             raise StepsExhausted
-        if self.depth > DEEPEST:
-            self.file.unread.add(node)
+        here = self.here
+        if here.depth > DEEPEST:
+            here.file.unread.add(node)
             return UNKNOWN
         reader = self._evaluators.get(type(node), Expressions._parts)
-        self.depth += 1
+        here.depth += 1
         kind = reader(self, node)
-        self.depth -= 1
-        self.types[node] = kind
+        here.depth -= 1
+        here.types[node] = kind
         return kind
 
     def _parts(self, node: ast.expr) -> Type:
@@ -100,16 +105,16 @@ class Expressions(Members):
 
     def _behind(self, node: ast.expr) -> Type:
         """Evaluates what stands behind a condition."""
-        if self.scope.state.doubts():
-            self.file.doubted.add(node)
+        if self.here.scope.state.doubted.everything:
+            self.here.file.doubted.add(node)
         return self.evaluate(node)
 
     # Names, attributes, items.
 
     def _name(self, node: ast.Name) -> Type:
-        if self.scope.state.chains and (known := self.scope.state.chains.get(node.id)) is not None:
+        if self.here.scope.state.chains and (known := self.here.scope.state.chains.get(node.id)) is not None:
             return known
-        found = self.scope.lookup(node.id)
+        found = self.here.scope.lookup(node.id)
         if found is not None:
             return found
         if node.id in _BUILTINS:
@@ -119,22 +124,21 @@ class Expressions(Members):
     def _attribute(self, node: ast.Attribute) -> Type:
         owner = self.evaluate(node.value)
         known = None
-        if self.scope.state.chains and (text := chain_text(node)):
-            known = self.scope.state.chains.get(text)
-        self.resolutions.pop(node, None)
+        if self.here.scope.state.chains and (text := chain_text(node)):
+            known = self.here.scope.state.chains.get(text)
+        self.here.resolutions.pop(node, None)
         if owner is UNKNOWN:
             return known or UNKNOWN
         found = self.attribute(owner, node.attr)
         if found.symbols or found.possible or (found.missing and known is None):
             missing = found.missing if known is None else ()
-            doubted = bool(self.scope.state.doubted) and self.scope.state.doubts(chain_text(node.value))
             self.resolve(
                 node, "attribute", node.attr, found.symbols, missing, found.possible,
-                sure=found.sure, guarded=doubted,
+                sure=found.sure, guarded=self.here.scope.state.doubts_members_of(node.value),
             )  # fmt: skip
         if known is not None:
             return known
-        made = self.scope.state.active
+        made = self.here.scope.state.active
         return made if made is not None and READ_ACTIVE.issuperset(found.symbols or "?") else found.type
 
     def _subscript(self, node: ast.Subscript) -> Type:
@@ -170,8 +174,9 @@ class Expressions(Members):
         if kind is None:
             return UNKNOWN
         # A text that the script has asked for may be one of another Blender: a class that ``nodes.new`` makes.
-        if self.scope.state.doubted and isinstance(value, str) and self.scope.state.doubts(name_doubt(value)):
-            self.file.doubted.add(node)
+        doubted = self.here.scope.state.doubted
+        if doubted is not NO_DOUBTS and isinstance(value, str) and doubted.has_member(value):
+            self.here.file.doubted.add(node)
         if isinstance(value, (bytes, complex)) or (isinstance(value, str) and len(value) > _LONGEST_LITERAL):
             return Plain(kind)
         return Plain(kind, value) if isinstance(value, (str, int, float)) else UNKNOWN
@@ -202,7 +207,7 @@ class Expressions(Members):
         keys: list[Type] = []
         values: list[Type] = []
         items: list[tuple[str, Type]] = []
-        self.dictionaries += 1
+        self.here.dictionaries += 1
         for key, value in zip(node.keys, node.values, strict=True):
             value_type = self.evaluate(value)
             if key is None:
@@ -213,8 +218,8 @@ class Expressions(Members):
             values.append(value_type)
             if (text := literal_text(key_type)) is not None and len(items) < _LONGEST_LITERAL:
                 items.append((text, value_type))
-        self.dictionaries -= 1
-        if len(items) < len(values) or self.dictionaries > _DEEPEST_ITEMS:
+        self.here.dictionaries -= 1
+        if len(items) < len(values) or self.here.dictionaries > _DEEPEST_ITEMS:
             items = []
         return Mapping(union(keys), union(values), tuple(items))
 
@@ -227,7 +232,7 @@ class Expressions(Members):
         left = self.evaluate(first)
         for part in reversed(long):
             left = self.operation(part, left, self.evaluate(part.right))
-            self.types[part] = left
+            self.here.types[part] = left
         return left
 
     def operation(self, node: ast.BinOp | ast.AugAssign, left: Type, right: Type) -> Type:
@@ -235,7 +240,7 @@ class Expressions(Members):
         operator = node.op
         if isinstance(operator, (ast.Mult, ast.MatMult)) and is_math(left) and is_math(right):
             sign = "*" if isinstance(operator, ast.Mult) else "@"
-            self.resolutions.pop(node, None)
+            self.here.resolutions.pop(node, None)
             assert isinstance(left, Instance)
             assert isinstance(right, Instance)
             pair = left.cls, right.cls
@@ -247,7 +252,7 @@ class Expressions(Members):
                     return UNKNOWN
                 operator = ast.MatMult()  # which is meant
         elif (sign := _SUMS.get(type(operator), "")) and (is_math(left) or is_math(right)):
-            self.resolutions.pop(node, None)
+            self.here.resolutions.pop(node, None)
             pair = _operand(left), _operand(right)
             if all(pair) and pair not in SUMS[sign]:
                 sure = all(kind.sure for kind in (left, right) if isinstance(kind, Instance))
@@ -258,7 +263,7 @@ class Expressions(Members):
         operand = self.evaluate(node.operand)
         if isinstance(node.op, ast.Not):
             value = literal(operand) if isinstance(operand, Plain) and operand.kind == "bool" else None
-            source = operand.source if isinstance(operand, Plain) else ""
+            source = operand.source if isinstance(operand, Plain) else None
             return Plain("bool", not value, source) if isinstance(value, bool) else BOOL
         if isinstance(operand, Plain) and isinstance(node.op, ast.USub):
             value = operand.value
@@ -286,13 +291,17 @@ class Expressions(Members):
         """The value of a comparison, where this Blender's version or what it has decides it."""
         if isinstance(left, Tuple) and isinstance(right, Tuple):
             return _compared(left.items, right.items, operator)
-        if isinstance(left, Plain) and isinstance(right, Plain) and VERSION in {left.source, right.source}:
+        if (
+            isinstance(left, Plain)
+            and isinstance(right, Plain)
+            and FROM_VERSION in (left.source, right.source)
+        ):
             return _compared((left,), (right,), operator)
         text = literal_text(left)
         if text is None or not isinstance(operator, (ast.In, ast.NotIn)):
             return BOOL
         there = self._is_listed(text, right_node)
-        return BOOL if there is None else Plain("bool", there == isinstance(operator, ast.In), VERSION)
+        return BOOL if there is None else Plain("bool", there == isinstance(operator, ast.In), FROM_VERSION)
 
     def _is_listed(self, name: str, node: ast.expr) -> bool | None:
         """Whether ``bpy.types.Scene.bl_rna.properties`` or ``dir(bpy.types)`` lists a name; None for what is not sure.
@@ -303,8 +312,8 @@ class Expressions(Members):
             case ast.Attribute(
                 attr="properties" | "functions", value=ast.Attribute(attr="bl_rna", value=owner)
             ):
-                kind = self.types.get(owner, UNKNOWN)
-                if isinstance(kind, Instance) and not (kind.sure and not self.guessing):
+                kind = self.here.types.get(owner, UNKNOWN)
+                if isinstance(kind, Instance) and not (kind.sure and not self.here.guessing):
                     return None
                 cls = kind.cls if isinstance(kind, (Instance, ClassObject)) else ""
                 wanted = "property" if node.attr == "properties" else "function"
@@ -315,25 +324,25 @@ class Expressions(Members):
                 added = is_known and (self.is_registered(cls, name) or self.api.below(cls, name))
                 return False if is_known and not added else None
             case ast.Call(func=ast.Name(id="dir"), args=[owner]):
-                return self.has(self.types.get(owner, UNKNOWN), name) or None
+                return self.has(self.here.types.get(owner, UNKNOWN), name) or None
             case _:
                 return None
 
     def _boolean(self, node: ast.BoolOp) -> Type:
-        before = self.scope.state
+        before = self.here.scope.state
         kinds: list[Type] = []
         holds = isinstance(node.op, ast.And)
-        settles = Plain("bool", not holds, VERSION)  # what follows it is for other versions
+        settles = Plain("bool", not holds, FROM_VERSION)  # what follows it is for other versions
         for place, value in enumerate(node.values):
             kinds.append(self._behind(value))
             if kinds[-1] == settles:
-                self.file.left_out.update(node.values[place + 1 :])
+                self.here.file.left_out.update(node.values[place + 1 :])
                 break
             if place < len(node.values) - 1:
                 if place == 0:
-                    self.scope.state = self.copied(before)
+                    self.here.scope.state = self.copied(before)
                 self.narrow(value, holds=holds)
-        after, self.scope.state = self.scope.state, before
+        after, self.here.scope.state = self.here.scope.state, before
         if after is not before:
             assigned = {name: kind for name, kind in after.names.items() if name not in before.names}
             before.names.update(assigned)
@@ -350,17 +359,17 @@ class Expressions(Members):
         test = self.evaluate(node.test)
         if isinstance(test, Plain) and isinstance(test.value, bool):
             body, other = (node.body, node.orelse) if test.value else (node.orelse, node.body)
-            self.file.left_out.add(other)  # it is for other versions
+            self.here.file.left_out.add(other)  # it is for other versions
             chosen = self.evaluate(body)
-            return telling(chosen, VERSION, value=True) if is_decided(test) else chosen
-        before = self.scope.state
-        self.scope.state = self.copied(before)
+            return telling(chosen, FROM_VERSION, value=True) if is_decided(test) else chosen
+        before = self.here.scope.state
+        self.here.scope.state = self.copied(before)
         self.narrow(node.test, holds=True)
         first = self._behind(node.body)
-        self.scope.state = self.copied(before)
+        self.here.scope.state = self.copied(before)
         self.narrow(node.test, holds=False)
         second = self._behind(node.orelse)
-        self.scope.state = before
+        self.here.scope.state = before
         return join(first, second)
 
     def _walrus(self, node: ast.NamedExpr) -> Type:
@@ -374,10 +383,10 @@ class Expressions(Members):
 
     def _yielded(self, node: ast.Yield) -> Type:
         kind = self.evaluate(node.value) if node.value else NONE
-        if self.function is not None:
-            before = self.function.returned
+        if self.here.function is not None:
+            before = self.here.function.returned
             after = Sequence("iterator", kind)
-            self.function.returned = after if before is None else join(before, after)
+            self.here.function.returned = after if before is None else join(before, after)
         return UNKNOWN
 
     # What has names of its own.
@@ -408,8 +417,8 @@ class Expressions(Members):
 
     def _inside(self, generators: list[ast.comprehension], read: Callable[[], None]) -> None:
         """Reads a comprehension's element with the names that its loops bind."""
-        before = self.scope.state
-        self.scope.state = self.copied(before)
+        before = self.here.scope.state
+        self.here.scope.state = self.copied(before)
         try:
             for generator in generators:
                 kind = self.iterated(self.evaluate(generator.iter))
@@ -419,7 +428,7 @@ class Expressions(Members):
                     self.narrow(test, holds=True)
             read()
         finally:
-            self.scope.state = before
+            self.here.scope.state = before
 
     def _call(self, node: ast.Call) -> Type:
         return self.call(self.evaluate(node.func), node)
@@ -432,7 +441,7 @@ class Expressions(Members):
         if not source:
             return
         # Those that were not reached are of a branch for other versions.
-        for constant in filter(self.types.__contains__, constants(node)):
+        for constant in filter(self.here.types.__contains__, constants(node)):
             self.resolve_value(constant, constant.value, source, use=use)
         if use == "value" and isinstance(node, (ast.Name, ast.Subscript)):
             self.check_carried(node, source)
@@ -445,8 +454,10 @@ class Expressions(Members):
 
     def carried_text(self, node: ast.expr) -> str | None:
         """The text that a name or an item surely holds, though it is written elsewhere."""
-        kind = self.types.get(node)
-        text = literal_text(kind) if isinstance(kind, Plain) and kind.source in {"", VERSION} else None
+        kind = self.here.types.get(node)
+        if not isinstance(kind, Plain) or not (kind.source is None or kind.source is FROM_VERSION):
+            return None
+        text = literal_text(kind)
         return text if text is not None and self.comes_surely(text) else None
 
     def check_possible(self, owner: Type, name: str, paths: list[str], node: ast.expr) -> None:
@@ -463,7 +474,7 @@ class Expressions(Members):
         if all(
             symbol and symbol.type == "enum" and len(symbol.enum_items) >= FEWEST_VALUES for symbol in symbols
         ):
-            for constant in filter(self.types.__contains__, constants(node)):
+            for constant in filter(self.here.types.__contains__, constants(node)):
                 self.resolve_value(constant, constant.value, tuple(paths))
 
     @staticmethod
@@ -472,9 +483,10 @@ class Expressions(Members):
         found: list[str] = []
         for member in members(kind):
             plain = member.element if isinstance(member, Sequence) else member
-            if isinstance(plain, Plain) and plain.source and not tells(plain):
-                found.append(plain.source)
-            elif plain is not NONE:
+            source = plain.source if isinstance(plain, Plain) else None
+            if isinstance(source, FromProperty):
+                found.append(source.path)
+            elif source is not PASSED and plain is not NONE:
                 return ()
         return tuple(found)
 
@@ -521,7 +533,7 @@ class Expressions(Members):
             else:
                 unsure = True
         if only_lacking:
-            self.resolutions.pop(node, None)
+            self.here.resolutions.pop(node, None)
         if (having and not only_lacking) or (lacking and not having and not unsure):
             self.resolve(node, use, value, having, lacking)
 
@@ -567,7 +579,7 @@ def constants(node: ast.expr) -> list[ast.Constant]:
 
 def is_decided(kind: Type) -> bool:
     """Whether a truth value is decided by the Blender that the script is read for."""
-    return isinstance(kind, Plain) and kind.source == VERSION and isinstance(kind.value, bool)
+    return isinstance(kind, Plain) and kind.source is FROM_VERSION and isinstance(kind.value, bool)
 
 
 def _compared(left: Rows[Type], right: Rows[Type], operator: ast.cmpop) -> Type:
@@ -580,7 +592,7 @@ def _compared(left: Rows[Type], right: Rows[Type], operator: ast.cmpop) -> Type:
     compare = _COMPARISONS.get(type(operator))
     if compare is None or (isinstance(operator, (ast.Eq, ast.NotEq)) and len(ours) > _MINOR):
         return BOOL
-    return Plain("bool", compare(ours, theirs), VERSION)
+    return Plain("bool", compare(ours, theirs), FROM_VERSION)
 
 
 def is_math(kind: Type) -> bool:

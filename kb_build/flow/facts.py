@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from kb_build.symbols.api_names import TYPES as T
 
-VERSION = "bpy.app.version"
+VERSION = "bpy.app.version"  # what tells it is read from this, or from what begins like it
 
 # Operators that make an object and leave it as the active one: how their paths begin or are → the object's type.
 _MAKERS = {

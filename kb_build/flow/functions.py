@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 
 from kb_build.flow.core import DEEPEST_RUN
 from kb_build.flow.parameters import Parameters
-from kb_build.flow.scopes import CHOSEN, Scope, State, kept, name_doubt
+from kb_build.flow.scopes import Scope, State, kept
 from kb_build.flow.texts import for_one_call, has_passed, has_texts, texts_in, without_texts
 from kb_build.flow.trees import default_values
 from kb_build.flow.trials import Trials
@@ -28,6 +28,7 @@ from kb_build.flow.types import (
 
 if TYPE_CHECKING:
     from kb_build.flow.definitions import FunctionDefinition
+    from kb_build.flow.place import Place
 
 # How many different calls a function is read for, and how many more where their texts are left out.
 _MOST_CALLS, _MOST_KINDS = 24, 8
@@ -46,15 +47,16 @@ class Functions(Parameters, Trials):
         function.uses = set()
         function.carried = {}
         try:
-            with self.inside(function.file or self.file, self._scope_of(function), function):
+            with self.at(self._place_of(function)):
                 self._read_function(function)
         finally:
             function.running = False
 
-    def _scope_of(self, function: FunctionDefinition) -> Scope:
-        file = function.file or self.file
+    def _place_of(self, function: FunctionDefinition) -> Place:
+        file = function.file or self.here.file
         shared = file.shared_names.get(function.node, frozenset())
-        return Scope(function.scope, state=State(doubted=function.doubted), shared=shared)
+        scope = Scope(function.scope, state=State(doubted=function.doubted), shared=shared)
+        return self.here.further(file, scope, function)
 
     def _read_function(self, function: FunctionDefinition) -> None:
         self.bind_parameters(function)
@@ -63,14 +65,14 @@ class Functions(Parameters, Trials):
         elif self.read_body(function.node.body) and function.returned is not None:
             function.returned = join(function.returned, NONE)
         if not isinstance(function.node, ast.Lambda) and function.node.returns is not None:
-            self.statement = None
+            self.here.statement = None
             declared = self.annotated(function.node.returns)
             if declared is not UNKNOWN and function.returned in {UNKNOWN, None}:
                 function.returned = declared
 
     def stamp(self, function: FunctionDefinition) -> tuple[int, int]:
         """What changes when a function should be read again: its module's names, its class's attributes."""
-        module = function.file.module if function.file else self.file.module
+        module = function.file.module if function.file else self.here.file.module
         return module.changes, self.classes[function.cls].changes if function.cls is not None else 0
 
     # For single calls.
@@ -88,7 +90,7 @@ class Functions(Parameters, Trials):
         received = _as_one_call(function, whole)
         if follows:
             self.reader.uses.add((number, received, node))
-        if function.stale and self.rounds and not (self.settled or self.tries):
+        if function.stale and self.rounds and not (self.settled or self.here.tries):
             returned = UNKNOWN  # it is read again first
         elif function.stale or (
             not is_known and function.in_vain < _MOST_IN_VAIN and _tells_more(function, received)
@@ -118,7 +120,7 @@ class Functions(Parameters, Trials):
         """What each parameter receives from a call, its default where that gives nothing."""
         arguments = function.node.args
         defaults = default_values(arguments)
-        types = function.file.types if function.file else self.types
+        types = function.file.types if function.file else self.here.types
         found: dict[str, Type] = {}
         for argument in (*arguments.posonlyargs, *arguments.args, *arguments.kwonlyargs):
             if argument.arg in given:
@@ -129,11 +131,11 @@ class Functions(Parameters, Trials):
 
     def _comes_surely(self, whole: dict[str, Type]) -> bool:
         """Whether a call surely happens where it is read, with texts that are those of this call."""
-        state = self.scope.state
-        if self.caught or state.doubts() or CHOSEN in state.doubted or any(map(has_passed, whole.values())):
+        doubted = self.here.scope.state.doubted
+        if self.here.caught or doubted.everything or doubted.chosen or any(map(has_passed, whole.values())):
             return False
         texts = (str(text.value) for kind in whole.values() for text in texts_in(kind))
-        return not state.doubted or state.doubted.isdisjoint(map(name_doubt, texts))
+        return not doubted.members or doubted.members.isdisjoint(texts)
 
     def _is_one(self, kind: Type | None, *, with_texts: bool) -> bool:
         """Whether a type is one thing, or none that has members, and no text may decide more of it: no call is known to
@@ -167,7 +169,9 @@ class Functions(Parameters, Trials):
 
     def _read_call(self, number: int, received: Given) -> FunctionDefinition | None:
         function = self.functions[number]
-        if function.running or self.depth >= DEEPEST_RUN or not self.may_try(function.file or self.file):
+        if function.running or self.here.depth >= DEEPEST_RUN:
+            return None
+        if not self.may_try(function.file or self.here.file):
             return None
         call = replace(
             function,
@@ -183,7 +187,7 @@ class Functions(Parameters, Trials):
         )
         function.running = True
         try:
-            with self.inside(function.file or self.file, self._scope_of(function), call):
+            with self.at(replace(self._place_of(function), function=call)):
                 is_read = self.try_reading(lambda: self._read_function(call))
         finally:
             function.running = False

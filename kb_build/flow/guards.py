@@ -9,17 +9,18 @@ from __future__ import annotations
 import ast
 from typing import TYPE_CHECKING
 
+from kb_build.flow.doubts import CHOSEN, EVERYTHING, NO_DOUBTS, Doubts, as_doubts, as_source
 from kb_build.flow.expressions import Expressions, is_decided
-from kb_build.flow.facts import VERSION
-from kb_build.flow.scopes import CHOSEN, EVERYTHING, name_doubt
 from kb_build.flow.trees import children, walk
 from kb_build.flow.type_parts import telling, tells
 from kb_build.flow.types import (
     UNKNOWN,
+    FromNames,
     LocalFunction,
     Mapping,
     Plain,
     Sequence,
+    Telling,
     Tuple,
     Type,
     Union,
@@ -35,49 +36,51 @@ if TYPE_CHECKING:
 class Guards(Expressions):
     """Finds what conditions ask, and which names hold the answers."""
 
-    def doubt(self, test: ast.expr, *, holds: bool, asked: frozenset[str] | None = None) -> None:
+    def doubt(self, test: ast.expr, *, holds: bool, asked: Doubts | None = None) -> None:
         """Doubts what is read from here on, where a condition, which was read, holds or does not; ``asked`` is what it
         asks, where that is known.
         """
-        kind = self.types.get(test, UNKNOWN)
+        kind = self.here.types.get(test, UNKNOWN)
         if not is_decided(kind):
             self.doubt_here(self.asked(test, chooses=True) if asked is None else asked)
         elif literal(kind) is not holds:
-            self.doubt_here(frozenset({EVERYTHING}))
+            self.doubt_here(EVERYTHING)
 
-    def asked(self, node: ast.expr, *, chooses: bool = False) -> frozenset[str]:
-        """What an expression, which was read, asks without being decided: doubts, as State has them.
+    def asked(self, node: ast.expr, *, chooses: bool = False) -> Doubts:
+        """What becomes doubted by what an expression, which was read, asks without being decided.
 
-        With ``chooses`` that is CHOSEN too, where it may hold of some texts that come from elsewhere but not of all.
+        With ``chooses`` that is ``chosen`` too, where it may hold of some texts from elsewhere but not of all.
         """
-        found: set[str] = set()
+        found = NO_DOUBTS
+        names: set[str] = set()
         waiting: list[ast.AST] = [node]
         for part in waiting:
             if isinstance(part, ast.BoolOp):  # the sides that are decided leave the answer to the others
-                waiting += (side for side in part.values if not is_decided(self.types.get(side, UNKNOWN)))
+                waiting += (
+                    side for side in part.values if not is_decided(self.here.types.get(side, UNKNOWN))
+                )
                 continue
-            if isinstance(part, ast.expr) and (source := tells(self.types.get(part, UNKNOWN))):
-                found |= _doubts(source)
+            if isinstance(part, ast.expr) and (source := tells(self.here.types.get(part, UNKNOWN))):
+                found |= as_doubts(source)
             match part:
                 case ast.Name(id="TYPE_CHECKING") | ast.Attribute(attr="TYPE_CHECKING"):
-                    found.add(EVERYTHING)  # what follows never runs: it may name what only stubs have
-                case ast.Name() if chooses and self._may_choose(part):
-                    found.add(CHOSEN)
-                    chooses = False
+                    found |= EVERYTHING  # what follows never runs: it may name what only stubs have
+                case ast.Name() if chooses and not found.chosen and self._may_choose(part):
+                    found |= CHOSEN
                 case ast.Call():
-                    found.update(map(name_doubt, self._texts(part.args)))
+                    names.update(self._texts(part.args))
                     if self._calls_for_version(part):
-                        found.add(EVERYTHING)
+                        found |= EVERYTHING
                 case ast.Compare(ops=[ast.In() | ast.NotIn()]):
-                    found.update(map(name_doubt, self._texts([part.left])))
+                    names.update(self._texts([part.left]))
                 case _:
                     pass
             waiting += children(part)
-        return frozenset(found)
+        return found | Doubts(members=frozenset(names)) if names else found
 
     def _may_choose(self, name: ast.Name) -> bool:
         """Whether a name holds a plain value, or what is not known."""
-        kind = self.types.get(name, UNKNOWN)
+        kind = self.here.types.get(name, UNKNOWN)
         return any(
             one is UNKNOWN or isinstance(one, (Plain, Sequence, Tuple, Mapping)) for one in members(kind)
         )
@@ -86,26 +89,27 @@ class Guards(Expressions):
         """A value as a name holds it: one that is computed from what Blender told tells it on."""
         if not self.version or value is None or isinstance(value, ast.Constant) or not _may_tell(kind):
             return kind
-        return telling(kind, _as_source(self.asked(value)))
+        return telling(kind, as_source(self.asked(value)))
 
-    def tell(self, names: Iterable[str], doubts: frozenset[str], *, decided: bool = False) -> None:
+    def tell(self, names: Iterable[str], source: Telling | None, *, decided: bool = False) -> None:
         """Names hold what they do because of what Blender told: flags that are set behind a condition."""
-        source = _as_source(doubts)
-        held = self.scope.state.names
-        for name in names if source else ():
+        held = self.here.scope.state.names
+        for name in names if source is not None else ():
             kind = held.get(name, UNKNOWN)
             if _may_tell(kind):
                 self.bind(name, telling(kind, source, value=decided))
 
-    def lacked(self, statements: Iterable[ast.stmt]) -> frozenset[str]:
-        """The names in statements, which were read, that this Blender lacks, as doubts."""
-        rows = (self.resolutions.get(node) for statement in statements for node in walk(statement))
-        return frozenset(name_doubt(row.value) for row in rows if row is not None and row.missing)
+    def lacked(self, statements: Iterable[ast.stmt]) -> FromNames | None:
+        """How a value tells of this Blender that depends on the names in statements, which were read, that it lacks."""
+        rows = (self.here.resolutions.get(node) for statement in statements for node in walk(statement))
+        lacked = (row.value for row in rows if row is not None and row.missing)
+        names = frozenset(name for value in lacked for name in value.split("."))
+        return FromNames(names) if names else None
 
     def _texts(self, nodes: Iterable[ast.expr]) -> Iterator[str]:
         """The texts among expressions that may be names; of an operator's class, its module's and its own as well."""
         for node in nodes:
-            text = literal_text(self.types.get(node, UNKNOWN))
+            text = literal_text(self.here.types.get(node, UNKNOWN))
             if text is not None and text.isidentifier():
                 yield text
                 module, of_class, operator = text.partition("_OT_")
@@ -114,7 +118,7 @@ class Guards(Expressions):
 
     def _calls_for_version(self, call: ast.Call) -> bool:
         """Whether a function of the script is called that looks at Blender's version."""
-        kind = self.types.get(call.func)
+        kind = self.here.types.get(call.func)
         if not isinstance(kind, LocalFunction):
             return False
         function = self.functions[kind.number]
@@ -130,17 +134,6 @@ def assigned_names(statements: Iterable[ast.stmt]) -> list[str]:
         if isinstance(statement, ast.Assign):
             found += [target.id for target in statement.targets if isinstance(target, ast.Name)]
     return found
-
-
-def _doubts(source: str) -> frozenset[str]:
-    """What a value makes doubted that tells of this Blender by a source (see types.Plain)."""
-    names = source.split(".")[1:] if source.startswith(".") else []
-    return frozenset({EVERYTHING} if source == VERSION else map(name_doubt, names))
-
-
-def _as_source(doubts: frozenset[str]) -> str:
-    """The same as a source."""
-    return VERSION if EVERYTHING in doubts else "".join(sorted(doubts))
 
 
 def _may_tell(kind: Type) -> bool:

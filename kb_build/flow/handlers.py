@@ -32,20 +32,20 @@ class Handlers(Guards, Ways):
     def read_try(self, node: ast.Try) -> bool:
         """Reads ``try``: a handler begins anywhere within what it handles."""
         caught = [self._caught(handler) for handler in node.handlers]
-        before = self.scope.state
+        before = self.here.scope.state
         with self.ready_for(self._let_pass(node.handlers, caught)):
             after = self.way(self.copied(before), node.body)
-        within = joined([before, after or self.scope.state])
+        within = joined([before, after or self.here.scope.state])
         if after is not None and node.orelse:
             after = self.way(after, node.orelse)
         ways = [after]
         for handler, errors in zip(node.handlers, caught, strict=True):
-            self.scope.state = self.copied(within)
+            self.here.scope.state = self.copied(within)
             if handler.name:
                 self.bind(handler.name, UNKNOWN)
             # What is done where a name is lacking may be for another Blender.
             with self.ready_for((EVERY_ERROR,) if errors else ()):
-                ways.append(self.way(self.scope.state, handler.body))
+                ways.append(self.way(self.here.scope.state, handler.body))
         reached = self.meet(ways, self.copied(within))
         if any(caught):
             handled = [statement for handler in node.handlers for statement in handler.body]
@@ -76,7 +76,7 @@ class Handlers(Guards, Ways):
         for handler, errors in zip(handlers, caught, strict=True):
             if not isinstance(last := handler.body[-1], ast.Raise):
                 found |= errors
-            elif self.caught and last.exc is not None:
+            elif self.here.caught and last.exc is not None:
                 found |= {EVERY_ERROR}
         return found
 

@@ -43,7 +43,9 @@ class Imports(Members):
         """Reads ``from a import b as c``."""
         module = node.module or ""
         known = not node.level and module.partition(".")[0] in _API_MODULES
-        owner = self._module(module) if known else self.local_module(self.file.imported(node.level, module))
+        owner = (
+            self._module(module) if known else self.local_module(self.here.file.imported(node.level, module))
+        )
         if not known and not node.level:
             self._tell_lost(node, module)
         for alias in node.names:

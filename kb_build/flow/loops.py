@@ -27,41 +27,41 @@ class Loops(Members, Trials, Ways):
         kind = self.iterated(self.evaluate(node.iter))
 
         def enter() -> None:
-            self.statement = node
+            self.here.statement = node
             self.bind_target(node.target, kind)
 
         def try_turns(start: State) -> None:
-            for one in turns(node.iter, self.types, node.body):
+            for one in turns(node.iter, self.here.types, node.body):
                 self._try_turn(node, one, start)
 
-        return self._loop(node.body, node.orelse, enter, None if self.turning else try_turns)
+        return self._loop(node.body, node.orelse, enter, None if self.here.turning else try_turns)
 
     def _try_turn(self, node: ast.For | ast.AsyncFor, kind: Type, start: State) -> None:
         """Reads one turn of a loop for what its texts come to."""
-        outer, loops, returned = self.scope, self.loops, self.function.returned if self.function else None
+        outer, function = self.here.scope, self.here.function
+        returned = function.returned if function else None
 
         def read() -> None:
             self.spend(len(outer.ever))
-            self.scope = replace(
+            self.here.scope = replace(
                 outer, state=self.copied(start), ever=outer.ever.copy(), asked=outer.asked.copy()
             )
-            self.statement = node
+            self.here.statement = node
             self.bind_target(node.target, kind)
             self.read_body(node.body)
 
-        self.loops, self.turning = [Loop()], True
         try:
-            self.try_reading(read)
+            with self.at(replace(self.here, loops=[Loop()], turning=True)):
+                self.try_reading(read)
         finally:
-            self.scope, self.loops, self.turning = outer, loops, False
-            if self.function:
-                self.function.returned = returned
+            if function:
+                function.returned = returned
 
     def read_while(self, node: ast.While) -> bool:
         """Reads ``while``: the condition holds in each turn."""
 
         def enter() -> None:
-            self.statement = node
+            self.here.statement = node
             self.evaluate(node.test)
             self.narrow(node.test, holds=True)
 
@@ -69,14 +69,14 @@ class Loops(Members, Trials, Ways):
 
     def read_break(self, _node: ast.Break) -> bool:
         """Notes what is known where a loop is left."""
-        if self.loops:
-            self.loops[-1].left.append(self.scope.state)
+        if self.here.loops:
+            self.here.loops[-1].left.append(self.here.scope.state)
         return False
 
     def read_continue(self, _node: ast.Continue) -> bool:
         """Notes what is known where a turn of a loop ends."""
-        if self.loops:
-            self.loops[-1].continued.append(self.scope.state)
+        if self.here.loops:
+            self.here.loops[-1].continued.append(self.here.scope.state)
         return False
 
     def _loop(
@@ -87,24 +87,24 @@ class Loops(Members, Trials, Ways):
         try_turns: Callable[[State], None] | None = None,
     ) -> bool:
         """Reads a loop's body twice, so that what one turn binds is known in the next; then single turns, if any."""
-        before = self.scope.state
+        before = self.here.scope.state
         loop = Loop()
-        self.loops.append(loop)
+        self.here.loops.append(loop)
         start = before
         for turn in range(2):
-            self.scope.state = self.copied(start)
+            self.here.scope.state = self.copied(start)
             enter()
-            after = self.way(self.scope.state, body)
+            after = self.way(self.here.scope.state, body)
             ends = [state for state in (after, *loop.continued) if state is not None]
             start = joined([before, *ends])
             if turn == 0 and not _differs(before, start):
                 break
-        self.loops.pop()
+        self.here.loops.pop()
         if try_turns is not None:
             try_turns(start)
-        self.scope.state = self.copied(start)
+        self.here.scope.state = self.copied(start)
         reached = self.read_body(orelse) if orelse else True
-        return self.meet([self.scope.state if reached else None, *loop.left], start)
+        return self.meet([self.here.scope.state if reached else None, *loop.left], start)
 
 
 def _differs(before: State, after: State) -> bool:

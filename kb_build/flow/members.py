@@ -20,6 +20,7 @@ from kb_build.flow.facts import (
 from kb_build.flow.type_parts import unsure
 from kb_build.flow.types import (
     FLOAT,
+    FROM_VERSION,
     MOST_MEMBERS,
     STR,
     UNKNOWN,
@@ -176,7 +177,7 @@ class Members(Core):
         """Whether a value surely has an attribute, as long as it is not None, in this Blender."""
         match kind:
             case Instance():
-                if not kind.sure or self.guessing:
+                if not kind.sure or self.here.guessing:
                     return False
                 member = self.api.member(kind.cls, name)
                 return member is not None and member.symbol.kind != "context"
@@ -240,8 +241,8 @@ class Members(Core):
         if not self.version or not path.startswith(VERSION):
             return None
         if path != VERSION:
-            return Plain("str", None, VERSION)
-        return Tuple(tuple(Plain("int", part, VERSION) for part in self.version))
+            return Plain("str", None, FROM_VERSION)
+        return Tuple(tuple(Plain("int", part, FROM_VERSION) for part in self.version))
 
     def local_module(self, name: str) -> Type:
         """A module of the files that are analysed together, which is read first; UNKNOWN for no such module."""
@@ -334,12 +335,12 @@ class Members(Core):
         rows: list[Resolution | None] = []
         for member in kind.members:
             if not isinstance(member, NoneValue):
-                self.resolutions.pop(node, None)
+                self.here.resolutions.pop(node, None)
                 found.append(self._item(member, key, node))
-                rows.append(self.resolutions.pop(node, None))
+                rows.append(self.here.resolutions.pop(node, None))
         known = [row for row in rows if row is not None]
         if known:
-            self.resolutions[node] = replace(
+            self.here.resolutions[node] = replace(
                 known[0],
                 symbols=tuple(dict.fromkeys(path for row in known for path in row.symbols)),
                 # It is missing if no member can have it.
@@ -395,8 +396,8 @@ class Members(Core):
     def _classes_by_name(self, base: str, name: str) -> list[str]:
         """The classes of what may have a name among things of the class ``base``; none where that is not known."""
         classes = self.api.classes_by_label(base, name)
-        for thing in self.file.given_names.get(name, ()):
-            kind = self.types.get(thing) if thing else None
+        for thing in self.here.file.given_names.get(name, ()):
+            kind = self.here.types.get(thing) if thing else None
             if not isinstance(kind, Instance):
                 return []
             if self.api.descends(kind.cls, base):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import ast
 from dataclasses import replace
 
+from kb_build.flow.doubts import Doubts
 from kb_build.flow.facts import DISCRIMINANTS
 from kb_build.flow.guards import Guards
 from kb_build.flow.scopes import chain_text
@@ -32,7 +33,7 @@ from kb_build.symbols.api_names import OBJECT
 class Narrowing(Guards):
     """Applies conditions to what names and chains hold."""
 
-    def narrow(self, test: ast.expr, *, holds: bool, asked: frozenset[str] | None = None) -> None:
+    def narrow(self, test: ast.expr, *, holds: bool, asked: Doubts | None = None) -> None:
         """See :class:`core.Core`."""
         self.doubt(test, holds=holds, asked=asked)
         self._narrow(test, holds=holds)
@@ -69,27 +70,27 @@ class Narrowing(Guards):
         """Narrows by the ``hasattr`` or ``getattr`` whose answer a name, or an expression, is."""
         if isinstance(node, ast.NamedExpr):
             node = node.value
-        asked = self.scope.asked_by(node.id) if isinstance(node, ast.Name) else node
+        asked = self.here.scope.asked_by(node.id) if isinstance(node, ast.Name) else node
         if isinstance(asked, ast.Call):
             self._narrow(asked, holds=holds)
 
     def _doubt_chain(self, text: str) -> None:
         if text:
-            self.doubt_here(frozenset({text}))
+            self.doubt_here(Doubts(chains=frozenset({text})))
 
     def _type_of(self, node: ast.expr) -> Type:
-        return self.types.get(node, UNKNOWN)
+        return self.here.types.get(node, UNKNOWN)
 
     def _know(self, node: ast.expr, kind: Type) -> None:
         """What a name or a chain holds from here on; only for the way that is being read."""
         text = chain_text(node)
         if not text:
             return
-        if isinstance(node, ast.Name) and node.id in self.scope.state.names:
-            self.scope.state.names[node.id] = kind
+        if isinstance(node, ast.Name) and node.id in self.here.scope.state.names:
+            self.here.scope.state.names[node.id] = kind
         else:
-            self.scope.state.chains[text] = kind
-        self.types[node] = kind
+            self.here.scope.state.chains[text] = kind
+        self.here.types[node] = kind
 
     def _without_none(self, node: ast.expr) -> None:
         kind = self._type_of(node)
@@ -98,27 +99,27 @@ class Narrowing(Guards):
 
     def _any_of(self, tests: list[ast.expr]) -> None:
         """``a.type == 'X' or a.type == 'Y'``: either."""
-        before = self.scope.state
+        before = self.here.scope.state
         kinds: dict[str, list[Type]] = {}
         for test in tests:
-            self.scope.state = self.copied(before)
+            self.here.scope.state = self.copied(before)
             self._narrow(test, holds=True)
-            for name, kind in self.scope.state.names.items():
+            for name, kind in self.here.scope.state.names.items():
                 if before.names.get(name) is not kind:
                     kinds.setdefault(name, []).append(kind)
-        self.scope.state = before
+        self.here.scope.state = before
         for name, found in kinds.items():
             if len(found) == len(tests):
                 before.names[name] = union(found)
 
     def _is_no_default(self, node: ast.expr, others: ast.expr) -> None:
         """What a parameter holds that is not its default: anything, where that is all that tells its type."""
-        if self.function is None or not isinstance(node, ast.Name):
+        if self.here.function is None or not isinstance(node, ast.Name):
             return
-        given = self.function.node.args
+        given = self.here.function.node.args
         defaults = default_values(given)
         default = defaults.get(node.id)
-        is_told = self.function.received.get(node.id, UNKNOWN) is not UNKNOWN or any(
+        is_told = self.here.function.received.get(node.id, UNKNOWN) is not UNKNOWN or any(
             argument.arg == node.id and argument.annotation is not None
             for argument in (*given.posonlyargs, *given.args, *given.kwonlyargs)
         )
@@ -187,7 +188,7 @@ class Narrowing(Guards):
         subject, answer = call.args
         wanted = self._type_of(answer)
         # Where the test held, the name was something else, and is still noted as that.
-        held = self.scope.state.names.get(subject.id) if isinstance(subject, ast.Name) else None
+        held = self.here.scope.state.names.get(subject.id) if isinstance(subject, ast.Name) else None
         kind = held or self._type_of(subject)
         names = {
             one.name
@@ -211,6 +212,6 @@ class Narrowing(Guards):
             return
         found = self.attribute(owner, attribute)
         if found.missing or found.possible:
-            self.scope.state.chains[f"{text}.{attribute}"] = found.type
+            self.here.scope.state.chains[f"{text}.{attribute}"] = found.type
         if found.missing:
             self._doubt_chain(text)

@@ -69,9 +69,9 @@ class Parameters(Contradictions, Annotations):
             return received
         if argument.arg in function.unknown and received is not UNKNOWN:
             # Some calls pass what is not known: the others tell no more than what may be passed.
-            self.guessing = self.guessing or not can_be_unsure(received)
+            self.here.guessing = self.here.guessing or not can_be_unsure(received)
             received = unsure(received)
-        fallback = self.types.get(default, UNKNOWN) if default is not None else UNKNOWN
+        fallback = self.here.types.get(default, UNKNOWN) if default is not None else UNKNOWN
         if argument.arg in function.unknown:
             fallback = unsure(fallback)
         if received is not UNKNOWN and received is not NONE:

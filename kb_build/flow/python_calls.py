@@ -6,11 +6,11 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import ANY
-from kb_build.flow.facts import VERSION
 from kb_build.flow.script_calls import ScriptCalls
 from kb_build.flow.types import (
     BOOL,
     FLOAT,
+    FROM_VERSION,
     INT,
     NONE,
     STR,
@@ -115,7 +115,7 @@ class PythonCalls(ScriptCalls):
                 return NONE
             case "hasattr":
                 text = literal_text(arguments[1]) if len(arguments) == 2 else None
-                return Plain("bool", True, VERSION) if text and self.has(first, text) else BOOL
+                return Plain("bool", True, FROM_VERSION) if text and self.has(first, text) else BOOL
             case "getattr" | "delattr":
                 return self._named_attribute(call)
             case "dict":
@@ -135,9 +135,9 @@ class PythonCalls(ScriptCalls):
         return LocalClass(kind.number) if isinstance(kind, LocalInstance) else UNKNOWN
 
     def _super(self) -> Type:
-        if self.function is None or self.function.cls is None:
+        if self.here.function is None or self.here.function.cls is None:
             return UNKNOWN
-        bases = self.classes[self.function.cls].bases
+        bases = self.classes[self.here.function.cls].bases
         found: list[Type] = []
         for base in bases:
             if isinstance(base, LocalClass):
@@ -218,7 +218,7 @@ class PythonCalls(ScriptCalls):
                 grown = Mapping(UNKNOWN, kind if is_empty else join(receiver.value, kind))
             case _:
                 return
-        held = self.scope.state.names
+        held = self.here.scope.state.names
         self.spend(len(held))
         for name in [name for name, one in held.items() if one is receiver]:
             self.bind(name, grown)

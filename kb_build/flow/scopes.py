@@ -6,6 +6,7 @@ import ast
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING
 
+from kb_build.flow.doubts import NO_DOUBTS, Doubts
 from kb_build.flow.type_parts import bounded, unsure
 from kb_build.flow.types import Builtin, Function, Instance, LocalFunction, Mapping, Tuple, Type, Union, join
 from kb_build.flow.types import Sequence as ListType
@@ -13,8 +14,6 @@ from kb_build.flow.types import Sequence as ListType
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-EVERYTHING = "*"  # a chain that stands for all of them
-CHOSEN = "=*"  # what stands here may not be come to with every text that comes from elsewhere
 _DEEPEST_CHAIN = 8
 _NESTED = (ListType, Tuple, Mapping, Union, Instance, Function, Builtin, LocalFunction)
 
@@ -28,33 +27,22 @@ def kept(kind: Type) -> Type:
 class State:
     """What is known at one place of one scope: of names, and of chains (``context.object``) by their text.
 
-    ``doubted`` are names and chains of which the script has found here that they lack a member, as those of another
-    Blender do: what it reads from them is not for this one; members (``.draw_type``) that it has asked for; CHOSEN; or
-    EVERYTHING. ``active`` is the active object, where an operator has just made it.
+    ``active`` is the active object, where an operator has just made it.
     """
 
     names: dict[str, Type] = field(default_factory=dict[str, Type])
     chains: dict[str, Type] = field(default_factory=dict[str, Type])
-    doubted: frozenset[str] = frozenset()
+    doubted: Doubts = NO_DOUBTS
     active: Type | None = None
 
     def copy(self) -> State:
         """The same, to be changed on its own."""
         return State(self.names.copy(), self.chains.copy(), self.doubted, self.active)
 
-    def doubts(self, text: str = EVERYTHING) -> bool:
-        """Whether what is read here, or from this chain, may be for another Blender."""
-        return bool(self.doubted) and (text in self.doubted or EVERYTHING in self.doubted)
-
-    @property
-    def doubted_names(self) -> frozenset[str]:
-        """What is doubted whatever the names here hold: EVERYTHING, members that were asked for."""
-        return frozenset(doubt for doubt in self.doubted if doubt == EVERYTHING or doubt.startswith("."))
-
-
-def name_doubt(name: str) -> str:
-    """What says in ``State.doubted`` that members of this name are doubted, whatever has them."""
-    return f".{name}"
+    def doubts_members_of(self, node: ast.expr) -> bool:
+        """Whether what is read here from an expression may be for another Blender."""
+        doubted = self.doubted
+        return doubted.everything or (bool(doubted.chains) and chain_text(node) in doubted.chains)
 
 
 def joined(states: Sequence[State]) -> State:
@@ -62,6 +50,7 @@ def joined(states: Sequence[State]) -> State:
     first, *others = states
     names = first.names.copy()
     chains = first.chains
+    doubted = first.doubted
     for other in others:
         for name, kind in other.names.items():
             if name not in names:
@@ -69,8 +58,10 @@ def joined(states: Sequence[State]) -> State:
             elif names[name] is not kind:
                 names[name] = join(names[name], kind)
         chains = {text: kind for text, kind in chains.items() if other.chains.get(text) == kind}
+        if other.doubted is not doubted:
+            doubted &= other.doubted
     active = first.active if all(other.active == first.active for other in others) else None
-    return State(names, dict(chains), frozenset.intersection(*(state.doubted for state in states)), active)
+    return State(names, dict(chains), doubted, active)
 
 
 @dataclass(slots=True)

@@ -52,9 +52,9 @@ class ScriptCalls(Narrowing):
         function = self.functions[number]
         if (
             function.stale
-            and not self.tries
+            and not self.here.tries
             and not function.running
-            and self.depth < DEEPEST_RUN
+            and self.here.depth < DEEPEST_RUN
             and function.runs < _MOST_RUNS
         ):
             self.run(number)
@@ -65,7 +65,7 @@ class ScriptCalls(Narrowing):
         parameters = function.node.args
         names = [argument.arg for argument in (*parameters.posonlyargs, *parameters.args)]
         given = {**dict(zip(names, values, strict=False)), **keywords}
-        if not self.tries:  # where it is read again, what it passes is a part of what it passed before
+        if not self.here.tries:  # where it is read again, what it passes is a part of what it passed before
             for name, kind in given.items():
                 if name:
                     self._receive(function, name, passed(kind))

@@ -29,13 +29,13 @@ class Statements(Assignments, Branches, Loops, Handlers, Imports, Defining):
     def read_body(self, body: Rows[ast.stmt]) -> bool:
         """Reads statements one after the other; whether what follows them can be reached."""
         for place, statement in enumerate(body):
-            self.statement = statement
-            if self.scope.state.doubted and self.scope.state.doubts():
-                self.file.doubted.add(statement)
+            self.here.statement = statement
+            if self.here.scope.state.doubted.everything:
+                self.here.file.doubted.add(statement)
             reader = self._statement_readers.get(type(statement))
             if reader is not None and not reader(self, statement):
                 if not isinstance(statement, _LEAVING):  # what is left behind a condition
-                    self.file.left_out.update(body[place + 1 :])
+                    self.here.file.left_out.update(body[place + 1 :])
                 return False
         return True
 
@@ -45,9 +45,9 @@ class Statements(Assignments, Branches, Loops, Handlers, Imports, Defining):
 
     def _return(self, node: ast.Return) -> bool:
         kind = self.told(self.evaluate(node.value), node.value) if node.value is not None else NONE
-        if self.function is not None:
-            before, kind = self.function.returned, bounded(kind)
-            self.function.returned = kind if before is None else join(before, kind)
+        if self.here.function is not None:
+            before, kind = self.here.function.returned, bounded(kind)
+            self.here.function.returned = kind if before is None else join(before, kind)
         return False
 
     def _raise(self, node: ast.Raise) -> bool:
@@ -73,8 +73,8 @@ class Statements(Assignments, Branches, Loops, Handlers, Imports, Defining):
         return True
 
     def _global(self, node: ast.Global | ast.Nonlocal) -> bool:
-        if self.scope is not self.file.module:
-            self.scope.elsewhere.update(node.names)
+        if self.here.scope is not self.here.file.module:
+            self.here.scope.elsewhere.update(node.names)
         return True
 
     _statement_readers: ClassVar[dict[type, Callable[..., bool]]] = {

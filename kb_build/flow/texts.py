@@ -29,7 +29,7 @@ def texts_in(kind: Type) -> Iterator[Plain]:
 
 def pairs_of(kind: Mapping) -> list[tuple[Plain, Type]]:
     """The items of a dictionary whose keys are written out: key and value."""
-    source = kind.key.source if isinstance(kind.key, Plain) else ""
+    source = kind.key.source if isinstance(kind.key, Plain) else None
     return [(Plain("str", name, source), value) for name, value in kind.items]
 
 
@@ -40,7 +40,7 @@ def has_texts(kind: Type) -> bool:
 
 def has_passed(kind: Type) -> bool:
     """Whether a type has a text that only some calls pass."""
-    return any(text.source == PASSED for text in texts_in(kind))
+    return any(text.source is PASSED for text in texts_in(kind))
 
 
 def passed(kind: Type) -> Type:
@@ -60,14 +60,14 @@ def without_texts(kind: Type) -> Type:
 
 
 def _as_passed(kind: Plain) -> Type:
-    is_text = isinstance(kind.value, str) and not kind.source
+    is_text = isinstance(kind.value, str) and kind.source is None
     return Plain(kind.kind, kind.value, PASSED) if is_text else kind
 
 
 def _of_one_call(kind: Plain) -> Type:
-    if kind.kind in _NUMBERS or (kind.kind == "bool" and not kind.source):
+    if kind.kind in _NUMBERS or (kind.kind == "bool" and kind.source is None):
         return general(kind)
-    return Plain(kind.kind, kind.value) if kind.source == PASSED else kind
+    return Plain(kind.kind, kind.value) if kind.source is PASSED else kind
 
 
 def _each_plain(kind: Type, change: Callable[[Plain], Type], *, numbers: bool = False) -> Type:

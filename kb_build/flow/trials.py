@@ -10,7 +10,6 @@ import ast
 from typing import TYPE_CHECKING
 
 from kb_build.flow.core import Core, StepsExhausted
-from kb_build.flow.layers import TypesAbove
 
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -24,35 +23,28 @@ class Trials(Core):
 
     def may_try(self, file: SourceFile) -> bool:
         """Whether anything is left to spend on such readings in a file."""
-        return (self.steps_left if self.tries else file.trial_steps) > 0
+        return (self.steps_left if self.here.tries else file.trial_steps) > 0
 
     def try_reading(self, read: Callable[[], None]) -> bool:
         """Reads something again; whether that came to an end."""
-        if not self.may_try(self.file):
+        if not self.may_try(self.here.file):
             return False
-        outer = self.types, self.resolutions, self.tries, self.depth, self.steps_left
-        file, statement = self.file, self.statement
-        self.types, self.resolutions = TypesAbove(self.types), {}
-        if not self.tries:
+        outer, file, steps_left = self.here, self.here.file, self.steps_left
+        if not outer.tries:
             self.steps_left = file.trial_steps
-        self.tries = True
         try:
-            read()
-            for row in self.resolutions.values():
-                if _comes_from_elsewhere(row):
-                    self.reader.carried.setdefault((row.node, row.value), row)
+            with self.at(outer.trial()):
+                read()
+                for row in self.here.resolutions.values():
+                    if _comes_from_elsewhere(row):
+                        self.reader.carried.setdefault((row.node, row.value), row)
         except (StepsExhausted, RecursionError):
-            if outer[2]:  # which is a part of another such reading
+            if outer.tries:  # which is a part of another such reading
                 raise
             return False
         finally:
-            spent = self.steps_left
-            self.types, self.resolutions, self.tries, self.depth, self.steps_left = outer
-            self.statement = statement
-            if self.tries:
-                self.steps_left = spent
-            else:
-                file.trial_steps = spent
+            if not outer.tries:
+                file.trial_steps, self.steps_left = self.steps_left, steps_left
         return True
 
 

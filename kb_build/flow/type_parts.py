@@ -6,13 +6,14 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from kb_build.flow.facts import VERSION
 from kb_build.flow.types import (
     PASSED,
     UNKNOWN,
     Builtin,
     ClassObject,
     Collection,
+    FromNames,
+    FromVersion,
     Function,
     Instance,
     LocalClass,
@@ -25,6 +26,7 @@ from kb_build.flow.types import (
     Operator,
     Plain,
     Sequence,
+    Telling,
     Tuple,
     Type,
     Union,
@@ -37,9 +39,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 DEEPEST_TYPE = 6  # parts within each other of what a name holds
-NAMES_PASSED = Plain(
-    "str", None, PASSED
-)  # what a dictionary's literal keys are, which some call has and others not
+# What a dictionary's literal keys are, which some call has and others not.
+NAMES_PASSED = Plain("str", None, PASSED)
 HOLDING = (Union, Tuple, Sequence, Mapping)  # all that have parts
 _WITHOUT_PARTS = frozenset(
     {Unknown, NoneValue, Plain, Module, ClassObject, Operator, LocalModule, LocalClass, LocalInstance}
@@ -120,31 +121,31 @@ def can_be_unsure(kind: Type) -> bool:
     return isinstance(kind, (Unknown, Plain, Instance, NoneValue))
 
 
-def tells(kind: Type) -> str:
-    """The source (see :class:`Plain`) by which a value, or a part of it, tells of this Blender; empty for none.
+def tells(kind: Type) -> Telling | None:
+    """The source by which a value, or a part of it, tells of this Blender.
 
     A dictionary tells nothing: one of its values may, and then tells it where it is read.
     """
     for member in members(kind):
-        found = ""
+        found = None
         if isinstance(member, Plain):
-            found = member.source if member.source.startswith((VERSION, ".")) else ""
+            found = member.source if isinstance(member.source, (FromVersion, FromNames)) else None
         elif isinstance(member, (Tuple, Sequence)):
-            found = next(filter(None, map(tells, parts(member))), "")
+            found = next(filter(None, map(tells, parts(member))), None)
         if found:
             return found
-    return ""
+    return None
 
 
-def telling(kind: Type, source: str, *, value: bool = False) -> Type:
+def telling(kind: Type, source: Telling | None, *, value: bool = False) -> Type:
     """A plain type as one that tells of this Blender, by ``source`` if any; its literal stays with ``value``.
 
     A list or a dictionary stays as it is, and so do what it holds: they are not all chosen by what was told.
     """
-    if not source:
+    if source is None:
         return kind
     if isinstance(kind, Union):
         return with_parts(kind, partial(telling, source=source))
-    if isinstance(kind, Plain) and kind.source in {"", PASSED}:
+    if isinstance(kind, Plain) and (kind.source is None or kind.source is PASSED):
         return Plain(kind.kind, kind.value if value else None, source)
     return kind

@@ -14,7 +14,6 @@ if TYPE_CHECKING:
     import ast
     from collections.abc import Iterable, Iterator
 
-PASSED = "?"
 MOST_MEMBERS = 8  # of a union; more are UNKNOWN
 
 
@@ -29,17 +28,43 @@ class NoneValue:
 
 
 @dataclass(frozen=True, slots=True)
+class FromProperty:
+    """It was read from a property or a parameter, given by its path, which knows its values."""
+
+    path: str
+
+
+@dataclass(frozen=True, slots=True)
+class FromVersion:
+    """It tells of this very Blender: by its version, or by what that decides."""
+
+
+@dataclass(frozen=True, slots=True)
+class FromNames:
+    """It tells of this very Blender: whether it has names that were asked for."""
+
+    names: frozenset[str]
+
+
+@dataclass(frozen=True, slots=True)
+class Passed:
+    """It is a text that some call passes, and others may not."""
+
+
+Telling = FromVersion | FromNames
+Source = FromProperty | Telling | Passed
+
+
+@dataclass(frozen=True, slots=True)
 class Plain:
     """A number, a text, a truth value. ``value`` is the literal where it is known, else None.
 
-    ``source`` is the property or parameter that it was read from, which knows its values; of what tells of this very
-    Blender, it is ``bpy.app.version``, or the names that Blender was asked for, each behind a dot: ``.draw_type``. Of a
-    text that some call passes, and others may not, it is PASSED.
+    ``source`` is where it comes from, where that matters.
     """
 
     kind: str
     value: str | int | float | bool | None = None
-    source: str = ""
+    source: Source | None = None
 
 
 @dataclass(frozen=True, slots=True)
@@ -201,6 +226,8 @@ Uses = set[tuple[int, Given, "ast.Call"]]
 # (where, text) → what a text that comes from elsewhere is found to be there.
 Carried = dict[tuple["ast.AST", str], "Resolution"]
 
+FROM_VERSION = FromVersion()
+PASSED = Passed()
 UNKNOWN = Unknown()
 NONE = NoneValue()
 BOOL = Plain("bool")
@@ -224,7 +251,7 @@ def without_none(kind: Type) -> Type:
 def general(kind: Type) -> Type:
     """A type without its literal value: what a name can hold besides its first value."""
     if isinstance(kind, Plain) and kind.value is not None:
-        return Plain(kind.kind, None, "" if kind.source == PASSED else kind.source)
+        return Plain(kind.kind, None, None if kind.source is PASSED else kind.source)
     return kind
 
 

@@ -17,11 +17,11 @@ class Ways(Core):
 
     def way(self, state: State, body: Rows[ast.stmt]) -> State | None:
         """Reads statements from a state on; the state behind them, or None if they do not get there."""
-        self.scope.state = state
-        return self.scope.state if self.read_body(body) else None
+        self.here.scope.state = state
+        return self.here.scope.state if self.read_body(body) else None
 
     def meet(self, states: Rows[State | None], otherwise: State) -> bool:
         """Goes on from where several ways end; whether any does."""
         open_ways = [state for state in states if state is not None]
-        self.scope.state = joined(open_ways) if open_ways else otherwise
+        self.here.scope.state = joined(open_ways) if open_ways else otherwise
         return bool(open_ways)

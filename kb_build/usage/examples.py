@@ -7,11 +7,19 @@ import builtins
 import re
 from collections import defaultdict
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from kb_build.flow.analysis import analyse
 from kb_build.flow.trees import children
-from kb_build.flow.types import UNKNOWN, ClassObject, Function, Instance, Operator, Resolution
+from kb_build.flow.types import (
+    UNKNOWN,
+    ClassObject,
+    Function,
+    Instance,
+    Operator,
+    Resolution,
+    ResolutionKind,
+)
 from kb_build.symbols.api_names import TYPES
 from kb_build.usage.definitions import decorated_function, derived_class
 from kb_build.usage.scripts import PRESETS
@@ -48,8 +56,10 @@ _CONTEXTS = ("bpy.context.", "bpy.types.Context.")
 _OF_EDITORS = 20.0  # what is added to the cost of code that runs in some editors only
 _OWN_BASE = 3.0  # the same for a class that derives from others of its script, too
 
+# What a use is: what a part of the script stands for, or what an expression gives, or a definition does.
+_UseKind = ResolutionKind | Literal["made", "given", "derived", "decorates"]
 # How clearly a use shows its symbol: 0 is best. That a panel or a menu shows it does not tell how it is used.
-_COSTS = {
+_COSTS: dict[_UseKind, float] = {
     "store": 0.0,
     "call": 0.0,
     "item": 0.0,
@@ -143,7 +153,7 @@ def analysed_uses(analysis: Analysis, code: str, file: str, api: Api, cost: floa
     return found
 
 
-def _used(analysis: Analysis, api: Api) -> Iterator[tuple[str, str, int, Resolution]]:
+def _used(analysis: Analysis, api: Api) -> Iterator[tuple[str, _UseKind, int, Resolution]]:
     """(symbol, kind of use, number of symbols it may be, resolution) for everything that a script uses."""
     called = {node.func for node in analysis.resolutions if isinstance(node, ast.Call)}
     owners = {node.value for node in analysis.types if isinstance(node, ast.Attribute)}
@@ -164,7 +174,7 @@ def _used(analysis: Analysis, api: Api) -> Iterator[tuple[str, str, int, Resolut
     yield from _defined(analysis)
 
 
-def _defined(analysis: Analysis) -> Iterator[tuple[str, str, int, Resolution]]:
+def _defined(analysis: Analysis) -> Iterator[tuple[str, _UseKind, int, Resolution]]:
     """The same of the classes and functions that a script defines: what they derive from, and what decorates them."""
     for definition in analysis.classes:
         for base in definition.bases:

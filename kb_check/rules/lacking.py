@@ -12,10 +12,13 @@ from kb_check.rules.renaming import renaming
 from kb_check.script import REGISTERED
 
 if TYPE_CHECKING:
-    from kb_build.flow.types import Resolution
+    from kb_build.flow.types import Resolution, ResolutionKind
     from kb_check.findings import Severity
     from kb_check.known_names import Lacking
     from kb_check.script import Script
+
+# How the path of what is missing is written from its owner and its name, where that is not with a dot.
+_FORMS: dict[ResolutionKind, str] = {"keyword": "{}({})", "value": "{}:{}", "item": ""}
 
 
 def lacking_finding(
@@ -63,5 +66,5 @@ def absent_paths(row: Resolution) -> tuple[str, ...]:
     """The paths that would have to exist for a name to be right; none where that cannot be said by a path."""
     if row.kind == "button" and row.value.startswith(OPERATORS):
         return (row.value,)
-    form = {"keyword": "{}({})", "value": "{}:{}", "item": ""}.get(row.kind, "{}.{}")
+    form = _FORMS.get(row.kind, "{}.{}")
     return tuple(form.format(owner, row.value).lstrip(".") for owner in row.missing) if form else ()

@@ -5,11 +5,17 @@ from __future__ import annotations
 import ast
 import inspect
 import textwrap
+from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import pytest
 
 from kb_build.flow.analysis import Analyzer
 from kb_build.flow.core import Core
+from kb_build.flow.source_files import SourceFile
+
+if TYPE_CHECKING:
+    from kb_build.flow.api import Api
 
 PARTS = [part for part in Analyzer.__mro__ if part is not object]
 
@@ -56,3 +62,31 @@ def test_what_core_declares_is_defined() -> None:
     ]
     assert declared
     assert [name for name in declared if getattr(Analyzer, name) is getattr(Core, name)] == []
+
+
+NESTED = """
+def held(thing):
+    for name in ("a", "b"):
+        try:
+            kept = {"x": {"y": getattr(thing, name)}}
+        except AttributeError:
+            kept = [each.z for each in thing]
+    return kept
+class Holder:
+    kinds = {"m": held("mesh"), "n": {"o": held("node").p}}
+held(Holder.kinds["m"])
+"""
+
+
+def test_it_comes_back_to_where_it_was_wherever_its_time_is_spent(api: Api) -> None:
+    complete: list[bool] = []
+    for steps in range(400):
+        file = SourceFile("", False, ast.parse(NESTED), steps)
+        analyzer = Analyzer(api, (), [file])
+        began, before = analyzer.here, replace(analyzer.here)
+        analyzer.read()
+        assert analyzer.here is began
+        assert began == before
+        complete.append(file.is_read)
+    assert not complete[0]
+    assert complete[-1]
