@@ -206,14 +206,38 @@ def find_alone(write, skipped):
         find(write, (with_objects, with_areas), operators(), None, skipped)
 
 
+class Told:
+    """Writes records, and keeps of which operators."""
+
+    def __init__(self, write):
+        self.write = write
+        self.flush = write.flush
+        self.paths = set()
+
+    def __call__(self, record, **fields):
+        if record.startswith("operator_"):
+            self.paths.add(fields["path"])
+        self.write(record, **fields)
+
+
 def find_all(write, observer, skipped, begun):
-    """One ``operator_needs`` record for each operator of which it is known what it wants, if only nothing.
+    """What is known of what each operator wants: a record ``operator_needs``, if only nothing; ``operator_areas``, see
+    there; or ``operator_refused``, with ``is_unknown`` for one that was not asked, or answered now so, now so.
 
     ``begun`` does ``find_alone`` beside (see apart); without it, or where that ended Blender, all is done here.
     """
     if bpy.context.window is None:
         return
-    known = operators()
+    told, known = Told(write), operators()
+    paths = [*known, *(f"bpy.ops.{name}" for name in NOT_ASKED)]
+    find_told(told, known, observer, skipped, begun)
+    for path in sorted(paths):
+        if path not in told.paths:
+            write("operator_refused", path=path, is_unknown=True)
+
+
+def find_told(write, known, observer, skipped, begun):
+    """The records of operators that answered."""
     try:
         rows = [json.loads(line) for line in begun.lines()] if begun is not None else None
     except RuntimeError:

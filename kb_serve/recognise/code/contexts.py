@@ -10,6 +10,8 @@ from kb_build.symbols.flags import operator_also, operator_areas, operator_given
 from kb_build.symbols.lines import operator_needs
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from kb_build.symbols.records import Symbol
     from kb_serve.recognise.resolving.chains import Chain
 
@@ -21,6 +23,7 @@ NO_OVERRIDE = (
 _WITH = "with bpy.context.temp_override"
 _ACTIVE = "bpy.context.view_layer.objects.active = ob"
 _SELECTED = "ob.select_set(True)"
+_OF_AREA = re.compile(r"\barea\.")  # a statement on the area
 _MODE = re.compile(r"(?P<refused>not )?in mode '(?P<mode>\w+)'")
 # A name for what a member of the context is taken from.
 _THINGS = {"id": "ob", "point_cache": "modifier.point_cache", "edit_image": "image", "edit_text": "text"}
@@ -55,14 +58,28 @@ def context_for(operator: Symbol, like: str = "") -> str:
     )
 
 
-def _in_area(path: str, area: str) -> str:
-    """Lines that give an operator an area; ``any`` for the first that there is."""
+def _in_area(path: str, area: str, also: Sequence[str]) -> str:
+    """Lines that set what an operator wants besides, and give it an area; ``any`` for the first that there is."""
     areas = "bpy.context.window.screen.areas"
     found = f"{areas}[0]" if area == "any" else f"next(a for a in {areas} if a.type == '{area}')"
-    return (
-        f"`area = {found}`; `region = next(r for r in area.regions if r.type == 'WINDOW')`; "
-        f"`{_WITH}(area=area, region=region): {path}()`. Where there is no window, there is no area."
-    )
+    first = next((at for at, text in enumerate(also) if _OF_AREA.search(text)), len(also))
+    lines = [
+        *also[:first],
+        f"area = {found}",
+        *also[first:],
+        "region = next(r for r in area.regions if r.type == 'WINDOW')",
+        f"{_WITH}(area=area, region=region): {path}()",
+    ]
+    return f"{'; '.join(f'`{line}`' for line in lines)}. Where there is no window, there is no area."
+
+
+def _active_given(needs: str) -> str:
+    """Lines that make an object active, and enter a mode, before an area is given."""
+    if " and an active" not in needs:
+        return ""
+    mode = _MODE.search(needs)
+    entered = f"`bpy.ops.object.mode_set(mode='{_entered(mode)}')`; " if mode else ""
+    return f"`{_ACTIVE}`; {entered}"
 
 
 def _giving(operator: Symbol, needs: str) -> str:
@@ -72,7 +89,7 @@ def _giving(operator: Symbol, needs: str) -> str:
         given = f"`{_WITH}({member}={_THINGS.get(member, member)}): {path}({_ARGUMENTS.get(path, '')})`."
         return f"{given} {_INSTEAD.get(path, '')}".rstrip()
     if areas := operator_areas(operator):
-        return "".join(f"`{call}`; " for call in operator_also(operator)) + _in_area(path, areas[0])
+        return _active_given(needs) + _in_area(path, areas[0], operator_also(operator))
     mode = _MODE.search(needs)
     entered = f"`bpy.ops.object.mode_set(mode='{_entered(mode)}')`" if mode else ""
     if needs.startswith("any active object or none"):
