@@ -20,6 +20,7 @@ from .operator_defaults import Defaults
 MOST_MODIFIERS = 6
 MODIFIER = 'obj.modifiers.new("name", '
 THEN = " then "
+ANOTHER_SCENE = 'what `bpy.data.scenes.new("name")` adds'
 NOT_ASKED = frozenset(
     {
         # It crashes Blender 5.0 where no object is active.
@@ -157,13 +158,15 @@ def added(path, mode, calls):
 
 def with_objects(write, known, _observer):
     """What operators want of which it is enough that an object is active, or nothing is: these leave ``known``."""
+    in_only_scene = {*can_run(known)}
     empty_scene()
     no_sequencer_scene()
     defaults = Defaults(known)
     free = Objects(defaults)
     free.ask({path: known.pop(path) for path in can_run(known)})
     for path in free.passed:
-        write("operator_needs", path=path, needs=free.free_needs(path))
+        needs = free.free_needs(path)
+        write("operator_needs", path=path, needs=needs if needs or path in in_only_scene else ANOTHER_SCENE)
     objects = Objects(defaults)
     objects.ask(known)
     for path in objects.passed:

@@ -77,6 +77,11 @@ def made():
     hair = "obj.modifiers.new(\"name\", 'PARTICLE_SYSTEM').particle_system.settings.type = 'HAIR'"
     yield Setting(hair, editors=VIEWS, modes=())
     yield Setting(CAMERA, editors=VIEWS)
+    layer = "bpy.context.view_layer"
+    yield Setting(
+        f"scene.collection.children.link({new('collections')})",
+        f"{layer}.active_layer_collection = {layer}.layer_collection.children[0]",
+    )
     yield from strips()
     yield Setting("obj.data.uv_layers.new()", editors=IMAGES, modes=())
     yield Setting('scene.timeline_markers.new("name")', editors=ANIMATION)

@@ -7,7 +7,8 @@ import re
 from typing import TYPE_CHECKING
 
 from kb_build.symbols.flags import operator_also, operator_areas, operator_given, refused_nothing
-from kb_build.symbols.lines import operator_needs
+from kb_build.symbols.lines import TRIED, operator_needs
+from kb_build.symbols.records import REFUSED_ALL
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,6 +53,11 @@ def context_for(operator: Symbol, like: str = "") -> str:
             f"{failed}operators like it take `{like}` in the context, here one that it can work on: "
             f"`{_WITH}({like}={_THINGS.get(like, like)}): {path}()`."
         )
+    if REFUSED_ALL in operator.flags:
+        return (
+            f"{failed}it took nothing of what was tried ({TRIED}). "
+            "What it wants is elsewhere in the interface, the scene or the file."
+        )
     return (
         f"{failed}it needs another mode, active object, selection or editor than the context has. "
         f"`{OVERRIDE}` can provide objects and editors, `bpy.ops.object.mode_set` a mode."
@@ -79,7 +85,8 @@ def _active_given(needs: str) -> str:
         return ""
     mode = _MODE.search(needs)
     entered = f"`bpy.ops.object.mode_set(mode='{_entered(mode)}')`; " if mode else ""
-    return f"`{_ACTIVE}`; {entered}"
+    selected = f"`{_SELECTED}`; " if "selected" in needs else ""
+    return f"`{_ACTIVE}`; {selected}{entered}"
 
 
 def _giving(operator: Symbol, needs: str) -> str:
